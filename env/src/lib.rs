@@ -1,0 +1,1 @@
+//! Runs a world: physics, rewards, interactions, cameras.

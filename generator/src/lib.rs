@@ -1,0 +1,1 @@
+//! Variant, seed and index to a concrete world.

@@ -1,0 +1,1 @@
+//! Distances between worlds and between variants, and orderings of them.
