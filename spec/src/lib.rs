@@ -1,1 +1,19 @@
-//! The typed documents of Driftworld: worlds, task specs, variants, scenarios, and their JSON Schemas.
+//! The typed documents of Driftworld: worlds, task specs with their variants, scenarios, and their JSON Schemas.
+//!
+//! Read, checked and handed on as plain values; nothing here samples, measures or runs anything. Start with [`World`].
+//! Units everywhere are SI; headings are degrees clockwise from +y; colours are sRGB in 0..1; x is east, y north, z up.
+
+mod color;
+mod document;
+mod error;
+pub mod maps;
+pub mod schema;
+mod world;
+
+pub use color::Color;
+pub use document::MAX_BYTES;
+pub use error::{Problem, SpecError, nearest};
+pub use world::{
+    ActionModel, ActionSpace, AgentParams, EndCondition, EnvironmentParams, GameMode, ImageParams, MAX_OBJECTS,
+    Modality, Model, MotionModel, Object, Respawn, Rules, Shaping, Stimulus, Wall, World,
+};

@@ -1,0 +1,278 @@
+//! A JSON text with a memory of where each value stands. What is wrong with a value is said by `schema.rs` and the types.
+
+use std::ops::Range;
+
+use jsonc_parser::ast;
+use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use crate::error::{Problem, SpecError};
+use crate::schema::DocumentSchema;
+
+/// The longest text that is read, in bytes.
+pub const MAX_BYTES: usize = 64 << 20;
+
+/// A parsed JSON text.
+pub(crate) struct Document<'a> {
+    name: &'a str,
+    text: &'a str,
+    pub(crate) value: Value,
+}
+
+impl<'a> Document<'a> {
+    /// Parses a text: refuses what is not JSON, and keys that stand twice in one object.
+    pub(crate) fn parse(name: &'a str, text: &'a str) -> Result<Self, SpecError> {
+        if text.len() > MAX_BYTES {
+            return Err(SpecError::TooLarge {
+                name: name.to_owned(),
+                bytes: text.len(),
+                limit: MAX_BYTES,
+            });
+        }
+        let value = serde_json::from_str(text).map_err(|error| syntax_error(name, text, &error))?;
+        let document = Self { name, text, value };
+        document.fail_on(document.with_ast(|root| {
+            let mut problems = Vec::new();
+            duplicate_keys(root, &mut String::new(), &mut problems);
+            problems
+        }))?;
+        Ok(document)
+    }
+
+    /// Fails with every violation of the schema.
+    pub(crate) fn check_schema(&self, schema: &DocumentSchema) -> Result<(), SpecError> {
+        self.fail_on(schema.problems(&self.value))
+    }
+
+    /// The typed value; a value that the schema lets pass and the type does not is a problem like any other.
+    pub(crate) fn deserialize<T: DeserializeOwned>(&self) -> Result<T, SpecError> {
+        serde_path_to_error::deserialize(&self.value).map_err(|error| {
+            let pointer = pointer_of(error.path());
+            let found = self
+                .value
+                .pointer(&pointer)
+                .map_or_else(|| "nothing".to_owned(), describe);
+            let problem = Problem::new("spec/value", pointer, found, error.into_inner().to_string());
+            self.error(vec![problem])
+        })
+    }
+
+    /// Fails if there are any problems, after finding the place of each.
+    pub(crate) fn fail_on(&self, problems: Vec<Problem>) -> Result<(), SpecError> {
+        if problems.is_empty() {
+            Ok(())
+        } else {
+            Err(self.error(problems))
+        }
+    }
+
+    fn error(&self, mut problems: Vec<Problem>) -> SpecError {
+        self.with_ast(|root| {
+            for problem in &mut problems {
+                let offset = offset_of(root, &problem.pointer, problem.code == "spec/unknown-key");
+                (problem.line, problem.column) = line_and_column(self.text, offset);
+            }
+        });
+        problems.sort_by(|a, b| (a.line, a.column, &a.pointer).cmp(&(b.line, b.column, &b.pointer)));
+        problems.dedup();
+        SpecError::Document {
+            name: self.name.to_owned(),
+            problems,
+        }
+    }
+
+    /// Hands over the syntax tree with ranges. The text has been parsed before, so there is one.
+    fn with_ast<T: Default>(&self, job: impl FnOnce(&ast::Value) -> T) -> T {
+        let parsed = parse_to_ast(self.text, &CollectOptions::default(), &ParseOptions::default());
+        parsed
+            .ok()
+            .and_then(|result| result.value.map(|root| job(&root)))
+            .unwrap_or_default()
+    }
+}
+
+/// A value in the few words that a message has room for.
+pub(crate) fn describe(value: &Value) -> String {
+    match value {
+        Value::String(text) if text.chars().count() > 40 => {
+            format!("{:?}…", text.chars().take(40).collect::<String>())
+        }
+        Value::Array(items) if items.len() > 4 => format!("a list of {} values", items.len()),
+        Value::Object(map) if map.len() > 2 => format!("an object with {} keys", map.len()),
+        other => {
+            let text = other.to_string();
+            if text.chars().count() > 60 {
+                "a large value".to_owned()
+            } else {
+                text
+            }
+        }
+    }
+}
+
+/// Escapes a key for a JSON pointer.
+pub(crate) fn escape(key: &str) -> String {
+    key.replace('~', "~0").replace('/', "~1")
+}
+
+fn syntax_error(name: &str, text: &str, error: &serde_json::Error) -> SpecError {
+    let message = error.to_string();
+    let mut reason = message.split(" at line ").next().unwrap_or_default().to_owned();
+    let line_text = text.lines().nth(error.line().saturating_sub(1)).unwrap_or_default();
+    let start = line_text.floor_char_boundary(error.column().saturating_sub(1));
+    let rest = line_text[start..].trim_start();
+    if rest.starts_with("NaN") || rest.starts_with("Infinity") || rest.starts_with("-Infinity") {
+        "JSON has no NaN or Infinity; numbers are finite".clone_into(&mut reason);
+    } else if reason == "trailing comma" {
+        reason.push_str("; remove the comma before the closing bracket");
+    } else if rest.starts_with("//") || rest.starts_with("/*") || rest.starts_with('#') {
+        reason.push_str("; JSON has no comments, write a \"description\" instead");
+    } else if reason.starts_with("EOF") {
+        reason.push_str("; the document ends too early, is it cut off?");
+    }
+    SpecError::Syntax {
+        name: name.to_owned(),
+        line: error.line().max(1),
+        column: error.column().max(1),
+        reason,
+    }
+}
+
+fn duplicate_keys(value: &ast::Value, pointer: &mut String, problems: &mut Vec<Problem>) {
+    let length = pointer.len();
+    match value {
+        ast::Value::Object(object) => {
+            let mut seen = std::collections::BTreeSet::new();
+            for property in &object.properties {
+                let key = property.name.as_str();
+                *pointer += "/";
+                *pointer += &escape(key);
+                if !seen.insert(key) {
+                    problems.push(Problem::new(
+                        "spec/duplicate-key",
+                        pointer.clone(),
+                        format!("the key {key:?} twice"),
+                        "each key once; remove one of the two",
+                    ));
+                }
+                duplicate_keys(&property.value, pointer, problems);
+                pointer.truncate(length);
+            }
+        }
+        ast::Value::Array(array) => {
+            for (index, element) in array.elements.iter().enumerate() {
+                *pointer += &format!("/{index}");
+                duplicate_keys(element, pointer, problems);
+                pointer.truncate(length);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// The byte at which the value of a pointer begins, or its key; the nearest parent if the value is absent.
+fn offset_of(root: &ast::Value, pointer: &str, at_key: bool) -> usize {
+    let mut value = root;
+    let mut offset = range_of(root).start;
+    for token in pointer.split('/').skip(1) {
+        let token = token.replace("~1", "/").replace("~0", "~");
+        let next = match value {
+            ast::Value::Object(object) => object
+                .properties
+                .iter()
+                .rev()
+                .find(|property| property.name.as_str() == token)
+                .map(|property| {
+                    let start = if at_key {
+                        property.range.start
+                    } else {
+                        range_of(&property.value).start
+                    };
+                    (start, &property.value)
+                }),
+            ast::Value::Array(array) => token
+                .parse::<usize>()
+                .ok()
+                .and_then(|index| array.elements.get(index))
+                .map(|element| (range_of(element).start, element)),
+            _ => None,
+        };
+        let Some(next) = next else { break };
+        (offset, value) = next;
+    }
+    offset
+}
+
+fn range_of(value: &ast::Value) -> Range<usize> {
+    use jsonc_parser::common::Ranged;
+    let range = value.range();
+    range.start..range.end
+}
+
+fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
+    let before = &text[..text.floor_char_boundary(offset)];
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    (
+        before.matches('\n').count() + 1,
+        before[line_start..].chars().count() + 1,
+    )
+}
+
+fn pointer_of(path: &serde_path_to_error::Path) -> String {
+    use serde_path_to_error::Segment;
+    path.iter().fold(String::new(), |pointer, segment| match segment {
+        Segment::Seq { index } => format!("{pointer}/{index}"),
+        Segment::Map { key } => format!("{pointer}/{}", escape(key)),
+        Segment::Enum { variant } => format!("{pointer}/{}", escape(variant)),
+        Segment::Unknown => pointer,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(text: &str, expected: &str) {
+        let error = Document::parse("d.json", text).err().map(|error| error.to_string());
+        assert_eq!(error.as_deref(), Some(expected), "{text}");
+    }
+
+    #[test]
+    fn what_is_not_json_is_refused_with_its_place() {
+        check(
+            "{\n  \"a\": 1,\n}",
+            "d.json:3:1: not valid JSON: trailing comma; remove the comma before the closing bracket",
+        );
+        check(
+            "{\"a\": NaN}",
+            "d.json:1:7: not valid JSON: JSON has no NaN or Infinity; numbers are finite",
+        );
+        check(
+            "{\"a\": [1, 2",
+            "d.json:1:11: not valid JSON: EOF while parsing a list; the document ends too early, is it cut off?",
+        );
+        check(
+            "",
+            "d.json:1:1: not valid JSON: EOF while parsing a value; the document ends too early, is it cut off?",
+        );
+        check("{\"a\": 1e999}", "d.json:1:11: not valid JSON: number out of range");
+        check(
+            &"[".repeat(1000),
+            "d.json:1:128: not valid JSON: recursion limit exceeded",
+        );
+    }
+
+    #[test]
+    fn a_key_that_stands_twice_is_refused() {
+        check(
+            "{\"a\": {\"b\": 1,\n \"b\": 2}}",
+            "d.json:2:7 (/a/b): found the key \"b\" twice, expected each key once; remove one of the two",
+        );
+    }
+
+    #[test]
+    fn columns_count_characters() {
+        assert_eq!(line_and_column("\"ä\": x", "\"ä\": ".len()), (1, 6));
+    }
+}

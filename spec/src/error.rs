@@ -1,0 +1,198 @@
+//! What can be wrong with a document, said so that its author can mend it. Where things stand in a text is found in `document.rs`.
+
+use std::fmt;
+
+/// The most problems that one message shows.
+const SHOWN: usize = 20;
+
+/// One thing wrong in a document: where, what was found, what was expected, what to do.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// A stable name for this kind of problem, such as `spec/unknown-key`.
+    pub code: &'static str,
+    /// JSON pointer to the value, such as `/objects/3/color`; empty for the document itself.
+    pub pointer: String,
+    /// Line in the text, from 1; 0 while the place is not known.
+    pub line: usize,
+    /// Column in the line, in characters from 1; 0 while the place is not known.
+    pub column: usize,
+    /// What stands there.
+    pub found: String,
+    /// What should stand there.
+    pub expected: String,
+    /// What to do about it, where more can be said.
+    pub advice: Option<String>,
+}
+
+impl Problem {
+    /// A problem whose line and column are not known yet.
+    pub(crate) fn new(
+        code: &'static str,
+        pointer: impl Into<String>,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Self {
+        Self {
+            code,
+            pointer: pointer.into(),
+            line: 0,
+            column: 0,
+            found: found.into(),
+            expected: expected.into(),
+            advice: None,
+        }
+    }
+
+    /// Adds what to do about it.
+    pub(crate) fn advise(mut self, advice: impl Into<String>) -> Self {
+        self.advice = Some(advice.into());
+        self
+    }
+
+    /// Adds «did you mean …?» when one of the known words is near to the one found.
+    pub(crate) fn suggest<S: AsRef<str>>(self, word: &str, known: impl IntoIterator<Item = S>) -> Self {
+        match nearest(word, known) {
+            Some(near) => self.advise(format!("did you mean {near:?}?")),
+            None => self,
+        }
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        if self.line > 0 {
+            write!(f, "{}:{} ", self.line, self.column)?;
+        }
+        let pointer = if self.pointer.is_empty() { "/" } else { &self.pointer };
+        write!(f, "({pointer}): found {}, expected {}", self.found, self.expected)?;
+        self.advice.iter().try_for_each(|advice| write!(f, "; {advice}"))
+    }
+}
+
+/// Everything that can go wrong in this crate.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SpecError {
+    /// The text is not JSON.
+    #[error("{name}:{line}:{column}: not valid JSON: {reason}")]
+    Syntax {
+        /// The document's name.
+        name: String,
+        /// Line from 1.
+        line: usize,
+        /// Column from 1.
+        column: usize,
+        /// What is wrong there, and what to do.
+        reason: String,
+    },
+    /// The text is too long to be a document.
+    #[error("{name}: found {bytes} bytes, expected at most {limit}; split the document")]
+    TooLarge {
+        /// The document's name.
+        name: String,
+        /// Its length.
+        bytes: usize,
+        /// The most that is read.
+        limit: usize,
+    },
+    /// The document is JSON, and says something that it must not.
+    #[error("{}", list(name, problems))]
+    Document {
+        /// The document's name.
+        name: String,
+        /// All that is wrong, sorted by place.
+        problems: Vec<Problem>,
+    },
+    /// A task has no variant of this name.
+    #[error("{task}: found variant {found:?}, expected one of {}{}", known.join(", "), did_you_mean(found, known))]
+    UnknownVariant {
+        /// The task's name.
+        task: String,
+        /// The name asked for.
+        found: String,
+        /// The names there are.
+        known: Vec<String>,
+    },
+}
+
+impl SpecError {
+    /// The stable name of this kind of error; for a document, that of its first problem.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Syntax { .. } => "spec/syntax",
+            Self::TooLarge { .. } => "spec/too-large",
+            Self::Document { problems, .. } => problems.first().map_or("spec/document", |problem| problem.code),
+            Self::UnknownVariant { .. } => "spec/unknown-variant",
+        }
+    }
+
+    /// The problems of a document, sorted by place; empty for other errors.
+    pub fn problems(&self) -> &[Problem] {
+        match self {
+            Self::Document { problems, .. } => problems,
+            _ => &[],
+        }
+    }
+}
+
+fn list(name: &str, problems: &[Problem]) -> String {
+    let mut lines: Vec<String> = problems
+        .iter()
+        .take(SHOWN)
+        .map(|problem| format!("{name}:{problem}"))
+        .collect();
+    if problems.len() > SHOWN {
+        lines.push(format!("{name}: and {} more", problems.len() - SHOWN));
+    }
+    lines.join("\n")
+}
+
+fn did_you_mean(word: &str, known: &[String]) -> String {
+    nearest(word, known).map_or_else(String::new, |near| format!("; did you mean {near:?}?"))
+}
+
+/// The known word that a misspelt one most likely stands for.
+pub fn nearest<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
+    let lower = word.to_lowercase();
+    known
+        .into_iter()
+        .map(|candidate| {
+            (
+                strsim::damerau_levenshtein(&lower, &candidate.as_ref().to_lowercase()),
+                candidate,
+            )
+        })
+        .filter(|(distance, candidate)| *distance <= 1 + candidate.as_ref().chars().count() / 4)
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, candidate)| candidate.as_ref().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_word_is_found_and_a_far_one_is_not() {
+        assert_eq!(nearest("bleu", ["blue", "red"]).as_deref(), Some("blue"));
+        assert_eq!(
+            nearest("maxsteps", ["max_steps", "objects"]).as_deref(),
+            Some("max_steps")
+        );
+        assert_eq!(nearest("zebra", ["blue", "red"]), None);
+    }
+
+    #[test]
+    fn a_message_says_where_what_was_found_what_was_expected_and_what_to_do() {
+        let mut problem =
+            Problem::new("spec/value", "/objects/3/color", "\"bleu\"", "a colour").suggest("bleu", ["blue"]);
+        (problem.line, problem.column) = (12, 9);
+        let error = SpecError::Document {
+            name: "find.json".into(),
+            problems: vec![problem],
+        };
+        assert_eq!(
+            error.to_string(),
+            "find.json:12:9 (/objects/3/color): found \"bleu\", expected a colour; did you mean \"blue\"?"
+        );
+    }
+}

@@ -1,0 +1,241 @@
+//! The JSON Schemas of the documents, made from the Rust types, and what they find wrong. Checks over several values are the types' own.
+
+use std::sync::LazyLock;
+
+use jsonschema::error::{TypeKind, ValidationErrorKind};
+use jsonschema::{ValidationError, Validator};
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema};
+use serde_json::{Value, json};
+
+use crate::World;
+use crate::document::{describe, escape};
+use crate::error::Problem;
+
+/// One document type's schema, ready to check values.
+pub struct DocumentSchema {
+    json: Value,
+    validator: Validator,
+}
+
+impl DocumentSchema {
+    pub(crate) fn new(json: Value) -> Self {
+        let validator = jsonschema::validator_for(&json).expect("the schema is made from our own types and is tested");
+        Self { json, validator }
+    }
+
+    /// The schema as JSON.
+    pub fn json(&self) -> &Value {
+        &self.json
+    }
+
+    /// Everything in a value that the schema does not allow.
+    pub(crate) fn problems(&self, value: &Value) -> Vec<Problem> {
+        self.validator
+            .iter_errors(value)
+            .flat_map(|error| self.explain(&error))
+            .collect()
+    }
+
+    fn explain(&self, error: &ValidationError) -> Vec<Problem> {
+        let pointer = error.instance_path().as_str().to_owned();
+        let found = describe(error.instance());
+        let one = |code, expected: String| vec![Problem::new(code, pointer.clone(), found.clone(), expected)];
+        match error.kind() {
+            ValidationErrorKind::AdditionalProperties { unexpected } => {
+                let known = self.known_keys(error);
+                unexpected
+                    .iter()
+                    .map(|key| unknown_key(&pointer, key, &known))
+                    .collect()
+            }
+            ValidationErrorKind::Required { property } => {
+                vec![Problem::new(
+                    "spec/missing-key",
+                    pointer,
+                    "nothing",
+                    format!("the key {property}"),
+                )]
+            }
+            ValidationErrorKind::Enum { options } => {
+                let words: Vec<String> = options.as_array().into_iter().flatten().map(describe).collect();
+                let plain: Vec<&str> = options
+                    .as_array()
+                    .into_iter()
+                    .flatten()
+                    .filter_map(Value::as_str)
+                    .collect();
+                let word = error.instance().as_str().unwrap_or_default().to_owned();
+                let expected = if words.len() > 12 {
+                    "a known name".to_owned()
+                } else {
+                    format!("one of {}", words.join(", "))
+                };
+                one("spec/value", expected)
+                    .into_iter()
+                    .map(|problem| problem.suggest(&word, &plain))
+                    .collect()
+            }
+            ValidationErrorKind::AnyOf { context } | ValidationErrorKind::OneOfNotValid { context } => {
+                self.nearest_branch(error, context)
+            }
+            ValidationErrorKind::OneOfMultipleValid { .. } => {
+                one("spec/value", "exactly one of the forms allowed here".into())
+            }
+            ValidationErrorKind::PropertyNames { error } => self.explain(error),
+            kind => one(code_of(kind), expected(kind, error)),
+        }
+    }
+
+    /// The keys that the object at fault may have.
+    fn known_keys(&self, error: &ValidationError) -> Vec<String> {
+        let place = error.schema_path().as_str();
+        let parent = place.rfind('/').map_or("", |slash| &place[..slash]);
+        let keys = self
+            .json
+            .pointer(parent)
+            .and_then(|schema| schema.get("properties"))
+            .and_then(Value::as_object);
+        keys.into_iter()
+            .flatten()
+            .map(|(key, _)| key.clone())
+            .filter(|key| key != "$schema")
+            .collect()
+    }
+
+    /// Of several forms a value may take, the one that the author most likely meant: that which fails deepest and least.
+    fn nearest_branch(&self, error: &ValidationError, context: &[Vec<ValidationError<'static>>]) -> Vec<Problem> {
+        let own = error.instance_path().as_str();
+        let wrong_kind = |branch: &[ValidationError]| {
+            branch
+                .iter()
+                .any(|e| e.instance_path().as_str() == own && is_shape_error(e.kind()))
+        };
+        let meant = context
+            .iter()
+            .filter(|branch| !wrong_kind(branch))
+            .min_by_key(|branch| branch.len());
+        if let Some(branch) = meant {
+            return branch.iter().flat_map(|error| self.explain(error)).collect();
+        }
+        let mut forms: Vec<String> = Vec::new();
+        for branch in context {
+            let problems: Vec<Problem> = branch.iter().flat_map(|error| self.explain(error)).collect();
+            forms.extend(
+                problems
+                    .into_iter()
+                    .filter(|problem| problem.pointer == own)
+                    .map(|problem| problem.expected),
+            );
+        }
+        forms.sort();
+        forms.dedup();
+        vec![Problem::new(
+            "spec/value",
+            own,
+            describe(error.instance()),
+            forms.join(", or "),
+        )]
+    }
+}
+
+fn unknown_key(pointer: &str, key: &str, known: &[String]) -> Problem {
+    let expected = if known.is_empty() {
+        "no further keys".to_owned()
+    } else {
+        format!("one of {}", known.join(", "))
+    };
+    Problem::new(
+        "spec/unknown-key",
+        format!("{pointer}/{}", escape(key)),
+        format!("the unknown key {key:?}"),
+        expected,
+    )
+    .suggest(key, known)
+}
+
+/// Whether an error says that a value is of another form altogether.
+fn is_shape_error(kind: &ValidationErrorKind) -> bool {
+    matches!(
+        kind,
+        ValidationErrorKind::Type { .. }
+            | ValidationErrorKind::Required { .. }
+            | ValidationErrorKind::Constant { .. }
+            | ValidationErrorKind::FalseSchema
+    )
+}
+
+fn code_of(kind: &ValidationErrorKind) -> &'static str {
+    match kind {
+        ValidationErrorKind::Type { .. } => "spec/type",
+        ValidationErrorKind::Minimum { .. }
+        | ValidationErrorKind::Maximum { .. }
+        | ValidationErrorKind::ExclusiveMinimum { .. }
+        | ValidationErrorKind::ExclusiveMaximum { .. } => "spec/range",
+        ValidationErrorKind::MinItems { .. } | ValidationErrorKind::MaxItems { .. } => "spec/length",
+        _ => "spec/value",
+    }
+}
+
+fn expected(kind: &ValidationErrorKind, error: &ValidationError) -> String {
+    match kind {
+        ValidationErrorKind::Type {
+            kind: TypeKind::Single(kind),
+        } => article(&kind.to_string()),
+        ValidationErrorKind::Type {
+            kind: TypeKind::Multiple(kinds),
+        } => kinds
+            .iter()
+            .map(|kind| article(&kind.to_string()))
+            .collect::<Vec<_>>()
+            .join(" or "),
+        ValidationErrorKind::Minimum { limit } => format!("at least {limit}"),
+        ValidationErrorKind::Maximum { limit } => format!("at most {limit}"),
+        ValidationErrorKind::ExclusiveMinimum { limit } => format!("more than {limit}"),
+        ValidationErrorKind::ExclusiveMaximum { limit } => format!("less than {limit}"),
+        ValidationErrorKind::MinItems { limit } => format!("at least {limit} values"),
+        ValidationErrorKind::MaxItems { limit } => format!("at most {limit} values"),
+        ValidationErrorKind::MinLength { limit } => format!("at least {limit} characters"),
+        ValidationErrorKind::MaxLength { limit } => format!("at most {limit} characters"),
+        ValidationErrorKind::MinProperties { limit } => format!("at least {limit} keys"),
+        ValidationErrorKind::MaxProperties { limit } => format!("at most {limit} keys"),
+        ValidationErrorKind::Pattern { pattern } => format!("text of the form {pattern}"),
+        ValidationErrorKind::Constant { expected_value } => expected_value.to_string(),
+        ValidationErrorKind::UniqueItems => "no value twice".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+fn article(kind: &str) -> String {
+    match kind {
+        "integer" => "a whole number".to_owned(),
+        "array" => "a list".to_owned(),
+        "object" => "an object".to_owned(),
+        "boolean" => "true or false".to_owned(),
+        "string" => "text".to_owned(),
+        other => format!("a {other}"),
+    }
+}
+
+/// The schema of a Rust type under a title and an identifier of its own.
+pub(crate) fn of_type<T: JsonSchema>(id: &str, title: &str) -> Value {
+    let schema: Schema = SchemaSettings::draft2020_12()
+        .into_generator()
+        .into_root_schema_for::<T>();
+    let mut json = Value::from(schema);
+    json["$id"] = json!(format!("urn:driftworld:{id}"));
+    json["title"] = json!(title);
+    json
+}
+
+/// The schema of [`World`].
+pub fn world() -> &'static DocumentSchema {
+    static SCHEMA: LazyLock<DocumentSchema> =
+        LazyLock::new(|| DocumentSchema::new(of_type::<World>("world", "Driftworld world")));
+    &SCHEMA
+}
+
+/// The schemas of all document types with their file names.
+pub fn all() -> Vec<(&'static str, &'static DocumentSchema)> {
+    vec![("world.schema.json", world())]
+}

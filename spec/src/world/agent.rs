@@ -1,0 +1,99 @@
+//! The agent's body, what it can do and what it sees. How it moves is computed in `env`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The agent: where it starts, how it moves, what it observes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct AgentParams {
+    /// What the numbers of an action mean.
+    pub action_model: ActionModel,
+    /// Height of the camera above the ground in metres.
+    #[schemars(range(min = 0.1, max = 10.0))]
+    pub agent_height: f64,
+    /// Width (diameter) of the agent's collider in metres.
+    #[schemars(range(min = 0.05, max = 10.0))]
+    pub agent_width: f64,
+    /// Largest speed in metres per second.
+    #[schemars(range(min = 0.0, max = 100.0))]
+    pub max_linear_speed: f64,
+    /// Largest turn rate in degrees per second.
+    #[schemars(range(min = 0.0, max = 3600.0))]
+    pub max_angular_speed: f64,
+    /// Side length of the square observations in pixels.
+    #[schemars(range(min = 1, max = 4096))]
+    pub observation_size: u32,
+    /// Start position in metres.
+    #[schemars(inner(range(min = -300.0, max = 300.0)))]
+    pub coordinates: [f64; 2],
+    /// Start heading in degrees: 0 looks along +y, growing clockwise.
+    #[schemars(range(min = 0.0, max = 360.0))]
+    pub heading: f64,
+    /// Simulated seconds per step.
+    #[schemars(range(min = 0.001, max = 10.0))]
+    pub time_step: f64,
+    /// Vertical field of view in degrees.
+    #[schemars(range(min = 1.0, max = 170.0))]
+    pub field_of_view: f64,
+    /// Which images an observation holds.
+    #[schemars(length(max = 3))]
+    pub modalities: Vec<Modality>,
+    /// How actions are given.
+    pub actions: ActionSpace,
+}
+
+impl Default for AgentParams {
+    fn default() -> Self {
+        Self {
+            action_model: ActionModel::ByVelocity,
+            agent_height: 1.0,
+            agent_width: 1.0,
+            max_linear_speed: 10.0,
+            max_angular_speed: 90.0,
+            observation_size: 84,
+            coordinates: [0.0, 0.0],
+            heading: 0.0,
+            time_step: 0.1,
+            field_of_view: 60.0,
+            modalities: vec![Modality::Rgb, Modality::Depth, Modality::Segmentation],
+            actions: ActionSpace::Continuous,
+        }
+    }
+}
+
+/// What the three numbers of an action mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ActionModel {
+    /// Speed in m/s, turn rate in °/s (positive turns right), interact if above 0.5.
+    ByVelocity,
+    /// A point (x, y) in metres to walk to, and a camera turn rate in °/s.
+    ByWaypoint,
+    /// Input is ignored: the agent tours all objects of positive reward by itself, nearest first.
+    OnRails,
+    /// Input is ignored: the agent stands still.
+    None,
+}
+
+/// One kind of image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Modality {
+    /// Colour, `(size, size, 3)` bytes.
+    Rgb,
+    /// Distance along the view axis in metres, `(size, size)` floats.
+    Depth,
+    /// Reward category per pixel, `(size, size)` bytes.
+    Segmentation,
+}
+
+/// How a learner hands in actions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ActionSpace {
+    /// Three numbers, in the units of the action model.
+    Continuous,
+    /// The number of a row of this table; each row holds three numbers in the units of the action model.
+    Discrete(#[schemars(length(min = 1, max = 1000))] Vec<[f64; 3]>),
+}

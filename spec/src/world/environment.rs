@@ -1,0 +1,93 @@
+//! What surrounds the agent: the arena, its walls, the light. What stands in it is in `object.rs`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::Color;
+
+/// The arena and its light.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct EnvironmentParams {
+    /// Colour of the walls around the arena and of the regions that cannot be entered.
+    pub bounding_wall_color: Color,
+    /// Brightness of the sun: 2.3 to 3.5 reads as day, 0.2 as dusk.
+    #[schemars(range(min = 0.0, max = 100.0))]
+    pub light_intensity: f64,
+    /// Which arena: 0 is an empty one of `map_size`; 1 backslash, 2 village, 3 craters, 4 bisected are 200 × 200 m.
+    #[schemars(range(min = 0, max = 4))]
+    pub predefined_map: u8,
+    /// Side lengths of the arena along x and y in metres, centred on the origin; ignored when a map is chosen.
+    #[schemars(inner(range(min = 0.0, max = 300.0)))]
+    pub map_size: [f64; 2],
+    /// Height of the walls in metres.
+    #[schemars(range(min = 0.0, max = 50.0))]
+    pub wall_height: f64,
+    /// Regions that cannot be entered, beside those of the map.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 1000))]
+    pub walls: Vec<Wall>,
+    /// Direction towards the sun (x east, y north, z up); any length but 0.
+    #[schemars(inner(range(min = -1e6, max = 1e6)))]
+    pub sun_direction: [f64; 3],
+    /// Colour of the sunlight.
+    pub light_color: Color,
+    /// Share of the light that reaches every side of everything, 0..1.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub ambient_light: f64,
+    /// Colour of the sky at the zenith; it pales towards the horizon.
+    pub sky_color: Color,
+    /// Colour of the ground.
+    pub ground_color: Color,
+}
+
+impl Default for EnvironmentParams {
+    fn default() -> Self {
+        Self {
+            bounding_wall_color: Color([0.72, 0.68, 0.60]),
+            light_intensity: 2.3,
+            predefined_map: 0,
+            map_size: [100.0, 100.0],
+            wall_height: 4.0,
+            walls: Vec::new(),
+            sun_direction: [0.45, -0.35, 0.82],
+            light_color: Color([1.0, 0.97, 0.9]),
+            ambient_light: 0.35,
+            sky_color: Color([0.36, 0.62, 0.9]),
+            ground_color: Color([0.45, 0.56, 0.34]),
+        }
+    }
+}
+
+impl EnvironmentParams {
+    /// Side lengths of the arena in metres: `map_size`, or 200 × 200 for a predefined map.
+    pub fn arena_size(&self) -> [f64; 2] {
+        if self.predefined_map == 0 {
+            self.map_size
+        } else {
+            [200.0, 200.0]
+        }
+    }
+
+    /// Whether a point lies within the outer walls.
+    pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
+        let [width, depth] = self.arena_size();
+        x.abs() <= width / 2.0 && y.abs() <= depth / 2.0
+    }
+}
+
+/// A region that cannot be entered: a polygon on the ground, standing up as a wall.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Wall {
+    /// Corners in metres, in order; the last joins the first.
+    #[schemars(length(min = 3, max = 1000))]
+    pub polygon: Vec<[f64; 2]>,
+    /// Height in metres; the arena's `wall_height` if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 50.0))]
+    pub height: Option<f64>,
+    /// Colour; the arena's `bounding_wall_color` if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub color: Option<Color>,
+}

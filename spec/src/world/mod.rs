@@ -1,0 +1,172 @@
+//! [`World`]: the reset JSON, one fully concrete world. The L2Explorer dialect of it is read in `l2explorer.rs`.
+
+mod agent;
+mod environment;
+mod object;
+mod rules;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+pub use agent::{ActionModel, ActionSpace, AgentParams, Modality};
+pub use environment::{EnvironmentParams, Wall};
+pub use object::{Model, MotionModel, Object, Respawn, Stimulus};
+pub use rules::{EndCondition, Rules, Shaping};
+
+use crate::document::Document;
+use crate::error::{Problem, SpecError};
+use crate::schema;
+
+/// The most objects that one world may hold.
+pub const MAX_OBJECTS: usize = 100_000;
+
+/// One fully concrete world: what a reset takes.
+///
+/// A superset of L2Explorer's reset payload. Reading is strict: [`World::from_json`] names every unknown key, wrong type
+/// and value out of range at once, with its place.
+///
+/// # Example
+/// ```
+/// use driftworld_spec::World;
+/// let world = World::from_json("inline", r#"{ "max_steps": 50, "objects": [{ "class": "tree", "coordinates": [3, 4] }] }"#)?;
+/// assert_eq!(world.objects[0].coordinates, [3.0, 4.0]);
+/// # Ok::<(), driftworld_spec::SpecError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct World {
+    /// Where the JSON Schema of this document is, for editors; not part of the world.
+    #[serde(rename = "$schema", skip_serializing)]
+    pub schema: Option<String>,
+    /// What the world is for.
+    pub game_mode: GameMode,
+    /// Steps until the episode is truncated; 0 is never.
+    #[schemars(range(min = 0, max = 1_000_000_000))]
+    pub max_steps: u32,
+    /// The arena and its light.
+    pub environment_params: EnvironmentParams,
+    /// The agent.
+    pub agent_params: AgentParams,
+    /// How objects are photographed in `collect_images`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub image_params: Option<ImageParams>,
+    /// Rewards and endings beside those of the objects.
+    pub rules: Rules,
+    /// What stands in the world.
+    #[schemars(length(max = 100_000))]
+    pub objects: Vec<Object>,
+}
+
+/// What a world is for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GameMode {
+    /// An agent acts in it.
+    #[default]
+    Learn,
+    /// Its objects are photographed.
+    CollectImages,
+}
+
+/// How objects are photographed in `collect_images`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct ImageParams {
+    /// Distance of the camera as a factor on the object's size.
+    #[schemars(range(min = 0.1, max = 100.0))]
+    pub zoom: f64,
+    /// Views around each object.
+    #[schemars(range(min = 1, max = 360))]
+    pub yaw_subdivisions: u32,
+    /// Views from the side up to the top.
+    #[schemars(range(min = 1, max = 360))]
+    pub vertical_subdivisions: u32,
+}
+
+impl Default for ImageParams {
+    fn default() -> Self {
+        Self {
+            zoom: 2.0,
+            yaw_subdivisions: 8,
+            vertical_subdivisions: 1,
+        }
+    }
+}
+
+impl World {
+    /// Reads a world, strictly. `name` is what messages call the document, usually its path.
+    ///
+    /// # Errors
+    /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
+    pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
+        let document = Document::parse(name, text)?;
+        document.check_schema(schema::world())?;
+        let world: Self = document.deserialize()?;
+        document.fail_on(world.problems())?;
+        Ok(world)
+    }
+
+    /// The world as one line of JSON: the same world gives the same bytes on every platform.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(self).expect("a world has string keys and finite numbers only, which always serialise")
+    }
+
+    /// The world as indented JSON with a final newline.
+    pub fn to_json_pretty(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self)
+            .expect("a world has string keys and finite numbers only, which always serialise");
+        text.push('\n');
+        text
+    }
+
+    /// The world's name by its content: the SHA-256 of [`World::to_json`] in hexadecimal, 64 characters.
+    pub fn hash(&self) -> String {
+        Sha256::digest(self.to_json())
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
+    }
+
+    /// What the schema cannot say: checks that look at several values at once.
+    pub(crate) fn problems(&self) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        if self.environment_params.sun_direction == [0.0; 3] {
+            problems.push(Problem::new(
+                "spec/zero-direction",
+                "/environment_params/sun_direction",
+                "[0, 0, 0]",
+                "a direction, such as [0.4, -0.3, 0.8]",
+            ));
+        }
+        if self.environment_params.predefined_map == 0 && self.environment_params.map_size.contains(&0.0) {
+            problems.push(
+                Problem::new(
+                    "spec/empty-arena",
+                    "/environment_params/map_size",
+                    "a side of 0 m",
+                    "sides above 0 m",
+                )
+                .advise("or choose a predefined_map from 1 to 4"),
+            );
+        }
+        problems.extend(duplicate_names(&self.objects));
+        problems
+    }
+}
+
+fn duplicate_names(objects: &[Object]) -> impl Iterator<Item = Problem> {
+    let mut seen = std::collections::BTreeMap::new();
+    objects.iter().enumerate().filter_map(move |(index, object)| {
+        let name = object.unique_name.as_ref()?;
+        let first = *seen.entry(name).or_insert(index);
+        (first != index).then(|| {
+            Problem::new(
+                "spec/duplicate-name",
+                format!("/objects/{index}/unique_name"),
+                format!("{name:?}, which object {first} has too"),
+                "a name of its own",
+            )
+        })
+    })
+}

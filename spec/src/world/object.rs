@@ -1,0 +1,229 @@
+//! One thing that stands in a world, and what touching it does.
+
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, Serialize};
+
+use crate::Color;
+
+/// An object: its look, its place, what it is worth.
+///
+/// Every field but `class` and `coordinates` has a default.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Object {
+    /// Kind of asset: `geometric`, `tree`, `barrel`, …; a class that is not known draws a placeholder.
+    #[schemars(length(min = 1, max = 100))]
+    pub class: String,
+    /// Which asset of the class, counted from "1".
+    #[serde(default)]
+    pub model: Model,
+    /// Position on the ground in metres.
+    #[schemars(inner(range(min = -300.0, max = 300.0)))]
+    pub coordinates: [f64; 2],
+    /// Where the object faces, in degrees: 0 is +y, growing clockwise.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 360.0))]
+    pub heading: f64,
+    /// Factor on the asset's natural size.
+    #[serde(default = "one")]
+    #[schemars(range(min = 0.01, max = 100.0))]
+    pub scale: f64,
+    /// Main colour; the asset's own colours if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub color: Option<Color>,
+    /// Whether the agent is stopped by it.
+    #[serde(default = "yes")]
+    pub solid: bool,
+    /// What one triggering is worth.
+    #[serde(default)]
+    #[schemars(range(min = -1e9, max = 1e9))]
+    pub reward: f64,
+    /// Chance that a triggering pays at all (a bandit arm), 0..1.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub reward_probability: f64,
+    /// Stimuli of which each triggering pays `reward`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 3))]
+    pub reward_stimulus: Vec<Stimulus>,
+    /// Stimuli that pay `reward` once, after which the object's reward is 0.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 3))]
+    pub reward_once_stimulus: Vec<Stimulus>,
+    /// Stimuli that destroy the object.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 3))]
+    pub destroy_stimulus: Vec<Stimulus>,
+    /// Distance from centre to centre in metres below which `AgentInRange` holds.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0, max = 1000.0))]
+    pub range_stimulus_distance: f64,
+    /// How the object moves by itself.
+    #[serde(default)]
+    pub motion_model: MotionModel,
+    /// Speed of the object's own motion in metres per second.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0, max = 100.0))]
+    pub speed: f64,
+    /// Points in metres that the object walks along, in order, then back to the first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 1000))]
+    pub waypoints: Vec<[f64; 2]>,
+    /// Place in a scavenger sequence, from 1: it pays only when all lower places have been collected.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 100_000))]
+    pub order: Option<u32>,
+    /// How the object comes back after it was destroyed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub respawn: Option<Respawn>,
+    /// A free word that rules and logs refer to; the name of the group for sampled objects.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1, max = 100))]
+    pub tag: Option<String>,
+    /// A name that no other object of the world has.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1, max = 100))]
+    pub unique_name: Option<String>,
+}
+
+impl Object {
+    /// An object of this class at this place in metres; all else is at its default.
+    pub fn new(class: impl Into<String>, coordinates: [f64; 2]) -> Self {
+        Self {
+            class: class.into(),
+            model: Model::default(),
+            coordinates,
+            heading: 0.0,
+            scale: 1.0,
+            color: None,
+            solid: true,
+            reward: 0.0,
+            reward_probability: 1.0,
+            reward_stimulus: Vec::new(),
+            reward_once_stimulus: Vec::new(),
+            destroy_stimulus: Vec::new(),
+            range_stimulus_distance: 0.0,
+            motion_model: MotionModel::Stationary,
+            speed: 0.0,
+            waypoints: Vec::new(),
+            order: None,
+            respawn: None,
+            tag: None,
+            unique_name: None,
+        }
+    }
+
+    /// Whether the agent can earn something by this object: a positive reward and a stimulus that pays it.
+    pub fn is_target(&self) -> bool {
+        self.reward > 0.0 && !(self.reward_stimulus.is_empty() && self.reward_once_stimulus.is_empty())
+    }
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn yes() -> bool {
+    true
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_one(value: &f64) -> bool {
+    *value == 1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+/// The model within a class. Documents write `"3"` or `3`; it is kept as text.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+pub struct Model(pub String);
+
+impl Default for Model {
+    fn default() -> Self {
+        Self("1".to_owned())
+    }
+}
+
+impl Model {
+    /// The model's number, if it is one.
+    pub fn number(&self) -> Option<u32> {
+        self.0.trim().parse().ok()
+    }
+}
+
+impl<'de> Deserialize<'de> for Model {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged, expecting = "a model: text such as \"1\", or a whole number")]
+        enum Either {
+            Number(u32),
+            Text(String),
+        }
+        Ok(match Either::deserialize(deserializer)? {
+            Either::Number(number) => Self(number.to_string()),
+            Either::Text(text) => Self(text),
+        })
+    }
+}
+
+impl JsonSchema for Model {
+    fn schema_name() -> Cow<'static, str> {
+        "Model".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "Which asset of the class: \"1\", or 1.",
+            "anyOf": [
+                { "type": "string", "minLength": 1, "maxLength": 100 },
+                { "type": "integer", "minimum": 0, "maximum": 1_000_000 }
+            ]
+        })
+    }
+}
+
+/// What sets an object off.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+pub enum Stimulus {
+    /// The agent's body meets the object's; again on each new contact.
+    AgentCollide,
+    /// The agent interacts while the object is in the 1 m cube right in front of it.
+    AgentInteract,
+    /// The centres are closer than `range_stimulus_distance`.
+    AgentInRange,
+}
+
+/// How an object moves by itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum MotionModel {
+    /// It does not.
+    #[default]
+    Stationary,
+    /// Towards the agent.
+    Predator,
+    /// Away from the agent.
+    Prey,
+    /// To random points, one after the other.
+    RandomWaypoint,
+    /// Along its `waypoints`.
+    Patrol,
+}
+
+/// How an object comes back.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Respawn {
+    /// Seconds between its destruction and its return.
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub delay: f64,
+    /// Radius in metres around its first place within which it returns; 0 is the same place.
+    #[serde(default)]
+    #[schemars(range(min = 0.0, max = 300.0))]
+    pub radius: f64,
+}
