@@ -7,12 +7,19 @@ mod color;
 mod document;
 mod error;
 pub mod maps;
+mod scenario;
 pub mod schema;
+mod task;
 mod world;
 
 pub use color::Color;
 pub use document::MAX_BYTES;
 pub use error::{Problem, SpecError, nearest};
+pub use scenario::{Block, BlockKind, MAX_EXPERIENCES, Regime, Scenario};
+pub use task::{
+    Count, DEFAULT_VARIANT, Distribution, Domain, Element, Group, Hole, Number, ParamRef, Parameter, ParameterType,
+    PlacedGroup, Role, Source, TaskSpec, Template, Value, Variant, VariantSpec,
+};
 pub use world::{
     ActionModel, ActionSpace, AgentParams, EndCondition, EnvironmentParams, GameMode, ImageParams, MAX_OBJECTS,
     Modality, Model, MotionModel, Object, Respawn, Rules, Shaping, Stimulus, Wall, World,

@@ -8,9 +8,11 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 use serde_json::{Value, json};
 
-use crate::World;
 use crate::document::{describe, escape};
 use crate::error::Problem;
+use crate::scenario::Scenario;
+use crate::task::TaskDocument;
+use crate::world::World;
 
 /// One document type's schema, ready to check values.
 pub struct DocumentSchema {
@@ -235,7 +237,25 @@ pub fn world() -> &'static DocumentSchema {
     &SCHEMA
 }
 
+/// The schema of [`TaskSpec`](crate::TaskSpec).
+pub fn task() -> &'static DocumentSchema {
+    static SCHEMA: LazyLock<DocumentSchema> =
+        LazyLock::new(|| DocumentSchema::new(of_type::<TaskDocument>("task", "Driftworld task spec")));
+    &SCHEMA
+}
+
+/// The schema of [`Scenario`].
+pub fn scenario() -> &'static DocumentSchema {
+    static SCHEMA: LazyLock<DocumentSchema> =
+        LazyLock::new(|| DocumentSchema::new(of_type::<Scenario>("scenario", "Driftworld scenario")));
+    &SCHEMA
+}
+
 /// The schemas of all document types with their file names.
-pub fn all() -> Vec<(&'static str, &'static DocumentSchema)> {
-    vec![("world.schema.json", world())]
+pub fn all() -> [(&'static str, &'static DocumentSchema); 3] {
+    [
+        ("world.schema.json", world()),
+        ("task.schema.json", task()),
+        ("scenario.schema.json", scenario()),
+    ]
 }

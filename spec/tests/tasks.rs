@@ -1,0 +1,92 @@
+//! The task specs that ship with the project load, and broken ones are refused with the messages that authors see.
+
+use driftworld_spec::{Color, TaskSpec, Value};
+
+fn read(name: &str) -> String {
+    std::fs::read_to_string(format!("{}/../examples/tasks/{name}.json", env!("CARGO_MANIFEST_DIR"))).unwrap()
+}
+
+#[test]
+fn every_example_task_loads_with_its_variants() {
+    for name in ["find_objects", "get_to_goal"] {
+        let task = TaskSpec::from_json(name, &read(name)).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(task.name(), name);
+        assert!(task.all_variants().len() >= 4);
+    }
+}
+
+#[test]
+fn a_variant_has_its_own_values_over_those_it_extends_over_the_defaults() {
+    let task = TaskSpec::from_json("find_objects.json", &read("find_objects")).unwrap();
+    let dusk = task.variant("dusk").unwrap();
+    assert_eq!(dusk.id(), "find_objects#dusk");
+    assert_eq!(dusk.value("target_color"), Some(&Value::Color(Color([1.0, 0.0, 0.0]))));
+    assert_eq!(dusk.value("light"), Some(&Value::Number(0.6)));
+    assert_eq!(dusk.value("spread"), Some(&Value::Number(20.0)));
+    assert_eq!(dusk.value("start_heading"), None);
+}
+
+/// The message for `find_objects` with one text replaced by another.
+fn broken(from: &str, to: &str) -> String {
+    let text = read("find_objects");
+    assert!(text.contains(from), "{from}");
+    match TaskSpec::from_json("task.json", &text.replacen(from, to, 1)) {
+        Ok(_) => panic!("accepted with {to}"),
+        Err(error) => error.to_string(),
+    }
+}
+
+#[test]
+fn broken_tasks_are_refused_and_the_message_says_how_to_mend_them() {
+    let cases = [
+        ("\"param\": \"light\"", "\"param\": \"ligth\""),
+        ("\"param\": \"light\"", "\"param\": \"target_color\""),
+        (
+            "\"light_intensity\": { \"param\": \"light\" }",
+            "\"light_intensity\": { \"uniform\": { \"low\": -1, \"high\": 2 } }",
+        ),
+        ("\"param\": \"spread\"", "\"param\": \"start_heading\""),
+        ("\"range\": [0.2, 4]", "\"range\": [4, 0.2]"),
+        (
+            "\"range\": [0.2, 4], \"default\": 2.3",
+            "\"range\": [0.2, 4], \"default\": 23",
+        ),
+        ("\"range\": [0.2, 4]", "\"range\": [0.2, 400]"),
+        ("\"low\": 0, \"high\": 360", "\"low\": 360, \"high\": 0"),
+        (
+            "\"uniform\": { \"low\": 0, \"high\": 360 }",
+            "\"unifrom\": { \"low\": 0, \"high\": 360 }",
+        ),
+        ("\"extends\": \"red\"", "\"extends\": \"rde\""),
+        ("\"light\": 0.6", "\"lihgt\": 0.6"),
+        ("\"light\": 0.6", "\"light\": 60"),
+        ("\"light\": 0.6", "\"target_count\": 6"),
+        ("\"target_color\": \"green\"", "\"target_color\": \"gren\""),
+        ("\"description\": \"The same with red cubes.\"", "\"extends\": \"dusk\""),
+        ("\"value\": 5", "\"value\": \"five\""),
+        ("\"value\": 5", "\"value\": 1000000000"),
+        ("\"value\": 5, ", ""),
+        ("\"count\": 4", "\"count\": 1000000000"),
+        ("\"class\": \"rock\"", "\"clas\": \"rock\""),
+        ("\"max_steps\": 300", "\"max_step\": 300"),
+        ("\"max_steps\": 300", "\"max_steps\": { \"param\": \"light\" }"),
+        ("\"role\": \"fixed\"", "\"role\": \"constant\""),
+        ("\"gaussian\"", "\"gausian\""),
+        (
+            "\"success\": [\"all_collected\"]",
+            "\"success\": [{ \"param\": \"light\" }]",
+        ),
+        ("\"name\": \"rocks\"", "\"name\": \"trees\""),
+        ("\"separation\": 2", "\"separation\": -2"),
+        (
+            "\"values\": [\"1\", \"4\", \"7\"]",
+            "\"values\": [\"1\", \"4\", \"7\"], \"weights\": [1, 2]",
+        ),
+        ("\"affects\": [\"O\"], ", ""),
+    ];
+    let report: String = cases
+        .iter()
+        .map(|(from, to)| format!("{from}  →  {to}\n{}\n\n", broken(from, to)))
+        .collect();
+    insta::assert_snapshot!(report);
+}
