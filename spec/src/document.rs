@@ -53,7 +53,11 @@ impl<'a> Document<'a> {
                 .value
                 .pointer(&pointer)
                 .map_or_else(|| "nothing".to_owned(), describe);
-            let problem = Problem::new("spec/value", pointer, found, error.into_inner().to_string());
+            let expected = match error.into_inner().to_string() {
+                text if text.contains("floating point") => "a whole number, written without a decimal point".to_owned(),
+                text => text,
+            };
+            let problem = Problem::new("spec/value", pointer, found, expected);
             self.error(vec![problem])
         })
     }
@@ -80,6 +84,11 @@ impl<'a> Document<'a> {
             name: self.name.to_owned(),
             problems,
         }
+    }
+
+    /// Line and column of the value of a pointer, or of its nearest parent that is there.
+    pub(crate) fn place(&self, pointer: &str) -> (usize, usize) {
+        line_and_column(self.text, self.with_ast(|root| offset_of(root, pointer, false)))
     }
 
     /// Hands over the syntax tree with ranges. The text has been parsed before, so there is one.
@@ -162,7 +171,8 @@ fn duplicate_keys(value: &ast::Value, pointer: &mut String, problems: &mut Vec<P
         }
         ast::Value::Array(array) => {
             for (index, element) in array.elements.iter().enumerate() {
-                *pointer += &format!("/{index}");
+                *pointer += "/";
+                *pointer += &index.to_string();
                 duplicate_keys(element, pointer, problems);
                 pointer.truncate(length);
             }

@@ -6,6 +6,7 @@
 mod color;
 mod document;
 mod error;
+mod l2explorer;
 pub mod maps;
 mod scenario;
 pub mod schema;
@@ -15,6 +16,7 @@ mod world;
 pub use color::Color;
 pub use document::MAX_BYTES;
 pub use error::{Problem, SpecError, nearest};
+pub use l2explorer::Warning;
 pub use scenario::{Block, BlockKind, MAX_EXPERIENCES, Regime, Scenario};
 pub use task::{
     Count, DEFAULT_VARIANT, Distribution, Domain, Element, Group, Hole, Number, ParamRef, Parameter, ParameterType,

@@ -120,24 +120,58 @@ impl DocumentSchema {
         if let Some(branch) = meant {
             return branch.iter().flat_map(|error| self.explain(error)).collect();
         }
-        let mut forms: Vec<String> = Vec::new();
-        for branch in context {
-            let problems: Vec<Problem> = branch.iter().flat_map(|error| self.explain(error)).collect();
-            forms.extend(
-                problems
-                    .into_iter()
-                    .filter(|problem| problem.pointer == own)
-                    .map(|problem| problem.expected),
-            );
+        vec![self.none_of(error, context)]
+    }
+
+    /// Says which forms a value could have had, when it has the form of none.
+    fn none_of(&self, error: &ValidationError, context: &[Vec<ValidationError<'static>>]) -> Problem {
+        let own = error.instance_path().as_str();
+        let (mut words, mut keys, mut forms) = (Vec::new(), Vec::new(), Vec::new());
+        for error in context
+            .iter()
+            .flatten()
+            .filter(|error| error.instance_path().as_str() == own)
+        {
+            match error.kind() {
+                ValidationErrorKind::Constant { expected_value } => words.push(describe(expected_value)),
+                ValidationErrorKind::Required { property } => keys.push(describe(property)),
+                _ => forms.extend(
+                    self.explain(error)
+                        .into_iter()
+                        .filter(|p| p.pointer == own)
+                        .map(|p| p.expected),
+                ),
+            }
         }
+        let is_object = error.instance().is_object();
+        if is_object && !keys.is_empty() {
+            // An object was meant: what other forms there are does not help.
+            (words, forms) = (Vec::new(), Vec::new());
+        } else if error.instance().is_string() && !words.is_empty() {
+            forms.retain(|form| !matches!(form.as_str(), "text" | "an object"));
+        }
+        let word = match &**error.instance() {
+            Value::Object(map) => map.keys().next().cloned().unwrap_or_default(),
+            other => other.as_str().unwrap_or_default().to_owned(),
+        };
+        let known: Vec<String> = words
+            .iter()
+            .chain(&keys)
+            .map(|word| word.trim_matches('"').to_owned())
+            .collect();
+        let one_of = |what: &str, mut list: Vec<String>| {
+            list.sort();
+            list.dedup();
+            (!list.is_empty()).then(|| format!("{what}{}", list.join(", ")))
+        };
         forms.sort();
         forms.dedup();
-        vec![Problem::new(
-            "spec/value",
-            own,
-            describe(error.instance()),
-            forms.join(", or "),
-        )]
+        let expected: Vec<String> = one_of("one of ", words)
+            .into_iter()
+            .chain(one_of("an object with one of the keys ", keys))
+            .chain(forms)
+            .collect();
+        Problem::new("spec/value", own, describe(error.instance()), expected.join(", or ")).suggest(&word, known)
     }
 }
 

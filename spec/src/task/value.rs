@@ -117,6 +117,7 @@ impl std::fmt::Display for Value {
 mod tests {
     use super::*;
 
+    #[expect(clippy::needless_pass_by_value, reason = "the cases read better with plain values")]
     fn check(json: &str, kind: ParameterType, expected: Option<Value>) {
         let value: Value = serde_json::from_str(json).unwrap();
         assert_eq!(value.cast(kind), expected, "{json} as {}", kind.name());

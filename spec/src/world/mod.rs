@@ -5,6 +5,8 @@ mod environment;
 mod object;
 mod rules;
 
+use std::fmt::Write;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -124,8 +126,10 @@ impl World {
     pub fn hash(&self) -> String {
         Sha256::digest(self.to_json())
             .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect()
+            .fold(String::with_capacity(64), |mut hash, byte| {
+                write!(hash, "{byte:02x}").expect("writing to a String does not fail");
+                hash
+            })
     }
 
     /// What the schema cannot say: checks that look at several values at once.

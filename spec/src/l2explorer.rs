@@ -1,0 +1,523 @@
+//! Reading the dialect of L2Explorer's reset files into a [`World`], with a warning for everything that was not plain.
+
+use std::collections::BTreeSet;
+use std::fmt;
+
+use serde_json::{Map, Value as Json, json};
+
+use crate::document::{Document, describe, escape};
+use crate::error::{Problem, SpecError};
+use crate::schema;
+use crate::world::World;
+
+/// Something in a file of the original that was read, but not as it stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// The document's name.
+    pub name: String,
+    /// JSON pointer to the value.
+    pub pointer: String,
+    /// Line in the text, from 1.
+    pub line: usize,
+    /// Column in the line, from 1.
+    pub column: usize,
+    /// What was found, and what was made of it.
+    pub text: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(
+            f,
+            "{}:{}:{} ({}): {}",
+            self.name, self.line, self.column, self.pointer, self.text
+        )
+    }
+}
+
+impl World {
+    /// Reads a reset file of the original: words in any case, numbers as strings, colours in 0..255, old keys.
+    ///
+    /// A colour of (0, 0, 0) is the original's default; on anything but `geometric`, `cube` and `icosphere` it is read as
+    /// the asset's own colours.
+    ///
+    /// # Errors
+    /// [`SpecError`] where the file is not JSON, or holds a value that no leniency can make sense of.
+    pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
+        let mut document = Document::parse(name, text)?;
+        let mut reader = Reader::default();
+        let value = reader.world(&document.value);
+        document.value = value;
+        let kept = reader.kept;
+        let original = |mut problem: Problem| {
+            problem.pointer = original_pointer(&problem.pointer, &kept);
+            problem
+        };
+        document.fail_on(
+            schema::world()
+                .problems(&document.value)
+                .into_iter()
+                .map(original)
+                .collect(),
+        )?;
+        let world: Self = document.deserialize()?;
+        document.fail_on(world.problems().into_iter().map(original).collect())?;
+        let warnings = reader
+            .warnings
+            .into_iter()
+            .chain(outside(&world, &kept))
+            .map(|(pointer, text)| {
+                let (line, column) = document.place(&pointer);
+                Warning {
+                    name: name.to_owned(),
+                    pointer,
+                    line,
+                    column,
+                    text,
+                }
+            });
+        let mut warnings: Vec<Warning> = warnings.collect();
+        warnings.sort_by_key(|warning| (warning.line, warning.column));
+        Ok((world, warnings))
+    }
+}
+
+/// Objects were skipped on reading: names the place in the file of a place in the world.
+fn original_pointer(pointer: &str, kept: &[usize]) -> String {
+    let mut tokens: Vec<String> = pointer.split('/').map(str::to_owned).collect();
+    if let [_, list, index, ..] = &mut tokens[..]
+        && list == "objects"
+        && let Some(original) = index.parse::<usize>().ok().and_then(|index| kept.get(index))
+    {
+        *index = original.to_string();
+    }
+    tokens.join("/")
+}
+
+fn outside(world: &World, kept: &[usize]) -> impl Iterator<Item = (String, String)> {
+    let arena = &world.environment_params;
+    let [width, depth] = arena.arena_size();
+    world
+        .objects
+        .iter()
+        .enumerate()
+        .filter(|(_, object)| !arena.contains(object.coordinates))
+        .map(move |(index, object)| {
+            let [x, y] = object.coordinates;
+            let text = format!(
+                "the {} stands at ({x:.1}, {y:.1}), outside the {width} × {depth} m arena; it is kept, out of reach",
+                object.class
+            );
+            (format!("/objects/{}/coordinates", kept[index]), text)
+        })
+}
+
+#[derive(Default)]
+struct Reader {
+    warnings: Vec<(String, String)>,
+    /// For each object of the world, its index in the file.
+    kept: Vec<usize>,
+}
+
+impl Reader {
+    fn warn(&mut self, pointer: impl Into<String>, text: impl Into<String>) {
+        self.warnings.push((pointer.into(), text.into()));
+    }
+
+    fn world(&mut self, json: &Json) -> Json {
+        let Some(map) = json.as_object() else {
+            return json.clone();
+        };
+        let mut world = self.keys(
+            "",
+            map,
+            &[
+                "game_mode",
+                "max_steps",
+                "environment_params",
+                "agent_params",
+                "image_params",
+                "objects",
+                "rules",
+            ],
+        );
+        word(&mut world, "game_mode");
+        self.number("", &mut world, "max_steps");
+        if let Some(Json::Object(map)) = world.get("environment_params").cloned() {
+            world.insert("environment_params".into(), Json::Object(self.environment(&map)));
+        }
+        if let Some(Json::Object(map)) = world.get("agent_params").cloned() {
+            world.insert("agent_params".into(), Json::Object(self.agent(&map)));
+        }
+        if let Some(Json::Object(map)) = world.get("image_params").cloned() {
+            let mut image = self.keys(
+                "/image_params",
+                &map,
+                &["zoom", "yaw_subdivisions", "vertical_subdivisions"],
+            );
+            for key in ["zoom", "yaw_subdivisions", "vertical_subdivisions"] {
+                self.number("/image_params", &mut image, key);
+            }
+            world.insert("image_params".into(), Json::Object(image));
+        }
+        if let Some(Json::Array(objects)) = world.get("objects").cloned() {
+            world.insert("objects".into(), Json::Array(self.objects(&objects)));
+        }
+        Json::Object(world)
+    }
+
+    /// The entries with their keys as we write them; keys that are not known are left out with a warning.
+    fn keys(&mut self, pointer: &str, map: &Map<String, Json>, known: &[&str]) -> Map<String, Json> {
+        let plain = |key: &str| key.replace('_', "").to_lowercase();
+        let mut renamed = Map::new();
+        let mut seen = BTreeSet::new();
+        for (key, value) in map {
+            let old = match (pointer, plain(key).as_str()) {
+                ("/agent_params", "initialcoordinates") => Some("coordinates"),
+                ("", "$schema") => continue,
+                _ => None,
+            };
+            let place = format!("{pointer}/{}", escape(key));
+            let Some(name) = old.or_else(|| known.iter().copied().find(|name| plain(name) == plain(key))) else {
+                self.warn(place, format!("the key {key:?} has no meaning here and is left out"));
+                continue;
+            };
+            if key != name {
+                self.warn(place, format!("the key {key:?} is read as {name:?}"));
+            }
+            if seen.insert(name) {
+                renamed.insert(name.to_owned(), value.clone());
+            }
+        }
+        renamed
+    }
+
+    fn environment(&mut self, map: &Map<String, Json>) -> Map<String, Json> {
+        let at = "/environment_params";
+        let known = [
+            "bounding_wall_color",
+            "light_intensity",
+            "predefined_map",
+            "map_size",
+            "wall_height",
+            "walls",
+            "sun_direction",
+            "light_color",
+            "ambient_light",
+            "sky_color",
+            "ground_color",
+        ];
+        let mut environment = self.keys(at, map, &known);
+        for key in ["light_intensity", "predefined_map", "map_size", "wall_height"] {
+            self.number(at, &mut environment, key);
+        }
+        self.color(at, &mut environment, "bounding_wall_color");
+        environment
+    }
+
+    fn agent(&mut self, map: &Map<String, Json>) -> Map<String, Json> {
+        let at = "/agent_params";
+        let known = [
+            "action_model",
+            "agent_height",
+            "agent_width",
+            "max_linear_speed",
+            "max_angular_speed",
+            "observation_size",
+            "coordinates",
+            "heading",
+            "time_step",
+            "field_of_view",
+            "modalities",
+            "actions",
+            "pickup_range",
+        ];
+        let mut agent = self.keys(at, map, &known);
+        word(&mut agent, "action_model");
+        if agent.shift_remove("pickup_range").is_some() {
+            self.warn(
+                format!("{at}/pickup_range"),
+                "pickup_range is an old key; interacting reaches 1 m ahead, and it is left out",
+            );
+        }
+        let numbers = [
+            "agent_height",
+            "agent_width",
+            "max_linear_speed",
+            "max_angular_speed",
+            "observation_size",
+            "coordinates",
+            "heading",
+        ];
+        for key in numbers {
+            self.number(at, &mut agent, key);
+        }
+        self.heading(at, &mut agent);
+        agent
+    }
+
+    fn objects(&mut self, objects: &[Json]) -> Vec<Json> {
+        let mut read = Vec::new();
+        for (index, json) in objects.iter().enumerate() {
+            let at = format!("/objects/{index}");
+            let Some(map) = json.as_object() else {
+                read.push(json.clone());
+                self.kept.push(index);
+                continue;
+            };
+            let object = self.object(&at, map);
+            if object.get("class").is_none_or(|class| class.is_null() || class == "") {
+                self.warn(at, "an object without a class is skipped");
+                continue;
+            }
+            read.push(Json::Object(object));
+            self.kept.push(index);
+        }
+        read
+    }
+
+    fn object(&mut self, at: &str, map: &Map<String, Json>) -> Map<String, Json> {
+        let known = [
+            "class",
+            "model",
+            "coordinates",
+            "heading",
+            "scale",
+            "color",
+            "solid",
+            "reward",
+            "reward_probability",
+            "reward_stimulus",
+            "reward_once_stimulus",
+            "destroy_stimulus",
+            "range_stimulus_distance",
+            "motion_model",
+            "speed",
+            "waypoints",
+            "order",
+            "respawn",
+            "tag",
+            "unique_name",
+            "collectible",
+            "reward_on",
+            "interaction_distance",
+        ];
+        let mut object = self.keys(at, map, &known);
+        word(&mut object, "class");
+        if let Some(Json::String(model)) = object.get("motion_model") {
+            let model = model.to_lowercase();
+            let name = if model == "random_waypoints" {
+                "random_waypoint"
+            } else {
+                &model
+            };
+            object.insert("motion_model".into(), json!(name));
+        }
+        for key in [
+            "coordinates",
+            "heading",
+            "scale",
+            "reward",
+            "range_stimulus_distance",
+            "interaction_distance",
+        ] {
+            self.number(at, &mut object, key);
+        }
+        for key in ["reward_stimulus", "reward_once_stimulus", "destroy_stimulus"] {
+            stimuli(&mut object, key);
+        }
+        self.heading(at, &mut object);
+        self.old_reward(at, &mut object);
+        self.color(at, &mut object, "color");
+        let class = object.get("class").and_then(Json::as_str).unwrap_or_default();
+        if object.get("color") == Some(&json!([0.0, 0.0, 0.0])) && !matches!(class, "geometric" | "cube" | "icosphere")
+        {
+            object.shift_remove("color");
+        }
+        object
+    }
+
+    /// The keys of early files: `collectible`, `reward_on`, `interaction_distance`.
+    fn old_reward(&mut self, at: &str, object: &mut Map<String, Json>) {
+        let range = object.shift_remove("interaction_distance");
+        let collectible = object.shift_remove("collectible");
+        let Some(reward_on) = object.shift_remove("reward_on") else {
+            if let Some(collectible) = collectible {
+                self.warn(
+                    format!("{at}/collectible"),
+                    format!("collectible {collectible} without reward_on is left out"),
+                );
+            }
+            return;
+        };
+        let stimulus = match reward_on.as_str().map(str::to_lowercase).as_deref() {
+            Some("pickup") => Some("AgentInteract"),
+            Some("in_range") => Some("AgentInRange"),
+            Some("contact") => Some("AgentCollide"),
+            _ => None,
+        };
+        let list: Vec<&str> = stimulus.into_iter().collect();
+        self.warn(
+            format!("{at}/reward_on"),
+            format!("reward_on {} is read as reward_stimulus {list:?}", describe(&reward_on)),
+        );
+        object.entry("reward_stimulus").or_insert_with(|| json!(list));
+        if collectible == Some(Json::Bool(true)) {
+            object.entry("destroy_stimulus").or_insert_with(|| json!(list));
+        }
+        if let Some(range) = range {
+            object.entry("range_stimulus_distance").or_insert(range);
+        }
+    }
+
+    /// Numbers that were written as text, alone or in a list; whole numbers that were written with a decimal point.
+    fn number(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
+        let Some(value) = map.get_mut(key) else { return };
+        let mut found = Vec::new();
+        match value {
+            Json::Array(items) => items.iter_mut().for_each(|item| found.extend(to_number(item))),
+            other => found.extend(to_number(other)),
+        }
+        for text in found {
+            self.warn(format!("{at}/{key}"), format!("the text {text:?} is read as a number"));
+        }
+    }
+
+    /// Headings of any size, turned into 0..360.
+    fn heading(&mut self, at: &str, map: &mut Map<String, Json>) {
+        let Some(heading) = map.get("heading").and_then(Json::as_f64) else {
+            return;
+        };
+        if !(0.0..=360.0).contains(&heading) {
+            let turned = heading.rem_euclid(360.0);
+            self.warn(
+                format!("{at}/heading"),
+                format!("the heading {heading} is read as {turned}"),
+            );
+            map.insert("heading".into(), json!(turned));
+        }
+    }
+
+    /// Colours in 0..255, which is taken to be so where a channel is above 1.
+    fn color(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
+        self.number(at, map, key);
+        let Some(Json::Array(items)) = map.get_mut(key) else {
+            return;
+        };
+        let Some(channels) = items.iter().map(Json::as_f64).collect::<Option<Vec<f64>>>() else {
+            return;
+        };
+        let bytes = channels.iter().any(|channel| *channel > 1.0);
+        *items = channels
+            .iter()
+            .map(|channel| json!(if bytes { channel / 255.0 } else { *channel }))
+            .collect();
+        if bytes {
+            self.warn(
+                format!("{at}/{key}"),
+                "a colour with a channel above 1 is read as 0..255",
+            );
+        }
+    }
+}
+
+/// Turns text that is a number into that number and hands back the text.
+fn to_number(value: &mut Json) -> Option<String> {
+    let text = value.as_str()?.to_owned();
+    let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite())?;
+    *value = if number.fract() == 0.0 && number.abs() < 1e15 {
+        json!(number as i64)
+    } else {
+        json!(number)
+    };
+    Some(text)
+}
+
+fn word(map: &mut Map<String, Json>, key: &str) {
+    if let Some(Json::String(text)) = map.get_mut(key) {
+        *text = text.to_lowercase();
+    }
+}
+
+fn stimuli(map: &mut Map<String, Json>, key: &str) {
+    let Some(value) = map.get_mut(key) else { return };
+    if value.is_string() {
+        *value = json!([value.take()]);
+    }
+    for item in value.as_array_mut().into_iter().flatten() {
+        let known = ["AgentCollide", "AgentInteract", "AgentInRange"];
+        let plain = |text: &str| text.replace('_', "").to_lowercase();
+        let name = item
+            .as_str()
+            .and_then(|text| known.into_iter().find(|name| plain(name) == plain(text)));
+        if let Some(name) = name {
+            *item = json!(name);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ActionModel, Stimulus};
+
+    fn read(text: &str) -> (World, Vec<String>) {
+        let (world, warnings) = World::from_l2explorer("map.json", text).unwrap();
+        (world, warnings.iter().map(ToString::to_string).collect())
+    }
+
+    #[test]
+    fn words_in_any_case_numbers_as_text_and_byte_colours_are_read_with_warnings() {
+        let (world, warnings) = read(
+            r#"{ "environment_params": { "bounding_wall_color": [0, 100, 255], "lightIntensity": 3.5, "predefined_map": "1" },
+  "agent_params": { "action_model": "ByVelocity", "initial_coordinates": [1, 2], "pickup_range": 5, "heading": -90 } }"#,
+        );
+        assert_eq!(world.environment_params.predefined_map, 1);
+        assert_eq!(world.environment_params.light_intensity, 3.5);
+        assert_eq!(world.environment_params.bounding_wall_color.0[2], 1.0);
+        assert_eq!(world.agent_params.action_model, ActionModel::ByVelocity);
+        assert_eq!(
+            (world.agent_params.coordinates, world.agent_params.heading),
+            ([1.0, 2.0], 270.0)
+        );
+        assert_eq!(
+            warnings,
+            [
+                "map.json:1:50 (/environment_params/bounding_wall_color): a colour with a channel above 1 is read as 0..255",
+                "map.json:1:83 (/environment_params/lightIntensity): the key \"lightIntensity\" is read as \"light_intensity\"",
+                "map.json:1:106 (/environment_params/predefined_map): the text \"1\" is read as a number",
+                "map.json:2:74 (/agent_params/initial_coordinates): the key \"initial_coordinates\" is read as \"coordinates\"",
+                "map.json:2:98 (/agent_params/pickup_range): pickup_range is an old key; interacting reaches 1 m ahead, and it is left out",
+                "map.json:2:112 (/agent_params/heading): the heading -90 is read as 270",
+            ]
+        );
+    }
+
+    #[test]
+    fn early_reward_keys_become_stimuli() {
+        let (world, warnings) = read(
+            r#"{ "objects": [{ "model": 1 }, { "class": "Bag", "coordinates": [1, 1], "color": [0, 0, 0], "reward": "5",
+  "collectible": true, "reward_on": "In_Range", "interaction_distance": 2 }] }"#,
+        );
+        let bag = &world.objects[0];
+        assert_eq!((bag.class.as_str(), bag.color, bag.reward), ("bag", None, 5.0));
+        assert_eq!(bag.reward_stimulus, [Stimulus::AgentInRange]);
+        assert_eq!(bag.destroy_stimulus, [Stimulus::AgentInRange]);
+        assert_eq!(bag.range_stimulus_distance, 2.0);
+        assert_eq!(warnings.len(), 3, "{warnings:?}");
+        assert!(
+            warnings[0].contains("/objects/0): an object without a class is skipped"),
+            "{warnings:?}"
+        );
+    }
+
+    #[test]
+    fn what_no_leniency_can_read_is_an_error_at_its_place_in_the_file() {
+        let text = r#"{ "objects": [{}, { "class": "tree", "coordinates": ["here", 1] }] }"#;
+        let error = World::from_l2explorer("map.json", text).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "map.json:1:54 (/objects/1/coordinates/0): found \"here\", expected a number"
+        );
+    }
+}
