@@ -1,0 +1,49 @@
+//! One macro for enums whose values are words in files and on command lines: it gives names, a list and a parser.
+//!
+//! The enums themselves live beside what they choose.
+
+/// Declares a `Copy` enum whose variants each stand for one word, with `ALL`, `name()`, `Display`, `FromStr` and serde.
+macro_rules! choice {
+    ($(#[$meta:meta])* $name:ident, $what:literal { $($(#[$variant_meta:meta])* $variant:ident = $word:literal),+ $(,)? }) => {
+        $(#[$meta])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
+        pub enum $name {
+            $($(#[$variant_meta])* #[serde(rename = $word)] $variant),+
+        }
+
+        impl $name {
+            /// Every value, in the order in which they are documented.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+
+            /// The word that stands for this value in files and on the command line.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $word),+
+                }
+            }
+
+            /// All words, comma separated, for messages.
+            pub(crate) fn expected() -> String {
+                Self::ALL.iter().map(|value| value.name()).collect::<Vec<_>>().join(", ")
+            }
+        }
+
+        impl std::fmt::Display for $name {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+
+        impl std::str::FromStr for $name {
+            type Err = $crate::MetricsError;
+
+            fn from_str(word: &str) -> Result<Self, Self::Err> {
+                Self::ALL.iter().copied().find(|value| value.name() == word).ok_or_else(|| {
+                    $crate::MetricsError::UnknownWord { what: $what, found: word.to_owned(), expected: Self::expected() }
+                })
+            }
+        }
+    };
+}
+
+pub(crate) use choice;

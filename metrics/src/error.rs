@@ -1,0 +1,347 @@
+//! The one error type of this crate: what can be wrong with a log, a record or the options.
+//!
+//! Not here: warnings about logs that can still be read, see `LogWarning`.
+
+use std::io;
+use std::path::PathBuf;
+
+/// Everything that can stop a log from being written or read, or metrics from being computed.
+///
+/// Every message reads: where, what was found, what was expected, and what to do where that is not plain.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MetricsError {
+    /// The file system refused.
+    #[error("{}: cannot {doing}: {source}", path.display())]
+    Io {
+        /// File or directory it happened at.
+        path: PathBuf,
+        /// What was being done, as in "cannot …".
+        doing: &'static str,
+        /// What the operating system said.
+        source: io::Error,
+    },
+
+    /// A new log was to be created where files are already.
+    #[error(
+        "{}: found a directory that is not empty, expected a new or an empty one; \
+         choose another name, or continue the log that is there with LogWriter::resume", path.display()
+    )]
+    LogExists {
+        /// The directory that was asked for.
+        path: PathBuf,
+    },
+
+    /// There is no such log directory.
+    #[error("{}: found {found}, expected the directory of a log, which holds logger_info.json", path.display())]
+    NotADirectory {
+        /// The path that was given.
+        path: PathBuf,
+        /// "nothing" or "a file".
+        found: &'static str,
+    },
+
+    /// A log directory without a single data file.
+    #[error(
+        "{}: found no data-log.tsv, expected at least one as WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv; \
+         is this the directory of one log, and has its run begun?", path.display()
+    )]
+    NoDataFiles {
+        /// The directory that was searched.
+        path: PathBuf,
+    },
+
+    /// A side file of the log is not there.
+    #[error("{}: found no such file, expected {expected}", path.display())]
+    MissingFile {
+        /// The file.
+        path: PathBuf,
+        /// What it should hold.
+        expected: &'static str,
+    },
+
+    /// A side file is not JSON, or not the JSON that was expected.
+    #[error("{}:{line}:{column}: found {found}, expected {expected}", path.display())]
+    Json {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1; 0 where the file as a whole is meant.
+        line: usize,
+        /// Column, from 1; 0 where the line as a whole is meant.
+        column: usize,
+        /// What the parser stumbled over.
+        found: String,
+        /// What should stand there.
+        expected: &'static str,
+    },
+
+    /// A field of `logger_info.json`, or of the [`LoggerInfo`](crate::LoggerInfo) to be written there, is wrong.
+    #[error("logger_info.json, {field}: found {found}, expected {expected}")]
+    LoggerInfo {
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        found: String,
+        /// What is allowed.
+        expected: &'static str,
+    },
+
+    /// A limit of this crate was passed; limits keep a broken log from taking all memory.
+    #[error("{}: found {found} {what}, expected at most {limit}", path.display())]
+    TooLarge {
+        /// The file or directory.
+        path: PathBuf,
+        /// What was counted.
+        what: &'static str,
+        /// How many there are.
+        found: u64,
+        /// How many there may be.
+        limit: u64,
+    },
+
+    /// A data file has no header line.
+    #[error("{}:1: found an empty file, expected a header line that begins with block_num", path.display())]
+    EmptyFile {
+        /// The data file.
+        path: PathBuf,
+    },
+
+    /// A data file lacks a column.
+    #[error("{}:1: found the columns {found}, expected also {column}", path.display())]
+    MissingColumn {
+        /// The data file.
+        path: PathBuf,
+        /// The column that is not there.
+        column: String,
+        /// Those that are, comma separated.
+        found: String,
+    },
+
+    /// A data file names a column twice.
+    #[error("{}:1: found the column {column} twice, expected every column once", path.display())]
+    RepeatedColumn {
+        /// The data file.
+        path: PathBuf,
+        /// The column.
+        column: String,
+    },
+
+    /// A log that is to be continued has a data file with other columns than its next record would be written under.
+    #[error(
+        "{}:1: found the columns {found}, expected {expected} to continue this log; \
+         only logs of format 1.1 written by one writer can be continued, begin a new one", path.display()
+    )]
+    OtherColumns {
+        /// The data file.
+        path: PathBuf,
+        /// Its columns, comma separated.
+        found: String,
+        /// What they should be, comma separated.
+        expected: String,
+    },
+
+    /// A row has more or fewer cells than the header.
+    #[error(
+        "{}:{line}: found {found} cells, expected {expected} as in the header; \
+         is a tab or a quote missing?", path.display()
+    )]
+    RaggedRow {
+        /// The data file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u64,
+        /// Cells in the row.
+        found: usize,
+        /// Cells in the header.
+        expected: usize,
+    },
+
+    /// A cell does not hold what its column asks for.
+    #[error("{}:{line}, column {column}: found {found}, expected {expected}", path.display())]
+    Cell {
+        /// The data file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u64,
+        /// Name of the column.
+        column: String,
+        /// What stands there, cut after 60 characters.
+        found: String,
+        /// What should.
+        expected: String,
+    },
+
+    /// The last line of a data file has no line end: its writer was stopped in the middle of a row.
+    #[error(
+        "{}:{line}: found a last line without a line end, expected whole rows; its writer was stopped in the middle \
+         of it: delete that line, or continue the log with LogWriter::resume, which does", path.display()
+    )]
+    TornLastLine {
+        /// The data file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u64,
+    },
+
+    /// A data file is not text.
+    #[error("{}:{line}: found bytes that are not UTF-8, expected text", path.display())]
+    NotUtf8 {
+        /// The data file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u64,
+    },
+
+    /// Block numbers fall while experience numbers rise.
+    #[error(
+        "{}:{line}, column block_num: found {found}, expected at least {expected}: \
+         read in order of exp_num, block numbers never fall", path.display()
+    )]
+    BlockOrder {
+        /// The data file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u64,
+        /// The block number there.
+        found: u64,
+        /// The largest block number of an earlier experience.
+        expected: u64,
+    },
+
+    /// A record that was to be written breaks a rule of the format.
+    #[error("record of experience {exp_num}, {field}: found {found}, expected {expected}")]
+    Record {
+        /// Experience number of the record.
+        exp_num: u64,
+        /// Field that breaks the rule.
+        field: String,
+        /// Its value.
+        found: String,
+        /// The rule.
+        expected: String,
+    },
+
+    /// A time stamp is not of the form `20200913T122640.000000`.
+    #[error(
+        "timestamp: found {found}, expected YYYYMMDDTHHMMSS.ffffff as in 20200913T122640.000000, a day that exists"
+    )]
+    Timestamp {
+        /// What was given.
+        found: String,
+    },
+
+    /// A word is not one of those that are understood.
+    #[error("{what}: found {found:?}, expected one of {expected}")]
+    UnknownWord {
+        /// What the word chooses.
+        what: &'static str,
+        /// The word.
+        found: String,
+        /// The words understood, comma separated.
+        expected: String,
+    },
+
+    /// The performance column is not in the log.
+    #[error("log {run_id}: found no metrics column {column:?}, expected one of {available}; set Options::perf_measure")]
+    UnknownColumn {
+        /// Name of the log.
+        run_id: String,
+        /// The column asked for.
+        column: String,
+        /// Those the log declares, comma separated.
+        available: String,
+    },
+
+    /// After incomplete rows and rows without a number are dropped, none is left.
+    #[error("log {run_id}: found no complete row with a number in column {column:?}, expected at least one")]
+    NoUsableRows {
+        /// Name of the log.
+        run_id: String,
+        /// The performance column.
+        column: String,
+    },
+
+    /// A single-task expert's log must train exactly one task.
+    #[error("single-task expert log {run_id}: found {found}, expected exactly one trained task")]
+    NotSingleTask {
+        /// Name of the log.
+        run_id: String,
+        /// "no trained task", or the tasks, comma separated.
+        found: String,
+    },
+
+    /// More regimes than a lifetime may have.
+    #[error("log {run_id}: found more than {limit} regimes, expected at most that; do tasks alternate row by row?")]
+    TooManyRegimes {
+        /// Name of the log.
+        run_id: String,
+        /// The limit.
+        limit: usize,
+    },
+
+    /// Performances so large that sums of them would overflow.
+    #[error(
+        "log {run_id}, task {task}: found a performance of {found:e} {after}, expected less than 1e100 in magnitude"
+    )]
+    PerformanceOutOfRange {
+        /// Name of the log.
+        run_id: String,
+        /// The task.
+        task: String,
+        /// The value.
+        found: f64,
+        /// "as logged" or "after preprocessing".
+        after: &'static str,
+    },
+
+    /// An option has a value that cannot be used.
+    #[error("option {option}: found {found}, expected {expected}")]
+    BadOption {
+        /// The option.
+        option: &'static str,
+        /// Its value.
+        found: String,
+        /// What is allowed.
+        expected: String,
+    },
+}
+
+impl MetricsError {
+    /// A stable code for programs, such as `metrics/ragged-row`.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Io { .. } => "metrics/io",
+            Self::LogExists { .. } => "metrics/log-exists",
+            Self::NotADirectory { .. } => "metrics/not-a-directory",
+            Self::NoDataFiles { .. } => "metrics/no-data-files",
+            Self::MissingFile { .. } => "metrics/missing-file",
+            Self::Json { .. } => "metrics/json",
+            Self::LoggerInfo { .. } => "metrics/logger-info",
+            Self::TooLarge { .. } => "metrics/too-large",
+            Self::EmptyFile { .. } => "metrics/empty-file",
+            Self::MissingColumn { .. } => "metrics/missing-column",
+            Self::RepeatedColumn { .. } => "metrics/repeated-column",
+            Self::OtherColumns { .. } => "metrics/other-columns",
+            Self::RaggedRow { .. } => "metrics/ragged-row",
+            Self::Cell { .. } => "metrics/cell",
+            Self::TornLastLine { .. } => "metrics/torn-last-line",
+            Self::NotUtf8 { .. } => "metrics/not-utf8",
+            Self::BlockOrder { .. } => "metrics/block-order",
+            Self::Record { .. } => "metrics/record",
+            Self::Timestamp { .. } => "metrics/timestamp",
+            Self::UnknownWord { .. } => "metrics/unknown-word",
+            Self::UnknownColumn { .. } => "metrics/unknown-column",
+            Self::NoUsableRows { .. } => "metrics/no-usable-rows",
+            Self::NotSingleTask { .. } => "metrics/not-single-task",
+            Self::TooManyRegimes { .. } => "metrics/too-many-regimes",
+            Self::PerformanceOutOfRange { .. } => "metrics/performance-out-of-range",
+            Self::BadOption { .. } => "metrics/bad-option",
+        }
+    }
+
+    /// Wraps what the operating system said with the place and the deed.
+    pub(crate) fn io(path: impl Into<PathBuf>, doing: &'static str) -> impl FnOnce(io::Error) -> Self {
+        let path = path.into();
+        move |source| Self::Io { path, doing, source }
+    }
+}

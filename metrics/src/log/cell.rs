@@ -1,0 +1,149 @@
+//! What may stand in a cell of a data file, and the words for what may not.
+//!
+//! Not here: rules between rows.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::record::{TaskParams, is_worker_id};
+use crate::MetricsError;
+
+/// Longest piece of a cell that is quoted in a message, in characters.
+const SHOWN: usize = 60;
+
+/// Rows of a block nearly always have the same parameters; so many different texts are remembered.
+const REMEMBERED_PARAMS: usize = 4096;
+
+/// Where a cell stands; makes the error when what it holds is wrong.
+#[derive(Clone, Copy)]
+pub(super) struct Cell<'a> {
+    pub(super) path: &'a Path,
+    pub(super) line: u64,
+    pub(super) column: &'a str,
+    pub(super) text: &'a str,
+}
+
+impl Cell<'_> {
+    pub(super) fn whole_number(self) -> Result<u64, MetricsError> {
+        self.text.parse().map_err(|_| self.error("a whole number, 0 or more"))
+    }
+
+    /// A word of one of the format's enums.
+    pub(super) fn word<T: std::str::FromStr>(self, expected: fn() -> String) -> Result<T, MetricsError> {
+        self.text
+            .parse()
+            .map_err(|_| self.error(format!("one of {}", expected())))
+    }
+
+    pub(super) fn worker(self) -> Result<String, MetricsError> {
+        let expected = "a worker's name of letters, digits, _, - and .";
+        is_worker_id(self.text)
+            .then(|| self.text.to_owned())
+            .ok_or_else(|| self.error(expected))
+    }
+
+    pub(super) fn timestamp(self) -> Result<crate::Timestamp, MetricsError> {
+        self.text
+            .parse()
+            .map_err(|_| self.error("a time stamp as in 20200913T122640.000000"))
+    }
+
+    /// A number; an empty cell or a word that table writers use for "missing" is NaN.
+    pub(super) fn number(self) -> Result<f64, MetricsError> {
+        match self.text.trim() {
+            "" | "NA" | "N/A" | "n/a" | "<NA>" | "null" | "NULL" | "None" => Ok(f64::NAN),
+            text => {
+                let number: Option<f64> = text.parse().ok().filter(|number: &f64| !number.is_infinite());
+                number.ok_or_else(|| self.error("a finite number, or nothing for a missing one"))
+            }
+        }
+    }
+
+    /// The error that says what stands here and what should.
+    pub(super) fn error(self, expected: impl Into<String>) -> MetricsError {
+        MetricsError::Cell {
+            path: self.path.to_owned(),
+            line: self.line,
+            column: self.column.to_owned(),
+            found: shown(self.text),
+            expected: expected.into(),
+        }
+    }
+}
+
+/// Reads task parameters; equal texts share one object.
+#[derive(Default)]
+pub(super) struct ParamsReader {
+    seen: HashMap<String, TaskParams>,
+}
+
+impl ParamsReader {
+    /// A JSON object; an empty cell is one without members.
+    pub(super) fn read(&mut self, cell: Cell<'_>) -> Result<TaskParams, MetricsError> {
+        if let Some(params) = self.seen.get(cell.text) {
+            return Ok(params.clone());
+        }
+        let params: TaskParams = match cell.text {
+            "" => TaskParams::default(),
+            text => TaskParams::new(serde_json::from_str(text).map_err(|_| cell.error("a JSON object"))?),
+        };
+        if self.seen.len() == REMEMBERED_PARAMS {
+            self.seen.clear();
+        }
+        self.seen.insert(cell.text.to_owned(), params.clone());
+        Ok(params)
+    }
+}
+
+/// A cell as it is quoted in a message: in quotes, and not longer than a message can bear.
+pub(super) fn shown(text: &str) -> String {
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{:?}…", &text[..end]),
+        None => format!("{text:?}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cell(text: &str) -> Cell<'_> {
+        Cell {
+            path: Path::new("w/0-train/data-log.tsv"),
+            line: 7,
+            column: "reward",
+            text,
+        }
+    }
+
+    #[test]
+    fn numbers_are_finite_or_missing() {
+        let check = |text: &str, expected: f64| assert_eq!(cell(text).number().unwrap().to_bits(), expected.to_bits());
+        check("1.5", 1.5);
+        check("-2e-3", -0.002);
+        check("7", 7.0);
+        for missing in ["", "nan", "NaN", "NA", "null"] {
+            assert!(cell(missing).number().unwrap().is_nan(), "{missing}");
+        }
+        let message = "w/0-train/data-log.tsv:7, column reward: found \"inf\", \
+                       expected a finite number, or nothing for a missing one";
+        assert_eq!(cell("inf").number().unwrap_err().to_string(), message);
+        assert!(cell("1,5").number().is_err());
+    }
+
+    #[test]
+    fn long_cells_are_cut_in_messages() {
+        assert_eq!(shown("a\tb"), "\"a\\tb\"");
+        assert_eq!(shown(&"é".repeat(61)), format!("\"{}\"…", "é".repeat(60)));
+    }
+
+    #[test]
+    fn equal_parameters_are_one_object() {
+        let mut reader = ParamsReader::default();
+        let first = reader.read(cell(r#"{"a": 1}"#)).unwrap();
+        let second = reader.read(cell(r#"{"a": 1}"#)).unwrap();
+        assert!(TaskParams::ptr_eq(&first, &second));
+        assert!(reader.read(cell("")).unwrap().is_empty());
+        assert!(reader.read(cell("[1]")).is_err());
+    }
+}

@@ -1,0 +1,84 @@
+//! Which columns a data file has, and in which order.
+//!
+//! Not here: what may stand in a cell, see `cell`.
+
+use crate::Record;
+
+/// The columns every log of format 1.1 has, in order; the metrics follow alphabetically.
+pub(super) const STANDARD: [&str; 9] = [
+    "block_num",
+    "exp_num",
+    "worker_id",
+    "block_type",
+    "block_subtype",
+    "task_name",
+    "task_params",
+    "exp_status",
+    "timestamp",
+];
+
+/// The one standard column that logs of format 1.0 lack.
+pub(super) const SINCE_1_1: &str = "block_subtype";
+
+/// Names of a record's metrics, alphabetical by code point.
+pub(super) fn metric_columns(record: &Record) -> Vec<String> {
+    let mut names: Vec<String> = record.metrics.keys().cloned().collect();
+    names.sort();
+    names
+}
+
+/// The whole header of a log whose metrics are these.
+pub(super) fn header(metrics: &[String]) -> Vec<String> {
+    STANDARD
+        .iter()
+        .map(ToString::to_string)
+        .chain(metrics.iter().cloned())
+        .collect()
+}
+
+/// One line of a data file, cells quoted where they must be, with its line end.
+///
+/// The crate `csv` quotes a bare carriage return only where lines end with one, so the line is written that way and
+/// its end replaced: a `\n` alone, as l2logger writes.
+pub(crate) fn line(cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> Vec<u8> {
+    let mut writer = csv::WriterBuilder::new()
+        .delimiter(b'\t')
+        .terminator(csv::Terminator::CRLF)
+        .from_writer(Vec::new());
+    writer
+        .write_record(cells)
+        .expect("memory takes every byte, and one record cannot differ from itself in length");
+    let mut bytes = writer.into_inner().expect("memory takes every byte");
+    bytes.truncate(bytes.len() - 2);
+    bytes.push(b'\n');
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_quoted_only_where_they_must_be() {
+        let check = |cells: &[&str], expected: &str| {
+            assert_eq!(String::from_utf8(line(cells)).unwrap(), expected);
+        };
+        check(&["0", r#"{"a": 1}"#, "{}"], "0\t\"{\"\"a\"\": 1}\"\t{}\n");
+        check(&["a b", "it's", "a,b", "", "#"], "a b\tit's\ta,b\t\t#\n");
+        check(
+            &["tab\there", "line\nend", "carriage\rreturn"],
+            "\"tab\there\"\t\"line\nend\"\t\"carriage\rreturn\"\n",
+        );
+    }
+
+    #[test]
+    fn metrics_follow_the_standard_columns_in_alphabetical_order() {
+        let stamp = "20200101T000000.0".parse().unwrap();
+        let record = Record::new(0, 0, crate::BlockType::Train, "a_b", stamp);
+        let record = record
+            .with_metric("reward", 1.0)
+            .with_metric("Steps", 2.0)
+            .with_metric("done", 0.0);
+        assert_eq!(header(&metric_columns(&record))[9..], ["Steps", "done", "reward"]);
+    }
+}

@@ -1,0 +1,125 @@
+//! The JSON files beside the rows: read with places in their errors, written whole or not at all.
+//!
+//! Not here: what stands in them, see `logger_info` and `scenario_info`.
+
+use std::fs;
+use std::io::{Read, Write};
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use crate::MetricsError;
+
+/// Largest side file that is read, in bytes.
+const MAX_JSON_BYTES: u64 = 16 << 20;
+
+/// Reads a file that holds one JSON object.
+///
+/// # Errors
+/// [`MetricsError::MissingFile`], [`MetricsError::TooLarge`] over 16 MiB, [`MetricsError::Json`] with line and column.
+pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<String, Value>, MetricsError> {
+    let file = match fs::File::open(path) {
+        Ok(file) => file,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            return Err(MetricsError::MissingFile {
+                path: path.to_owned(),
+                expected,
+            });
+        }
+        Err(error) => return Err(MetricsError::io(path, "open this file")(error)),
+    };
+    let mut bytes = Vec::new();
+    file.take(MAX_JSON_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(MetricsError::io(path, "read this file"))?;
+    if bytes.len() as u64 > MAX_JSON_BYTES {
+        let (found, limit) = (bytes.len() as u64, MAX_JSON_BYTES);
+        return Err(MetricsError::TooLarge {
+            path: path.to_owned(),
+            what: "bytes or more of JSON",
+            found,
+            limit,
+        });
+    }
+    serde_json::from_slice(&bytes).map_err(|error| MetricsError::Json {
+        path: path.to_owned(),
+        line: error.line(),
+        column: error.column(),
+        found: without_place(&error),
+        expected,
+    })
+}
+
+/// Writes a value as indented JSON, first under a temporary name beside the target, so that a reader never sees half.
+///
+/// # Errors
+/// [`MetricsError::Io`].
+pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), MetricsError> {
+    let mut bytes = serde_json::to_vec_pretty(value).map_err(|error| MetricsError::Io {
+        path: path.to_owned(),
+        doing: "put this value into JSON",
+        source: error.into(),
+    })?;
+    bytes.push(b'\n');
+    write_whole(path, &bytes)
+}
+
+/// Writes bytes under a temporary name beside the target and renames.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), MetricsError> {
+    let mut name = std::ffi::OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(".tmp");
+    let temporary = path.with_file_name(name);
+    let written = fs::File::create(&temporary).and_then(|mut file| {
+        file.write_all(bytes)?;
+        file.sync_all()
+    });
+    let renamed = written.and_then(|()| fs::rename(&temporary, path));
+    renamed.map_err(|error| {
+        // Nothing of a failed write is left behind; if even that fails, the first error is the one that tells.
+        let _ = fs::remove_file(&temporary);
+        MetricsError::io(path, "write this file")(error)
+    })
+}
+
+/// The parser's words without "at line 1 column 2", which stands in front of the message already.
+fn without_place(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    text.strip_suffix(&place).unwrap_or(&text).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_written_object_is_read_back_and_no_temporary_file_stays() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("info.json");
+        write_json(&path, &serde_json::json!({"b": 1, "a": [0.1]})).unwrap();
+        assert_eq!(
+            serde_json::to_string(&read_object(&path, "an object").unwrap()).unwrap(),
+            r#"{"b":1,"a":[0.1]}"#
+        );
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn broken_json_is_placed() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("info.json");
+        let check = |text: &str, expected: &str| {
+            fs::write(&path, text).unwrap();
+            let message = read_object(&path, "an object").unwrap_err().to_string();
+            assert_eq!(message.strip_prefix(&path.display().to_string()).unwrap(), expected);
+        };
+        check("{\n  \"a\": }", ":2:8: found expected value, expected an object");
+        check(
+            "[1]",
+            ":1:0: found invalid type: sequence, expected a map, expected an object",
+        );
+        check("", ":1:0: found EOF while parsing a value, expected an object");
+    }
+}

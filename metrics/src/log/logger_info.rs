@@ -1,0 +1,144 @@
+//! `logger_info.json`: which columns of a log are metrics, and in which version of the format it is written.
+//!
+//! Not here: what the run was about, see `scenario_info`.
+
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::columns::STANDARD;
+use super::json_file;
+use crate::MetricsError;
+
+/// Version of the log format that is written. 1.0 is read too.
+pub const LOG_FORMAT_VERSION: &str = "1.1";
+
+pub(super) const FILE_NAME: &str = "logger_info.json";
+const EXPECTED_FILE: &str = "a JSON object with the list metrics_columns";
+const EXPECTED_COLUMNS: &str = "a list of at least one name, each once and none a standard column";
+
+/// Which columns of a log are metrics.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct LoggerInfo {
+    metrics_columns: Vec<String>,
+    log_format_version: String,
+}
+
+impl LoggerInfo {
+    /// Info for a new log with these metrics columns.
+    ///
+    /// # Errors
+    /// [`MetricsError::LoggerInfo`] for an empty list, an empty name, a name twice, or the name of a standard column.
+    pub fn new(metrics_columns: impl IntoIterator<Item = impl Into<String>>) -> Result<Self, MetricsError> {
+        let metrics_columns: Vec<String> = metrics_columns.into_iter().map(Into::into).collect();
+        check_columns(&metrics_columns)?;
+        Ok(Self {
+            metrics_columns,
+            log_format_version: LOG_FORMAT_VERSION.to_owned(),
+        })
+    }
+
+    /// Names of the metrics columns, in their author's order.
+    pub fn metrics_columns(&self) -> &[String] {
+        &self.metrics_columns
+    }
+
+    /// `1.0` or `1.1`.
+    pub fn log_format_version(&self) -> &str {
+        &self.log_format_version
+    }
+
+    /// Reads the file of a log directory. A file that does not say its version is of 1.0, which did not ask for it.
+    pub(super) fn read(dir: &Path) -> Result<Self, MetricsError> {
+        let object = json_file::read_object(&dir.join(FILE_NAME), EXPECTED_FILE)?;
+        let names = |list: &Vec<Value>| list.iter().map(|name| name.as_str().map(str::to_owned)).collect();
+        let columns: Option<Vec<String>> = object.get("metrics_columns").and_then(Value::as_array).and_then(names);
+        let metrics_columns = columns.ok_or_else(|| MetricsError::LoggerInfo {
+            field: "metrics_columns",
+            found: object
+                .get("metrics_columns")
+                .map_or_else(|| "nothing".to_owned(), Value::to_string),
+            expected: EXPECTED_COLUMNS,
+        })?;
+        check_columns(&metrics_columns)?;
+        let log_format_version = match object.get("log_format_version") {
+            None => "1.0".to_owned(),
+            Some(Value::String(version)) if ["1.0", LOG_FORMAT_VERSION].contains(&version.as_str()) => version.clone(),
+            Some(other) => {
+                let (field, expected) = ("log_format_version", "\"1.0\" or \"1.1\"");
+                return Err(MetricsError::LoggerInfo {
+                    field,
+                    found: other.to_string(),
+                    expected,
+                });
+            }
+        };
+        Ok(Self {
+            metrics_columns,
+            log_format_version,
+        })
+    }
+}
+
+fn check_columns(columns: &[String]) -> Result<(), MetricsError> {
+    let repeated = columns
+        .iter()
+        .enumerate()
+        .any(|(index, name)| columns[..index].contains(name));
+    let unusable = columns
+        .iter()
+        .any(|name| name.is_empty() || STANDARD.contains(&name.as_str()));
+    if columns.is_empty() || repeated || unusable {
+        let found = format!("{columns:?}");
+        return Err(MetricsError::LoggerInfo {
+            field: "metrics_columns",
+            found,
+            expected: EXPECTED_COLUMNS,
+        });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_log_without_usable_metrics_columns_is_refused() {
+        let check = |columns: &[&str], found: &str| {
+            let message = LoggerInfo::new(columns.iter().copied()).unwrap_err().to_string();
+            assert_eq!(
+                message,
+                format!("logger_info.json, metrics_columns: found {found}, expected {EXPECTED_COLUMNS}")
+            );
+        };
+        check(&[], "[]");
+        check(&["reward", "reward"], r#"["reward", "reward"]"#);
+        check(&[""], r#"[""]"#);
+        check(&["exp_num"], r#"["exp_num"]"#);
+    }
+
+    #[test]
+    fn versions_beyond_ours_are_refused_and_silence_means_the_first() {
+        let dir = tempfile::tempdir().unwrap();
+        let read = |text: &str| {
+            std::fs::write(dir.path().join(FILE_NAME), text).unwrap();
+            LoggerInfo::read(dir.path())
+                .map(|info| info.log_format_version)
+                .map_err(|error| error.to_string())
+        };
+        assert_eq!(read(r#"{"metrics_columns": ["r"]}"#), Ok("1.0".to_owned()));
+        assert_eq!(
+            read(r#"{"metrics_columns": ["r"], "log_format_version": "1.1"}"#),
+            Ok("1.1".to_owned())
+        );
+        let message = "logger_info.json, log_format_version: found \"2.0\", expected \"1.0\" or \"1.1\"".to_owned();
+        assert_eq!(
+            read(r#"{"metrics_columns": ["r"], "log_format_version": "2.0"}"#),
+            Err(message)
+        );
+        let message = format!("logger_info.json, metrics_columns: found nothing, expected {EXPECTED_COLUMNS}");
+        assert_eq!(read("{}"), Err(message));
+    }
+}

@@ -1,0 +1,159 @@
+//! One row of a log: what happened in one experience.
+//!
+//! Not here: the rules between records (order, one completion each); the writer keeps those.
+
+use std::sync::Arc;
+
+use indexmap::IndexMap;
+use serde_json::{Map, Value};
+
+use super::timestamp::Timestamp;
+use crate::choice::choice;
+
+/// Worker that records name when there is only one.
+pub const DEFAULT_WORKER: &str = "worker-default";
+
+/// Parameters of a task, a JSON object. Shared, because all experiences of a block usually have the same.
+pub type TaskParams = Arc<Map<String, Value>>;
+
+choice! {
+    /// Whether the agent may learn in a block.
+    BlockType, "block type" {
+        /// Learning block.
+        Train = "train",
+        /// Evaluation block: the agent acts, but does not learn.
+        Test = "test",
+    }
+}
+
+choice! {
+    /// Whether the agent consolidates what it learnt, without new experience.
+    BlockSubtype, "block subtype" {
+        /// Awake: the usual case, and what logs of format 1.0 mean.
+        Wake = "wake",
+        /// Asleep. Where a log has sleep blocks, its wake evaluations are left out of most metrics.
+        Sleep = "sleep",
+    }
+}
+
+choice! {
+    /// Whether a row closes its experience.
+    ExpStatus, "experience status" {
+        /// The experience is over; exactly one row of each experience says so, and only that row is scored.
+        Complete = "complete",
+        /// An intermediate row.
+        Incomplete = "incomplete",
+    }
+}
+
+/// One row of a log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// Number of the block, from 0; never falls within a log.
+    pub block_num: u64,
+    /// Number of the experience (episode) within the whole lifetime, from 0; never falls within a log.
+    pub exp_num: u64,
+    /// Who gathered the experience: letters, digits, `_`, `-` and `.`; default [`DEFAULT_WORKER`].
+    pub worker_id: String,
+    /// Learning or evaluation.
+    pub block_type: BlockType,
+    /// Awake (default) or asleep.
+    pub block_subtype: BlockSubtype,
+    /// Name of the task, by convention `task_variant`, letters and digits on both sides.
+    pub task_name: String,
+    /// Parameters of the task; default none.
+    pub task_params: TaskParams,
+    /// Complete (default) or incomplete.
+    pub exp_status: ExpStatus,
+    /// When the experience ended.
+    pub timestamp: Timestamp,
+    /// The numbers: at least every metrics column of the log, the same names in every record. NaN means "no value".
+    pub metrics: IndexMap<String, f64>,
+}
+
+impl Record {
+    /// A complete record of an awake block by the default worker, without parameters or numbers.
+    pub fn new(
+        block_num: u64,
+        exp_num: u64,
+        block_type: BlockType,
+        task_name: impl Into<String>,
+        timestamp: Timestamp,
+    ) -> Self {
+        Self {
+            block_num,
+            exp_num,
+            worker_id: DEFAULT_WORKER.to_owned(),
+            block_type,
+            block_subtype: BlockSubtype::Wake,
+            task_name: task_name.into(),
+            task_params: TaskParams::default(),
+            exp_status: ExpStatus::Complete,
+            timestamp,
+            metrics: IndexMap::new(),
+        }
+    }
+
+    /// The same record with one more number, or another value for it.
+    #[must_use]
+    pub fn with_metric(mut self, name: impl Into<String>, value: f64) -> Self {
+        self.metrics.insert(name.into(), value);
+        self
+    }
+
+    /// The same record with these task parameters.
+    #[must_use]
+    pub fn with_task_params(mut self, task_params: impl Into<TaskParams>) -> Self {
+        self.task_params = task_params.into();
+        self
+    }
+
+    /// The same record by this worker.
+    #[must_use]
+    pub fn with_worker(mut self, worker_id: impl Into<String>) -> Self {
+        self.worker_id = worker_id.into();
+        self
+    }
+}
+
+/// Whether a worker's name may be one: it becomes the name of a directory.
+pub(super) fn is_worker_id(text: &str) -> bool {
+    let allowed = |byte: u8| byte.is_ascii_alphanumeric() || matches!(byte, b'_' | b'-' | b'.');
+    !text.is_empty() && text.bytes().all(allowed) && text.bytes().any(|byte| byte != b'.')
+}
+
+/// Whether a task's name keeps to `task_variant`, letters and digits on both sides.
+pub(super) fn is_conventional_task_name(text: &str) -> bool {
+    let word = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_alphanumeric());
+    text.split_once('_')
+        .is_some_and(|(task, variant)| word(task) && word(variant))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn worker_names_are_harmless_directory_names() {
+        let check = |text: &str, expected: bool| assert_eq!(is_worker_id(text), expected, "{text:?}");
+        check("worker-default", true);
+        check("driver.py_0", true);
+        check("0", true);
+        check("", false);
+        check("..", false);
+        check("a/b", false);
+        check("a b", false);
+        check("é", false);
+    }
+
+    #[test]
+    fn task_names_have_two_words() {
+        let check = |text: &str, expected: bool| assert_eq!(is_conventional_task_name(text), expected, "{text:?}");
+        check("find_red", true);
+        check("task1_1", true);
+        check("find", false);
+        check("find_", false);
+        check("find_red_far", false);
+        check("find-it_red", false);
+    }
+}

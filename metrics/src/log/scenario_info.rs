@@ -1,0 +1,142 @@
+//! `scenario_info.json`: how hard a run was, what kind it was, and whatever else its author noted.
+//!
+//! Not here: the columns, see `logger_info`.
+
+use std::path::Path;
+use std::str::FromStr;
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::json_file;
+use super::reader::LogWarning;
+use crate::MetricsError;
+use crate::choice::choice;
+
+pub(super) const FILE_NAME: &str = "scenario_info.json";
+
+choice! {
+    /// How complex the scenario is.
+    Complexity, "complexity" {
+        /// Low.
+        Low = "1-low",
+        /// Intermediate.
+        Intermediate = "2-intermediate",
+        /// High.
+        High = "3-high",
+    }
+}
+
+choice! {
+    /// How hard the tasks of the scenario are.
+    Difficulty, "difficulty" {
+        /// Easy.
+        Easy = "1-easy",
+        /// Medium.
+        Medium = "2-medium",
+        /// Hard.
+        Hard = "3-hard",
+    }
+}
+
+choice! {
+    /// How the scenario orders its tasks.
+    ScenarioType, "scenario type" {
+        /// Each task in one learning block.
+        Condensed = "condensed",
+        /// Each task in several learning blocks.
+        Dispersed = "dispersed",
+        /// The tasks in a random order.
+        Permuted = "permuted",
+        /// Two tasks in turn.
+        Alternating = "alternating",
+        /// A single-task expert: one task, trained alone, to compare with.
+        Ste = "ste",
+        /// Anything else.
+        Custom = "custom",
+    }
+}
+
+/// What a run was about. Every field is optional; the evaluation carries the first three into its results.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct ScenarioInfo {
+    /// How complex the scenario is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub complexity: Option<Complexity>,
+    /// How hard its tasks are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub difficulty: Option<Difficulty>,
+    /// How it orders them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scenario_type: Option<ScenarioType>,
+    /// Everything else, as its author wrote it: author, version, the scenario itself, …
+    #[serde(flatten)]
+    pub extra: Map<String, Value>,
+}
+
+impl ScenarioInfo {
+    /// Reads the file of a log directory. What cannot be used becomes a warning: the rows do not depend on it.
+    pub(super) fn read(dir: &Path, warnings: &mut Vec<LogWarning>) -> Result<Self, MetricsError> {
+        let mut extra = match json_file::read_object(&dir.join(FILE_NAME), "a JSON object") {
+            Ok(object) => object,
+            Err(MetricsError::MissingFile { .. }) => {
+                warnings.push(LogWarning::NoScenarioInfo);
+                return Ok(Self::default());
+            }
+            Err(error) => return Err(error),
+        };
+        Ok(Self {
+            complexity: take_word("complexity", &mut extra, warnings, Complexity::expected),
+            difficulty: take_word("difficulty", &mut extra, warnings, Difficulty::expected),
+            scenario_type: take_word("scenario_type", &mut extra, warnings, ScenarioType::expected),
+            extra,
+        })
+    }
+}
+
+/// Takes a field out of the object. A value that is none of the words is warned about and left out.
+fn take_word<T: FromStr>(
+    field: &'static str,
+    object: &mut Map<String, Value>,
+    warnings: &mut Vec<LogWarning>,
+    expected: fn() -> String,
+) -> Option<T> {
+    let value = object.shift_remove(field)?;
+    let word = value.as_str().and_then(|text| text.to_lowercase().parse().ok());
+    if word.is_none() {
+        warnings.push(LogWarning::ScenarioInfo {
+            field,
+            found: value.to_string(),
+            expected: expected(),
+        });
+    }
+    word
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strange_words_warn_and_the_rest_is_kept() {
+        let dir = tempfile::tempdir().unwrap();
+        let text = r#"{"author": "me", "complexity": "1-LOW", "difficulty": "mild", "scenario_type": 3}"#;
+        std::fs::write(dir.path().join(FILE_NAME), text).unwrap();
+        let mut warnings = Vec::new();
+        let info = ScenarioInfo::read(dir.path(), &mut warnings).unwrap();
+        assert_eq!(
+            (info.complexity, info.difficulty, info.scenario_type),
+            (Some(Complexity::Low), None, None)
+        );
+        assert_eq!(info.extra["author"], "me");
+        let messages: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            messages,
+            [
+                "scenario_info.json, difficulty: found \"mild\", expected one of 1-easy, 2-medium, 3-hard; left out",
+                "scenario_info.json, scenario_type: found 3, expected one of condensed, dispersed, permuted, alternating, \
+                 ste, custom; left out",
+            ]
+        );
+    }
+}

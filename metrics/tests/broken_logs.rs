@@ -1,0 +1,227 @@
+//! Logs that cannot be read, each with the exact message a user sees.
+//!
+//! Not here: records that are refused when written, see `log_round_trip`.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
+
+use std::fs;
+use std::path::Path;
+
+use driftworld_metrics::{LogWriter, MetricsError, Options, read_log, read_ste_log, score};
+
+const HEADER: &str =
+    "block_num\texp_num\tworker_id\tblock_type\tblock_subtype\ttask_name\ttask_params\texp_status\ttimestamp\treward\n";
+const ROW: &str = "0\t0\tw\ttrain\twake\ta_b\t{}\tcomplete\t20200913T122640.0\t1\n";
+
+/// A log of one data file.
+fn write_log(dir: &Path, data: impl AsRef<[u8]>) {
+    fs::create_dir_all(dir.join("w/0-train")).unwrap();
+    fs::write(
+        dir.join("logger_info.json"),
+        r#"{"metrics_columns": ["reward"], "log_format_version": "1.1"}"#,
+    )
+    .unwrap();
+    fs::write(dir.join("scenario_info.json"), "{}").unwrap();
+    fs::write(dir.join("w/0-train/data-log.tsv"), data).unwrap();
+}
+
+/// The message without the directory, and with `/` between directories.
+fn message(dir: &Path, error: &MetricsError) -> String {
+    error
+        .to_string()
+        .replace(&dir.display().to_string(), "LOG")
+        .replace('\\', "/")
+}
+
+fn check(data: impl AsRef<[u8]>, code: &str, expected: &str) {
+    let base = tempfile::tempdir().unwrap();
+    write_log(base.path(), data);
+    let error = read_log(base.path()).unwrap_err();
+    assert_eq!(message(base.path(), &error), expected);
+    assert_eq!(error.code(), code);
+}
+
+/// The good row with one cell changed.
+fn with_cell(index: usize, text: &str) -> String {
+    let mut cells: Vec<&str> = ROW.trim_end().split('\t').collect();
+    cells[index] = text;
+    format!("{HEADER}{}\n", cells.join("\t"))
+}
+
+#[test]
+fn a_cell_that_is_wrong_is_named_with_what_should_stand_there() {
+    let cell = |index: usize, text: &str, column: &str, found: &str, expected: &str| {
+        let message = format!("LOG/w/0-train/data-log.tsv:2, column {column}: found {found}, expected {expected}");
+        check(with_cell(index, text), "metrics/cell", &message);
+    };
+    cell(0, "one", "block_num", "\"one\"", "a whole number, 0 or more");
+    cell(1, "-1", "exp_num", "\"-1\"", "a whole number, 0 or more");
+    cell(
+        2,
+        "a b",
+        "worker_id",
+        "\"a b\"",
+        "a worker's name of letters, digits, _, - and .",
+    );
+    cell(3, "eval", "block_type", "\"eval\"", "one of train, test");
+    cell(4, "nap", "block_subtype", "\"nap\"", "one of wake, sleep");
+    cell(6, "[1]", "task_params", "\"[1]\"", "a JSON object");
+    cell(7, "done", "exp_status", "\"done\"", "one of complete, incomplete");
+    cell(
+        8,
+        "20200931T122640.0",
+        "timestamp",
+        "\"20200931T122640.0\"",
+        "a time stamp as in 20200913T122640.000000",
+    );
+    cell(
+        9,
+        "much",
+        "reward",
+        "\"much\"",
+        "a finite number, or nothing for a missing one",
+    );
+    cell(
+        9,
+        "1e999",
+        "reward",
+        "\"1e999\"",
+        "a finite number, or nothing for a missing one",
+    );
+}
+
+#[test]
+fn a_table_that_is_no_table_is_refused_with_its_place() {
+    check(
+        "",
+        "metrics/empty-file",
+        "LOG/w/0-train/data-log.tsv:1: found an empty file, expected a header line that begins with block_num",
+    );
+    check(
+        HEADER.replace("\treward", "\tscore"),
+        "metrics/missing-column",
+        "LOG/w/0-train/data-log.tsv:1: found the columns block_num, exp_num, worker_id, block_type, block_subtype, \
+         task_name, task_params, exp_status, timestamp, score, expected also reward",
+    );
+    check(
+        HEADER.replace("exp_num\t", ""),
+        "metrics/missing-column",
+        "LOG/w/0-train/data-log.tsv:1: found the columns block_num, worker_id, block_type, block_subtype, \
+         task_name, task_params, exp_status, timestamp, reward, expected also exp_num",
+    );
+    check(
+        HEADER.replace("exp_num", "block_num"),
+        "metrics/repeated-column",
+        "LOG/w/0-train/data-log.tsv:1: found the column block_num twice, expected every column once",
+    );
+    check(
+        format!("{HEADER}{ROW}0\t1\tw\n"),
+        "metrics/ragged-row",
+        "LOG/w/0-train/data-log.tsv:3: found 3 cells, expected 10 as in the header; is a tab or a quote missing?",
+    );
+    check(
+        format!("{HEADER}{ROW}0\t1\tw\ttra"),
+        "metrics/torn-last-line",
+        "LOG/w/0-train/data-log.tsv:3: found a last line without a line end, expected whole rows; its writer was \
+         stopped in the middle of it: delete that line, or continue the log with LogWriter::resume, which does",
+    );
+    check(
+        [HEADER.as_bytes(), b"0\t\xff\n"].concat(),
+        "metrics/not-utf8",
+        "LOG/w/0-train/data-log.tsv:2: found bytes that are not UTF-8, expected text",
+    );
+    check(
+        format!(
+            "{HEADER}{}{}",
+            ROW.replacen("0\t0", "1\t0", 1),
+            ROW.replacen("0\t0", "0\t1", 1)
+        ),
+        "metrics/block-order",
+        "LOG/w/0-train/data-log.tsv:3, column block_num: found 0, expected at least 1: \
+         read in order of exp_num, block numbers never fall",
+    );
+}
+
+#[test]
+fn the_advice_for_a_torn_last_line_works() {
+    let base = tempfile::tempdir().unwrap();
+    write_log(base.path(), format!("{HEADER}{ROW}0\t1\tw\ttra"));
+    LogWriter::resume(base.path()).unwrap();
+    assert_eq!(read_log(base.path()).unwrap().records.len(), 1);
+}
+
+#[test]
+fn a_directory_that_is_no_log_is_told_what_it_lacks() {
+    let base = tempfile::tempdir().unwrap();
+    let check = |expected: &str| {
+        let error = read_log(base.path()).unwrap_err();
+        assert_eq!(message(base.path(), &error), expected);
+    };
+    check("LOG/logger_info.json: found no such file, expected a JSON object with the list metrics_columns");
+    fs::write(base.path().join("logger_info.json"), "{\"metrics_columns\": [1]}").unwrap();
+    check(
+        "logger_info.json, metrics_columns: found [1], expected a list of at least one name, each once and none a \
+         standard column",
+    );
+    fs::write(base.path().join("logger_info.json"), "{\"metrics_columns\"").unwrap();
+    check(
+        "LOG/logger_info.json:1:18: found EOF while parsing an object, expected a JSON object with the list metrics_columns",
+    );
+    fs::write(
+        base.path().join("logger_info.json"),
+        "{\"metrics_columns\": [\"reward\"]}",
+    )
+    .unwrap();
+    check(
+        "LOG: found no data-log.tsv, expected at least one as WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv; \
+         is this the directory of one log, and has its run begun?",
+    );
+}
+
+#[test]
+fn a_log_without_usable_rows_says_which_column_was_asked_for() {
+    let base = tempfile::tempdir().unwrap();
+    let run_id = base.path().file_name().unwrap().to_string_lossy().into_owned();
+    let check = |data: String, column: &str, expected: &str| {
+        write_log(base.path(), data);
+        let log = read_log(base.path()).unwrap();
+        let options = Options {
+            perf_measure: column.to_owned(),
+            ..Options::default()
+        };
+        let error = score(&log, &[], &options).unwrap_err().to_string();
+        assert_eq!(error.strip_prefix(&format!("log {run_id}")).unwrap(), expected);
+    };
+    check(
+        format!("{HEADER}{ROW}"),
+        "score",
+        ": found no metrics column \"score\", expected one of reward; set Options::perf_measure",
+    );
+    let none = ": found no complete row with a number in column \"reward\", expected at least one";
+    check(HEADER.to_owned(), "reward", none);
+    check(with_cell(9, "nan"), "reward", none);
+    check(with_cell(7, "incomplete"), "reward", none);
+    check(
+        with_cell(9, "1e200"),
+        "reward",
+        ", task a_b: found a performance of 1e200 as logged, expected less than 1e100 in magnitude",
+    );
+}
+
+#[test]
+fn an_expert_trains_one_task() {
+    let base = tempfile::tempdir().unwrap();
+    let run_id = base.path().file_name().unwrap().to_string_lossy().into_owned();
+    let check = |data: String, expected: &str| {
+        write_log(base.path(), data);
+        let message = format!("single-task expert log {run_id}: found {expected}, expected exactly one trained task");
+        assert_eq!(read_ste_log(base.path()).unwrap_err().to_string(), message);
+    };
+    check(with_cell(3, "test"), "no trained task");
+    check(
+        format!("{}{}", with_cell(5, "B_x"), ROW.replacen("0\t0", "0\t1", 1)),
+        "b_x, a_b",
+    );
+    write_log(base.path(), with_cell(5, "Find_Red"));
+    assert_eq!(read_ste_log(base.path()).unwrap().task_name(), "find_red");
+}

@@ -1,0 +1,272 @@
+//! Every error with its exact message and code; fails when one is missing.
+//!
+//! Not here: what leads to them, see `broken_logs` and `log_round_trip`.
+
+use std::io;
+use std::path::PathBuf;
+
+use driftworld_metrics::MetricsError;
+
+fn path() -> PathBuf {
+    PathBuf::from("run/w/0-train/data-log.tsv")
+}
+
+/// One of each, in the order of their declaration.
+#[expect(clippy::too_many_lines, reason = "a flat table")]
+fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
+    use MetricsError as E;
+    let text = str::to_owned;
+    let mut errors = vec![
+        (
+            E::Io {
+                path: path(),
+                doing: "open this file",
+                source: io::Error::other("no permission"),
+            },
+            "metrics/io",
+            "run/w/0-train/data-log.tsv: cannot open this file: no permission",
+        ),
+        (
+            E::LogExists { path: "run".into() },
+            "metrics/log-exists",
+            "run: found a directory that is not empty, expected a new or an empty one; choose another name, or continue \
+             the log that is there with LogWriter::resume",
+        ),
+        (
+            E::NotADirectory {
+                path: "run".into(),
+                found: "nothing",
+            },
+            "metrics/not-a-directory",
+            "run: found nothing, expected the directory of a log, which holds logger_info.json",
+        ),
+        (
+            E::NoDataFiles { path: "run".into() },
+            "metrics/no-data-files",
+            "run: found no data-log.tsv, expected at least one as WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv; is this the \
+             directory of one log, and has its run begun?",
+        ),
+        (
+            E::MissingFile {
+                path: "run/logger_info.json".into(),
+                expected: "a JSON object",
+            },
+            "metrics/missing-file",
+            "run/logger_info.json: found no such file, expected a JSON object",
+        ),
+        (
+            E::Json {
+                path: "i.json".into(),
+                line: 1,
+                column: 2,
+                found: text("EOF"),
+                expected: "a JSON object",
+            },
+            "metrics/json",
+            "i.json:1:2: found EOF, expected a JSON object",
+        ),
+        (
+            E::LoggerInfo {
+                field: "metrics_columns",
+                found: text("[]"),
+                expected: "a name",
+            },
+            "metrics/logger-info",
+            "logger_info.json, metrics_columns: found [], expected a name",
+        ),
+        (
+            E::TooLarge {
+                path: path(),
+                what: "bytes",
+                found: 9,
+                limit: 8,
+            },
+            "metrics/too-large",
+            "run/w/0-train/data-log.tsv: found 9 bytes, expected at most 8",
+        ),
+        (
+            E::EmptyFile { path: path() },
+            "metrics/empty-file",
+            "run/w/0-train/data-log.tsv:1: found an empty file, expected a header line that begins with block_num",
+        ),
+        (
+            E::MissingColumn {
+                path: path(),
+                column: text("reward"),
+                found: text("block_num, exp_num"),
+            },
+            "metrics/missing-column",
+            "run/w/0-train/data-log.tsv:1: found the columns block_num, exp_num, expected also reward",
+        ),
+        (
+            E::RepeatedColumn {
+                path: path(),
+                column: text("reward"),
+            },
+            "metrics/repeated-column",
+            "run/w/0-train/data-log.tsv:1: found the column reward twice, expected every column once",
+        ),
+        (
+            E::OtherColumns {
+                path: path(),
+                found: text("a, b"),
+                expected: text("a, c"),
+            },
+            "metrics/other-columns",
+            "run/w/0-train/data-log.tsv:1: found the columns a, b, expected a, c to continue this log; only logs of \
+             format 1.1 written by one writer can be continued, begin a new one",
+        ),
+    ];
+    errors.extend(of_rows());
+    errors.extend(of_scoring());
+    errors
+}
+
+fn of_rows() -> Vec<(MetricsError, &'static str, &'static str)> {
+    use MetricsError as E;
+    let text = str::to_owned;
+    vec![
+        (
+            E::RaggedRow {
+                path: path(),
+                line: 3,
+                found: 2,
+                expected: 9,
+            },
+            "metrics/ragged-row",
+            "run/w/0-train/data-log.tsv:3: found 2 cells, expected 9 as in the header; is a tab or a quote missing?",
+        ),
+        (
+            E::Cell {
+                path: path(),
+                line: 3,
+                column: text("reward"),
+                found: text("\"x\""),
+                expected: text("a number"),
+            },
+            "metrics/cell",
+            "run/w/0-train/data-log.tsv:3, column reward: found \"x\", expected a number",
+        ),
+        (
+            E::TornLastLine { path: path(), line: 3 },
+            "metrics/torn-last-line",
+            "run/w/0-train/data-log.tsv:3: found a last line without a line end, expected whole rows; its writer was \
+             stopped in the middle of it: delete that line, or continue the log with LogWriter::resume, which does",
+        ),
+        (
+            E::NotUtf8 { path: path(), line: 3 },
+            "metrics/not-utf8",
+            "run/w/0-train/data-log.tsv:3: found bytes that are not UTF-8, expected text",
+        ),
+        (
+            E::BlockOrder {
+                path: path(),
+                line: 3,
+                found: 0,
+                expected: 1,
+            },
+            "metrics/block-order",
+            "run/w/0-train/data-log.tsv:3, column block_num: found 0, expected at least 1: read in order of exp_num, \
+             block numbers never fall",
+        ),
+        (
+            E::Record {
+                exp_num: 4,
+                field: text("reward"),
+                found: text("inf"),
+                expected: text("a finite number"),
+            },
+            "metrics/record",
+            "record of experience 4, reward: found inf, expected a finite number",
+        ),
+        (
+            E::Timestamp { found: text("\"now\"") },
+            "metrics/timestamp",
+            "timestamp: found \"now\", expected YYYYMMDDTHHMMSS.ffffff as in 20200913T122640.000000, a day that exists",
+        ),
+    ]
+}
+
+fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
+    use MetricsError as E;
+    let text = str::to_owned;
+    vec![
+        (
+            E::UnknownWord {
+                what: "transfer",
+                found: text("sum"),
+                expected: text("ratio, contrast, both"),
+            },
+            "metrics/unknown-word",
+            "transfer: found \"sum\", expected one of ratio, contrast, both",
+        ),
+        (
+            E::UnknownColumn {
+                run_id: text("run"),
+                column: text("score"),
+                available: text("reward"),
+            },
+            "metrics/unknown-column",
+            "log run: found no metrics column \"score\", expected one of reward; set Options::perf_measure",
+        ),
+        (
+            E::NoUsableRows {
+                run_id: text("run"),
+                column: text("reward"),
+            },
+            "metrics/no-usable-rows",
+            "log run: found no complete row with a number in column \"reward\", expected at least one",
+        ),
+        (
+            E::NotSingleTask {
+                run_id: text("run"),
+                found: text("a_1, b_1"),
+            },
+            "metrics/not-single-task",
+            "single-task expert log run: found a_1, b_1, expected exactly one trained task",
+        ),
+        (
+            E::TooManyRegimes {
+                run_id: text("run"),
+                limit: 10_000,
+            },
+            "metrics/too-many-regimes",
+            "log run: found more than 10000 regimes, expected at most that; do tasks alternate row by row?",
+        ),
+        (
+            E::PerformanceOutOfRange {
+                run_id: text("run"),
+                task: text("a_1"),
+                found: 1e200,
+                after: "as logged",
+            },
+            "metrics/performance-out-of-range",
+            "log run, task a_1: found a performance of 1e200 as logged, expected less than 1e100 in magnitude",
+        ),
+        (
+            E::BadOption {
+                option: "window_length",
+                found: text("0"),
+                expected: text("1 to 10000 experiences"),
+            },
+            "metrics/bad-option",
+            "option window_length: found 0, expected 1 to 10000 experiences",
+        ),
+    ]
+}
+
+#[test]
+fn every_error_has_its_message_and_its_code() {
+    let source = include_str!("../src/error.rs");
+    let declared: Vec<&str> = source
+        .lines()
+        .filter_map(|line| line.split_once("=> \""))
+        .map(|(_, code)| code.trim_end_matches("\","))
+        .collect();
+    let listed: Vec<&str> = all().into_iter().map(|(_, code, _)| code).collect();
+    assert_eq!(listed, declared, "one entry per variant, in order");
+    for (error, code, message) in all() {
+        assert_eq!(error.to_string(), message);
+        assert_eq!(error.code(), code);
+    }
+}
