@@ -1,1 +1,56 @@
 //! Experience logs in the l2logger format and the lifelong-learning metrics computed from them.
+//!
+//! A *lifetime* is a sequence of learning blocks (`train`) and evaluation blocks (`test`) over several tasks. While it
+//! runs, [`LogWriter`] writes one row per experience; afterwards [`read_log`] reads the rows back, ours or those of
+//! any agent that logs with l2logger, and [`score`] says what the agent kept, transferred and recovered.
+//!
+//! ```
+//! use driftworld_metrics::{BlockType, LogWriter, LoggerInfo, Options, Record, ScenarioInfo, Timestamp, read_log, score};
+//!
+//! # fn main() -> Result<(), driftworld_metrics::MetricsError> {
+//! # let base = tempfile::tempdir().unwrap();
+//! let dir = base.path().join("two_blocks");
+//! let mut writer = LogWriter::create(&dir, &LoggerInfo::new(["reward"])?, &ScenarioInfo::default())?;
+//! for (exp_num, reward) in [(0, 1.0), (1, 3.0)] {
+//!     let when = Timestamp::from_unix_micros(1_600_000_000_000_000 + exp_num as i64)?;
+//!     writer.write(&Record::new(0, exp_num, BlockType::Train, "find_red", when).with_metric("reward", reward))?;
+//! }
+//! let metrics = score(&read_log(&dir)?, &[], &Options::default())?;
+//! assert_eq!(metrics.lifetime.avg_train_perf, Some(51.0), "rewards 1 and 3 are scaled to 1 and 101");
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! The definitions are those of New et al. 2022, "Lifelong Learning Metrics for L2M"; the numbers are those of the
+//! public package l2metrics 3.1 to 1e-9. Where that package departs from the plain definition, the file that follows
+//! it says so under the word QUIRK.
+//!
+//! What is not here: running agents (that is the curriculum's), plots and printing (the command's), and the clock:
+//! time stamps are handed in.
+
+mod choice;
+mod error;
+mod lifetime;
+mod log;
+mod options;
+mod preprocess;
+mod report;
+mod score;
+mod statistics;
+
+pub use error::MetricsError;
+pub use lifetime::{Lifetime, MAX_REGIMES, Regime, SteLog};
+pub use log::{
+    BlockSubtype, BlockType, Complexity, DEFAULT_WORKER, Difficulty, ExpStatus, LOG_FORMAT_VERSION, Log, LogWarning,
+    LogWriter, LoggerInfo, MAX_CELL_BYTES, MAX_FILE_BYTES, MAX_LOG_FILES, MAX_RECORDS, Record, ScenarioInfo,
+    ScenarioType, TaskParams, Timestamp, read_log, read_ste_log,
+};
+pub use options::{
+    AggregationMethod, DataRange, MAX_WINDOW_LENGTH, MaintenanceMethod, NormalizationMethod, Options, SmoothingMethod,
+    SteAveragingMethod, TransferMethod, VariantMode,
+};
+pub use report::{
+    Direction, LifetimeMetrics, LifetimeScores, PairValues, RegimeMetrics, SavedFiles, Settings, SummaryRow,
+    TaskMetrics,
+};
+pub use score::score;

@@ -1,0 +1,166 @@
+//! Regimes: the stretches of a lifetime in which one task is trained or evaluated without a break.
+//!
+//! Not here: what is computed of a regime, see `score`.
+
+use std::collections::BTreeMap;
+
+use super::scored_name;
+use crate::log::TaskParams;
+use crate::{BlockSubtype, BlockType, MetricsError, Options, Record};
+
+/// Most regimes a lifetime may have; the Theil–Sen slope looks at every pair of a task's.
+pub const MAX_REGIMES: usize = 10_000;
+
+/// A maximal run of rows with the same block number, block type, subtype and task.
+///
+/// QUIRK: task parameters do not split regimes. A block that changes only a task's parameters is one regime, and
+/// stands in tables with the parameters of its first row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Regime {
+    /// Position among the regimes of the lifetime, from 0.
+    pub regime_num: usize,
+    /// Number of the block, as logged.
+    pub block_num: u64,
+    /// Learning or evaluation.
+    pub block_type: BlockType,
+    /// Awake or asleep.
+    pub block_subtype: BlockSubtype,
+    /// The task, lower-case; without its variant where variants do not count.
+    pub task_name: String,
+    /// Parameters of its first row.
+    pub task_params: TaskParams,
+    /// Experience number of each row, ascending.
+    pub exp_nums: Vec<u64>,
+    /// Performance of each row as logged.
+    pub raw: Vec<f64>,
+    /// Performance of each row after preprocessing.
+    pub performance: Vec<f64>,
+}
+
+impl Regime {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.performance.len()
+    }
+
+    /// Whether there are no rows; never so for a regime of a [`Lifetime`](crate::Lifetime).
+    pub fn is_empty(&self) -> bool {
+        self.performance.is_empty()
+    }
+
+    /// Whether the agent learnt, awake.
+    pub fn is_wake_training(&self) -> bool {
+        self.block_type == BlockType::Train && self.block_subtype == BlockSubtype::Wake
+    }
+
+    /// One performance per experience: where an experience has several rows, their mean.
+    pub(crate) fn per_experience(&self) -> Vec<f64> {
+        mean_per_experience(&self.exp_nums, &self.performance)
+    }
+
+    fn continues_with(&self, record: &Record, task_name: &str) -> bool {
+        self.block_num == record.block_num
+            && self.block_type == record.block_type
+            && self.block_subtype == record.block_subtype
+            && self.task_name == task_name
+    }
+}
+
+/// One value per experience number, in ascending order; rows of one experience are averaged.
+pub(crate) fn mean_per_experience(exp_nums: &[u64], performance: &[f64]) -> Vec<f64> {
+    if exp_nums.windows(2).all(|pair| pair[0] < pair[1]) {
+        return performance.to_vec();
+    }
+    let mut sums: BTreeMap<u64, (f64, f64)> = BTreeMap::new();
+    for (exp_num, value) in exp_nums.iter().zip(performance) {
+        let (sum, count) = sums.entry(*exp_num).or_default();
+        *sum += value;
+        *count += 1.0;
+    }
+    sums.into_values().map(|(sum, count)| sum / count).collect()
+}
+
+/// Cuts rows, which are in order of experience, into regimes.
+pub(crate) fn form(run_id: &str, rows: &[(&Record, f64)], options: &Options) -> Result<Vec<Regime>, MetricsError> {
+    let mut regimes: Vec<Regime> = Vec::new();
+    for (record, performance) in rows {
+        let task_name = scored_name(&record.task_name, options.variant_mode);
+        let continues = regimes
+            .last()
+            .is_some_and(|last| last.continues_with(record, &task_name));
+        if !continues {
+            if regimes.len() == MAX_REGIMES {
+                return Err(MetricsError::TooManyRegimes {
+                    run_id: run_id.to_owned(),
+                    limit: MAX_REGIMES,
+                });
+            }
+            regimes.push(begin(regimes.len(), record, task_name));
+        }
+        let open = regimes.last_mut().expect("a regime was begun with the first row");
+        open.exp_nums.push(record.exp_num);
+        open.raw.push(*performance);
+        open.performance.push(*performance);
+    }
+    Ok(regimes)
+}
+
+fn begin(regime_num: usize, record: &Record, task_name: String) -> Regime {
+    Regime {
+        regime_num,
+        block_num: record.block_num,
+        block_type: record.block_type,
+        block_subtype: record.block_subtype,
+        task_name,
+        task_params: record.task_params.clone(),
+        exp_nums: Vec::new(),
+        raw: Vec::new(),
+        performance: Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(block_num: u64, block_type: BlockType, task: &str) -> Record {
+        Record::new(block_num, 0, block_type, task, "20200101T000000.0".parse().unwrap())
+    }
+
+    #[test]
+    fn a_regime_ends_where_block_type_or_task_change_but_not_where_parameters_do() {
+        let params = serde_json::Map::from_iter([("a".to_owned(), 1.into())]);
+        let records = [
+            record(0, BlockType::Train, "A_x"),
+            record(0, BlockType::Train, "a_x").with_task_params(params),
+            record(0, BlockType::Train, "a_y"),
+            record(1, BlockType::Train, "a_y"),
+            record(1, BlockType::Test, "a_y"),
+        ];
+        let rows: Vec<_> = records.iter().map(|record| (record, 1.0)).collect();
+        let lengths = |mode| {
+            let options = Options {
+                variant_mode: mode,
+                ..Options::default()
+            };
+            form("run", &rows, &options)
+                .unwrap()
+                .iter()
+                .map(Regime::len)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(lengths(crate::VariantMode::Aware), [2, 1, 1, 1]);
+        assert_eq!(lengths(crate::VariantMode::Agnostic), [3, 1, 1]);
+    }
+
+    #[test]
+    fn rows_of_one_experience_are_averaged() {
+        let check = |exp_nums: &[u64], expected: &[f64]| {
+            assert_eq!(mean_per_experience(exp_nums, &[1.0, 3.0, 8.0]), expected);
+        };
+        check(&[0, 1, 2], &[1.0, 3.0, 8.0]);
+        check(&[0, 0, 2], &[2.0, 8.0]);
+        check(&[0, 2, 2], &[1.0, 5.5]);
+        check(&[1, 2, 1], &[4.5, 3.0]);
+    }
+}

@@ -1,0 +1,103 @@
+//! Single-task experts: agents that were trained on one task alone, the yardstick of a lifetime.
+//!
+//! Not here: the comparison, see `score::ste_relative_performance` and `score::sample_efficiency`.
+
+use indexmap::{IndexMap, IndexSet};
+
+use super::regime::{self, Regime};
+use super::{scored_name, usable_rows};
+use crate::{BlockType, Log, MetricsError, Options, VariantMode};
+
+/// The log of a single-task expert: exactly one task is trained in it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SteLog {
+    log: Log,
+    task_name: String,
+}
+
+impl SteLog {
+    /// Takes a log as an expert's.
+    ///
+    /// # Errors
+    /// [`MetricsError::NotSingleTask`] when it does not train exactly one task.
+    pub fn new(log: Log) -> Result<Self, MetricsError> {
+        let trained = log
+            .records
+            .iter()
+            .filter(|record| record.block_type == BlockType::Train);
+        let mut names: IndexSet<String> = trained
+            .map(|record| scored_name(&record.task_name, VariantMode::Aware))
+            .collect();
+        match (names.len(), names.pop()) {
+            (1, Some(task_name)) => Ok(Self { log, task_name }),
+            (_, None) => Err(MetricsError::NotSingleTask {
+                run_id: log.run_id,
+                found: "no trained task".to_owned(),
+            }),
+            (_, Some(last)) => {
+                names.insert(last);
+                let found = names.into_iter().collect::<Vec<_>>().join(", ");
+                Err(MetricsError::NotSingleTask {
+                    run_id: log.run_id,
+                    found,
+                })
+            }
+        }
+    }
+
+    /// The trained task, lower-case, with its variant.
+    pub fn task_name(&self) -> &str {
+        &self.task_name
+    }
+
+    /// The log itself.
+    pub fn log(&self) -> &Log {
+        &self.log
+    }
+}
+
+/// One run of an expert, as regimes of its own.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SteRun {
+    pub(crate) regimes: Vec<Regime>,
+}
+
+impl SteRun {
+    /// Experience number and performance of each training row.
+    pub(crate) fn training(&self) -> impl Iterator<Item = (u64, f64)> {
+        let trained = self
+            .regimes
+            .iter()
+            .filter(|regime| regime.block_type == BlockType::Train);
+        trained.flat_map(|regime| regime.exp_nums.iter().copied().zip(regime.performance.iter().copied()))
+    }
+
+    /// Performance of each training row.
+    pub(crate) fn training_performance(&self) -> Vec<f64> {
+        self.training().map(|(_, performance)| performance).collect()
+    }
+}
+
+/// Runs per task of the lifetime, in the order in which they were given.
+pub(super) fn gather(
+    experts: &[SteLog],
+    tasks: &[String],
+    options: &Options,
+) -> Result<IndexMap<String, Vec<SteRun>>, MetricsError> {
+    let mut runs: IndexMap<String, Vec<SteRun>> = IndexMap::new();
+    for expert in experts {
+        let task = scored_name(&expert.task_name, options.variant_mode);
+        if !tasks.contains(&task) {
+            tracing::warn!(
+                run_id = expert.log.run_id,
+                task,
+                "expert log left aside: the lifetime has no such task"
+            );
+            continue;
+        }
+        let rows = usable_rows(&expert.log, &options.perf_measure)?;
+        let regimes = regime::form(&expert.log.run_id, &rows, options)?;
+        runs.entry(task).or_default().push(SteRun { regimes });
+    }
+    Ok(runs)
+}

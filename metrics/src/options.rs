@@ -1,0 +1,274 @@
+//! The choices a user has when a lifetime is scored, with the reference's defaults.
+//!
+//! What each choice does is computed elsewhere: see `preprocess` and `score`.
+
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+
+use crate::MetricsError;
+use crate::choice::choice;
+
+/// Longest smoothing window that may be asked for, in experiences.
+pub const MAX_WINDOW_LENGTH: usize = 10_000;
+
+choice! {
+    /// Whether variants of a task (`find_red`, `find_blue`) are tasks of their own.
+    VariantMode, "variant mode" {
+        /// Every variant is a task of its own (default).
+        Aware = "aware",
+        /// Names are cut at their first underscore, so that all variants are one task.
+        Agnostic = "agnostic",
+    }
+}
+
+choice! {
+    /// How several runs of a single-task expert are brought together.
+    SteAveragingMethod, "STE averaging" {
+        /// Compare with each run and average the results (default).
+        Metrics = "metrics",
+        /// Cut the runs to the shortest, average them step by step and compare with that.
+        Time = "time",
+    }
+}
+
+choice! {
+    /// How the values of the tasks become the one value of the lifetime.
+    AggregationMethod, "aggregation" {
+        /// Arithmetic mean (default).
+        Mean = "mean",
+        /// Median.
+        Median = "median",
+    }
+}
+
+choice! {
+    /// What an evaluation is compared with when maintenance is computed.
+    MaintenanceMethod, "maintenance" {
+        /// The most recent evaluation right after learning, "most recent learning evaluation performance" (default).
+        Mrlep = "mrlep",
+        /// The end of the most recent learning regime, "most recent terminal learning performance".
+        Mrtlp = "mrtlp",
+        /// Both, as two values.
+        Both = "both",
+    }
+}
+
+impl MaintenanceMethod {
+    /// Whether `perf_maintenance_mrlep` is asked for.
+    pub const fn has_mrlep(self) -> bool {
+        matches!(self, Self::Mrlep | Self::Both)
+    }
+
+    /// Whether `perf_maintenance_mrtlp` is asked for.
+    pub const fn has_mrtlp(self) -> bool {
+        matches!(self, Self::Mrtlp | Self::Both)
+    }
+}
+
+choice! {
+    /// How an evaluation before learning another task is compared with the one after.
+    TransferMethod, "transfer" {
+        /// after / before; 1 means no effect (default).
+        Ratio = "ratio",
+        /// (after − before) / (after + before); 0 means no effect.
+        Contrast = "contrast",
+        /// Both, as two values.
+        Both = "both",
+    }
+}
+
+impl TransferMethod {
+    /// Whether the ratios are asked for.
+    pub const fn has_ratio(self) -> bool {
+        matches!(self, Self::Ratio | Self::Both)
+    }
+
+    /// Whether the contrasts are asked for.
+    pub const fn has_contrast(self) -> bool {
+        matches!(self, Self::Contrast | Self::Both)
+    }
+}
+
+choice! {
+    /// Over which data the range 1..=101 is stretched.
+    NormalizationMethod, "normalisation" {
+        /// Each task by its own smallest and largest performance (default).
+        Task = "task",
+        /// All tasks by the smallest and largest performance of the run.
+        Run = "run",
+        /// Not at all.
+        Off = "none",
+    }
+}
+
+choice! {
+    /// Shape of the window that training data are smoothed with.
+    SmoothingMethod, "smoothing" {
+        /// Moving average (default).
+        Flat = "flat",
+        /// Raised cosine, zero at both ends.
+        Hanning = "hanning",
+        /// Raised cosine on a pedestal of 0.08.
+        Hamming = "hamming",
+        /// Triangle, zero at both ends.
+        Bartlett = "bartlett",
+        /// Two cosines, zero at both ends.
+        Blackman = "blackman",
+        /// No smoothing.
+        Off = "none",
+    }
+}
+
+/// Smallest and largest performance a task can have, in the unit of the log.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DataRange {
+    /// Performance that is scaled to 1.
+    pub min: f64,
+    /// Performance that is scaled to 101.
+    pub max: f64,
+}
+
+/// The choices under which a lifetime is scored. [`Options::default`] is what l2metrics does when asked for nothing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Options {
+    /// Column of the log that holds the performance; default `reward`.
+    pub perf_measure: String,
+    /// Whether variants of a task count as tasks; default aware.
+    pub variant_mode: VariantMode,
+    /// How several runs of a single-task expert are averaged; default metrics.
+    pub ste_averaging_method: SteAveragingMethod,
+    /// From tasks to lifetime; default mean.
+    pub aggregation_method: AggregationMethod,
+    /// What maintenance compares with; default mrlep.
+    pub maintenance_method: MaintenanceMethod,
+    /// How transfer compares; default ratio.
+    pub transfer_method: TransferMethod,
+    /// How performances are scaled; default per task.
+    pub normalization_method: NormalizationMethod,
+    /// Window shape; default flat.
+    pub smoothing_method: SmoothingMethod,
+    /// Whether evaluation regimes are smoothed too; default no.
+    pub smooth_eval_data: bool,
+    /// Window length in experiences, at most [`MAX_WINDOW_LENGTH`]; default none: a fifth of the data, at most 100.
+    pub window_length: Option<usize>,
+    /// Whether performances outside the given range, or else the 0.1 and 0.9 quantiles, are clipped; default no.
+    pub clamp_outliers: bool,
+    /// Known range per task, lower-case name; default none: taken from the data. When given, every task needs one.
+    pub data_range: Option<IndexMap<String, DataRange>>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            perf_measure: "reward".to_owned(),
+            variant_mode: VariantMode::Aware,
+            ste_averaging_method: SteAveragingMethod::Metrics,
+            aggregation_method: AggregationMethod::Mean,
+            maintenance_method: MaintenanceMethod::Mrlep,
+            transfer_method: TransferMethod::Ratio,
+            normalization_method: NormalizationMethod::Task,
+            smoothing_method: SmoothingMethod::Flat,
+            smooth_eval_data: false,
+            window_length: None,
+            clamp_outliers: false,
+            data_range: None,
+        }
+    }
+}
+
+impl Options {
+    /// Checks what the types cannot: window length and data ranges.
+    ///
+    /// # Errors
+    /// [`MetricsError::BadOption`] for a window of 0 or over [`MAX_WINDOW_LENGTH`], or a range that is not finite or
+    /// has its minimum above its maximum.
+    pub(crate) fn check(&self) -> Result<(), MetricsError> {
+        if let Some(length) = self.window_length
+            && !(1..=MAX_WINDOW_LENGTH).contains(&length)
+        {
+            return Err(MetricsError::BadOption {
+                option: "window_length",
+                found: length.to_string(),
+                expected: format!("1 to {MAX_WINDOW_LENGTH} experiences"),
+            });
+        }
+        for (task, range) in self.data_range.iter().flatten() {
+            let bounded = range.min.abs() < crate::lifetime::MAX_PERFORMANCE
+                && range.max.abs() < crate::lifetime::MAX_PERFORMANCE;
+            if !bounded || range.min > range.max {
+                return Err(MetricsError::BadOption {
+                    option: "data_range",
+                    found: format!("{:e} to {:e} for task {task}", range.min, range.max),
+                    expected: "two numbers below 1e100 in magnitude, the smaller one first".to_owned(),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_read_back_and_strangers_are_told_the_words() {
+        for &method in SmoothingMethod::ALL {
+            assert_eq!(method.name().parse::<SmoothingMethod>().unwrap(), method);
+        }
+        let error = "gauss".parse::<SmoothingMethod>().unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "smoothing: found \"gauss\", expected one of flat, hanning, hamming, bartlett, blackman, none"
+        );
+    }
+
+    #[test]
+    fn options_survive_json_and_missing_ones_take_their_default() {
+        let options = Options {
+            window_length: Some(7),
+            ..Options::default()
+        };
+        let text = serde_json::to_string(&options).unwrap();
+        assert_eq!(serde_json::from_str::<Options>(&text).unwrap(), options);
+        assert_eq!(serde_json::from_str::<Options>("{}").unwrap(), Options::default());
+        assert!(
+            serde_json::from_str::<Options>(r#"{"smoothing": "flat"}"#).is_err(),
+            "a misspelt option is refused"
+        );
+    }
+
+    #[test]
+    fn windows_and_ranges_out_of_bounds_are_refused() {
+        let check = |options: Options, expected: &str| assert_eq!(options.check().unwrap_err().to_string(), expected);
+        check(
+            Options {
+                window_length: Some(0),
+                ..Options::default()
+            },
+            "option window_length: found 0, expected 1 to 10000 experiences",
+        );
+        let range = DataRange { min: 2.0, max: 1.0 };
+        check(
+            Options {
+                data_range: Some([("a".to_owned(), range)].into()),
+                ..Options::default()
+            },
+            "option data_range: found 2e0 to 1e0 for task a, expected two numbers below 1e100 in magnitude, the smaller one first",
+        );
+        let range = DataRange {
+            min: f64::NAN,
+            max: 1.0,
+        };
+        assert!(
+            Options {
+                data_range: Some([("a".to_owned(), range)].into()),
+                ..Options::default()
+            }
+            .check()
+            .is_err()
+        );
+    }
+}

@@ -1,0 +1,91 @@
+//! Normalisation: performances are stretched to 1..=101, so that tasks with different rewards can be compared.
+//!
+//! Not here: clamping, which comes before.
+
+use indexmap::IndexMap;
+
+use super::given_range;
+use crate::lifetime::Lifetime;
+use crate::{DataRange, MetricsError, NormalizationMethod, Options};
+
+/// Width of the range that performances are stretched to.
+const SCALE: f64 = 100.0;
+
+/// Its lower end: not 0, so that ratios of performances always exist.
+const OFFSET: f64 = 1.0;
+
+/// Stretches every performance, and returns the range per task that it was stretched from.
+///
+/// A task (under `task`) or run (under `run`) whose performances are all equal becomes 1 everywhere.
+pub(crate) fn normalize(
+    lifetime: &mut Lifetime,
+    options: &Options,
+) -> Result<Option<IndexMap<String, DataRange>>, MetricsError> {
+    if options.normalization_method == NormalizationMethod::Off {
+        return Ok(None);
+    }
+    let mut ranges = IndexMap::new();
+    for task in lifetime.tasks() {
+        let range = match given_range(task, lifetime, options)? {
+            Some(range) => range,
+            None => hull(lifetime.performances_of(task)),
+        };
+        ranges.insert(task.clone(), range);
+    }
+    let whole = hull(ranges.values().flat_map(|range| [range.min, range.max]));
+    for regime in lifetime.all_regimes_mut() {
+        let range = match options.normalization_method {
+            NormalizationMethod::Run => Some(whole),
+            _ => ranges.get(&regime.task_name).copied(),
+        };
+        // An expert's evaluation of a task that the lifetime lacks has no range; nothing looks at it.
+        if let Some(range) = range {
+            stretch(&mut regime.performance, range);
+        }
+    }
+    Ok(Some(ranges))
+}
+
+fn hull(values: impl Iterator<Item = f64>) -> DataRange {
+    values.fold(
+        DataRange {
+            min: f64::INFINITY,
+            max: f64::NEG_INFINITY,
+        },
+        |range, value| DataRange {
+            min: range.min.min(value),
+            max: range.max.max(value),
+        },
+    )
+}
+
+fn stretch(values: &mut [f64], range: DataRange) {
+    let width = range.max - range.min;
+    for value in values {
+        *value = if width == 0.0 {
+            OFFSET
+        } else {
+            (*value - range.min) / width * SCALE + OFFSET
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_become_one_to_a_hundred_and_one() {
+        let check = |mut values: Vec<f64>, range: DataRange, expected: &[f64]| {
+            stretch(&mut values, range);
+            assert_eq!(values, expected);
+        };
+        check(
+            vec![-1.0, 0.0, 3.0],
+            DataRange { min: -1.0, max: 3.0 },
+            &[1.0, 26.0, 101.0],
+        );
+        check(vec![5.0, 5.0], DataRange { min: 5.0, max: 5.0 }, &[1.0, 1.0]);
+        check(vec![20.0], DataRange { min: 0.0, max: 10.0 }, &[201.0]);
+    }
+}

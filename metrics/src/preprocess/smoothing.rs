@@ -1,0 +1,143 @@
+//! Smoothing with a moving window whose ends are mirrored.
+//!
+//! Not here: which regimes metrics look at.
+
+use std::f64::consts::PI;
+
+use crate::lifetime::Lifetime;
+use crate::{BlockType, Options, SmoothingMethod};
+
+/// Longest window that is chosen where none is given.
+const LONGEST_DEFAULT: usize = 100;
+
+/// Smooths learning regimes, evaluation regimes if asked for, and every regime of the experts.
+pub(crate) fn smooth(lifetime: &mut Lifetime, options: &Options) {
+    if options.smoothing_method == SmoothingMethod::Off {
+        return;
+    }
+    let num_own = lifetime.regimes().len();
+    for (index, regime) in lifetime.all_regimes_mut().enumerate() {
+        let is_expert = index >= num_own;
+        if is_expert || regime.block_type == BlockType::Train || options.smooth_eval_data {
+            regime.performance = smoothed(&regime.performance, options.window_length, options.smoothing_method);
+        }
+    }
+}
+
+/// The values under a moving window; as many as were given.
+///
+/// `window_length`: in values; `None`, or one longer than the data, stands for a fifth of the data but at most 100.
+/// Windows shorter than 3 leave the data as they are. At both ends the data are mirrored without repeating the last
+/// value. QUIRK: an even window reaches one value further back than ahead, an odd one two.
+pub(crate) fn smoothed(values: &[f64], window_length: Option<usize>, method: SmoothingMethod) -> Vec<f64> {
+    let num = values.len();
+    let fifth = (num as f64 * 0.2) as usize;
+    let length = window_length
+        .filter(|length| *length <= num)
+        .unwrap_or(fifth.min(LONGEST_DEFAULT));
+    let weights = window(method, length);
+    let total: f64 = weights.iter().sum();
+    if length < 3 || total <= 0.0 {
+        return values.to_vec();
+    }
+    let mirrored: Vec<f64> = (values[1..length].iter().rev())
+        .chain(values)
+        .chain(values[num - length..num - 1].iter().rev())
+        .copied()
+        .collect();
+    // Of the num + length - 1 places the window fits in, the num from here on are kept.
+    let start = (length / 2).saturating_sub(1);
+    let weighted = |part: &[f64]| {
+        part.iter()
+            .zip(&weights)
+            .map(|(value, weight)| value * weight)
+            .sum::<f64>()
+            / total
+    };
+    mirrored.windows(length).skip(start).take(num).map(weighted).collect()
+}
+
+/// Weights of a symmetric window, not normalised.
+fn window(method: SmoothingMethod, length: usize) -> Vec<f64> {
+    let last = length.saturating_sub(1).max(1) as f64;
+    let weight = |index: usize| {
+        let turn = 2.0 * PI * index as f64 / last;
+        match method {
+            SmoothingMethod::Flat | SmoothingMethod::Off => 1.0,
+            SmoothingMethod::Hanning => 0.5 - 0.5 * turn.cos(),
+            SmoothingMethod::Hamming => 0.54 - 0.46 * turn.cos(),
+            SmoothingMethod::Bartlett => 1.0 - (2.0 * index as f64 / last - 1.0).abs(),
+            SmoothingMethod::Blackman => 0.42 - 0.5 * turn.cos() + 0.08 * (2.0 * turn).cos(),
+        }
+    };
+    (0..length).map(weight).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn a_window_of_three_averages_a_value_with_the_two_before_it() {
+        // Mirrored: 9 4 | 1 4 9 16 | 9 4; kept are the first four windows of three: (9+4+1)/3, (4+1+4)/3, …
+        let found = smoothed(&[1.0, 4.0, 9.0, 16.0], Some(3), SmoothingMethod::Flat);
+        let expected = [14.0 / 3.0, 3.0, 14.0 / 3.0, 29.0 / 3.0];
+        assert!(
+            found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12),
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn a_window_of_four_averages_two_before_the_value_itself_and_one_after() {
+        // Mirrored: 16 9 4 | 1 4 9 16 25 | 16 9 4; the first window starts one later: 9 4 1 4.
+        let found = smoothed(&[1.0, 4.0, 9.0, 16.0, 25.0], Some(4), SmoothingMethod::Flat);
+        assert_eq!(found, [4.5, 4.5, 7.5, 13.5, 16.5]);
+    }
+
+    #[test]
+    fn short_data_stay_as_they_are() {
+        let check = |values: &[f64], length: Option<usize>| {
+            assert_eq!(smoothed(values, length, SmoothingMethod::Flat), values);
+        };
+        check(&[], None);
+        check(&[7.0], None);
+        check(&[1.0, 5.0], Some(1));
+        check(&[1.0, 5.0, 2.0], Some(2));
+        check(&[1.0; 14], None);
+        // A window longer than the data falls back to a fifth of four, which is none.
+        check(&[1.0, 5.0, 2.0, 4.0], Some(9));
+    }
+
+    #[test]
+    fn window_shapes_are_those_of_the_textbook() {
+        let check = |method: SmoothingMethod, expected: [f64; 5]| {
+            let found = window(method, 5);
+            assert!(
+                found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12),
+                "{method}: {found:?}"
+            );
+        };
+        check(SmoothingMethod::Flat, [1.0; 5]);
+        check(SmoothingMethod::Hanning, [0.0, 0.5, 1.0, 0.5, 0.0]);
+        check(SmoothingMethod::Hamming, [0.08, 0.54, 1.0, 0.54, 0.08]);
+        check(SmoothingMethod::Bartlett, [0.0, 0.5, 1.0, 0.5, 0.0]);
+        check(SmoothingMethod::Blackman, [0.0, 0.34, 1.0, 0.34, 0.0]);
+    }
+
+    proptest! {
+        #[test]
+        fn smoothing_keeps_length_and_bounds(
+            values in proptest::collection::vec(-100.0..100.0, 0..60),
+            length in proptest::option::of(1_usize..80),
+            method in proptest::sample::select(SmoothingMethod::ALL),
+        ) {
+            let found = smoothed(&values, length, method);
+            prop_assert_eq!(found.len(), values.len());
+            let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
+            prop_assert!(found.iter().all(|value| *value >= low - 1e-9 && *value <= high + 1e-9));
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! The four textbook statistics the metrics rest on: mean, quantile, least-squares covariance and Theil–Sen slope.
+//!
+//! Not here: smoothing, which is a preprocessing step with choices of its own.
+
+/// Arithmetic mean; `None` when there is nothing to average.
+pub(crate) fn mean(values: &[f64]) -> Option<f64> {
+    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// Quantile with linear interpolation between the two nearest values; `q` in `0..=1`. `None` when there are no values.
+pub(crate) fn quantile(values: &[f64], q: f64) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let last = sorted.len().checked_sub(1)?;
+    let position = q * last as f64;
+    let below = position.floor() as usize;
+    let above = (below + 1).min(last);
+    Some(sorted[below] + (sorted[above] - sorted[below]) * (position - below as f64))
+}
+
+/// Middle value, or the mean of the two middle ones; `None` when there are no values.
+pub(crate) fn median(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted.len() / 2;
+    match sorted.len() {
+        0 => None,
+        n if n % 2 == 1 => Some(sorted[middle]),
+        _ => Some(f64::midpoint(sorted[middle - 1], sorted[middle])),
+    }
+}
+
+/// Median slope over all pairs of points `(0, y[0]), (1, y[1]), …`; `None` for fewer than two points. `O(n² log n)`.
+pub(crate) fn theil_sen_slope(y: &[f64]) -> Option<f64> {
+    let slopes: Vec<f64> = (0..y.len())
+        .flat_map(|first| (first + 1..y.len()).map(move |second| (first, second)))
+        .map(|(first, second)| (y[second] - y[first]) / (second - first) as f64)
+        .collect();
+    median(&slopes)
+}
+
+/// Whether the least-squares line through the points falls. A constant or a single point does not.
+pub(crate) fn trend_falls(x: &[f64], y: &[f64]) -> bool {
+    let (Some(mean_x), Some(mean_y)) = (mean(x), mean(y)) else {
+        return false;
+    };
+    x.iter().zip(y).map(|(x, y)| (x - mean_x) * (y - mean_y)).sum::<f64>() < 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_interpolate_between_neighbours() {
+        let check = |values: &[f64], q: f64, expected: Option<f64>| assert_eq!(quantile(values, q), expected);
+        check(&[], 0.5, None);
+        check(&[7.0], 0.9, Some(7.0));
+        check(&[3.0, 1.0, 2.0], 0.5, Some(2.0));
+        check(&[1.0, 2.0, 3.0, 4.0, 5.0], 0.125, Some(1.5));
+        check(&[1.0, 2.0], 1.0, Some(2.0));
+    }
+
+    #[test]
+    fn the_median_is_the_middle() {
+        let check = |values: &[f64], expected: Option<f64>| assert_eq!(median(values), expected);
+        check(&[], None);
+        check(&[5.0, 1.0, 3.0], Some(3.0));
+        check(&[4.0, 1.0, 3.0, 2.0], Some(2.5));
+    }
+
+    #[test]
+    fn the_theil_sen_slope_ignores_one_outlier() {
+        let check = |y: &[f64], expected: Option<f64>| assert_eq!(theil_sen_slope(y), expected);
+        check(&[1.0], None);
+        check(&[1.0, 4.0], Some(3.0));
+        // Slopes 18, 6, -6: the middle one.
+        check(&[0.0, 18.0, 12.0], Some(6.0));
+        // Ten of the fifteen slopes are 1, the five to the outlier are not.
+        check(&[0.0, 1.0, 2.0, 3.0, 4.0, 500.0], Some(1.0));
+    }
+
+    #[test]
+    fn only_a_falling_line_falls() {
+        let check = |y: &[f64], expected: bool| {
+            let x: Vec<f64> = (0..y.len()).map(|i| i as f64).collect();
+            assert_eq!(trend_falls(&x, y), expected, "{y:?}");
+        };
+        check(&[], false);
+        check(&[3.0], false);
+        check(&[3.0, 3.0, 3.0], false);
+        check(&[1.0, 2.0, 1.5], false);
+        check(&[3.0, 5.0, 1.0], true);
+    }
+}

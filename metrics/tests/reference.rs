@@ -1,0 +1,169 @@
+//! Oracle: the example lifetime that l2metrics publishes, scored with its example experts, against its own results.
+//!
+//! The files are read where `DRIFTWORLD_REFERENCE` says, by default beside the repository; without them the tests say
+//! so and return.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
+
+use std::path::PathBuf;
+
+use driftworld_metrics::{LifetimeMetrics, Options, SteLog, read_log, read_ste_log, score};
+use serde_json::Value;
+
+/// The reference computes in another order of additions; its published lifetime values have ten decimals.
+const TOLERANCE: f64 = 1e-9;
+
+#[expect(clippy::print_stderr, reason = "a skipped oracle must be seen")]
+fn reference() -> Option<PathBuf> {
+    let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/reference");
+    let base = std::env::var_os("DRIFTWORLD_REFERENCE").map_or_else(|| PathBuf::from(default), PathBuf::from);
+    let dir = base.join("l2metrics");
+    if dir.is_dir() {
+        return Some(dir);
+    }
+    eprintln!(
+        "SKIPPED: no reference logs at {}; set DRIFTWORLD_REFERENCE",
+        dir.display()
+    );
+    None
+}
+
+fn experts(dir: &std::path::Path, runs: &[&str]) -> Vec<SteLog> {
+    runs.iter()
+        .map(|run| read_ste_log(dir.join("ste_logs").join(run)).unwrap())
+        .collect()
+}
+
+fn options() -> Options {
+    Options {
+        perf_measure: "performance".to_owned(),
+        ..Options::default()
+    }
+}
+
+fn scored(dir: &std::path::Path) -> LifetimeMetrics {
+    let runs = [
+        "ste_task1_1_run1",
+        "ste_task2_1_run1",
+        "ste_task3_1_run1",
+        "ste_task3_1_run2",
+    ];
+    let log = read_log(dir.join("ll_logs/multi_task")).unwrap();
+    assert_eq!(log.warnings, []);
+    score(&log, &experts(dir, &runs), &options()).unwrap()
+}
+
+/// Compares two documents, numbers within the tolerance; returns how many numbers there were.
+fn compare(path: &str, found: &Value, expected: &Value) -> usize {
+    match (found, expected) {
+        (Value::Number(found), Value::Number(expected)) => {
+            let (found, expected) = (found.as_f64().unwrap(), expected.as_f64().unwrap());
+            let near = (found - expected).abs() <= TOLERANCE * expected.abs().max(f64::MIN_POSITIVE);
+            assert!(
+                near || found == expected,
+                "{path}: found {found}, the reference has {expected}"
+            );
+            1
+        }
+        (Value::Array(found), Value::Array(expected)) => {
+            assert_eq!(found.len(), expected.len(), "{path}: length");
+            let pairs = found.iter().zip(expected).enumerate();
+            pairs
+                .map(|(index, (found, expected))| compare(&format!("{path}/{index}"), found, expected))
+                .sum()
+        }
+        (Value::Object(found), Value::Object(expected)) => {
+            let mut names: [Vec<&String>; 2] = [found.keys().collect(), expected.keys().collect()];
+            for names in &mut names {
+                names.sort();
+            }
+            assert_eq!(names[0], names[1], "{path}: fields");
+            expected
+                .iter()
+                .map(|(name, expected)| compare(&format!("{path}/{name}"), &found[name], expected))
+                .sum()
+        }
+        (found, expected) => {
+            assert_eq!(found, expected, "{path}");
+            0
+        }
+    }
+}
+
+#[test]
+fn every_published_number_is_reproduced() {
+    let Some(dir) = reference() else { return };
+    let expected = std::fs::read(dir.join("expected/multi_task_metrics.json")).unwrap();
+    let expected: Value = serde_json::from_slice(&expected).unwrap();
+    let found = serde_json::to_value(scored(&dir)).unwrap();
+    let num_numbers = compare("", &found, &expected);
+    assert!(num_numbers > 150, "only {num_numbers} numbers were compared");
+}
+
+#[test]
+fn every_published_regime_is_reproduced() {
+    let Some(dir) = reference() else { return };
+    let expected = std::fs::read_to_string(dir.join("expected/multi_task_regime.tsv")).unwrap();
+    let found = scored(&dir).regime_tsv();
+    let (found, expected): (Vec<&str>, Vec<&str>) = (found.lines().collect(), expected.lines().collect());
+    assert_eq!(found[0], expected[0]);
+    assert_eq!(found.len(), expected.len());
+    for (found_row, expected_row) in found.iter().zip(&expected).skip(1) {
+        for (found, expected) in found_row.split('\t').zip(expected_row.split('\t')) {
+            match (found.parse::<f64>(), expected.parse::<f64>()) {
+                (Ok(a), Ok(b)) => assert!((a - b).abs() <= TOLERANCE * b.abs(), "{found_row}\n{expected_row}"),
+                _ => assert_eq!(found, expected),
+            }
+        }
+        assert_eq!(found_row.split('\t').count(), expected_row.split('\t').count());
+    }
+}
+
+#[test]
+fn settings_have_every_field_of_the_published_ones() {
+    let Some(dir) = reference() else { return };
+    let expected = std::fs::read(dir.join("expected/multi_task_settings.json")).unwrap();
+    let expected: Value = serde_json::from_slice(&expected).unwrap();
+    let log_dir = "ll_logs\\multi_task".to_owned();
+    let found = serde_json::to_value(driftworld_metrics::Settings {
+        log_dir,
+        options: options(),
+    })
+    .unwrap();
+    for (field, value) in expected.as_object().unwrap() {
+        assert_eq!(&found[field], value, "{field}");
+    }
+}
+
+#[test]
+fn the_loggers_own_example_is_read_although_it_has_a_column_of_words() {
+    let Some(dir) = reference() else { return };
+    let log_dir = tempfile::tempdir().unwrap();
+    let block = log_dir.path().join("driver.py_0/0-train");
+    std::fs::create_dir_all(&block).unwrap();
+    std::fs::copy(dir.join("example_data_log.tsv"), block.join("data-log.tsv")).unwrap();
+    std::fs::copy(
+        dir.join("example_logger_info.json"),
+        log_dir.path().join("logger_info.json"),
+    )
+    .unwrap();
+    std::fs::copy(
+        dir.join("example_scenario_info.json"),
+        log_dir.path().join("scenario_info.json"),
+    )
+    .unwrap();
+    let log = read_log(log_dir.path()).unwrap();
+    assert_eq!(log.records.len(), 100);
+    assert_eq!(
+        log.records[0].metrics.keys().collect::<Vec<_>>(),
+        ["reward"],
+        "debug_info holds words"
+    );
+    assert_eq!(log.records[0].task_params["param2"], 2);
+    let metrics = score(&log, &[], &Options::default()).unwrap();
+    assert_eq!(
+        metrics.lifetime.avg_train_perf,
+        Some(1.0),
+        "a constant task is 1 everywhere"
+    );
+}
