@@ -18,15 +18,15 @@ pub(crate) fn quantile(values: &[f64], q: f64) -> Option<f64> {
     Some(sorted[below] + (sorted[above] - sorted[below]) * (position - below as f64))
 }
 
-/// Middle value, or the mean of the two middle ones; `None` when there are no values.
-pub(crate) fn median(values: &[f64]) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let middle = sorted.len() / 2;
-    match sorted.len() {
+/// Middle value, or the mean of the two middle ones; `None` when there are no values. Sorts in place, since the slopes
+/// of a long lifetime are many.
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_unstable_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
         0 => None,
-        n if n % 2 == 1 => Some(sorted[middle]),
-        _ => Some(f64::midpoint(sorted[middle - 1], sorted[middle])),
+        n if n % 2 == 1 => Some(values[middle]),
+        _ => Some(f64::midpoint(values[middle - 1], values[middle])),
     }
 }
 
@@ -36,7 +36,7 @@ pub(crate) fn theil_sen_slope(y: &[f64]) -> Option<f64> {
         .flat_map(|first| (first + 1..y.len()).map(move |second| (first, second)))
         .map(|(first, second)| (y[second] - y[first]) / (second - first) as f64)
         .collect();
-    median(&slopes)
+    median(slopes)
 }
 
 /// Whether the least-squares line through the points falls. A constant or a single point does not.
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn the_median_is_the_middle() {
-        let check = |values: &[f64], expected: Option<f64>| assert_eq!(median(values), expected);
+        let check = |values: &[f64], expected: Option<f64>| assert_eq!(median(values.to_vec()), expected);
         check(&[], None);
         check(&[5.0, 1.0, 3.0], Some(3.0));
         check(&[4.0, 1.0, 3.0, 2.0], Some(2.5));

@@ -225,3 +225,16 @@ fn an_expert_trains_one_task() {
     write_log(base.path(), with_cell(5, "Find_Red"));
     assert_eq!(read_ste_log(base.path()).unwrap().task_name(), "find_red");
 }
+
+#[test]
+fn tasks_that_alternate_row_by_row_for_ever_are_stopped() {
+    let base = tempfile::tempdir().unwrap();
+    let mut data = HEADER.to_owned();
+    for exp_num in 0..=driftworld_metrics::MAX_REGIMES {
+        let row = ROW.replacen("0\t0", &format!("0\t{exp_num}"), 1);
+        data += &row.replace("a_b", ["a_1", "b_1"][exp_num % 2]);
+    }
+    write_log(base.path(), data);
+    let error = score(&read_log(base.path()).unwrap(), &[], &Options::default()).unwrap_err();
+    assert_eq!(error.code(), "metrics/too-many-regimes");
+}

@@ -25,6 +25,7 @@ pub struct Lifetime {
     run_id: String,
     tasks: Vec<String>,
     regimes: Vec<Regime>,
+    sleeps: bool,
     experts: IndexMap<String, Vec<SteRun>>,
     normalization_data_range: Option<IndexMap<String, DataRange>>,
     runtime_secs: f64,
@@ -48,6 +49,7 @@ impl Lifetime {
         let mut lifetime = Self {
             run_id: log.run_id.clone(),
             tasks,
+            sleeps: regimes.iter().any(|regime| regime.block_subtype == BlockSubtype::Sleep),
             regimes,
             experts,
             normalization_data_range: None,
@@ -99,11 +101,7 @@ impl Lifetime {
     /// Whether a regime counts for maintenance, transfer and average performance: all do, but where the lifetime has
     /// sleep blocks the wake evaluations are left out, since the agent is judged by what it keeps after sleeping.
     pub(crate) fn is_assessed(&self, regime: &Regime) -> bool {
-        let sleeps = self
-            .regimes
-            .iter()
-            .any(|regime| regime.block_subtype == BlockSubtype::Sleep);
-        !(sleeps && regime.block_type == BlockType::Test && regime.block_subtype == BlockSubtype::Wake)
+        !(self.sleeps && regime.block_type == BlockType::Test && regime.block_subtype == BlockSubtype::Wake)
     }
 
     /// Performances and exp numbers of the task's wake learning regimes, end to end.

@@ -19,7 +19,7 @@ pub(super) fn over_tasks(
 ) -> LifetimeScores {
     let aggregate = |values: Vec<f64>| match method {
         AggregationMethod::Mean => mean(&values),
-        AggregationMethod::Median => median(&values),
+        AggregationMethod::Median => median(values),
     };
     let over = |value: fn(&TaskMetrics) -> Option<f64>| aggregate(tasks.values().filter_map(value).collect());
     let of_pairs = |pairs: &Option<Pairs>| pairs.as_ref().and_then(|pairs| aggregate(pairs.first_values()));
