@@ -41,7 +41,7 @@ fn options() -> Options {
     }
 }
 
-fn scored(dir: &std::path::Path) -> LifetimeMetrics {
+fn scored(dir: &std::path::Path, options: &Options) -> LifetimeMetrics {
     let runs = [
         "ste_task1_1_run1",
         "ste_task2_1_run1",
@@ -50,7 +50,7 @@ fn scored(dir: &std::path::Path) -> LifetimeMetrics {
     ];
     let log = read_log(dir.join("ll_logs/multi_task")).unwrap();
     assert_eq!(log.warnings, []);
-    score(&log, &experts(dir, &runs), &options()).unwrap()
+    score(&log, &experts(dir, &runs), options).unwrap()
 }
 
 /// Compares two documents, numbers within the tolerance; returns how many numbers there were.
@@ -95,7 +95,7 @@ fn every_published_number_is_reproduced() {
     let Some(dir) = reference() else { return };
     let expected = std::fs::read(dir.join("expected/multi_task_metrics.json")).unwrap();
     let expected: Value = serde_json::from_slice(&expected).unwrap();
-    let found = serde_json::to_value(scored(&dir)).unwrap();
+    let found = serde_json::to_value(scored(&dir, &options())).unwrap();
     let num_numbers = compare("", &found, &expected);
     assert!(num_numbers > 150, "only {num_numbers} numbers were compared");
 }
@@ -104,7 +104,7 @@ fn every_published_number_is_reproduced() {
 fn every_published_regime_is_reproduced() {
     let Some(dir) = reference() else { return };
     let expected = std::fs::read_to_string(dir.join("expected/multi_task_regime.tsv")).unwrap();
-    let found = scored(&dir).regime_tsv();
+    let found = scored(&dir, &options()).regime_tsv();
     let (found, expected): (Vec<&str>, Vec<&str>) = (found.lines().collect(), expected.lines().collect());
     assert_eq!(found[0], expected[0]);
     assert_eq!(found.len(), expected.len());
@@ -133,6 +133,21 @@ fn settings_have_every_field_of_the_published_ones() {
     for (field, value) in expected.as_object().unwrap() {
         assert_eq!(&found[field], value, "{field}");
     }
+}
+
+/// `oracles/l2metrics_options.py` made the numbers, with the reference itself.
+#[test]
+fn every_option_does_what_the_reference_makes_of_it() {
+    let Some(dir) = reference() else { return };
+    let cases: Value = serde_json::from_str(include_str!("oracles/l2metrics_options.json")).unwrap();
+    let mut num_numbers = 0;
+    for case in cases["cases"].as_array().unwrap() {
+        let mut options: Options = serde_json::from_value(case["options"].clone()).unwrap();
+        options.perf_measure = "performance".to_owned();
+        let found = serde_json::to_value(scored(&dir, &options).lifetime).unwrap();
+        num_numbers += compare(&case["options"].to_string(), &found, &case["lifetime"]);
+    }
+    assert!(num_numbers > 100, "only {num_numbers} numbers were compared");
 }
 
 #[test]
