@@ -121,7 +121,7 @@ impl SpecError {
         match self {
             Self::Syntax { .. } => "spec/syntax",
             Self::TooLarge { .. } => "spec/too-large",
-            Self::Document { problems, .. } => problems.first().map_or("spec/document", |problem| problem.code),
+            Self::Document { problems, .. } => problems.first().map_or("spec/value", |problem| problem.code),
             Self::UnknownVariant { .. } => "spec/unknown-variant",
         }
     }
@@ -162,7 +162,10 @@ pub fn nearest<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) ->
                 candidate,
             )
         })
-        .filter(|(distance, candidate)| *distance <= 1 + candidate.as_ref().chars().count() / 4)
+        .filter(|(distance, candidate)| {
+            let length = candidate.as_ref().chars().count();
+            *distance < length && *distance <= 1 + length / 4
+        })
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| candidate.as_ref().to_owned())
 }

@@ -225,21 +225,32 @@ fn expected(kind: &ValidationErrorKind, error: &ValidationError) -> String {
             .map(|kind| article(&kind.to_string()))
             .collect::<Vec<_>>()
             .join(" or "),
-        ValidationErrorKind::Minimum { limit } => format!("at least {limit}"),
-        ValidationErrorKind::Maximum { limit } => format!("at most {limit}"),
-        ValidationErrorKind::ExclusiveMinimum { limit } => format!("more than {limit}"),
-        ValidationErrorKind::ExclusiveMaximum { limit } => format!("less than {limit}"),
-        ValidationErrorKind::MinItems { limit } => format!("at least {limit} values"),
-        ValidationErrorKind::MaxItems { limit } => format!("at most {limit} values"),
-        ValidationErrorKind::MinLength { limit } => format!("at least {limit} characters"),
-        ValidationErrorKind::MaxLength { limit } => format!("at most {limit} characters"),
-        ValidationErrorKind::MinProperties { limit } => format!("at least {limit} keys"),
-        ValidationErrorKind::MaxProperties { limit } => format!("at most {limit} keys"),
+        ValidationErrorKind::Minimum { limit } => format!("at least {}", plain(limit)),
+        ValidationErrorKind::Maximum { limit } => format!("at most {}", plain(limit)),
+        ValidationErrorKind::ExclusiveMinimum { limit } => format!("more than {}", plain(limit)),
+        ValidationErrorKind::ExclusiveMaximum { limit } => format!("less than {}", plain(limit)),
+        ValidationErrorKind::MinItems { limit } => format!("at least {}", counted(*limit, "value")),
+        ValidationErrorKind::MaxItems { limit } => format!("at most {}", counted(*limit, "value")),
+        ValidationErrorKind::MinLength { limit } => format!("at least {}", counted(*limit, "character")),
+        ValidationErrorKind::MaxLength { limit } => format!("at most {}", counted(*limit, "character")),
+        ValidationErrorKind::MinProperties { limit } => format!("at least {}", counted(*limit, "key")),
+        ValidationErrorKind::MaxProperties { limit } => format!("at most {}", counted(*limit, "key")),
         ValidationErrorKind::Pattern { pattern } => format!("text of the form {pattern}"),
         ValidationErrorKind::Constant { expected_value } => expected_value.to_string(),
         ValidationErrorKind::UniqueItems => "no value twice".to_owned(),
         _ => error.to_string(),
     }
+}
+
+/// A limit as people write it: 360 rather than 360.0.
+fn plain(limit: &Value) -> String {
+    limit
+        .as_f64()
+        .map_or_else(|| limit.to_string(), |number| number.to_string())
+}
+
+fn counted(number: u64, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
 fn article(kind: &str) -> String {

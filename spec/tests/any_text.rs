@@ -22,7 +22,11 @@ fn read_all(text: &str) {
         assert!(!error.to_string().is_empty());
         let places: Vec<(usize, usize)> = match &error {
             SpecError::Syntax { line, column, .. } => vec![(*line, *column)],
-            other => other.problems().iter().map(|problem| (problem.line, problem.column)).collect(),
+            other => other
+                .problems()
+                .iter()
+                .map(|problem| (problem.line, problem.column))
+                .collect(),
         };
         for (line, column) in places {
             assert!((1..=lines).contains(&line) && column >= 1, "{line}:{column} in {text}");

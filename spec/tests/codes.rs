@@ -1,0 +1,88 @@
+//! Every code that an error of this crate can carry, with a document that earns it and the message its author sees.
+
+use std::collections::BTreeSet;
+
+use driftworld_spec::{Scenario, SpecError, TaskSpec, World};
+
+fn world(text: &str) -> SpecError {
+    World::from_json("w.json", text).expect_err("the world is broken on purpose")
+}
+
+fn task(body: &str) -> SpecError {
+    let text = format!("{{ \"name\": \"t\", {body} }}");
+    TaskSpec::from_json("t.json", &text).expect_err("the task is broken on purpose")
+}
+
+fn parameter(body: &str) -> SpecError {
+    task(&format!("\"parameters\": {{ \"p\": {body} }}"))
+}
+
+fn cases() -> Vec<SpecError> {
+    let number = r#""parameters": { "p": { "role": "variant", "type": "number", "affects": ["S"], "range": [0, 1], "default": 0 } }"#;
+    let plain = TaskSpec::from_json("t.json", "{ \"name\": \"t\" }").expect("a task with nothing but a name is one");
+    vec![
+        world("{"),
+        World::from_json("w.json", &" ".repeat((64 << 20) + 1)).expect_err("the text is too long"),
+        plain.variant("red").expect_err("the task declares no variant"),
+        world(r#"{ "max_steps": 1, "max_steps": 2 }"#),
+        world(r#"{ "max_step": 1 }"#),
+        world(r#"{ "objects": [{ "class": "tree" }] }"#),
+        world(r#"{ "max_steps": "many" }"#),
+        world(r#"{ "agent_params": { "heading": 361 } }"#),
+        world(r#"{ "objects": [{ "class": "tree", "coordinates": [1] }] }"#),
+        world(r#"{ "agent_params": { "observation_size": 84.0 } }"#),
+        world(r#"{ "environment_params": { "sun_direction": [0, 0, 0] } }"#),
+        world(r#"{ "environment_params": { "map_size": [0, 10] } }"#),
+        world(
+            r#"{ "objects": [{ "class": "tree", "coordinates": [1, 1], "unique_name": "a" },
+                             { "class": "tree", "coordinates": [2, 2], "unique_name": "a" }] }"#,
+        ),
+        task(&format!(r#"{number}, "variants": {{ "a": {{ "extends": "b" }} }}"#)),
+        task(&format!(r#"{number}, "variants": {{ "a": {{ "extends": "a" }} }}"#)),
+        task(r#""world": { "max_steps": { "param": "steps" } }"#),
+        parameter(
+            r#"{ "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "normal": { "mean": 0, "std": -1 } } }"#,
+        ),
+        task(r#""parameters": { "extends": { "role": "fixed", "type": "number", "value": 1 } }"#),
+        task(
+            r#""parameters": { "p": { "role": "fixed", "type": "number", "value": 1 } }, "variants": { "a": { "p": 2 } }"#,
+        ),
+        Scenario::from_json("s.json", r#"{ "name": "s", "blocks": [] }"#).expect_err("a scenario has blocks"),
+    ]
+}
+
+#[test]
+fn every_code_in_the_source_has_a_case_here_and_every_case_its_message() {
+    let errors = cases();
+    let said: Vec<String> = errors
+        .iter()
+        .map(|error| format!("{}\n{error}\n", error.code()))
+        .collect();
+    insta::assert_snapshot!(said.join("\n"));
+    let covered: BTreeSet<String> = errors.iter().map(|error| error.code().to_owned()).collect();
+    let missing: Vec<String> = codes_in_source().difference(&covered).cloned().collect();
+    assert!(missing.is_empty(), "no case for {missing:?}");
+}
+
+/// Every `"spec/…"` between quotes in the crate's source.
+fn codes_in_source() -> BTreeSet<String> {
+    let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/src"))];
+    let mut codes = BTreeSet::new();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("the source is there while its tests run") {
+            let path = entry.expect("the source can be listed").path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let text = std::fs::read_to_string(&path).expect("the source is UTF-8");
+            codes.extend(
+                text.split('"')
+                    .filter(|word| word.starts_with("spec/"))
+                    .map(str::to_owned),
+            );
+        }
+    }
+    assert!(codes.len() > 10, "the scan found the codes: {codes:?}");
+    codes
+}
