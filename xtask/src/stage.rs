@@ -1,0 +1,189 @@
+//! The stages of `cargo xtask test`: their names, their order, and running them one after the other. What a stage
+//! checks stands in its own file, or is one Cargo command below.
+
+use std::time::Instant;
+
+use crate::error::XtaskError;
+use crate::process::{cargo, run};
+use crate::workspace::Workspace;
+use crate::{deny, examples, layers, runner, schemas, tidy};
+
+/// One step of `cargo xtask test`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Stage {
+    Fmt,
+    Layers,
+    Tidy,
+    Clippy,
+    Tests,
+    Doctests,
+    Docs,
+    Examples,
+    Schemas,
+    Deny,
+}
+
+/// How a stage that did not fail ended: a closing line for the summary, or why it had nothing to run.
+pub(crate) enum Outcome {
+    Passed,
+    PassedWith(String),
+    Skipped(String),
+}
+
+impl Stage {
+    /// In the order in which they run: the quick ones first, so that most mistakes show within seconds.
+    pub(crate) const ALL: [Self; 10] = [
+        Self::Fmt,
+        Self::Layers,
+        Self::Tidy,
+        Self::Clippy,
+        Self::Tests,
+        Self::Doctests,
+        Self::Docs,
+        Self::Examples,
+        Self::Schemas,
+        Self::Deny,
+    ];
+
+    /// The word after `--only`.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Fmt => "fmt",
+            Self::Layers => "layers",
+            Self::Tidy => "tidy",
+            Self::Clippy => "clippy",
+            Self::Tests => "tests",
+            Self::Doctests => "doctests",
+            Self::Docs => "docs",
+            Self::Examples => "examples",
+            Self::Schemas => "schemas",
+            Self::Deny => "deny",
+        }
+    }
+
+    /// What holds when the stage passes.
+    pub(crate) fn about(self) -> &'static str {
+        match self {
+            Self::Fmt => "every file is formatted by rustfmt",
+            Self::Layers => "crates import only what their floor allows, and versions live in the root Cargo.toml",
+            Self::Tidy => "files open with their purpose, carry telling names, and link to what exists",
+            Self::Clippy => "no compiler or clippy warning in any target, with all features",
+            Self::Tests => "unit, integration, property and golden tests pass",
+            Self::Doctests => "every example in a doc comment runs",
+            Self::Docs => "the documentation builds without a warning",
+            Self::Examples => "every program in examples/ ends well in an empty folder",
+            Self::Schemas => "schemas/*.json equal what the Rust types generate",
+            Self::Deny => "licences, advisories and sources of dependencies are as deny.toml allows",
+        }
+    }
+
+    /// The stage of that name, if there is one.
+    pub(crate) fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|stage| stage.name() == name)
+    }
+
+    fn run(self, workspace: &Workspace) -> Result<Outcome, XtaskError> {
+        let passed = |arguments: &[&str]| run(cargo(workspace, arguments)).map(|()| Outcome::Passed);
+        match self {
+            Self::Fmt => passed(&["fmt", "--all", "--check"]),
+            Self::Layers => layers::stage().map(Outcome::PassedWith),
+            Self::Tidy => tidy::stage(workspace).map(Outcome::PassedWith),
+            Self::Clippy => passed(&[
+                "clippy",
+                "--workspace",
+                "--all-targets",
+                "--all-features",
+                "--",
+                "-D",
+                "warnings",
+            ]),
+            Self::Tests => runner::stage(workspace).map(Outcome::PassedWith),
+            Self::Doctests => passed(&["test", "--doc", "--workspace"]),
+            Self::Docs => {
+                let mut command = cargo(workspace, &["doc", "--workspace", "--no-deps"]);
+                command.env("RUSTDOCFLAGS", "-D warnings");
+                run(command).map(|()| Outcome::Passed)
+            }
+            Self::Examples => examples::stage(workspace).map(Outcome::PassedWith),
+            Self::Schemas => schemas::check(workspace).map(|()| Outcome::Passed),
+            Self::Deny => deny::stage(workspace),
+        }
+    }
+}
+
+/// Runs the stages in the given order, stops at the first that fails, and closes with a table of what each did.
+pub(crate) fn run_all(workspace: &Workspace, stages: &[Stage]) -> Result<(), XtaskError> {
+    let start = Instant::now();
+    let mut table = Vec::new();
+    for (index, stage) in stages.iter().enumerate() {
+        println!(
+            "\n== {}/{} {}: {}",
+            index + 1,
+            stages.len(),
+            stage.name(),
+            stage.about()
+        );
+        let stage_start = Instant::now();
+        let outcome = stage.run(workspace);
+        let seconds = stage_start.elapsed().as_secs_f64();
+        let ending = match outcome {
+            Ok(Outcome::Passed) => "passed".to_owned(),
+            Ok(Outcome::PassedWith(note)) => format!("passed  {note}"),
+            Ok(Outcome::Skipped(reason)) => format!("skipped: {reason}"),
+            Err(source) => {
+                return Err(XtaskError::Stage {
+                    stage: stage.name(),
+                    seconds,
+                    source: Box::new(source),
+                });
+            }
+        };
+        println!("   {seconds:.1} s: {ending}");
+        table.push(format!("  {:<9} {seconds:>7.1} s  {ending}", stage.name()));
+    }
+    println!("\n{}", table.join("\n"));
+    println!(
+        "xtask: {} in {:.1} s",
+        verdict(stages.len()),
+        start.elapsed().as_secs_f64()
+    );
+    Ok(())
+}
+
+fn verdict(count: usize) -> String {
+    if count == 1 {
+        "the stage passed".into()
+    } else {
+        format!("all {count} stages passed")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_lead_back_to_their_stage() {
+        for stage in Stage::ALL {
+            assert_eq!(Stage::from_name(stage.name()), Some(stage));
+        }
+        assert_eq!(Stage::from_name("bake"), None);
+    }
+
+    #[test]
+    fn a_failure_ends_with_the_command_that_reruns_it() {
+        let source = Box::new(XtaskError::Findings { count: 3 });
+        let message = XtaskError::Stage {
+            stage: "layers",
+            seconds: 0.25,
+            source,
+        }
+        .to_string();
+        assert!(message.starts_with("stage `layers` failed after"), "{message}");
+        assert!(message.contains("3 findings"), "{message}");
+        assert!(
+            message.ends_with("rerun it alone: cargo xtask test --only layers"),
+            "{message}"
+        );
+    }
+}
