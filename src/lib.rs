@@ -1,1 +1,21 @@
-//! Facade.
+//! Driftworld: typed task specs to worlds, distances between them, curricula, and a first-person environment to live them in.
+//!
+//! This crate re-exports the rooms of the house under one roof and adds what joins them: the built-in tasks and the names
+//! by which tasks are called. Nothing is computed here.
+//!
+//! ```
+//! use driftworld::{generator, tasks};
+//! let variant = tasks::variant("find_objects#red")?;
+//! let world = generator::sample(&variant, 7, 12_345)?;
+//! assert_eq!(world.objects.iter().filter(|object| object.tag.as_deref() == Some("targets")).count(), 5);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub use driftworld_curriculum as curriculum;
+pub use driftworld_env as env;
+pub use driftworld_generator as generator;
+pub use driftworld_metrics as metrics;
+pub use driftworld_similarity as similarity;
+pub use driftworld_spec as spec;
+
+pub mod tasks;

@@ -1,1 +1,24 @@
-//! Runs a world: physics, rewards, interactions, cameras.
+//! Runs a [`World`](driftworld_spec::World): physics, rewards and interactions, and cameras that need no GPU.
+//!
+//! [`Environment`] steps a world and draws what its agent sees; [`Scene`], [`Camera`] and [`CpuRenderer`] draw any picture
+//! of it. Units are SI, x is east, y north, z up, headings are degrees clockwise from +y. Nothing here reads files,
+//! samples worlds or learns.
+
+mod agents;
+mod assets;
+mod camera;
+mod error;
+mod render;
+mod scene;
+mod sim;
+
+pub use agents::{Agent, OnRailsAgent, RandomAgent};
+pub use assets::{Asset, ColliderShape, Mesh, Paint, Part, asset, classes};
+pub use camera::Camera;
+pub use error::EnvError;
+pub use render::{
+    CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, CpuRenderer,
+    FAR_DEPTH, Frame, Image, category_color, depth_to_gray, top_down,
+};
+pub use scene::{Item, Light, Scene, WallPanel};
+pub use sim::{Action, AgentState, Environment, Event, ObjectState, Step, Warning};

@@ -1,1 +1,24 @@
-//! Distances between worlds and between variants, and orderings of them.
+//! How far apart worlds and variants are, element by element of the decision process, and in which order to meet them.
+//!
+//! [`variant_distance`] compares two variants of a task by what they declare, [`world_distance`] two concrete worlds by what
+//! is in them; both explain themselves part by part. [`DistanceMatrix`] holds all distances among many, [`order`] puts the
+//! many into a path. The measures that they are made of stand alone, too. Nothing here draws worlds or pictures.
+
+mod distance;
+mod error;
+mod matrix;
+mod measure;
+mod order;
+mod variant;
+mod world;
+
+pub use distance::{Distance, Part, Weights};
+pub use error::SimilarityError;
+pub use matrix::{DistanceMatrix, MAX_ITEMS};
+pub use measure::color::{ciede2000, oklab_distance, srgb_distance};
+pub use measure::occupancy::{Classes, Occupancy, hamming_distance, jaccard_distance};
+pub use measure::planar::{Moments, bures_wasserstein};
+pub use measure::wasserstein::{total_variation, wasserstein_1};
+pub use order::{MAX_EXACT, Method, Ordering, order};
+pub use variant::variant_distance;
+pub use world::{world_distance, world_sets_distance};

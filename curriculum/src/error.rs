@@ -1,0 +1,99 @@
+//! What can go wrong while a curriculum is designed or lived.
+
+use driftworld_env::EnvError;
+use driftworld_generator::GeneratorError;
+use driftworld_metrics::MetricsError;
+
+/// Everything that can go wrong in this crate.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CurriculumError {
+    /// There is nothing to make blocks of.
+    #[error("design: found no variants, expected at least 1")]
+    NoVariants,
+    /// A number of experiences that a regime cannot have.
+    #[error("design: found {found} {kind} experiences a regime, expected 1 to {limit}")]
+    BadCount {
+        /// Learning or evaluation.
+        kind: &'static str,
+        /// The number.
+        found: u32,
+        /// The most there can be.
+        limit: u32,
+    },
+    /// A seed too large to derive others from.
+    #[error("design: found seed {found}, expected at most {limit}")]
+    BadSeed {
+        /// The seed.
+        found: u64,
+        /// The largest there can be.
+        limit: u64,
+    },
+    /// Two variants would have the same name in the log.
+    #[error(
+        "found {a} and {b}, which are both {name:?} in a log, expected names that differ in letters and digits; rename one"
+    )]
+    SameLogName {
+        /// The first variant.
+        a: String,
+        /// The second variant.
+        b: String,
+        /// Their name in the log.
+        name: String,
+    },
+    /// A task or variant of the scenario is not to be had.
+    #[error("block {block}, regime {regime}: {task}#{variant}: {reason}")]
+    Unknown {
+        /// The block, from 0.
+        block: usize,
+        /// The regime in it, from 0.
+        regime: usize,
+        /// The task.
+        task: String,
+        /// The variant.
+        variant: String,
+        /// What whoever was asked for it says.
+        reason: String,
+    },
+    /// A world of the scenario cannot be drawn.
+    #[error("block {block}, regime {regime}: {source}")]
+    World {
+        /// The block, from 0.
+        block: usize,
+        /// The regime in it, from 0.
+        regime: usize,
+        /// Why.
+        source: GeneratorError,
+    },
+    /// The agent did what cannot be done.
+    #[error("block {block}, regime {regime}, experience {experience}: {source}")]
+    Episode {
+        /// The block, from 0.
+        block: usize,
+        /// The regime in it, from 0.
+        regime: usize,
+        /// The experience, from 0 over the whole lifetime.
+        experience: u64,
+        /// What the environment says.
+        source: EnvError,
+    },
+    /// The log cannot be written.
+    #[error(transparent)]
+    Log(#[from] MetricsError),
+}
+
+impl CurriculumError {
+    /// The stable name of this kind of error.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::NoVariants => "curriculum/no-variants",
+            Self::BadCount { .. } => "curriculum/bad-count",
+            Self::BadSeed { .. } => "curriculum/bad-seed",
+            Self::SameLogName { .. } => "curriculum/same-log-name",
+            Self::Unknown { .. } => "curriculum/unknown",
+            Self::World { .. } => "curriculum/world",
+            Self::Episode { .. } => "curriculum/episode",
+            Self::Log(_) => "curriculum/log",
+        }
+    }
+}

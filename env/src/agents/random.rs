@@ -1,0 +1,55 @@
+//! An agent that acts at random: the floor that every learner must rise above.
+
+use driftworld_spec::ActionSpace;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use super::Agent;
+use crate::sim::{Action, Environment};
+
+/// How many steps it keeps to one action, so that it gets about at all.
+const HOLD: u32 = 8;
+
+/// Draws a forward speed, a turn rate and whether to interact, and keeps to them for 8 steps; in a world with an action
+/// table it draws rows.
+#[derive(Clone, Debug)]
+pub struct RandomAgent {
+    chance: ChaCha8Rng,
+    action: Action,
+    held: u32,
+}
+
+impl RandomAgent {
+    /// An agent whose actions depend on this number alone.
+    pub fn new(seed: u64) -> Self {
+        Self {
+            chance: ChaCha8Rng::seed_from_u64(seed),
+            action: Action::Continuous([0.0; 3]),
+            held: 0,
+        }
+    }
+}
+
+impl Agent for RandomAgent {
+    fn act(&mut self, environment: &Environment) -> Action {
+        if self.held == 0 {
+            let agent = &environment.world().agent_params;
+            self.action = match &agent.actions {
+                ActionSpace::Discrete(table) => {
+                    Action::Discrete(self.chance.random_range(0..table.len() as u64) as usize)
+                }
+                ActionSpace::Continuous => {
+                    let speed = self.chance.random::<f64>() * agent.max_linear_speed;
+                    let turn = (self.chance.random::<f64>() * 2.0 - 1.0) * agent.max_angular_speed;
+                    Action::Continuous([speed, turn, self.chance.random::<f64>()])
+                }
+            };
+        }
+        self.held = (self.held + 1) % HOLD;
+        self.action
+    }
+
+    fn begin(&mut self, seed: u64) {
+        *self = Self::new(seed);
+    }
+}

@@ -1,0 +1,196 @@
+//! What objects look like: meshes made by code from class and model number, and their colliders. Where they stand is the scene's.
+
+mod catalogue;
+mod furniture;
+mod mesh;
+mod nature;
+mod structures;
+mod trees;
+
+use std::collections::HashMap;
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+
+use driftworld_spec::Model;
+
+pub use mesh::Mesh;
+pub(crate) use mesh::hash;
+
+/// The look and the body of one model of one class, at scale 1.
+#[derive(Clone, Debug)]
+pub struct Asset {
+    /// What is drawn.
+    pub parts: Vec<Part>,
+    /// What the agent bumps into; it stands on the ground, centred above the object's coordinates.
+    pub collider: ColliderShape,
+    /// Height in metres.
+    pub height: f32,
+    /// Largest distance of any corner from the upright axis in metres.
+    pub radius: f32,
+    /// Whether class and model are known; if not, this is the placeholder.
+    pub known: bool,
+}
+
+/// A mesh of one colour.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// Its shape.
+    pub mesh: Mesh,
+    /// Its colour.
+    pub paint: Paint,
+    /// One normal of length 1 for each triangle.
+    pub normals: Vec<[f32; 3]>,
+}
+
+/// Where a part gets its colour (sRGB).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Paint {
+    /// The object's colour; this one if the object has none.
+    Main([f32; 3]),
+    /// Always this.
+    Fixed([f32; 3]),
+}
+
+/// The shape of a body, in metres at scale 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ColliderShape {
+    /// A box of these half sides.
+    Box {
+        /// Half width, half depth, half height.
+        half: [f32; 3],
+    },
+    /// A ball that rests on the ground.
+    Ball {
+        /// Radius.
+        radius: f32,
+    },
+    /// An upright cylinder.
+    Cylinder {
+        /// Radius.
+        radius: f32,
+        /// Half of the height.
+        half_height: f32,
+    },
+}
+
+impl ColliderShape {
+    /// Largest distance of the shape from its upright axis in metres at scale 1.
+    pub fn radius(&self) -> f32 {
+        match self {
+            Self::Box { half: [x, y, _] } => (x * x + y * y).sqrt(),
+            Self::Ball { radius } | Self::Cylinder { radius, .. } => *radius,
+        }
+    }
+}
+
+/// The asset of a class and model; made once, then shared. What is not known is a placeholder.
+pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
+    static MADE: LazyLock<Mutex<HashMap<(String, u32), Arc<Asset>>>> = LazyLock::new(Mutex::default);
+    let class = class.to_lowercase();
+    let number = model.number().unwrap_or(0);
+    // What was made before a panic elsewhere is whole: assets are inserted when they are finished.
+    let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(asset) = made.get(&(class.clone(), number)) {
+        return Arc::clone(asset);
+    }
+    let known = catalogue::models(&class).is_some_and(|models| (1..=models).contains(&number));
+    // Names that nobody knows share one placeholder, so that strangers cannot fill the memory.
+    let key = if known {
+        (class.clone(), number)
+    } else {
+        (String::new(), 0)
+    };
+    let made_before = made.get(&key).cloned();
+    let asset = made_before.unwrap_or_else(|| Arc::new(catalogue::make(&key.0, key.1)));
+    made.insert(key, Arc::clone(&asset));
+    asset
+}
+
+/// The classes that are known, and how many models each has, in alphabetical order.
+pub fn classes() -> impl Iterator<Item = (&'static str, u32)> {
+    catalogue::CLASSES.iter().copied()
+}
+
+/// Parts on their way to an asset.
+#[derive(Default)]
+pub(crate) struct Builder(Vec<Part>);
+
+impl Builder {
+    /// Adds a part that takes the object's colour.
+    pub(crate) fn main(mut self, own: [f32; 3], mesh: Mesh) -> Self {
+        self.0.push(Part::new(mesh, Paint::Main(own)));
+        self
+    }
+
+    /// Adds a part of fixed colour.
+    pub(crate) fn fixed(mut self, color: [f32; 3], mesh: Mesh) -> Self {
+        self.0.push(Part::new(mesh, Paint::Fixed(color)));
+        self
+    }
+
+    /// The asset with a cylinder of this radius around its axis as its body.
+    pub(crate) fn round(self, radius: f32) -> Asset {
+        let asset = self.asset();
+        Asset {
+            collider: ColliderShape::Cylinder {
+                radius,
+                half_height: asset.height / 2.0,
+            },
+            ..asset
+        }
+    }
+
+    /// The asset with the box around all its corners as its body.
+    pub(crate) fn boxed(self) -> Asset {
+        let asset = self.asset();
+        let corners = || asset.parts.iter().flat_map(|part| &part.mesh.corners);
+        let half = |axis: usize| corners().fold(0.0_f32, |most, corner| most.max(corner[axis].abs()));
+        Asset {
+            collider: ColliderShape::Box {
+                half: [half(0), half(1), asset.height / 2.0],
+            },
+            ..asset
+        }
+    }
+
+    fn asset(self) -> Asset {
+        let corners = || self.0.iter().flat_map(|part| &part.mesh.corners);
+        let height = corners().fold(0.01_f32, |most, corner| most.max(corner[2]));
+        let radius = corners().fold(0.01_f32, |most, [x, y, _]| most.max((x * x + y * y).sqrt()));
+        let collider = ColliderShape::Cylinder {
+            radius,
+            half_height: height / 2.0,
+        };
+        Asset {
+            collider,
+            height,
+            radius,
+            known: true,
+            parts: self.0,
+        }
+    }
+}
+
+impl Part {
+    fn new(mesh: Mesh, paint: Paint) -> Self {
+        let normal = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|corner| mesh.corners[corner as usize]);
+            let (u, v) = (
+                [b[0] - a[0], b[1] - a[1], b[2] - a[2]],
+                [c[0] - a[0], c[1] - a[1], c[2] - a[2]],
+            );
+            let n = [
+                u[1] * v[2] - u[2] * v[1],
+                u[2] * v[0] - u[0] * v[2],
+                u[0] * v[1] - u[1] * v[0],
+            ];
+            let length = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+            if length > 0.0 {
+                n.map(|part| part / length)
+            } else {
+                [0.0, 0.0, 1.0]
+            }
+        };
+        let normals = mesh.triangles.iter().map(normal).collect();
+        Self { mesh, paint, normals }
+    }
+}

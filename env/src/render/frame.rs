@@ -1,0 +1,72 @@
+//! What a render fills: one buffer per modality. The numbers' meaning is here; how they come about, in `cpu.rs`.
+
+/// Depth of the sky, and the greatest depth there is, in metres.
+pub const FAR_DEPTH: f32 = 1000.0;
+
+/// Reward category: sky.
+pub const CATEGORY_SKY: u8 = 0;
+/// Reward category: ground, walls, regions: what was not spawned.
+pub const CATEGORY_MAP: u8 = 1;
+/// Reward category: objects of class `building`.
+pub const CATEGORY_BUILDING: u8 = 2;
+/// Reward category: objects that pay.
+pub const CATEGORY_POSITIVE: u8 = 3;
+/// Reward category: objects that are worth nothing.
+pub const CATEGORY_NEUTRAL: u8 = 4;
+/// Reward category: objects that cost.
+pub const CATEGORY_NEGATIVE: u8 = 5;
+
+/// One picture in all modalities; row 0 on top. Buffers are reused from render to render.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Colour, `(height, width, 3)` bytes, sRGB.
+    pub rgb: Vec<u8>,
+    /// Distance along the view axis in metres, `(height, width)`; [`FAR_DEPTH`] for the sky.
+    pub depth: Vec<f32>,
+    /// Reward category, `(height, width)`.
+    pub category: Vec<u8>,
+    /// Object class, `(height, width)`: the scene's class number, 0 where there is no object.
+    pub class: Vec<u16>,
+    /// Object, `(height, width)`: the item's index plus 1, 0 where there is no object.
+    pub instance: Vec<u32>,
+}
+
+impl Frame {
+    /// A black frame of this size.
+    pub fn new(width: u32, height: u32) -> Self {
+        let pixels = width as usize * height as usize;
+        Self {
+            width,
+            height,
+            rgb: vec![0; pixels * 3],
+            depth: vec![FAR_DEPTH; pixels],
+            category: vec![0; pixels],
+            class: vec![0; pixels],
+            instance: vec![0; pixels],
+        }
+    }
+}
+
+/// The colour by which L2Explorer shows a reward category.
+pub fn category_color(category: u8) -> [u8; 3] {
+    match category {
+        CATEGORY_MAP => [255, 255, 255],
+        CATEGORY_BUILDING => [178, 255, 178],
+        CATEGORY_POSITIVE => [0, 255, 255],
+        CATEGORY_NEUTRAL => [255, 178, 178],
+        CATEGORY_NEGATIVE => [255, 0, 255],
+        _ => [0, 0, 0],
+    }
+}
+
+/// Depth as L2Explorer shows it: black at the camera, white at 100 m and beyond.
+pub fn depth_to_gray(depth: &[f32]) -> Vec<u8> {
+    depth
+        .iter()
+        .map(|metres| (metres * 2.55 + 0.5).clamp(0.0, 255.0) as u8)
+        .collect()
+}

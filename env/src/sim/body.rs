@@ -1,0 +1,296 @@
+//! Bodies on the ground: what the agent bumps into, slides along and touches. What a touch is worth is in `environment.rs`.
+
+use driftworld_spec::{World, maps};
+use rapier3d::parry::query::ShapeCastOptions;
+use rapier3d::prelude::*;
+
+use crate::assets::ColliderShape;
+use crate::scene::{Item, Scene};
+
+/// Distance that the agent keeps from what it slides along, in metres.
+const SKIN: f32 = 0.01;
+
+/// Distance at which a touch counts, in metres: a little more than the skin.
+const TOUCH: f32 = 0.03;
+
+/// How often a step's motion is turned aside before it ends.
+const SLIDES: usize = 5;
+
+/// Bodies that stop the agent.
+const SOLID: Group = Group::GROUP_1;
+/// Bodies that it passes through.
+const GHOST: Group = Group::GROUP_2;
+/// Walls: they stop it, and are nobody's object.
+const WALL: Group = Group::GROUP_3;
+
+/// All bodies of a world. Nothing moves by forces, so there is no time step here: only questions about shapes.
+pub(crate) struct Bodies {
+    bodies: RigidBodySet,
+    colliders: ColliderSet,
+    broad_phase: BroadPhaseBvh,
+    narrow_phase: NarrowPhase,
+    islands: IslandManager,
+    soft_bodies: SoftBodySet,
+    /// For each object, its collider while it is there.
+    handles: Vec<Option<ColliderHandle>>,
+    agent: SharedShape,
+    touch: SharedShape,
+    radius: f32,
+}
+
+/// Where a motion led.
+pub(crate) struct Motion {
+    /// The new position.
+    pub(crate) position: [f32; 2],
+    /// Objects that were met on the way, each once, by index.
+    pub(crate) met: Vec<u32>,
+}
+
+impl Bodies {
+    pub(crate) fn new(world: &World, scene: &Scene) -> Self {
+        let agent = &world.agent_params;
+        let (radius, height) = (agent.agent_width as f32 / 2.0, agent.agent_height as f32);
+        // An upright cylinder for all that stands on the ground: the round ends lie below it and above the head.
+        let capsule = |radius: f32| SharedShape::capsule(Vector::ZERO, Vector::new(0.0, 0.0, height), radius);
+        let mut bodies = Self {
+            bodies: RigidBodySet::new(),
+            colliders: ColliderSet::new(),
+            broad_phase: BroadPhaseBvh::new(),
+            narrow_phase: NarrowPhase::new(),
+            islands: IslandManager::new(),
+            soft_bodies: SoftBodySet::new(),
+            handles: Vec::with_capacity(scene.items.len()),
+            agent: capsule(radius),
+            touch: capsule(radius + TOUCH),
+            radius,
+        };
+        bodies.add_arena(scene.arena_size());
+        let environment = &world.environment_params;
+        for region in maps::excluded_regions(environment.predefined_map) {
+            bodies.add_region(region);
+        }
+        for wall in &environment.walls {
+            bodies.add_region(&wall.polygon);
+        }
+        for (index, (item, object)) in scene.items.iter().zip(&world.objects).enumerate() {
+            bodies.add_object(index as u32, item, object.solid);
+        }
+        bodies
+    }
+
+    fn insert(&mut self, collider: ColliderBuilder, group: Group) -> ColliderHandle {
+        let groups = InteractionGroups::new(group, Group::ALL, InteractionTestMode::And);
+        let handle = self.colliders.insert(collider.collision_groups(groups));
+        let aabb = self.colliders[handle].compute_aabb();
+        self.broad_phase
+            .set_aabb(&IntegrationParameters::default(), handle, aabb);
+        handle
+    }
+
+    /// Four thick walls around the arena.
+    fn add_arena(&mut self, [width, depth]: [f32; 2]) {
+        const THICK: f32 = 20.0;
+        let (x, y) = (width / 2.0, depth / 2.0);
+        for (half, at) in [
+            ([THICK, y + 2.0 * THICK], [x + THICK, 0.0]),
+            ([THICK, y + 2.0 * THICK], [-x - THICK, 0.0]),
+            ([x + 2.0 * THICK, THICK], [0.0, y + THICK]),
+            ([x + 2.0 * THICK, THICK], [0.0, -y - THICK]),
+        ] {
+            let wall = ColliderBuilder::cuboid(half[0], half[1], 50.0).translation(Vector::new(at[0], at[1], 0.0));
+            self.insert(wall, WALL);
+        }
+    }
+
+    /// A thin wall along every edge of a polygon: no triangulation that a strange polygon could break.
+    fn add_region(&mut self, corners: &[[f64; 2]]) {
+        let corners: Vec<[f32; 2]> = corners
+            .iter()
+            .map(|corner| corner.map(|metres| metres as f32))
+            .collect();
+        for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+            let along = [to[0] - from[0], to[1] - from[1]];
+            let length = (along[0] * along[0] + along[1] * along[1]).sqrt();
+            if length > 0.0 {
+                let angle = libm::atan2f(along[1], along[0]);
+                let middle = Vector::new((from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0, 0.0);
+                let wall = ColliderBuilder::cuboid(length / 2.0, 0.02, 50.0);
+                self.insert(wall.position(Pose::new(middle, Vector::new(0.0, 0.0, angle))), WALL);
+            }
+        }
+    }
+
+    fn add_object(&mut self, index: u32, item: &Item, solid: bool) {
+        let scale = item.scale;
+        let (shape, height, tilt) = match item.asset.collider {
+            ColliderShape::Box { half } => {
+                let [x, y, z] = half.map(|metres| (metres * scale).max(0.005));
+                (SharedShape::cuboid(x, y, z), z, 0.0)
+            }
+            ColliderShape::Ball { radius } => (SharedShape::ball(radius * scale), radius * scale, 0.0),
+            ColliderShape::Cylinder { radius, half_height } => {
+                // The engine's cylinders lie along y.
+                let (radius, half) = ((radius * scale).max(0.005), (half_height * scale).max(0.005));
+                (SharedShape::cylinder(half, radius), half, std::f32::consts::FRAC_PI_2)
+            }
+        };
+        let at = Vector::new(item.position[0], item.position[1], height);
+        // Headings turn clockwise; only boxes show it.
+        let turn = if tilt == 0.0 {
+            Vector::new(0.0, 0.0, -item.heading_deg.to_radians())
+        } else {
+            Vector::new(tilt, 0.0, 0.0)
+        };
+        let collider = ColliderBuilder::new(shape)
+            .position(Pose::new(at, turn))
+            .user_data(u128::from(index));
+        let handle = self.insert(collider, if solid { SOLID } else { GHOST });
+        self.handles.push(Some(handle));
+    }
+
+    /// Takes an object away.
+    pub(crate) fn remove(&mut self, index: u32) {
+        if let Some(handle) = self.handles[index as usize].take() {
+            self.colliders.remove(
+                handle,
+                &mut self.islands,
+                &mut self.bodies,
+                &mut self.soft_bodies,
+                false,
+            );
+            let removed = [handle];
+            let mut events = Vec::new();
+            self.broad_phase.update(
+                &IntegrationParameters::default(),
+                &self.colliders,
+                &self.bodies,
+                &[],
+                &removed,
+                &mut events,
+            );
+        }
+    }
+
+    fn query(&self, groups: Group) -> QueryPipeline<'_> {
+        let filter =
+            QueryFilter::default().groups(InteractionGroups::new(Group::ALL, groups, InteractionTestMode::And));
+        self.broad_phase.as_query_pipeline(
+            self.narrow_phase.query_dispatcher(),
+            &self.bodies,
+            &self.colliders,
+            filter,
+        )
+    }
+
+    /// Moves the agent's body as far as solid things let it, sliding along them.
+    ///
+    /// The motion is a cast of the whole shape, so nothing is passed through at any speed.
+    pub(crate) fn slide(&self, from: [f32; 2], by: [f32; 2], met: Vec<u32>) -> Motion {
+        let mut motion = Motion { position: from, met };
+        motion.met.clear();
+        let mut left = Vector::new(by[0], by[1], 0.0);
+        let mut last_normal: Option<Vector> = None;
+        for _ in 0..SLIDES {
+            let length = left.length();
+            if length < 1e-5 {
+                break;
+            }
+            let hit = self.first_hit(motion.position, left);
+            let share = hit.as_ref().map_or(1.0, |(_, share, _)| *share);
+            let start = motion.position;
+            motion.position = [start[0] + left.x * share, start[1] + left.y * share];
+            self.pass_ghosts(start, motion.position, &mut motion.met);
+            let Some((handle, _, normal)) = hit else { break };
+            if let Some(index) = self.object_of(handle) {
+                note(&mut motion.met, index);
+            }
+            left *= 1.0 - share;
+            left -= normal * left.dot(normal).min(0.0);
+            // In a corner the way along one wall leads into the other: there is no way on.
+            if let Some(last) = last_normal
+                && left.dot(last) < 0.0
+            {
+                left -= last * left.dot(last);
+                if left.dot(normal) < 0.0 {
+                    break;
+                }
+            }
+            last_normal = Some(normal);
+        }
+        motion
+    }
+
+    /// The first solid thing on the way: its collider, the share of the way to it, and its normal in the plane.
+    fn first_hit(&self, from: [f32; 2], by: Vector) -> Option<(ColliderHandle, f32, Vector)> {
+        let options = ShapeCastOptions {
+            max_time_of_impact: 1.0,
+            target_distance: SKIN,
+            stop_at_penetration: false,
+            compute_impact_geometry_on_penetration: true,
+        };
+        let pose = Pose::from_translation(Vector::new(from[0], from[1], 0.0));
+        let (handle, hit) = self.query(SOLID | WALL).cast_shape(&pose, by, &*self.agent, options)?;
+        let normal = Vector::new(hit.normal1.x, hit.normal1.y, 0.0).normalize_or_zero();
+        // Against the motion, whatever the engine makes of a start in contact.
+        let normal = if normal == Vector::ZERO {
+            -by.normalize_or_zero()
+        } else {
+            normal
+        };
+        Some((handle, hit.time_of_impact.clamp(0.0, 1.0), normal))
+    }
+
+    /// Notes the objects without substance that a stretch of the way leads through.
+    fn pass_ghosts(&self, from: [f32; 2], to: [f32; 2], met: &mut Vec<u32>) {
+        let along = [to[0] - from[0], to[1] - from[1]];
+        let length = (along[0] * along[0] + along[1] * along[1]).sqrt();
+        let samples = (length / self.radius.max(0.05)).ceil().clamp(1.0, 10_000.0) as u32;
+        let query = self.query(GHOST);
+        for k in 1..=samples {
+            let share = k as f32 / samples as f32;
+            let at = Vector::new(from[0] + along[0] * share, from[1] + along[1] * share, 0.0);
+            for (_, collider) in query.intersect_shape(Pose::from_translation(at), &*self.agent) {
+                note(met, collider.user_data as u32);
+            }
+        }
+    }
+
+    fn object_of(&self, handle: ColliderHandle) -> Option<u32> {
+        let collider = &self.colliders[handle];
+        (collider.collision_groups().memberships != WALL).then_some(collider.user_data as u32)
+    }
+
+    /// The objects that the agent's body touches, by index in rising order.
+    pub(crate) fn touching(&self, at: [f32; 2], touched: &mut Vec<u32>) {
+        touched.clear();
+        let pose = Pose::from_translation(Vector::new(at[0], at[1], 0.0));
+        let query = self.query(SOLID | GHOST);
+        touched.extend(
+            query
+                .intersect_shape(pose, &*self.touch)
+                .map(|(_, collider)| collider.user_data as u32),
+        );
+        touched.sort_unstable();
+    }
+
+    /// The objects in the 1 m cube right in front of the agent, by index in rising order.
+    pub(crate) fn in_reach(&self, at: [f32; 2], forward: [f32; 2]) -> Vec<u32> {
+        let cube = SharedShape::cuboid(0.5, 0.5, 0.5);
+        let ahead = self.radius + 0.5;
+        let centre = Vector::new(at[0] + forward[0] * ahead, at[1] + forward[1] * ahead, 0.5);
+        let pose = Pose::new(centre, Vector::new(0.0, 0.0, libm::atan2f(forward[1], forward[0])));
+        let query = self.query(SOLID | GHOST);
+        let mut found: Vec<u32> = query
+            .intersect_shape(pose, &*cube)
+            .map(|(_, c)| c.user_data as u32)
+            .collect();
+        found.sort_unstable();
+        found
+    }
+}
+
+fn note(met: &mut Vec<u32>, index: u32) {
+    if !met.contains(&index) {
+        met.push(index);
+    }
+}

@@ -1,0 +1,91 @@
+//! What happened in a step, and what it was worth. Why it happened is in `environment.rs`.
+
+use driftworld_spec::Stimulus;
+
+/// One thing that happened to one object.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Event {
+    /// Index of the object in the world.
+    pub object: usize,
+    /// Its tag, if it has one.
+    pub tag: Option<String>,
+    /// What set it off.
+    pub stimulus: Stimulus,
+    /// What was paid for it.
+    pub reward: f64,
+    /// Whether it destroyed the object.
+    pub destroyed: bool,
+}
+
+/// What a step led to.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Step {
+    /// What the step paid in all.
+    pub reward: f64,
+    /// Whether the episode has come to its end by itself.
+    pub terminated: bool,
+    /// Whether the episode was cut off by the limit of steps.
+    pub truncated: bool,
+    /// Whether it ended as a success.
+    pub success: bool,
+    /// What happened, in the order of objects.
+    pub events: Vec<Event>,
+}
+
+impl Step {
+    /// Whether the episode is over.
+    pub fn ended(&self) -> bool {
+        self.terminated || self.truncated
+    }
+}
+
+/// Something that the world asks for and that is not as its author may think.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Warning {
+    /// Class and model are not known: a placeholder stands there.
+    UnknownAsset {
+        /// Index of the object.
+        object: usize,
+        /// Its class.
+        class: String,
+        /// Its model.
+        model: String,
+    },
+    /// The object asks to move, and stands still: objects do not move yet.
+    StandsStill {
+        /// Index of the object.
+        object: usize,
+    },
+    /// The object asks to come back once destroyed, and will not: objects do not respawn yet.
+    NoRespawn {
+        /// Index of the object.
+        object: usize,
+    },
+    /// The world is for taking pictures of its objects, and runs as if it were for learning.
+    NoImageCollection,
+}
+
+impl std::fmt::Display for Warning {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::UnknownAsset { object, class, model } => {
+                write!(
+                    f,
+                    "/objects/{object}: class {class:?} model {model:?} is not known; a placeholder stands there"
+                )
+            }
+            Self::StandsStill { object } => {
+                write!(
+                    f,
+                    "/objects/{object}/motion_model: objects do not move yet; it stands still"
+                )
+            }
+            Self::NoRespawn { object } => {
+                write!(f, "/objects/{object}/respawn: destroyed objects do not come back yet")
+            }
+            Self::NoImageCollection => {
+                f.write_str("/game_mode: collect_images is not there yet; the world runs as learn")
+            }
+        }
+    }
+}

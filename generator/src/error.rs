@@ -1,0 +1,76 @@
+//! What can keep a world from being drawn.
+
+/// Everything that can go wrong in this crate.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum GeneratorError {
+    /// A draw fell outside what its place in the world allows.
+    #[error(
+        "{variant}, seed {seed}, index {index} ({place}): drew {found}, expected a number in {low}..{high}; \
+         use a distribution with bounds, such as truncated_normal"
+    )]
+    OutOfRange {
+        /// The variant.
+        variant: String,
+        /// The seed.
+        seed: u64,
+        /// The world's number.
+        index: u64,
+        /// Where the value was to go: a pointer into the spec.
+        place: String,
+        /// What was drawn.
+        found: f64,
+        /// The least number that may stand there.
+        low: f64,
+        /// The greatest number that may stand there.
+        high: f64,
+    },
+    /// An object found no place within the tries it has.
+    #[error(
+        "{variant}, seed {seed}, index {index}: group {group:?}, object {object} of {count}: found no free place in {tries} \
+         tries; {reason}"
+    )]
+    NoPlace {
+        /// The variant.
+        variant: String,
+        /// The seed.
+        seed: u64,
+        /// The world's number.
+        index: u64,
+        /// The group.
+        group: String,
+        /// The object's number within the group, from 1.
+        object: u32,
+        /// How many objects the group was to have.
+        count: u32,
+        /// How many places were tried.
+        tries: u32,
+        /// What most places failed, the closest miss, and which field to loosen.
+        reason: String,
+    },
+    /// The groups together have more objects than a world holds.
+    #[error("{variant}, seed {seed}, index {index}: found {found} objects, expected at most {limit}; lower the counts")]
+    TooMany {
+        /// The variant.
+        variant: String,
+        /// The seed.
+        seed: u64,
+        /// The world's number.
+        index: u64,
+        /// How many objects were drawn.
+        found: usize,
+        /// How many a world holds.
+        limit: usize,
+    },
+}
+
+impl GeneratorError {
+    /// The stable name of this kind of error.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::OutOfRange { .. } => "generator/out-of-range",
+            Self::NoPlace { .. } => "generator/no-place",
+            Self::TooMany { .. } => "generator/too-many",
+        }
+    }
+}

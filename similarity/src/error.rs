@@ -1,0 +1,93 @@
+//! What can keep a distance or an order from being computed.
+
+/// Everything that can go wrong in this crate.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SimilarityError {
+    /// Variants of different tasks have no parameters to compare.
+    #[error("found variants of the tasks {a:?} and {b:?}, expected two of one task; compare sampled worlds instead")]
+    DifferentTasks {
+        /// The first variant's task.
+        a: String,
+        /// The second variant's task.
+        b: String,
+    },
+    /// A distance is not a number that a distance can be.
+    #[error("distance of {a:?} to {b:?}: found {found}, expected a finite number of at least 0")]
+    NotADistance {
+        /// The first label.
+        a: String,
+        /// The second label.
+        b: String,
+        /// What was found.
+        found: f64,
+    },
+    /// A matrix would not fit.
+    #[error("found {found} items, expected at most {limit}; compare fewer at a time")]
+    TooMany {
+        /// How many there are.
+        found: usize,
+        /// How many are possible.
+        limit: usize,
+    },
+    /// An exact order was asked for more items than it can be found for.
+    #[error("exact order: found {found} items, expected at most {limit}; use the method two-opt")]
+    TooManyForExact {
+        /// How many there are.
+        found: usize,
+        /// How many are possible.
+        limit: usize,
+    },
+    /// The item that an order should start from is not there.
+    #[error("order: found start {found}, expected one of 0 to {last}")]
+    NoSuchStart {
+        /// The index asked for.
+        found: usize,
+        /// The last index there is.
+        last: usize,
+    },
+    /// There is nothing to order.
+    #[error("order: found no items, expected at least 1")]
+    Empty,
+    /// A table that should be a matrix is not one.
+    #[error("line {line}: found {found}, expected {expected}")]
+    BadTable {
+        /// Line in the text, from 1.
+        line: usize,
+        /// What stands there.
+        found: String,
+        /// What should stand there.
+        expected: String,
+    },
+    /// A word that names no method.
+    #[error("method: found {found:?}, expected one of nearest, exact, two-opt, contrast")]
+    UnknownMethod {
+        /// The word.
+        found: String,
+    },
+    /// A weight that cannot be one.
+    #[error("weight of {name}: found {found}, expected a finite number of at least 0")]
+    BadWeight {
+        /// What it weighs.
+        name: String,
+        /// The weight.
+        found: f64,
+    },
+}
+
+impl SimilarityError {
+    /// The stable name of this kind of error.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::DifferentTasks { .. } => "similarity/different-tasks",
+            Self::NotADistance { .. } => "similarity/not-a-distance",
+            Self::TooMany { .. } => "similarity/too-many",
+            Self::TooManyForExact { .. } => "similarity/too-many-for-exact",
+            Self::NoSuchStart { .. } => "similarity/no-such-start",
+            Self::Empty => "similarity/empty",
+            Self::BadTable { .. } => "similarity/bad-table",
+            Self::UnknownMethod { .. } => "similarity/unknown-method",
+            Self::BadWeight { .. } => "similarity/bad-weight",
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! [`DistanceMatrix`]: every distance among some items. What is measured is handed in; orders of it are in `order.rs`.
+
+use ndarray::Array2;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::SimilarityError;
+
+/// The most items that a matrix holds.
+pub const MAX_ITEMS: usize = 20_000;
+
+/// Every distance among labelled items: symmetric, finite, at least 0, and 0 on the diagonal.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DistanceMatrix {
+    labels: Vec<String>,
+    #[serde(serialize_with = "rows")]
+    values: Array2<f64>,
+}
+
+fn rows<S: serde::Serializer>(values: &Array2<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(values.rows().into_iter().map(|row| row.to_vec()))
+}
+
+impl DistanceMatrix {
+    /// Measures every pair once, in parallel; `measure` takes two indices, the first below the second.
+    ///
+    /// # Errors
+    /// Whatever `measure` says of the first pair, in row order, that it fails on; [`SimilarityError::NotADistance`] for a
+    /// number that is none; [`SimilarityError::TooMany`] for more than [`MAX_ITEMS`] items.
+    pub fn measure<E>(labels: Vec<String>, measure: impl Fn(usize, usize) -> Result<f64, E> + Sync) -> Result<Self, E>
+    where
+        E: From<SimilarityError> + Send,
+    {
+        let n = labels.len();
+        if n > MAX_ITEMS {
+            return Err(SimilarityError::TooMany {
+                found: n,
+                limit: MAX_ITEMS,
+            }
+            .into());
+        }
+        let row = |a: usize| -> Vec<Result<f64, E>> { (a + 1..n).map(|b| measure(a, b)).collect() };
+        let triangle: Vec<Vec<Result<f64, E>>> = (0..n).into_par_iter().map(row).collect();
+        let mut values = Array2::zeros((n, n));
+        for (a, row) in triangle.into_iter().enumerate() {
+            for (b, distance) in (a + 1..n).zip(row) {
+                let found = distance?;
+                if !found.is_finite() || found < 0.0 {
+                    let (a, b) = (labels[a].clone(), labels[b].clone());
+                    return Err(SimilarityError::NotADistance { a, b, found }.into());
+                }
+                (values[[a, b]], values[[b, a]]) = (found, found);
+            }
+        }
+        Ok(Self { labels, values })
+    }
+
+    /// The items' names, in order.
+    pub fn labels(&self) -> &[String] {
+        &self.labels
+    }
+
+    /// The distances, `(items, items)`.
+    pub fn values(&self) -> &Array2<f64> {
+        &self.values
+    }
+
+    /// How many items there are.
+    pub fn len(&self) -> usize {
+        self.labels.len()
+    }
+
+    /// Whether there are no items.
+    pub fn is_empty(&self) -> bool {
+        self.labels.is_empty()
+    }
+
+    /// The distance of two items.
+    pub fn get(&self, a: usize, b: usize) -> f64 {
+        self.values[[a, b]]
+    }
+
+    /// The matrix as CSV: a line of labels behind an empty cell, then a line for each item, its label first.
+    pub fn to_csv(&self) -> String {
+        let cell = |text: &str| {
+            if text.contains([',', '"', '\n', '\r']) {
+                format!("\"{}\"", text.replace('"', "\"\""))
+            } else {
+                text.to_owned()
+            }
+        };
+        let names: Vec<String> = self.labels.iter().map(|label| cell(label)).collect();
+        let mut text = format!(",{}\n", names.join(","));
+        for (name, row) in names.iter().zip(self.values.rows()) {
+            let numbers: Vec<String> = row.iter().map(f64::to_string).collect();
+            text += &format!("{name},{}\n", numbers.join(","));
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(n: usize) -> Vec<String> {
+        (0..n).map(|k| format!("item {k}")).collect()
+    }
+
+    #[test]
+    fn every_pair_is_measured_once_and_stands_on_both_sides() {
+        let matrix = DistanceMatrix::measure(labels(4), |a, b| {
+            assert!(a < b);
+            Ok::<_, SimilarityError>((b - a) as f64)
+        })
+        .unwrap();
+        for (a, b) in (0..4).flat_map(|a| (0..4).map(move |b| (a, b))) {
+            assert_eq!(matrix.get(a, b), a.abs_diff(b) as f64);
+        }
+    }
+
+    #[test]
+    fn what_is_no_distance_is_refused_by_name() {
+        let found = DistanceMatrix::measure(labels(3), |a, _| {
+            Ok::<_, SimilarityError>(if a == 1 { f64::NAN } else { 1.0 })
+        });
+        assert_eq!(
+            found.unwrap_err().to_string(),
+            "distance of \"item 1\" to \"item 2\": found NaN, expected a finite number of at least 0"
+        );
+        let many = DistanceMatrix::measure(labels(MAX_ITEMS + 1), |_, _| Ok::<_, SimilarityError>(0.0));
+        assert_eq!(
+            many.unwrap_err().to_string(),
+            "found 20001 items, expected at most 20000; compare fewer at a time"
+        );
+    }
+
+    #[test]
+    fn csv_quotes_what_needs_it() {
+        let names = vec!["a,b".to_owned(), "say \"x\"".to_owned()];
+        let matrix = DistanceMatrix::measure(names, |_, _| Ok::<_, SimilarityError>(0.5)).unwrap();
+        assert_eq!(
+            matrix.to_csv(),
+            ",\"a,b\",\"say \"\"x\"\"\"\n\"a,b\",0,0.5\n\"say \"\"x\"\"\",0.5,0\n"
+        );
+    }
+}

@@ -1,0 +1,117 @@
+//! The subcommands, one file each, and what they share: how they fail. What is written and shown is in `output.rs`.
+
+mod curriculum;
+mod demo;
+mod distance;
+mod input;
+mod metrics;
+mod order;
+mod output;
+mod pictures;
+mod render;
+mod run;
+mod sample;
+mod schema;
+mod table;
+mod tasks;
+mod validate;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+/// Typed task specs to worlds, distances, curricula, and a first-person environment for lifelong reinforcement learning.
+#[derive(Parser)]
+#[command(name = "driftworld", version, arg_required_else_help = true)]
+pub(crate) enum Command {
+    /// Go the whole way once: worlds, pictures, distances, a curriculum, a lifetime, its scores.
+    Demo(demo::Demo),
+    /// List the built-in tasks, or show what varies in one.
+    Tasks(tasks::Tasks),
+    /// Check task specs, worlds and scenarios, and name every problem with its place.
+    Validate(validate::Validate),
+    /// Draw worlds from a variant of a task.
+    Sample(sample::Sample),
+    /// Draw what an agent sees of a world, and the world from above.
+    Render(render::Render),
+    /// Measure how far apart two variants or two worlds are.
+    Distance(distance::Distance),
+    /// Put variants into an order by their distances.
+    Order(order::Order),
+    /// Design learning and evaluation blocks from variants and their distances.
+    Curriculum(curriculum::Curriculum),
+    /// Live a curriculum with an agent and log every experience.
+    Run(run::Run),
+    /// Score the log of a lifetime.
+    Metrics(metrics::Metrics),
+    /// Write or check the JSON Schemas of the documents.
+    Schema(schema::Schema),
+}
+
+impl Command {
+    /// Runs the subcommand.
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        match self {
+            Self::Demo(command) => command.run(),
+            Self::Tasks(command) => command.run(),
+            Self::Validate(command) => command.run(),
+            Self::Sample(command) => command.run(),
+            Self::Render(command) => command.run(),
+            Self::Distance(command) => command.run(),
+            Self::Order(command) => command.run(),
+            Self::Curriculum(command) => command.run(),
+            Self::Run(command) => command.run(),
+            Self::Metrics(command) => command.run(),
+            Self::Schema(command) => command.run(),
+        }
+    }
+}
+
+/// Why a subcommand failed; decides the exit code.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The input, or the place for the output, is wrong: exit code 1.
+    Input(String),
+    /// The arguments contradict each other: exit code 2.
+    Usage(String),
+}
+
+impl Failure {
+    /// Says on standard error what went wrong.
+    #[expect(clippy::print_stderr, reason = "this is the one place where the command reports its failure")]
+    pub(crate) fn report(&self) -> ExitCode {
+        let (text, code) = match self {
+            Self::Input(text) => (text, 1),
+            Self::Usage(text) => (text, 2),
+        };
+        eprintln!("error: {text}");
+        ExitCode::from(code)
+    }
+
+    pub(crate) fn usage(text: impl Into<String>) -> Self {
+        Self::Usage(text.into())
+    }
+
+    pub(crate) fn input(text: impl Into<String>) -> Self {
+        Self::Input(text.into())
+    }
+}
+
+impl<E: std::error::Error> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+/// Ends the command without a word when the reader of its output goes away, as with `| head`.
+pub(crate) fn quiet_on_closed_pipe() {
+    let default = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        let text = info.payload_as_str().unwrap_or_default();
+        if text.starts_with("failed printing to stdout") && text.contains("Broken pipe") {
+            #[expect(clippy::exit, reason = "the reader of our output has gone: there is nobody left to tell")]
+            std::process::exit(0);
+        }
+        default(info);
+    }));
+}

@@ -1,0 +1,89 @@
+//! Where results go: standard output, or files that appear whole or not at all. What they say is the commands' own.
+
+use std::fs;
+use std::io::{IsTerminal, Write};
+use std::path::Path;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+use tempfile::NamedTempFile;
+
+use super::Failure;
+
+/// Prints a line, or ends quietly if the reader has gone.
+pub(crate) fn line(text: impl AsRef<str>) -> Result<(), Failure> {
+    print(&format!("{}\n", text.as_ref()))
+}
+
+/// Prints text as it is.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Ok(()) => Ok(()),
+        // As with `| head`: whoever read us has seen enough.
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {
+            #[expect(clippy::exit, reason = "the reader of our output has gone: there is nobody left to tell")]
+            std::process::exit(0)
+        }
+        Err(error) => Err(Failure::input(format!("standard output: {error}"))),
+    }
+}
+
+/// Prints a value as indented JSON.
+pub(crate) fn json(value: &impl Serialize) -> Result<(), Failure> {
+    line(serde_json::to_string_pretty(value)?)
+}
+
+/// Says something on standard error that is not a result.
+#[expect(clippy::print_stderr, reason = "warnings belong on standard error, beside the results")]
+pub(crate) fn note(text: impl AsRef<str>) {
+    eprintln!("{}", text.as_ref());
+}
+
+/// Writes a file under a temporary name beside its own and renames it: it is there whole or not at all.
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let failed = |error: std::io::Error| Failure::input(format!("{}: cannot be written: {error}", path.display()));
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(failed)?;
+    let mut file = NamedTempFile::new_in(folder).map_err(failed)?;
+    file.write_all(bytes).map_err(failed)?;
+    persist(file, path)
+}
+
+/// Gives a finished temporary file its name.
+pub(crate) fn persist(file: NamedTempFile, path: &Path) -> Result<(), Failure> {
+    let failed = |error: std::io::Error| Failure::input(format!("{}: cannot be written: {error}", path.display()));
+    file.as_file().sync_all().map_err(failed)?;
+    let file = file.persist(path).map_err(|error| failed(error.error))?;
+    readable_by_all(&file).map_err(failed)
+}
+
+/// Temporary files are private to their owner; results are not.
+#[cfg(unix)]
+fn readable_by_all(file: &fs::File) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    file.set_permissions(fs::Permissions::from_mode(0o644))
+}
+
+#[cfg(not(unix))]
+fn readable_by_all(_: &fs::File) -> std::io::Result<()> {
+    Ok(())
+}
+
+/// To a file, or to standard output for `-`.
+pub(crate) fn write_or_print(path: &Path, text: &str) -> Result<(), Failure> {
+    if path == Path::new("-") { print(text) } else { write(path, text.as_bytes()) }
+}
+
+/// A bar on a terminal, nothing elsewhere.
+pub(crate) fn progress(steps: u64, what: &'static str) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{prefix:<12} {bar:40} {pos}/{len} {eta} {msg}")
+        .expect("the template is a constant that indicatif accepts");
+    let bar = ProgressBar::new(steps).with_style(style).with_prefix(what);
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}

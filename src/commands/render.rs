@@ -1,0 +1,152 @@
+//! `driftworld render`: pictures of a world. What a pixel is, is decided in `env`; which pictures make a sheet, here.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use driftworld::env::{Camera, CpuRenderer, Frame, Scene, category_color, depth_to_gray, top_down};
+use driftworld::spec::World;
+
+use super::pictures::{Picture, SheetRow, sheet};
+use super::{Failure, input, output};
+
+/// Draw what an agent sees of a world, and the world from above.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld render find_objects#dusk --seed 7 -o dusk.png
+  driftworld render map.json --l2explorer --view overview --size 800 -o map.png")]
+pub(crate) struct Render {
+    /// A world file, or a task's variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
+    world: String,
+    /// The seed, where the world is drawn from a variant.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// The number of the world, where it is drawn from a variant.
+    #[arg(long, default_value_t = 0)]
+    index: u64,
+    /// Read the world as L2Explorer wrote it, with warnings.
+    #[arg(long)]
+    l2explorer: bool,
+    /// Which picture.
+    #[arg(long, value_enum, default_value_t = View::Sheet)]
+    view: View,
+    /// Height of each picture in pixels.
+    #[arg(long, default_value_t = 360, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    size: u32,
+    /// Turn the first-person camera this many degrees clockwise from the agent's heading.
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    turn: f64,
+    /// The PNG file.
+    #[arg(short, long, default_value = "world.png", value_name = "FILE")]
+    output: PathBuf,
+}
+
+/// Which picture of a world.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum View {
+    /// All of them with titles.
+    Sheet,
+    /// From outside, above a corner.
+    Overview,
+    /// The map, north on top.
+    TopDown,
+    /// The agent's view in colour.
+    Rgb,
+    /// The agent's view as distance, white at 100 m.
+    Depth,
+    /// The agent's view as reward categories.
+    Segmentation,
+}
+
+impl Render {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let world = input::world(&self.world, self.seed, self.index, self.l2explorer)?;
+        let picture = self.picture(&world)?;
+        picture.write(&self.output)?;
+        output::line(format!("{}: {} × {} pixels", self.output.display(), picture.width, picture.height))
+    }
+
+    fn picture(&self, world: &World) -> Result<Picture, Failure> {
+        let views = Views::new(world, self.size, self.turn as f32);
+        Ok(match self.view {
+            View::Overview => views.overview(self.size * 16 / 9),
+            View::TopDown => views.top_down(),
+            View::Rgb => views.first_person().rgb,
+            View::Depth => views.first_person().depth,
+            View::Segmentation => views.first_person().segmentation,
+            View::Sheet => {
+                let seen = views.first_person();
+                let row = |title: &str, words: &str, pictures| SheetRow {
+                    title: title.into(),
+                    words: words.into(),
+                    pictures,
+                };
+                sheet(
+                    &[
+                        row("The world", "from outside, and from above with the agent", vec![views.overview(self.size * 16 / 9), views.top_down()]),
+                        row("What the agent sees", "colour, depth (white at 100 m), reward category", vec![seen.rgb, seen.depth, seen.segmentation]),
+                    ],
+                    1,
+                )?
+            }
+        })
+    }
+}
+
+/// The pictures of one world.
+pub(crate) struct Views<'a> {
+    world: &'a World,
+    scene: Scene,
+    size: u32,
+    turn: f32,
+}
+
+/// The three modalities of one view.
+pub(crate) struct Seen {
+    pub(crate) rgb: Picture,
+    pub(crate) depth: Picture,
+    pub(crate) segmentation: Picture,
+}
+
+impl<'a> Views<'a> {
+    pub(crate) fn new(world: &'a World, size: u32, turn: f32) -> Self {
+        Self { world, scene: Scene::from_world(world), size, turn }
+    }
+
+    /// From outside, above a corner of the arena.
+    pub(crate) fn overview(&self, width: u32) -> Picture {
+        let frame = self.frame(&Camera::overview(&self.scene), width, self.size);
+        Picture { width, height: self.size, rgb: frame.rgb }
+    }
+
+    /// What the agent sees at the start.
+    pub(crate) fn first_person(&self) -> Seen {
+        let agent = &self.world.agent_params;
+        let camera = Camera::first_person(
+            agent.coordinates.map(|metres| metres as f32),
+            agent.heading as f32 + self.turn,
+            agent.agent_height as f32,
+            agent.field_of_view as f32,
+        );
+        let frame = self.frame(&camera, self.size, self.size);
+        let picture = |rgb| Picture { width: self.size, height: self.size, rgb };
+        Seen {
+            depth: picture(depth_to_gray(&frame.depth).into_iter().flat_map(|gray| [gray; 3]).collect()),
+            segmentation: picture(frame.category.iter().flat_map(|category| category_color(*category)).collect()),
+            rgb: picture(frame.rgb),
+        }
+    }
+
+    /// The map with the agent's start on it.
+    pub(crate) fn top_down(&self) -> Picture {
+        let agent = &self.world.agent_params;
+        let marker = Some((agent.coordinates.map(|metres| metres as f32), agent.heading as f32));
+        let image = top_down(&self.scene, self.size, self.size, marker);
+        Picture { width: image.width, height: image.height, rgb: image.rgb }
+    }
+
+    fn frame(&self, camera: &Camera, width: u32, height: u32) -> Frame {
+        let mut frame = Frame::new(width, height);
+        CpuRenderer::new().render(&self.scene, camera, &mut frame);
+        frame
+    }
+}

@@ -1,0 +1,56 @@
+//! `driftworld schema`: the JSON Schemas of the documents, as the code has them.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use driftworld::spec::schema;
+
+use super::{Failure, input, output};
+
+/// Write or check the JSON Schemas of the documents.
+#[derive(Args)]
+#[command(after_help = "Example:\n  driftworld schema task > task.schema.json\n  driftworld schema -o schemas")]
+pub(crate) struct Schema {
+    /// Which schema to print: world, task or scenario.
+    #[arg(value_parser = ["world", "task", "scenario"], conflicts_with_all = ["output", "check"])]
+    document: Option<String>,
+    /// Write all schemas into this folder.
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Compare the schemas in this folder with the code's; exit code 1 if one is stale.
+    #[arg(long, value_name = "DIR", conflicts_with = "output")]
+    check: Option<PathBuf>,
+}
+
+impl Schema {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        if let Some(document) = &self.document {
+            let file = format!("{document}.schema.json");
+            return texts()?.into_iter().filter(|(name, _)| *name == file).try_for_each(|(_, text)| output::print(&text));
+        }
+        if let Some(folder) = &self.check {
+            for (name, expected) in texts()? {
+                let path = folder.join(name);
+                if input::text(&path)? != expected {
+                    let text = format!("{}: is stale; run: cargo xtask schemas", path.display());
+                    return Err(Failure::input(text));
+                }
+            }
+            return output::line(format!("{}: up to date", folder.display()));
+        }
+        let Some(folder) = &self.output else {
+            return Err(Failure::usage("name a document (world, task, scenario), a folder with -o, or one with --check"));
+        };
+        for (name, text) in texts()? {
+            let path = folder.join(name);
+            output::write(&path, text.as_bytes())?;
+            output::line(path.display().to_string())?;
+        }
+        Ok(())
+    }
+}
+
+fn texts() -> Result<Vec<(&'static str, String)>, Failure> {
+    let text = |json| serde_json::to_string_pretty(json).map(|text| text + "\n");
+    schema::all().into_iter().map(|(name, schema)| Ok((name, text(schema.json())?))).collect()
+}

@@ -1,0 +1,143 @@
+//! `driftworld validate`: every problem of a document with its place.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use driftworld::spec::{Problem, Scenario, SpecError, TaskSpec, World};
+use serde_json::{Value, json};
+
+use super::{Failure, input, output};
+
+/// Check task specs, worlds and scenarios, and name every problem with its place.
+///
+/// What a file is, is seen from its keys: "blocks" make a scenario, "name" a task spec, anything else a world.
+#[derive(Args)]
+#[command(after_help = "Example:\n  driftworld validate examples/tasks\n  driftworld validate --l2explorer map.json")]
+pub(crate) struct Validate {
+    /// Files, or folders of .json files.
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// Read worlds as L2Explorer wrote them, with warnings.
+    #[arg(long)]
+    l2explorer: bool,
+    /// Print the result as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What was found in one file.
+struct Verdict {
+    path: PathBuf,
+    kind: &'static str,
+    warnings: Vec<String>,
+    error: Option<SpecError>,
+}
+
+impl Validate {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let files = files(&self.files)?;
+        let verdicts = files.into_iter().map(|path| self.check(path)).collect::<Result<Vec<_>, _>>()?;
+        if self.json {
+            output::json(&verdicts.iter().map(Verdict::to_json).collect::<Vec<_>>())?;
+        } else {
+            verdicts.iter().try_for_each(Verdict::print)?;
+        }
+        let wrong = verdicts.iter().filter(|verdict| verdict.error.is_some()).count();
+        if wrong == 0 {
+            return Ok(());
+        }
+        let files = if verdicts.len() == 1 { "file" } else { "files" };
+        Err(Failure::input(format!("{wrong} of {} {files} refused", verdicts.len())))
+    }
+
+    fn check(&self, path: PathBuf) -> Result<Verdict, Failure> {
+        let text = input::text(&path)?;
+        let name = path.display().to_string();
+        let mut warnings = Vec::new();
+        let (kind, error) = match kind_of(&text) {
+            "task spec" => ("task spec", TaskSpec::from_json(&name, &text).err()),
+            "scenario" => ("scenario", Scenario::from_json(&name, &text).err()),
+            _ if self.l2explorer => match World::from_l2explorer(&name, &text) {
+                Ok((_, found)) => {
+                    warnings = found.iter().map(ToString::to_string).collect();
+                    ("L2Explorer world", None)
+                }
+                Err(error) => ("L2Explorer world", Some(error)),
+            },
+            _ => ("world", World::from_json(&name, &text).err()),
+        };
+        Ok(Verdict { path, kind, warnings, error })
+    }
+}
+
+fn kind_of(text: &str) -> &'static str {
+    let json: Value = serde_json::from_str(text).unwrap_or_default();
+    if json.get("blocks").is_some() {
+        "scenario"
+    } else if json.get("name").is_some() || json.get("parameters").is_some() || json.get("groups").is_some() {
+        "task spec"
+    } else {
+        "world"
+    }
+}
+
+/// The files named, and those of the folders named, sorted.
+fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let mut files = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            files.push(path.clone());
+            continue;
+        }
+        let mut inside = folder(path)?;
+        if inside.is_empty() {
+            return Err(Failure::input(format!("{}: holds no .json file", path.display())));
+        }
+        inside.sort();
+        files.append(&mut inside);
+    }
+    Ok(files)
+}
+
+fn folder(path: &Path) -> Result<Vec<PathBuf>, Failure> {
+    let failed = |error| Failure::input(format!("{}: cannot be read: {error}", path.display()));
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(path).map_err(failed)? {
+        let file = entry.map_err(failed)?.path();
+        if file.extension().is_some_and(|extension| extension == "json") {
+            files.push(file);
+        }
+    }
+    Ok(files)
+}
+
+impl Verdict {
+    fn print(&self) -> Result<(), Failure> {
+        self.warnings.iter().for_each(|warning| output::note(format!("warning: {warning}")));
+        match &self.error {
+            None => output::line(format!("{}: a valid {}", self.path.display(), self.kind)),
+            Some(error) => {
+                output::note(error.to_string());
+                Ok(())
+            }
+        }
+    }
+
+    fn to_json(&self) -> Value {
+        let problems = self.error.as_ref().map(|error| {
+            let listed: Vec<Value> = error.problems().iter().map(problem_json).collect();
+            if listed.is_empty() { vec![json!({ "code": error.code(), "message": error.to_string() })] } else { listed }
+        });
+        json!({
+            "file": self.path, "kind": self.kind, "valid": self.error.is_none(),
+            "problems": problems.unwrap_or_default(), "warnings": self.warnings,
+        })
+    }
+}
+
+fn problem_json(problem: &Problem) -> Value {
+    json!({
+        "code": problem.code, "pointer": problem.pointer, "line": problem.line, "column": problem.column,
+        "found": problem.found, "expected": problem.expected, "advice": problem.advice,
+    })
+}

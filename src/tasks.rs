@@ -1,0 +1,126 @@
+//! The names by which tasks are called: `PATH`, `PATH#variant`, or a built-in such as `find_objects#red`.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use driftworld_spec::{DEFAULT_VARIANT, SpecError, TaskSpec, Variant, nearest};
+
+/// The tasks that are built in: name and text. The files are `examples/tasks/`.
+pub const BUILT_IN: [(&str, &str); 2] = [
+    ("find_objects", include_str!("../examples/tasks/find_objects.json")),
+    ("get_to_goal", include_str!("../examples/tasks/get_to_goal.json")),
+];
+
+/// Why a task cannot be had by its name.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TaskError {
+    /// There is no such built-in task, and no such file.
+    #[error(
+        "found task {name:?}, expected the path of a task spec or one of {}{}",
+        built_in_names().join(", "),
+        did_you_mean(name)
+    )]
+    Unknown {
+        /// The name asked for.
+        name: String,
+    },
+    /// The file is there and cannot be read.
+    #[error("{}: cannot be read: {source}", path.display())]
+    Unreadable {
+        /// Its path.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The document is wrong, or has no such variant.
+    #[error(transparent)]
+    Spec(#[from] SpecError),
+}
+
+/// The names of the built-in tasks.
+pub fn built_in_names() -> Vec<&'static str> {
+    BUILT_IN.iter().map(|(name, _)| *name).collect()
+}
+
+fn did_you_mean(name: &str) -> String {
+    nearest(name, built_in_names()).map_or_else(String::new, |near| format!("; did you mean {near:?}?"))
+}
+
+/// A name cut into task and variant: `find_objects#red` is `("find_objects", Some("red"))`.
+pub fn split(name: &str) -> (&str, Option<&str>) {
+    match name.rsplit_once('#') {
+        Some((task, variant)) => (task, Some(variant)),
+        None => (name, None),
+    }
+}
+
+/// The task of this name or path; a variant behind `#` is left aside.
+///
+/// # Errors
+/// [`TaskError`] if there is none, or the document is wrong.
+pub fn task(name: &str) -> Result<Arc<TaskSpec>, TaskError> {
+    let (task, _) = split(name);
+    if let Some((_, text)) = BUILT_IN.iter().find(|(built_in, _)| *built_in == task) {
+        return Ok(TaskSpec::from_json(&format!("{task}.json"), text)?);
+    }
+    let path = Path::new(task);
+    let text = match std::fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(source) if source.kind() == std::io::ErrorKind::NotFound => {
+            return Err(TaskError::Unknown { name: task.to_owned() });
+        }
+        Err(source) => {
+            return Err(TaskError::Unreadable {
+                path: path.to_owned(),
+                source,
+            });
+        }
+    };
+    Ok(TaskSpec::from_json(task, &text)?)
+}
+
+/// The variant of this name; without one behind `#`, the variant in which every parameter has its default.
+///
+/// # Errors
+/// [`TaskError`] if there is none, or the document is wrong.
+pub fn variant(name: &str) -> Result<Variant, TaskError> {
+    let (_, variant) = split(name);
+    Ok(task(name)?.variant(variant.unwrap_or(DEFAULT_VARIANT))?)
+}
+
+/// The variants that a name stands for: the one behind `#`, or all that the task declares.
+///
+/// # Errors
+/// [`TaskError`] if there is none, or the document is wrong.
+pub fn variants(name: &str) -> Result<Vec<Variant>, TaskError> {
+    match split(name).1 {
+        Some(_) => Ok(vec![variant(name)?]),
+        None => Ok(task(name)?.all_variants()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_built_in_task_loads_under_its_own_name() {
+        for (name, _) in BUILT_IN {
+            assert_eq!(task(name).unwrap().name(), name);
+        }
+    }
+
+    #[test]
+    fn a_misspelt_name_is_told_the_names_there_are() {
+        assert_eq!(
+            variant("find_object#red").unwrap_err().to_string(),
+            "found task \"find_object\", expected the path of a task spec or one of find_objects, get_to_goal; \
+             did you mean \"find_objects\"?"
+        );
+        assert_eq!(
+            variant("find_objects#rde").unwrap_err().to_string(),
+            "find_objects: found variant \"rde\", expected one of blue, red, green, dusk, huddle, penalty; did you mean \"red\"?"
+        );
+    }
+}
