@@ -63,7 +63,10 @@ impl Distance {
             }
         }
         let world = |name: &str| input::world(name, self.seed, self.index, false);
-        Ok((world_distance(&world(&self.a)?, &world(&self.b)?, &weights), "world to world"))
+        Ok((
+            world_distance(&world(&self.a)?, &world(&self.b)?, &weights),
+            "world to world",
+        ))
     }
 }
 
@@ -72,7 +75,10 @@ fn by_element(distance: &Measured) -> String {
         .iter()
         .filter_map(|element| {
             let value = distance.element(*element)?;
-            Some([format!("{} {}", element.letter(), element.name()), format!("{value:.4}")])
+            Some([
+                format!("{} {}", element.letter(), element.name()),
+                format!("{value:.4}"),
+            ])
         })
         .collect();
     rows.push(["all together".to_owned(), format!("{:.4}", distance.total)]);
@@ -90,5 +96,9 @@ fn parts(distance: &Measured) -> String {
             format!("{}", part.weight),
         ]
     });
-    table(["what", "element", "measure", "raw", "normalised", "weight"], rows.collect(), &[3, 4, 5])
+    table(
+        ["what", "element", "measure", "raw", "normalised", "weight"],
+        rows.collect(),
+        &[3, 4, 5],
+    )
 }

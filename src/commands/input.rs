@@ -10,10 +10,14 @@ use super::{Failure, output};
 
 /// The text of a file.
 pub(crate) fn text(path: &Path) -> Result<String, Failure> {
-    let bytes = fs::read(path).map_err(|error| Failure::input(format!("{}: cannot be read: {error}", path.display())))?;
+    let bytes =
+        fs::read(path).map_err(|error| Failure::input(format!("{}: cannot be read: {error}", path.display())))?;
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        Failure::input(format!("{}: byte {at} is not UTF-8; JSON documents are UTF-8 text", path.display()))
+        Failure::input(format!(
+            "{}: byte {at} is not UTF-8; JSON documents are UTF-8 text",
+            path.display()
+        ))
     })
 }
 
@@ -27,7 +31,9 @@ pub(crate) fn world_file(path: &Path, l2explorer: bool) -> Result<(World, Vec<Wa
     match World::from_json(&name, &text) {
         Ok(world) => Ok((world, Vec::new())),
         Err(error) => Err(match World::from_l2explorer(&name, &text) {
-            Ok(_) => Failure::input(format!("{error}\nhint: this reads as a map of L2Explorer; add --l2explorer")),
+            Ok(_) => Failure::input(format!(
+                "{error}\nhint: this reads as a map of L2Explorer; add --l2explorer"
+            )),
             Err(_) => error.into(),
         }),
     }
@@ -36,7 +42,9 @@ pub(crate) fn world_file(path: &Path, l2explorer: bool) -> Result<(World, Vec<Wa
 /// Whether an argument names a world file rather than a task: a JSON file whose top level has no `"parameters"` or `"name"`.
 pub(crate) fn is_world_file(name: &str) -> bool {
     let path = Path::new(name);
-    let Ok(text) = fs::read_to_string(path) else { return false };
+    let Ok(text) = fs::read_to_string(path) else {
+        return false;
+    };
     match serde_json::from_str::<serde_json::Value>(&text) {
         Ok(json) => json.get("name").is_none() && json.get("parameters").is_none() && json.get("groups").is_none(),
         // What is not JSON is reported by whoever reads it as a task.
@@ -48,7 +56,9 @@ pub(crate) fn is_world_file(name: &str) -> bool {
 pub(crate) fn world(name: &str, seed: u64, index: u64, l2explorer: bool) -> Result<World, Failure> {
     if l2explorer || is_world_file(name) {
         let (world, warnings) = world_file(Path::new(name), l2explorer)?;
-        warnings.iter().for_each(|warning| output::note(format!("warning: {warning}")));
+        warnings
+            .iter()
+            .for_each(|warning| output::note(format!("warning: {warning}")));
         return Ok(world);
     }
     Ok(generator::sample(&tasks::variant(name)?, seed, index)?)
@@ -60,7 +70,10 @@ pub(crate) fn variants(names: &[String]) -> Result<Vec<(String, Variant)>, Failu
     for name in names {
         let (task, _) = tasks::split(name);
         for variant in tasks::variants(name)? {
-            if !found.iter().any(|(known, other)| known == task && other.name() == variant.name()) {
+            if !found
+                .iter()
+                .any(|(known, other)| known == task && other.name() == variant.name())
+            {
                 found.push((task.to_owned(), variant));
             }
         }

@@ -13,7 +13,9 @@ use super::{Failure, output};
 
 /// Score the log of a lifetime.
 #[derive(Args)]
-#[command(after_help = "Example:\n  driftworld metrics demo-out/logs/demo\n  driftworld metrics LOG --ste STE_LOG --perf-measure performance -o results")]
+#[command(
+    after_help = "Example:\n  driftworld metrics demo-out/logs/demo\n  driftworld metrics LOG --ste STE_LOG --perf-measure performance -o results"
+)]
 pub(crate) struct Metrics {
     /// The folder of a log in l2logger's format.
     log: PathBuf,
@@ -64,7 +66,10 @@ impl Metrics {
             output::line(summary(&scores))?;
         }
         let Some(folder) = self.output else { return Ok(()) };
-        let settings = Settings { log_dir: self.log.display().to_string(), options };
+        let settings = Settings {
+            log_dir: self.log.display().to_string(),
+            options,
+        };
         let files = scores.save(folder, &scores.run_id, &settings)?;
         for file in [files.metrics, files.regimes, files.settings] {
             output::note(format!("wrote {}", file.display()));
@@ -76,16 +81,27 @@ impl Metrics {
 /// Reads a log, with its warnings to standard error, and scores it.
 pub(crate) fn score_log(log: &Path, experts: &[PathBuf], options: &Options) -> Result<LifetimeMetrics, Failure> {
     let log = read_log(log)?;
-    log.warnings.iter().for_each(|warning| output::note(format!("warning: {warning}")));
+    log.warnings
+        .iter()
+        .for_each(|warning| output::note(format!("warning: {warning}")));
     let experts = experts.iter().map(read_ste_log).collect::<Result<Vec<_>, _>>()?;
     Ok(score(&log, &experts, options)?)
 }
 
 /// The lifetime's values as a table for a newcomer.
 pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
-    let rows = scores.summary().into_iter().filter(|row| row.value.is_some()).map(|row| {
-        [row.name.to_owned(), number(row.value), good(&row), row.explanation.to_owned()]
-    });
+    let rows = scores
+        .summary()
+        .into_iter()
+        .filter(|row| row.value.is_some())
+        .map(|row| {
+            [
+                row.name.to_owned(),
+                number(row.value),
+                good(&row),
+                row.explanation.to_owned(),
+            ]
+        });
     let head = format!(
         "{}: {} learning and {} evaluation experiences, scored by {}\n\n",
         scores.run_id, scores.num_lx, scores.num_ex, scores.metrics_column

@@ -78,7 +78,10 @@ pub(crate) enum Failure {
 
 impl Failure {
     /// Says on standard error what went wrong.
-    #[expect(clippy::print_stderr, reason = "this is the one place where the command reports its failure")]
+    #[expect(
+        clippy::print_stderr,
+        reason = "this is the one place where the command reports its failure"
+    )]
     pub(crate) fn report(&self) -> ExitCode {
         let (text, code) = match self {
             Self::Input(text) => (text, 1),
@@ -109,7 +112,10 @@ pub(crate) fn quiet_on_closed_pipe() {
     std::panic::set_hook(Box::new(move |info| {
         let text = info.payload_as_str().unwrap_or_default();
         if text.starts_with("failed printing to stdout") && text.contains("Broken pipe") {
-            #[expect(clippy::exit, reason = "the reader of our output has gone: there is nobody left to tell")]
+            #[expect(
+                clippy::exit,
+                reason = "the reader of our output has gone: there is nobody left to tell"
+            )]
             std::process::exit(0);
         }
         default(info);

@@ -22,8 +22,12 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
         // As with `| head`: whoever read us has seen enough.
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {
-            #[expect(clippy::exit, reason = "the reader of our output has gone: there is nobody left to tell")]
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe =>
+        {
+            #[expect(
+                clippy::exit,
+                reason = "the reader of our output has gone: there is nobody left to tell"
+            )]
             std::process::exit(0)
         }
         Err(error) => Err(Failure::input(format!("standard output: {error}"))),
@@ -36,7 +40,10 @@ pub(crate) fn json(value: &impl Serialize) -> Result<(), Failure> {
 }
 
 /// Says something on standard error that is not a result.
-#[expect(clippy::print_stderr, reason = "warnings belong on standard error, beside the results")]
+#[expect(
+    clippy::print_stderr,
+    reason = "warnings belong on standard error, beside the results"
+)]
 pub(crate) fn note(text: impl AsRef<str>) {
     eprintln!("{}", text.as_ref());
 }
@@ -44,7 +51,10 @@ pub(crate) fn note(text: impl AsRef<str>) {
 /// Writes a file under a temporary name beside its own and renames it: it is there whole or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let failed = |error: std::io::Error| Failure::input(format!("{}: cannot be written: {error}", path.display()));
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
     fs::create_dir_all(folder).map_err(failed)?;
     let mut file = NamedTempFile::new_in(folder).map_err(failed)?;
     file.write_all(bytes).map_err(failed)?;
@@ -73,7 +83,11 @@ fn readable_by_all(_: &fs::File) -> std::io::Result<()> {
 
 /// To a file, or to standard output for `-`.
 pub(crate) fn write_or_print(path: &Path, text: &str) -> Result<(), Failure> {
-    if path == Path::new("-") { print(text) } else { write(path, text.as_bytes()) }
+    if path == Path::new("-") {
+        print(text)
+    } else {
+        write(path, text.as_bytes())
+    }
 }
 
 /// A bar on a terminal, nothing elsewhere.

@@ -32,7 +32,11 @@ struct Label<'a> {
 impl Picture {
     /// A white picture.
     pub(crate) fn blank(width: u32, height: u32) -> Self {
-        Self { width, height, rgb: vec![255; width as usize * height as usize * 3] }
+        Self {
+            width,
+            height,
+            rgb: vec![255; width as usize * height as usize * 3],
+        }
     }
 
     /// Puts a picture into this one with its top left corner at `(x, y)`; what does not fit is cut off.
@@ -66,7 +70,10 @@ impl Picture {
     fn label(&mut self, labels: &[Label]) -> Result<(), Failure> {
         self.draw(|area| {
             for label in labels {
-                let style = ("sans-serif", label.size).into_font().color(&label.color).pos(label.anchor);
+                let style = ("sans-serif", label.size)
+                    .into_font()
+                    .color(&label.color)
+                    .pos(label.anchor);
                 area.draw_text(label.text, &style, label.at)?;
             }
             Ok(())
@@ -80,7 +87,9 @@ impl Picture {
     ) -> Result<(), Failure> {
         load_font();
         let area = BitMapBackend::with_buffer(&mut self.rgb, (self.width, self.height)).into_drawing_area();
-        job(&area).and_then(|()| Ok(area.present()?)).map_err(|error| Failure::input(format!("drawing: {error}")))
+        job(&area)
+            .and_then(|()| Ok(area.present()?))
+            .map_err(|error| Failure::input(format!("drawing: {error}")))
     }
 }
 
@@ -112,7 +121,10 @@ pub(crate) fn sheet(rows: &[SheetRow], columns: usize) -> Result<Picture, Failur
     let lines = rows.len().div_ceil(columns) as u32;
     let mut sheet = Picture::blank(cell_width * columns as u32 + GAP, cell_height * lines + GAP);
     for (index, row) in rows.iter().enumerate() {
-        let (left, top) = ((index % columns) as u32 * cell_width + GAP, (index / columns) as u32 * cell_height + GAP);
+        let (left, top) = (
+            (index % columns) as u32 * cell_width + GAP,
+            (index / columns) as u32 * cell_height + GAP,
+        );
         let mut x = left;
         for picture in &row.pictures {
             sheet.paste(picture, x, top + HEAD);
@@ -120,15 +132,31 @@ pub(crate) fn sheet(rows: &[SheetRow], columns: usize) -> Result<Picture, Failur
         }
         let anchor = Pos::new(HPos::Left, VPos::Top);
         sheet.label(&[
-            Label { text: &row.title, at: (left as i32, top as i32), size: 22, color: INK, anchor },
-            Label { text: &row.words, at: (left as i32, top as i32 + 25), size: 15, color: FAINT, anchor },
+            Label {
+                text: &row.title,
+                at: (left as i32, top as i32),
+                size: 22,
+                color: INK,
+                anchor,
+            },
+            Label {
+                text: &row.words,
+                at: (left as i32, top as i32 + 25),
+                size: 15,
+                color: FAINT,
+                anchor,
+            },
         ])?;
     }
     Ok(sheet)
 }
 
 /// A square table of distances as coloured cells with their numbers; `labels` name rows and columns.
-pub(crate) fn heat_map(title: &str, labels: &[String], value: impl Fn(usize, usize) -> f64) -> Result<Picture, Failure> {
+pub(crate) fn heat_map(
+    title: &str,
+    labels: &[String],
+    value: impl Fn(usize, usize) -> f64,
+) -> Result<Picture, Failure> {
     let n = labels.len() as i32;
     let longest = labels.iter().map(|label| label.chars().count()).max().unwrap_or(0) as i32;
     let cell = (640 / n.max(1)).clamp(16, 92);
@@ -141,10 +169,16 @@ pub(crate) fn heat_map(title: &str, labels: &[String], value: impl Fn(usize, usi
             let (row, column) = (k as i32 / n, k as i32 % n);
             let (x, y) = (left + column * cell, top + row * cell);
             let share = if largest > 0.0 { number / largest } else { 0.0 };
-            area.draw(&Rectangle::new([(x, y), (x + cell - 2, y + cell - 2)], shade(share).filled()))?;
+            area.draw(&Rectangle::new(
+                [(x, y), (x + cell - 2, y + cell - 2)],
+                shade(share).filled(),
+            ))?;
             if cell >= 36 {
                 let ink = if share > 0.55 { WHITE } else { INK };
-                let style = ("sans-serif", 16).into_font().color(&ink).pos(Pos::new(HPos::Center, VPos::Center));
+                let style = ("sans-serif", 16)
+                    .into_font()
+                    .color(&ink)
+                    .pos(Pos::new(HPos::Center, VPos::Center));
                 area.draw_text(&format!("{number:.2}"), &style, (x + cell / 2, y + cell / 2))?;
             }
         }
@@ -160,10 +194,22 @@ pub(crate) fn heat_map(title: &str, labels: &[String], value: impl Fn(usize, usi
     for (label, index) in labels.iter().zip(0..) {
         let middle = index * cell + cell / 2;
         let right = Pos::new(HPos::Right, VPos::Center);
-        texts.push(Label { text: label, at: (left - 10, top + middle), size: 16, color: INK, anchor: right });
+        texts.push(Label {
+            text: label,
+            at: (left - 10, top + middle),
+            size: 16,
+            color: INK,
+            anchor: right,
+        });
         if cell >= 56 {
             let above = Pos::new(HPos::Center, VPos::Bottom);
-            texts.push(Label { text: label, at: (left + middle, top - 8), size: 16, color: INK, anchor: above });
+            texts.push(Label {
+                text: label,
+                at: (left + middle, top - 8),
+                size: 16,
+                color: INK,
+                anchor: above,
+            });
         }
     }
     picture.label(&texts)?;

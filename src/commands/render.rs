@@ -62,7 +62,12 @@ impl Render {
         let world = input::world(&self.world, self.seed, self.index, self.l2explorer)?;
         let picture = self.picture(&world)?;
         picture.write(&self.output)?;
-        output::line(format!("{}: {} × {} pixels", self.output.display(), picture.width, picture.height))
+        output::line(format!(
+            "{}: {} × {} pixels",
+            self.output.display(),
+            picture.width,
+            picture.height
+        ))
     }
 
     fn picture(&self, world: &World) -> Result<Picture, Failure> {
@@ -82,8 +87,16 @@ impl Render {
                 };
                 sheet(
                     &[
-                        row("The world", "from outside, and from above with the agent", vec![views.overview(self.size * 16 / 9), views.top_down()]),
-                        row("What the agent sees", "colour, depth (white at 100 m), reward category", vec![seen.rgb, seen.depth, seen.segmentation]),
+                        row(
+                            "The world",
+                            "from outside, and from above with the agent",
+                            vec![views.overview(self.size * 16 / 9), views.top_down()],
+                        ),
+                        row(
+                            "What the agent sees",
+                            "colour, depth (white at 100 m), reward category",
+                            vec![seen.rgb, seen.depth, seen.segmentation],
+                        ),
                     ],
                     1,
                 )?
@@ -109,13 +122,22 @@ pub(crate) struct Seen {
 
 impl<'a> Views<'a> {
     pub(crate) fn new(world: &'a World, size: u32, turn: f32) -> Self {
-        Self { world, scene: Scene::from_world(world), size, turn }
+        Self {
+            world,
+            scene: Scene::from_world(world),
+            size,
+            turn,
+        }
     }
 
     /// From outside, above a corner of the arena.
     pub(crate) fn overview(&self, width: u32) -> Picture {
         let frame = self.frame(&Camera::overview(&self.scene), width, self.size);
-        Picture { width, height: self.size, rgb: frame.rgb }
+        Picture {
+            width,
+            height: self.size,
+            rgb: frame.rgb,
+        }
     }
 
     /// What the agent sees at the start.
@@ -128,10 +150,25 @@ impl<'a> Views<'a> {
             agent.field_of_view as f32,
         );
         let frame = self.frame(&camera, self.size, self.size);
-        let picture = |rgb| Picture { width: self.size, height: self.size, rgb };
+        let picture = |rgb| Picture {
+            width: self.size,
+            height: self.size,
+            rgb,
+        };
         Seen {
-            depth: picture(depth_to_gray(&frame.depth).into_iter().flat_map(|gray| [gray; 3]).collect()),
-            segmentation: picture(frame.category.iter().flat_map(|category| category_color(*category)).collect()),
+            depth: picture(
+                depth_to_gray(&frame.depth)
+                    .into_iter()
+                    .flat_map(|gray| [gray; 3])
+                    .collect(),
+            ),
+            segmentation: picture(
+                frame
+                    .category
+                    .iter()
+                    .flat_map(|category| category_color(*category))
+                    .collect(),
+            ),
             rgb: picture(frame.rgb),
         }
     }
@@ -141,7 +178,11 @@ impl<'a> Views<'a> {
         let agent = &self.world.agent_params;
         let marker = Some((agent.coordinates.map(|metres| metres as f32), agent.heading as f32));
         let image = top_down(&self.scene, self.size, self.size, marker);
-        Picture { width: image.width, height: image.height, rgb: image.rgb }
+        Picture {
+            width: image.width,
+            height: image.height,
+            rgb: image.rgb,
+        }
     }
 
     fn frame(&self, camera: &Camera, width: u32, height: u32) -> Frame {

@@ -47,7 +47,10 @@ impl Sample {
         let sampler = Sampler::new(&tasks::variant(&self.task)?, self.seed)?;
         let count = self.count.unwrap_or(1);
         if self.index.checked_add(count).is_none() {
-            return Err(Failure::usage(format!("--index {} leaves no room for --count {count}", self.index)));
+            return Err(Failure::usage(format!(
+                "--index {} leaves no room for --count {count}",
+                self.index
+            )));
         }
         if self.jsonl {
             return self.stream(&sampler, count);
@@ -56,7 +59,9 @@ impl Sample {
             return output::write_or_print(&self.output, &line_of(&sampler, self.index)?);
         }
         if self.output == Path::new("-") {
-            return Err(Failure::usage("several worlds go to a folder (-o DIR), or as one world a line (--jsonl)"));
+            return Err(Failure::usage(
+                "several worlds go to a folder (-o DIR), or as one world a line (--jsonl)",
+            ));
         }
         self.files(&sampler, count)
     }
@@ -65,7 +70,11 @@ impl Sample {
         if self.output == Path::new("-") {
             return self.lines(sampler, count, |text| output::print(text));
         }
-        let folder = self.output.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = self
+            .output
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty())
+            .unwrap_or(Path::new("."));
         let failed =
             |error: std::io::Error| Failure::input(format!("{}: cannot be written: {error}", self.output.display()));
         std::fs::create_dir_all(folder).map_err(failed)?;
@@ -87,8 +96,10 @@ impl Sample {
         let mut first = self.index;
         while first < end {
             let next = end.min(first.saturating_add(CHUNK));
-            let lines: Vec<_> =
-                (first..next).into_par_iter().map(|index| Ok(sampler.world(index)?.to_json() + "\n")).collect();
+            let lines: Vec<_> = (first..next)
+                .into_par_iter()
+                .map(|index| Ok(sampler.world(index)?.to_json() + "\n"))
+                .collect();
             for line in lines {
                 take(&line.map_err(|error: driftworld::generator::GeneratorError| Failure::from(error))?)?;
             }

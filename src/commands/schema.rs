@@ -26,7 +26,10 @@ impl Schema {
     pub(crate) fn run(self) -> Result<(), Failure> {
         if let Some(document) = &self.document {
             let file = format!("{document}.schema.json");
-            return texts()?.into_iter().filter(|(name, _)| *name == file).try_for_each(|(_, text)| output::print(&text));
+            return texts()?
+                .into_iter()
+                .filter(|(name, _)| *name == file)
+                .try_for_each(|(_, text)| output::print(&text));
         }
         if let Some(folder) = &self.check {
             for (name, expected) in texts()? {
@@ -39,7 +42,9 @@ impl Schema {
             return output::line(format!("{}: up to date", folder.display()));
         }
         let Some(folder) = &self.output else {
-            return Err(Failure::usage("name a document (world, task, scenario), a folder with -o, or one with --check"));
+            return Err(Failure::usage(
+                "name a document (world, task, scenario), a folder with -o, or one with --check",
+            ));
         };
         for (name, text) in texts()? {
             let path = folder.join(name);
@@ -52,5 +57,8 @@ impl Schema {
 
 fn texts() -> Result<Vec<(&'static str, String)>, Failure> {
     let text = |json| serde_json::to_string_pretty(json).map(|text| text + "\n");
-    schema::all().into_iter().map(|(name, schema)| Ok((name, text(schema.json())?))).collect()
+    schema::all()
+        .into_iter()
+        .map(|(name, schema)| Ok((name, text(schema.json())?)))
+        .collect()
 }

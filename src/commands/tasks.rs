@@ -42,7 +42,10 @@ impl Tasks {
 }
 
 fn list(as_json: bool) -> Result<(), Failure> {
-    let tasks = tasks::built_in_names().into_iter().map(tasks::task).collect::<Result<Vec<_>, _>>()?;
+    let tasks = tasks::built_in_names()
+        .into_iter()
+        .map(tasks::task)
+        .collect::<Result<Vec<_>, _>>()?;
     if as_json {
         let list: Vec<_> = tasks
             .iter()
@@ -63,20 +66,34 @@ fn list(as_json: bool) -> Result<(), Failure> {
 fn show(task: &std::sync::Arc<TaskSpec>, as_json: bool) -> Result<(), Failure> {
     let variants = task.all_variants();
     if as_json {
-        let values: serde_json::Map<_, _> =
-            variants.iter().map(|variant| (variant.name().to_owned(), json!(variant.values()))).collect();
+        let values: serde_json::Map<_, _> = variants
+            .iter()
+            .map(|variant| (variant.name().to_owned(), json!(variant.values())))
+            .collect();
         return output::json(&json!({ "task": task.name(), "parameters": task.parameters(), "variants": values }));
     }
     output::line(format!("{}: {}\n", task.name(), task.description()))?;
     let rows = task.parameters().iter().map(|(name, parameter)| {
         let affects: Vec<&str> = parameter.affects.iter().map(|element| element.letter()).collect();
-        [name.clone(), role(parameter.role).to_owned(), affects.join(" "), domain(parameter)]
+        [
+            name.clone(),
+            role(parameter.role).to_owned(),
+            affects.join(" "),
+            domain(parameter),
+        ]
     });
     output::line(table(["parameter", "role", "affects", "domain"], rows.collect(), &[]))?;
     output::line("")?;
-    let varying: Vec<&String> = task.parameters().iter().filter(|(_, p)| p.role == Role::Variant).map(|(n, _)| n).collect();
+    let varying: Vec<&String> = task
+        .parameters()
+        .iter()
+        .filter(|(_, p)| p.role == Role::Variant)
+        .map(|(n, _)| n)
+        .collect();
     let rows = variants.iter().map(|variant| {
-        let values = varying.iter().filter_map(|name| Some(format!("{name} {}", variant.value(name)?)));
+        let values = varying
+            .iter()
+            .filter_map(|name| Some(format!("{name} {}", variant.value(name)?)));
         [variant.name().to_owned(), values.collect::<Vec<_>>().join(", ")]
     });
     output::line(table(["variant", "values"], rows.collect(), &[]))
@@ -92,12 +109,13 @@ fn role(role: Role) -> &'static str {
 
 /// What a parameter may be, in a few words.
 fn domain(parameter: &Parameter) -> String {
-    let unit = parameter.unit.as_ref().map_or_else(String::new, |unit| format!(" {unit}"));
+    let unit = parameter
+        .unit
+        .as_ref()
+        .map_or_else(String::new, |unit| format!(" {unit}"));
     let text = match (parameter.domain(), &parameter.value, &parameter.distribution) {
         (Some(Domain::Range([low, high])), _, _) => format!("{low} to {high}"),
-        (Some(Domain::Choices(choices)), _, _) => {
-            choices.iter().map(Value::to_string).collect::<Vec<_>>().join(", ")
-        }
+        (Some(Domain::Choices(choices)), _, _) => choices.iter().map(Value::to_string).collect::<Vec<_>>().join(", "),
         (None, Some(value), _) => value.to_string(),
         (None, None, Some(distribution)) => serde_json::to_string(distribution).unwrap_or_default(),
         (None, None, None) => String::new(),

@@ -36,7 +36,10 @@ struct Verdict {
 impl Validate {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let files = files(&self.files)?;
-        let verdicts = files.into_iter().map(|path| self.check(path)).collect::<Result<Vec<_>, _>>()?;
+        let verdicts = files
+            .into_iter()
+            .map(|path| self.check(path))
+            .collect::<Result<Vec<_>, _>>()?;
         if self.json {
             output::json(&verdicts.iter().map(Verdict::to_json).collect::<Vec<_>>())?;
         } else {
@@ -66,7 +69,12 @@ impl Validate {
             },
             _ => ("world", World::from_json(&name, &text).err()),
         };
-        Ok(Verdict { path, kind, warnings, error })
+        Ok(Verdict {
+            path,
+            kind,
+            warnings,
+            error,
+        })
     }
 }
 
@@ -113,7 +121,9 @@ fn folder(path: &Path) -> Result<Vec<PathBuf>, Failure> {
 
 impl Verdict {
     fn print(&self) -> Result<(), Failure> {
-        self.warnings.iter().for_each(|warning| output::note(format!("warning: {warning}")));
+        self.warnings
+            .iter()
+            .for_each(|warning| output::note(format!("warning: {warning}")));
         match &self.error {
             None => output::line(format!("{}: a valid {}", self.path.display(), self.kind)),
             Some(error) => {
@@ -126,7 +136,11 @@ impl Verdict {
     fn to_json(&self) -> Value {
         let problems = self.error.as_ref().map(|error| {
             let listed: Vec<Value> = error.problems().iter().map(problem_json).collect();
-            if listed.is_empty() { vec![json!({ "code": error.code(), "message": error.to_string() })] } else { listed }
+            if listed.is_empty() {
+                vec![json!({ "code": error.code(), "message": error.to_string() })]
+            } else {
+                listed
+            }
         });
         json!({
             "file": self.path, "kind": self.kind, "valid": self.error.is_none(),

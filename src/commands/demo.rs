@@ -1,0 +1,191 @@
+//! `driftworld demo`: the whole way once, on `find_objects`, with every product kept. Each step is a subcommand of its own.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use driftworld::curriculum::{Design, design};
+use driftworld::generator::Sampler;
+use driftworld::metrics::{Options, Settings};
+use driftworld::similarity::{DistanceMatrix, Method, Ordering, order};
+use driftworld::spec::{Scenario, Variant, World};
+use driftworld::tasks;
+
+use super::curriculum::{blocks, choices};
+use super::metrics::{score_log, summary};
+use super::order::{matrix, path_table};
+use super::pictures::{SheetRow, heat_map, sheet};
+use super::render::Views;
+use super::run::{Who, live, regimes};
+use super::{Failure, output};
+
+/// The task that the demo is about.
+const TASK: &str = "find_objects";
+
+/// Go the whole way once: worlds, pictures, distances, a curriculum, a lifetime, its scores.
+#[derive(Args)]
+#[command(after_help = "Example:\n  driftworld demo -o demo-out")]
+pub(crate) struct Demo {
+    /// The folder for everything; what an earlier demo left there is replaced.
+    #[arg(short, long, default_value = "demo-out", value_name = "DIR")]
+    output: PathBuf,
+    /// The seed of the worlds.
+    #[arg(long, default_value_t = 7)]
+    seed: u64,
+}
+
+/// A variant with the world that pictures show of it.
+struct Shown {
+    variant: Variant,
+    world: World,
+}
+
+impl Demo {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let folder = &self.output;
+        let variants: Vec<(String, Variant)> = tasks::variants(TASK)?
+            .into_iter()
+            .map(|variant| (TASK.to_owned(), variant))
+            .collect();
+
+        heading(
+            "1",
+            "One world of each variant, under one seed: what differs is what the variants say",
+        )?;
+        let shown = self.worlds(&variants)?;
+        self.pictures(&shown)?;
+
+        heading("2", "How far apart the variants are, from 0 to 1")?;
+        let matrix = matrix(&variants)?;
+        let ordering = order(&matrix, Method::Exact, Some(0))?;
+        output::write(&folder.join("distances.csv"), matrix.to_csv().as_bytes())?;
+        let short: Vec<String> = variants.iter().map(|(_, variant)| variant.name().to_owned()).collect();
+        heat_map("Distances between the variants of find_objects", &short, |a, b| {
+            matrix.get(a, b)
+        })?
+        .write(&folder.join("distances.png"))?;
+        output::line(path_table(&matrix, &ordering))?;
+
+        heading(
+            "3",
+            "A curriculum: the shortest way through them, evaluated before and after each block",
+        )?;
+        let scenario = self.scenario(&variants, &matrix, &ordering)?;
+
+        heading("4", "A lifetime: an agent that knows the map lives it")?;
+        let logs = folder.join("log");
+        remove_old_log(&logs)?;
+        let lived = live(&scenario, Who::Onrails, &logs)?;
+        output::line(regimes(&lived))?;
+
+        heading("5", "What the lifetime is worth, by the metrics of lifelong learning")?;
+        let options = Options::default();
+        let scores = score_log(&logs, &[], &options)?;
+        let settings = Settings {
+            log_dir: logs.display().to_string(),
+            options,
+        };
+        scores.save(folder.join("scores"), "demo", &settings)?;
+        output::line(summary(&scores))?;
+        output::line(
+            "\nThis agent does not learn, so nothing is gained or lost: maintenance near 0, transfer near 1.",
+        )?;
+
+        heading("", "Everything is in")?;
+        output::line(contents(folder))
+    }
+
+    fn worlds(&self, variants: &[(String, Variant)]) -> Result<Vec<Shown>, Failure> {
+        let mut shown = Vec::new();
+        for (_, variant) in variants {
+            let world = Sampler::new(variant, self.seed)?.world(0)?;
+            let path = self.output.join("worlds").join(format!("{}.json", variant.name()));
+            output::write(&path, world.to_json_pretty().as_bytes())?;
+            let said = variant.task().variant_description(variant.name()).unwrap_or_default();
+            output::line(format!("{:<10} {said}", variant.name()))?;
+            shown.push(Shown {
+                variant: variant.clone(),
+                world,
+            });
+        }
+        Ok(shown)
+    }
+
+    fn pictures(&self, shown: &[Shown]) -> Result<(), Failure> {
+        let row = |shown: &Shown| {
+            let views = Views::new(&shown.world, 240, 0.0);
+            let map = views.top_down();
+            let name = shown.variant.name();
+            map.write(&self.output.join("maps").join(format!("{name}.png")))?;
+            Ok(SheetRow {
+                title: shown.variant.id(),
+                words: shown
+                    .variant
+                    .task()
+                    .variant_description(name)
+                    .unwrap_or_default()
+                    .to_owned(),
+                pictures: vec![views.first_person().rgb, map],
+            })
+        };
+        let rows = shown.iter().map(row).collect::<Result<Vec<_>, Failure>>()?;
+        sheet(&rows, 2)?.write(&self.output.join("contact-sheet.png"))
+    }
+
+    fn scenario(
+        &self,
+        variants: &[(String, Variant)],
+        matrix: &DistanceMatrix,
+        ordering: &Ordering,
+    ) -> Result<Scenario, Failure> {
+        let options = Design {
+            name: "demo".to_owned(),
+            learn: 10,
+            evaluate: 3,
+            seed: self.seed,
+            ..Design::default()
+        };
+        let scenario = design(&choices(variants, &ordering.indices), &options)?;
+        output::write(&self.output.join("scenario.json"), scenario.to_json_pretty().as_bytes())?;
+        output::line(blocks(&scenario, Some(matrix)))?;
+        Ok(scenario)
+    }
+}
+
+fn heading(number: &str, text: &str) -> Result<(), Failure> {
+    let number = if number.is_empty() {
+        String::new()
+    } else {
+        format!("{number}. ")
+    };
+    output::line(format!("\n{number}{text}\n"))
+}
+
+/// A demo may be run again and again: its own log is replaced, anything else in the way is not.
+fn remove_old_log(logs: &Path) -> Result<(), Failure> {
+    let failed = |error| Failure::input(format!("{}: cannot be removed: {error}", logs.display()));
+    if !logs.exists() {
+        return Ok(());
+    }
+    if !logs.join("logger_info.json").exists() {
+        return Err(Failure::input(format!(
+            "{}: is not a log of an earlier demo; choose another folder with -o",
+            logs.display()
+        )));
+    }
+    std::fs::remove_dir_all(logs).map_err(failed)
+}
+
+fn contents(folder: &Path) -> String {
+    let entries = [
+        ("contact-sheet.png", "each variant as the agent sees it, and from above"),
+        ("maps/", "the maps alone"),
+        ("worlds/", "the worlds: driftworld render FILE draws one"),
+        ("distances.csv", "the distance matrix"),
+        ("distances.png", "the same as a heat map"),
+        ("scenario.json", "the curriculum: driftworld run FILE lives it"),
+        ("log/", "every experience, in l2logger's format"),
+        ("scores/", "the metrics: driftworld metrics on the log prints them"),
+    ];
+    let line = |(name, what): &(&str, &str)| format!("  {:<36} {what}", folder.join(name).display().to_string());
+    entries.iter().map(line).collect::<Vec<_>>().join("\n")
+}

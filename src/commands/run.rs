@@ -1,0 +1,117 @@
+//! `driftworld run`: a scenario lived by an agent into a log. Living it is `curriculum`'s; the clock and the files are here.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use driftworld::curriculum::{Progress, Summary, Surroundings, logger_info, run, scenario_info};
+use driftworld::env::{Agent, OnRailsAgent, RandomAgent};
+use driftworld::metrics::{LogWriter, Timestamp};
+use driftworld::spec::{BlockKind, Scenario, Variant};
+use driftworld::tasks;
+
+use super::table::table;
+use super::{Failure, input, output};
+
+/// Live a curriculum with an agent and log every experience.
+#[derive(Args)]
+#[command(after_help = "Example:
+  driftworld run scenario.json --agent onrails --logs logs/first
+  driftworld metrics logs/first")]
+pub(crate) struct Run {
+    /// The scenario file.
+    scenario: PathBuf,
+    /// Who lives it.
+    #[arg(long, value_enum, default_value_t = Who::Onrails)]
+    agent: Who,
+    /// A folder for the log; it must not hold anything yet.
+    #[arg(long, default_value = "logs/run", value_name = "DIR")]
+    logs: PathBuf,
+    /// Print the summary as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// The built-in agents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Who {
+    /// Acts at random.
+    Random,
+    /// Knows the map and tours what pays.
+    Onrails,
+}
+
+impl Run {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let text = input::text(&self.scenario)?;
+        let scenario = Scenario::from_json(&self.scenario.display().to_string(), &text)?;
+        let summary = live(&scenario, self.agent, &self.logs)?;
+        if self.json {
+            return output::json(&summary);
+        }
+        output::line(regimes(&summary))?;
+        output::line(format!(
+            "\n{} experiences, {} steps; log in {}",
+            summary.experiences,
+            summary.steps,
+            self.logs.display()
+        ))
+    }
+}
+
+/// Lives a scenario into a new log, with a bar on a terminal.
+pub(crate) fn live(scenario: &Scenario, who: Who, logs: &Path) -> Result<Summary, Failure> {
+    let name = if who == Who::Random { "random" } else { "onrails" };
+    let mut agent: Box<dyn Agent> = match who {
+        Who::Random => Box::new(RandomAgent::new(0)),
+        Who::Onrails => Box::new(OnRailsAgent::new()),
+    };
+    let mut log = LogWriter::create(logs, &logger_info()?, &scenario_info(scenario, name))?;
+    let bar = output::progress(scenario.num_experiences(), "living");
+    let mut around = Surroundings {
+        find: &mut find,
+        now: &mut now,
+        watch: &mut |progress: &Progress| {
+            bar.set_position(progress.done);
+            bar.set_message(progress.variant.clone());
+            ControlFlow::Continue(())
+        },
+    };
+    let summary = run(scenario, agent.as_mut(), &mut log, &mut around)?;
+    log.finish()?;
+    bar.finish_and_clear();
+    Ok(summary)
+}
+
+fn find(task: &str, variant: &str) -> Result<Variant, String> {
+    tasks::variant(&format!("{task}#{variant}")).map_err(|error| error.to_string())
+}
+
+fn now() -> Timestamp {
+    let micros = jiff::Timestamp::now().as_microsecond();
+    Timestamp::from_unix_micros(micros).expect("the clock shows a year from 1 to 9999")
+}
+
+/// What each regime came to.
+pub(crate) fn regimes(summary: &Summary) -> String {
+    let rows = summary.regimes.iter().map(|regime| {
+        [
+            regime.block.to_string(),
+            if regime.kind == BlockKind::Learning {
+                "learning"
+            } else {
+                "evaluation"
+            }
+            .to_owned(),
+            regime.variant.clone(),
+            regime.experiences.to_string(),
+            format!("{:.1}", regime.mean_reward),
+            format!("{:.0}%", 100.0 * regime.success_rate),
+        ]
+    });
+    table(
+        ["block", "kind", "variant", "experiences", "mean reward", "success"],
+        rows.collect(),
+        &[0, 3, 4, 5],
+    )
+}
