@@ -34,15 +34,15 @@ impl Camera {
         }
     }
 
-    /// The arena from above its south-west corner, all of it in the picture.
+    /// The arena and the sky above it, from over its south-western corner.
     pub fn overview(scene: &Scene) -> Self {
         let [width, depth] = scene.arena_size();
         let span = width.max(depth).max(4.0);
         Self {
-            position: [-0.34 * span, -0.78 * span, 0.52 * span],
-            heading_deg: 23.5,
-            pitch_deg: -33.0,
-            field_of_view_deg: 52.0,
+            position: [-0.30 * span, -0.62 * span, 0.24 * span],
+            heading_deg: 24.0,
+            pitch_deg: -16.0,
+            field_of_view_deg: 50.0,
         }
     }
 

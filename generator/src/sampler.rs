@@ -63,7 +63,7 @@ enum Fill {
     /// The randomized parameter of this number.
     Parameter(usize),
     /// A draw of its own.
-    Own(Drawn),
+    Own(Box<Drawn>),
 }
 
 #[derive(Debug)]
@@ -264,7 +264,9 @@ impl Compiler<'_> {
     /// What fills a hole in each world, or the value that it has in all.
     fn fill(&self, source: &Source, name: &str, randomized: &[&str]) -> Result<Fill, Value> {
         match source {
-            Source::Distribution(distribution) => Ok(Fill::Own(self.drawn(self.variant.settle(distribution), name))),
+            Source::Distribution(distribution) => {
+                Ok(Fill::Own(Box::new(self.drawn(self.variant.settle(distribution), name))))
+            }
             Source::Param(parameter) => match randomized.iter().position(|name| name == parameter) {
                 Some(index) => Ok(Fill::Parameter(index)),
                 None => Err(self

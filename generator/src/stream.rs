@@ -9,7 +9,7 @@ const WORDS_PER_OBJECT: u128 = 1 << 21;
 
 /// The key of one named stream of a task under a seed.
 ///
-/// The numbers are ChaCha8's under a key that is the SHA-256 of task, seed and name; the world's index is the stream
+/// The numbers are `ChaCha8`'s under a key that is the SHA-256 of task, seed and name; the world's index is the stream
 /// number and the object's number the place in it. Any of them can be had without any other.
 #[derive(Clone, Debug)]
 pub(crate) struct Stream {

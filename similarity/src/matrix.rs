@@ -93,7 +93,7 @@ impl DistanceMatrix {
         let mut text = format!(",{}\n", names.join(","));
         for (name, row) in names.iter().zip(self.values.rows()) {
             let numbers: Vec<String> = row.iter().map(f64::to_string).collect();
-            text += &format!("{name},{}\n", numbers.join(","));
+            text.extend([name, ",", &numbers.join(","), "\n"]);
         }
         text
     }

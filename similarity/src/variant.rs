@@ -61,17 +61,18 @@ fn by_value(parameter: &Parameter, a: &Value, b: &Value) -> Difference {
             let raw = length(*a, *b);
             ("euclidean / widest choice", raw, share(raw, widest_choice(parameter)))
         }
-        _ => match (a.as_number(), b.as_number()) {
-            (Some(a), Some(b)) => (
-                "difference / range",
-                (a - b).abs(),
-                share((a - b).abs(), range(parameter)),
-            ),
-            _ => {
+        _ => {
+            if let (Some(a), Some(b)) = (a.as_number(), b.as_number()) {
+                (
+                    "difference / range",
+                    (a - b).abs(),
+                    share((a - b).abs(), range(parameter)),
+                )
+            } else {
                 let raw = if a == b { 0.0 } else { 1.0 };
                 ("same or not", raw, raw)
             }
-        },
+        }
     }
 }
 

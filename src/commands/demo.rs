@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use driftworld::curriculum::{Design, design};
+use driftworld::curriculum::{Design, Summary, design};
 use driftworld::generator::Sampler;
 use driftworld::metrics::{Options, Settings};
 use driftworld::similarity::{DistanceMatrix, Method, Ordering, order};
-use driftworld::spec::{Scenario, Variant, World};
+use driftworld::spec::{BlockKind, Scenario, Variant, World};
 use driftworld::tasks;
 
 use super::curriculum::{blocks, choices};
@@ -15,7 +15,8 @@ use super::metrics::{score_log, summary};
 use super::order::{matrix, path_table};
 use super::pictures::{SheetRow, heat_map, sheet};
 use super::render::Views;
-use super::run::{Who, live, regimes};
+use super::run::{Who, live};
+use super::table::wide_table;
 use super::{Failure, output};
 
 /// The task that the demo is about.
@@ -75,7 +76,7 @@ impl Demo {
         let logs = folder.join("log");
         remove_old_log(&logs)?;
         let lived = live(&scenario, Who::Onrails, &logs)?;
-        output::line(regimes(&lived))?;
+        output::line(block_table(&lived))?;
 
         heading("5", "What the lifetime is worth, by the metrics of lifelong learning")?;
         let options = Options::default();
@@ -158,6 +159,39 @@ fn heading(number: &str, text: &str) -> Result<(), Failure> {
         format!("{number}. ")
     };
     output::line(format!("\n{number}{text}\n"))
+}
+
+/// One row for each block: what was learned, and the mean reward of every variant in the evaluation after it.
+fn block_table(summary: &Summary) -> String {
+    let mut variants: Vec<&str> = Vec::new();
+    for regime in summary
+        .regimes
+        .iter()
+        .filter(|regime| regime.kind == BlockKind::Evaluation)
+    {
+        if !variants.contains(&regime.variant.as_str()) {
+            variants.push(&regime.variant);
+        }
+    }
+    let short = |variant: &str| tasks::split(variant).1.unwrap_or(variant).to_owned();
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    let mut learned = "nothing yet".to_owned();
+    for regime in &summary.regimes {
+        if regime.kind == BlockKind::Learning {
+            learned = format!("{} ({:.1})", short(&regime.variant), regime.mean_reward);
+            continue;
+        }
+        if rows.last().is_none_or(|row| row[0] != regime.block.to_string()) {
+            rows.push(vec![regime.block.to_string(), std::mem::take(&mut learned)]);
+        }
+        if let Some(row) = rows.last_mut() {
+            row.push(format!("{:.1}", regime.mean_reward));
+        }
+    }
+    let mut headings = vec!["block".to_owned(), "learned (reward)".to_owned()];
+    headings.extend(variants.into_iter().map(short));
+    let numbers: Vec<usize> = (2..headings.len()).collect();
+    "Mean reward of each variant in every evaluation:\n\n".to_owned() + &wide_table(headings, rows, &numbers)
 }
 
 /// A demo may be run again and again: its own log is replaced, anything else in the way is not.

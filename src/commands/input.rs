@@ -56,9 +56,9 @@ pub(crate) fn is_world_file(name: &str) -> bool {
 pub(crate) fn world(name: &str, seed: u64, index: u64, l2explorer: bool) -> Result<World, Failure> {
     if l2explorer || is_world_file(name) {
         let (world, warnings) = world_file(Path::new(name), l2explorer)?;
-        warnings
-            .iter()
-            .for_each(|warning| output::note(format!("warning: {warning}")));
+        for warning in warnings {
+            output::note(format!("warning: {warning}"));
+        }
         return Ok(world);
     }
     Ok(generator::sample(&tasks::variant(name)?, seed, index)?)

@@ -40,7 +40,7 @@ pub(crate) struct Metrics {
     /// How learning curves are smoothed: flat, hanning, hamming, bartlett, blackman or none.
     #[arg(long, default_value = "flat", value_name = "METHOD")]
     smoothing_method: SmoothingMethod,
-    /// Write NAME_metrics.json, NAME_regime.tsv and NAME_settings.json into this folder; NAME is the log's.
+    /// Write `NAME_metrics.json`, `NAME_regime.tsv` and `NAME_settings.json` into this folder; NAME is the log's.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Print the result as JSON.

@@ -49,6 +49,24 @@ impl Picture {
         }
     }
 
+    /// The picture at half the size, each pixel the mean of four: smooth edges for what was drawn too large.
+    pub(crate) fn halved(&self) -> Self {
+        let (width, height) = (self.width / 2, self.height / 2);
+        let mut half = Self::blank(width, height);
+        let at =
+            |x: u32, y: u32, k: usize| u32::from(self.rgb[(y as usize * self.width as usize + x as usize) * 3 + k]);
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            for k in 0..3 {
+                let sum = at(2 * x, 2 * y, k)
+                    + at(2 * x + 1, 2 * y, k)
+                    + at(2 * x, 2 * y + 1, k)
+                    + at(2 * x + 1, 2 * y + 1, k);
+                half.rgb[(y as usize * width as usize + x as usize) * 3 + k] = ((sum + 2) / 4) as u8;
+            }
+        }
+        half
+    }
+
     /// The picture as a PNG file's bytes.
     pub(crate) fn to_png(&self) -> Result<Vec<u8>, Failure> {
         let mut bytes = Vec::new();

@@ -80,6 +80,7 @@ impl Render {
             View::Segmentation => views.first_person().segmentation,
             View::Sheet => {
                 let seen = views.first_person();
+                let quarter = Views::new(world, self.size * 2 / 3, self.turn as f32);
                 let row = |title: &str, words: &str, pictures| SheetRow {
                     title: title.into(),
                     words: words.into(),
@@ -96,6 +97,11 @@ impl Render {
                             "What the agent sees",
                             "colour, depth (white at 100 m), reward category",
                             vec![seen.rgb, seen.depth, seen.segmentation],
+                        ),
+                        row(
+                            "All around the agent",
+                            "ahead, right, behind, left; 90° each",
+                            quarter.all_around(),
                         ),
                     ],
                     1,
@@ -132,23 +138,12 @@ impl<'a> Views<'a> {
 
     /// From outside, above a corner of the arena.
     pub(crate) fn overview(&self, width: u32) -> Picture {
-        let frame = self.frame(&Camera::overview(&self.scene), width, self.size);
-        Picture {
-            width,
-            height: self.size,
-            rgb: frame.rgb,
-        }
+        self.smooth(&Camera::overview(&self.scene), width)
     }
 
     /// What the agent sees at the start.
     pub(crate) fn first_person(&self) -> Seen {
-        let agent = &self.world.agent_params;
-        let camera = Camera::first_person(
-            agent.coordinates.map(|metres| metres as f32),
-            agent.heading as f32 + self.turn,
-            agent.agent_height as f32,
-            agent.field_of_view as f32,
-        );
+        let camera = self.agent_camera(self.turn);
         let frame = self.frame(&camera, self.size, self.size);
         let picture = |rgb| Picture {
             width: self.size,
@@ -156,6 +151,7 @@ impl<'a> Views<'a> {
             rgb,
         };
         Seen {
+            rgb: self.smooth(&camera, self.size),
             depth: picture(
                 depth_to_gray(&frame.depth)
                     .into_iter()
@@ -169,20 +165,55 @@ impl<'a> Views<'a> {
                     .flat_map(|category| category_color(*category))
                     .collect(),
             ),
-            rgb: picture(frame.rgb),
         }
+    }
+
+    /// What the agent sees ahead, to its right, behind and to its left.
+    pub(crate) fn all_around(&self) -> Vec<Picture> {
+        let look = |turn: f32| {
+            let camera = Camera {
+                field_of_view_deg: 90.0,
+                ..self.agent_camera(self.turn + turn)
+            };
+            self.smooth(&camera, self.size)
+        };
+        [0.0, 90.0, 180.0, 270.0].map(look).to_vec()
     }
 
     /// The map with the agent's start on it.
     pub(crate) fn top_down(&self) -> Picture {
         let agent = &self.world.agent_params;
         let marker = Some((agent.coordinates.map(|metres| metres as f32), agent.heading as f32));
-        let image = top_down(&self.scene, self.size, self.size, marker);
-        Picture {
+        let twice = if self.size <= 2048 { 2 } else { 1 };
+        let image = top_down(&self.scene, self.size * twice, self.size * twice, marker);
+        let picture = Picture {
             width: image.width,
             height: image.height,
             rgb: image.rgb,
-        }
+        };
+        if twice == 2 { picture.halved() } else { picture }
+    }
+
+    fn agent_camera(&self, turn: f32) -> Camera {
+        let agent = &self.world.agent_params;
+        Camera::first_person(
+            agent.coordinates.map(|metres| metres as f32),
+            agent.heading as f32 + turn,
+            agent.agent_height as f32,
+            agent.field_of_view as f32,
+        )
+    }
+
+    /// A colour picture with smooth edges: drawn at twice the size where that is allowed.
+    fn smooth(&self, camera: &Camera, width: u32) -> Picture {
+        let twice = if self.size.max(width) <= 2048 { 2 } else { 1 };
+        let frame = self.frame(camera, width * twice, self.size * twice);
+        let picture = Picture {
+            width: frame.width,
+            height: frame.height,
+            rgb: frame.rgb,
+        };
+        if twice == 2 { picture.halved() } else { picture }
     }
 
     fn frame(&self, camera: &Camera, width: u32, height: u32) -> Frame {

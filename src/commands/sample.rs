@@ -68,7 +68,7 @@ impl Sample {
 
     fn stream(&self, sampler: &Sampler, count: u64) -> Result<(), Failure> {
         if self.output == Path::new("-") {
-            return self.lines(sampler, count, |text| output::print(text));
+            return self.lines(sampler, count, output::print);
         }
         let folder = self
             .output

@@ -4,14 +4,23 @@ use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
 /// A table with these headings; `numbers` are the columns that are set to the right.
 pub(crate) fn table<const N: usize>(headings: [&str; N], rows: Vec<[String; N]>, numbers: &[usize]) -> String {
+    wide_table(
+        headings.map(str::to_owned).to_vec(),
+        rows.into_iter().map(Vec::from).collect(),
+        numbers,
+    )
+}
+
+/// The same for a number of columns that is not known beforehand.
+pub(crate) fn wide_table(headings: Vec<String>, rows: Vec<Vec<String>>, numbers: &[usize]) -> String {
     let mut table = Table::new();
     table
         .load_style(presets::NOTHING)
         .set_content_arrangement(ContentArrangement::Disabled);
     table.set_header(headings);
-    rows.into_iter().for_each(|row| {
+    for row in rows {
         table.add_row(row);
-    });
+    }
     for (index, column) in table.column_iter_mut().enumerate() {
         column.set_padding((0, 2));
         if numbers.contains(&index) {

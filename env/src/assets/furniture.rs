@@ -46,7 +46,7 @@ pub(crate) fn bag(model: u32) -> Asset {
 /// Barrel number `model` of 5: wooden ones with hoops, and steel drums.
 pub(crate) fn barrel(model: u32) -> Asset {
     let tall = 0.95 + 0.06 * model as f32;
-    if model % 2 == 0 {
+    if model.is_multiple_of(2) {
         let ring = |z: f32| Mesh::cylinder(0.385, z, z + 0.05, 14);
         let colors = [[0.20, 0.38, 0.58], [0.66, 0.24, 0.18], [0.30, 0.46, 0.30]];
         return Builder::default()
@@ -136,7 +136,7 @@ pub(crate) fn pot(model: u32) -> Asset {
         11,
     );
     let pot = Builder::default().main([0.70, 0.38, 0.24], body);
-    if model % 2 == 0 {
+    if model.is_multiple_of(2) {
         return pot
             .fixed(
                 [0.25, 0.16, 0.1],

@@ -84,7 +84,8 @@ impl ColliderShape {
 
 /// The asset of a class and model; made once, then shared. What is not known is a placeholder.
 pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
-    static MADE: LazyLock<Mutex<HashMap<(String, u32), Arc<Asset>>>> = LazyLock::new(Mutex::default);
+    type Made = HashMap<(String, u32), Arc<Asset>>;
+    static MADE: LazyLock<Mutex<Made>> = LazyLock::new(Mutex::default);
     let class = class.to_lowercase();
     let number = model.number().unwrap_or(0);
     // What was made before a panic elsewhere is whole: assets are inserted when they are finished.

@@ -13,7 +13,7 @@ pub(crate) fn rock(model: u32) -> Asset {
             .moved([0.0, 0.0, radius * flat * 0.7])
     };
     let mut mesh = stone(size, model).roughened(0.22, [0.0, 0.0, size * 0.3], model);
-    if model % 3 == 0 {
+    if model.is_multiple_of(3) {
         mesh = mesh.with(
             &stone(size * 0.5, model + 7)
                 .roughened(0.2, [0.0, 0.0, 0.2], model + 7)
@@ -39,7 +39,7 @@ pub(crate) fn shrub(model: u32) -> Asset {
         .with(&bush(size * 0.6, -size * 0.5, size * 0.5, model + 30));
     let shift = 0.2 * hash(model, 6);
     let shrub = Builder::default().main([0.26 + shift, 0.46 + shift * 0.4, 0.20], leaves);
-    if model % 3 != 0 {
+    if !model.is_multiple_of(3) {
         return shrub.round(size * 0.8);
     }
     let berries = (0..6).fold(Mesh::default(), |mesh, k| {
@@ -56,7 +56,7 @@ pub(crate) fn shrub(model: u32) -> Asset {
 pub(crate) fn mushroom(model: u32) -> Asset {
     let tall = 0.5 + 0.12 * model as f32;
     let wide = 0.28 + 0.1 * (model % 3) as f32;
-    let cap = if model % 2 == 0 {
+    let cap = if model.is_multiple_of(2) {
         Mesh::lathe(
             &[
                 [0.1, tall * 0.55],

@@ -60,7 +60,9 @@ impl Mesh {
     fn roughened_ball(mut self, seed: u32) -> Self {
         for (k, corner) in self.corners.iter_mut().enumerate() {
             let factor = 0.88 + 0.24 * hash(seed, k as u32);
-            corner.iter_mut().for_each(|metres| *metres *= factor);
+            for metres in corner.iter_mut() {
+                *metres *= factor;
+            }
         }
         self
     }

@@ -69,8 +69,8 @@ impl<'a> Background<'a> {
         } else {
             f32::INFINITY
         };
-        if metres < FAR_DEPTH {
-            return (self.ground_at(ray, metres), metres, CATEGORY_MAP);
+        if metres.is_finite() {
+            return (self.ground_at(ray, metres), metres.min(FAR_DEPTH), CATEGORY_MAP);
         }
         let rise = (ray[2] / dot(ray, ray).sqrt()).clamp(0.0, 1.0);
         let share = 1.0 - (1.0 - rise) * (1.0 - rise) * (1.0 - rise);

@@ -37,20 +37,36 @@ pub fn top_down(scene: &Scene, width: u32, height: u32, agent: Option<([f32; 2],
         height,
         rgb: frame.rgb,
     };
-    if let Some((position, heading)) = agent {
-        let scale = height as f32 / span;
-        image.arrow(
-            [
-                width as f32 / 2.0 + position[0] * scale,
-                height as f32 / 2.0 - position[1] * scale,
-            ],
-            heading,
+    let scale = height as f32 / span;
+    let pixel = |[x, y]: [f32; 2]| [width as f32 / 2.0 + x * scale, height as f32 / 2.0 - y * scale];
+    for wall in &scene.walls {
+        image.line(
+            pixel(wall.from),
+            pixel(wall.to),
+            wall.color.map(|channel| (channel * 200.0) as u8),
         );
+    }
+    if let Some((position, heading)) = agent {
+        image.arrow(pixel(position), heading);
     }
     image
 }
 
 impl Image {
+    /// A line as thick as a hundredth of the picture, at least two pixels: walls are thin from above.
+    fn line(&mut self, from: [f32; 2], to: [f32; 2], rgb: [u8; 3]) {
+        let thick = (self.height as i32 / 150).max(1);
+        let along = [to[0] - from[0], to[1] - from[1]];
+        let steps = along[0].abs().max(along[1].abs()).ceil().clamp(1.0, 10_000.0);
+        for k in 0..=steps as i32 {
+            let share = k as f32 / steps;
+            let (x, y) = ((from[0] + along[0] * share) as i32, (from[1] + along[1] * share) as i32);
+            for (dx, dy) in (0..=thick).flat_map(|dx| (0..=thick).map(move |dy| (dx, dy))) {
+                self.set(x + dx - thick / 2, y + dy - thick / 2, rgb);
+            }
+        }
+    }
+
     /// An arrowhead with a dark rim.
     fn arrow(&mut self, [x, y]: [f32; 2], heading_deg: f32) {
         let size = (self.height as f32 / 22.0).max(5.0);

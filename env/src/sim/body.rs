@@ -24,7 +24,7 @@ const GHOST: Group = Group::GROUP_2;
 const WALL: Group = Group::GROUP_3;
 
 /// All bodies of a world. Nothing moves by forces, so there is no time step here: only questions about shapes.
-pub(crate) struct Bodies {
+pub(crate) struct Ground {
     bodies: RigidBodySet,
     colliders: ColliderSet,
     broad_phase: BroadPhaseBvh,
@@ -46,13 +46,13 @@ pub(crate) struct Motion {
     pub(crate) met: Vec<u32>,
 }
 
-impl Bodies {
+impl Ground {
     pub(crate) fn new(world: &World, scene: &Scene) -> Self {
         let agent = &world.agent_params;
         let (radius, height) = (agent.agent_width as f32 / 2.0, agent.agent_height as f32);
         // An upright cylinder for all that stands on the ground: the round ends lie below it and above the head.
         let capsule = |radius: f32| SharedShape::capsule(Vector::ZERO, Vector::new(0.0, 0.0, height), radius);
-        let mut bodies = Self {
+        let mut ground = Self {
             bodies: RigidBodySet::new(),
             colliders: ColliderSet::new(),
             broad_phase: BroadPhaseBvh::new(),
@@ -64,18 +64,18 @@ impl Bodies {
             touch: capsule(radius + TOUCH),
             radius,
         };
-        bodies.add_arena(scene.arena_size());
+        ground.add_arena(scene.arena_size());
         let environment = &world.environment_params;
         for region in maps::excluded_regions(environment.predefined_map) {
-            bodies.add_region(region);
+            ground.add_region(region);
         }
         for wall in &environment.walls {
-            bodies.add_region(&wall.polygon);
+            ground.add_region(&wall.polygon);
         }
         for (index, (item, object)) in scene.items.iter().zip(&world.objects).enumerate() {
-            bodies.add_object(index as u32, item, object.solid);
+            ground.add_object(index as u32, item, object.solid);
         }
-        bodies
+        ground
     }
 
     fn insert(&mut self, collider: ColliderBuilder, group: Group) -> ColliderHandle {
@@ -113,7 +113,7 @@ impl Bodies {
             let length = (along[0] * along[0] + along[1] * along[1]).sqrt();
             if length > 0.0 {
                 let angle = libm::atan2f(along[1], along[0]);
-                let middle = Vector::new((from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0, 0.0);
+                let middle = Vector::new(f32::midpoint(from[0], to[0]), f32::midpoint(from[1], to[1]), 0.0);
                 let wall = ColliderBuilder::cuboid(length / 2.0, 0.02, 50.0);
                 self.insert(wall.position(Pose::new(middle, Vector::new(0.0, 0.0, angle))), WALL);
             }

@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::action::{Action, Intent};
-use super::body::Bodies;
+use super::body::Ground;
 use super::event::{Event, Step, Warning};
 use crate::EnvError;
 use crate::agents::{Agent, OnRailsAgent};
@@ -61,7 +61,7 @@ pub struct ObjectState {
 pub struct Environment {
     world: World,
     scene: Scene,
-    bodies: Bodies,
+    ground: Ground,
     objects: Vec<ObjectState>,
     agent: AgentState,
     steps: u32,
@@ -102,7 +102,7 @@ impl Environment {
 
     fn build(world: World, renderer: CpuRenderer, frame: Frame) -> Self {
         let scene = Scene::from_world(&world);
-        let bodies = Bodies::new(&world, &scene);
+        let ground = Ground::new(&world, &scene);
         let start = &world.agent_params;
         let agent = AgentState {
             position: start.coordinates.map(|metres| metres as f32),
@@ -126,13 +126,13 @@ impl Environment {
             ended: false,
             world,
             scene,
-            bodies,
+            ground,
             agent,
             renderer,
             frame,
         };
         // What is touched or near at the start is no news.
-        environment.bodies.touching(agent.position, &mut environment.contacts);
+        environment.ground.touching(agent.position, &mut environment.contacts);
         for index in 0..environment.objects.len() {
             environment.objects[index].in_range = environment.is_in_range(index);
         }
@@ -260,7 +260,7 @@ impl Environment {
             }
             None => self.agent.forward().map(|part| part * intent.ahead),
         };
-        let motion = self.bodies.slide(start, by, Vec::new());
+        let motion = self.ground.slide(start, by, Vec::new());
         self.agent.position = motion.position;
         let seconds = self.world.agent_params.time_step as f32;
         self.agent.velocity = [0, 1].map(|axis| (self.agent.position[axis] - start[axis]) / seconds);
@@ -270,7 +270,7 @@ impl Environment {
     /// Finds what the step set off, and pays for it.
     fn answer(&mut self, intent: Intent, met: Vec<u32>, step: &mut Step) {
         let mut touching = Vec::new();
-        self.bodies.touching(self.agent.position, &mut touching);
+        self.ground.touching(self.agent.position, &mut touching);
         let mut triggered: Vec<(u32, Stimulus)> = Vec::new();
         let new_contacts = met.into_iter().chain(touching.iter().copied());
         triggered.extend(
@@ -280,7 +280,7 @@ impl Environment {
         );
         self.contacts = touching;
         if intent.interact {
-            let reached = self.bodies.in_reach(self.agent.position, self.agent.forward());
+            let reached = self.ground.in_reach(self.agent.position, self.agent.forward());
             triggered.extend(reached.into_iter().map(|index| (index, Stimulus::AgentInteract)));
         }
         for index in 0..self.objects.len() {
@@ -319,7 +319,7 @@ impl Environment {
         if destroyed {
             state.present = false;
             self.scene.items[index].visible = false;
-            self.bodies.remove(index as u32);
+            self.ground.remove(index as u32);
             self.contacts.retain(|contact| *contact != index as u32);
         }
         step.events.push(Event {

@@ -54,7 +54,7 @@ fn area(f: &Cumulative, g: &Cumulative, low: f64, high: f64) -> f64 {
     for k in 1..=PANELS {
         let after = gap(inside(k));
         sum += if before * after >= 0.0 {
-            (before.abs() + after.abs()) / 2.0
+            f64::midpoint(before.abs(), after.abs())
         } else {
             // The functions cross: two triangles.
             (before * before + after * after) / (2.0 * (before.abs() + after.abs()))
