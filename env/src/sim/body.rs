@@ -1,7 +1,7 @@
 //! Bodies on the ground: what the agent bumps into, slides along and touches. What a touch is worth is in `environment.rs`.
 
 use driftworld_spec::{World, maps};
-use rapier3d::parry::query::ShapeCastOptions;
+use rapier3d::parry::query::{ShapeCastOptions, contact};
 use rapier3d::prelude::*;
 
 use crate::assets::ColliderShape;
@@ -13,7 +13,10 @@ const SKIN: f32 = 0.01;
 /// Distance at which a touch counts, in metres: a little more than the skin.
 const TOUCH: f32 = 0.03;
 
-/// How often a step's motion is turned aside before it ends.
+/// Longest way that is cast at once, in metres.
+const STRETCH: f32 = 1.0;
+
+/// How often a stretch's motion is turned aside before it ends.
 const SLIDES: usize = 5;
 
 /// Bodies that stop the agent.
@@ -36,6 +39,9 @@ pub(crate) struct Ground {
     agent: SharedShape,
     touch: SharedShape,
     radius: f32,
+    height: f32,
+    /// Half the arena's sides.
+    half: [f32; 2],
 }
 
 /// Where a motion led.
@@ -63,6 +69,8 @@ impl Ground {
             agent: capsule(radius),
             touch: capsule(radius + TOUCH),
             radius,
+            height,
+            half: scene.arena_size().map(|side| side / 2.0),
         };
         ground.add_arena(scene.arena_size());
         let environment = &world.environment_params;
@@ -89,7 +97,7 @@ impl Ground {
 
     /// Four thick walls around the arena.
     fn add_arena(&mut self, [width, depth]: [f32; 2]) {
-        const THICK: f32 = 20.0;
+        const THICK: f32 = 2.0;
         let (x, y) = (width / 2.0, depth / 2.0);
         for (half, at) in [
             ([THICK, y + 2.0 * THICK], [x + THICK, 0.0]),
@@ -97,9 +105,15 @@ impl Ground {
             ([x + 2.0 * THICK, THICK], [0.0, y + THICK]),
             ([x + 2.0 * THICK, THICK], [0.0, -y - THICK]),
         ] {
-            let wall = ColliderBuilder::cuboid(half[0], half[1], 50.0).translation(Vector::new(at[0], at[1], 0.0));
+            let wall = ColliderBuilder::cuboid(half[0], half[1], self.wall_half_height())
+                .translation(Vector::new(at[0], at[1], 0.0));
             self.insert(wall, WALL);
         }
+    }
+
+    /// Walls are endless to the agent: higher than it, and deeper than its feet.
+    fn wall_half_height(&self) -> f32 {
+        self.height + 1.0
     }
 
     /// A thin wall along every edge of a polygon: no triangulation that a strange polygon could break.
@@ -114,7 +128,7 @@ impl Ground {
             if length > 0.0 {
                 let angle = libm::atan2f(along[1], along[0]);
                 let middle = Vector::new(f32::midpoint(from[0], to[0]), f32::midpoint(from[1], to[1]), 0.0);
-                let wall = ColliderBuilder::cuboid(length / 2.0, 0.02, 50.0);
+                let wall = ColliderBuilder::cuboid(length / 2.0, 0.02, self.wall_half_height());
                 self.insert(wall.position(Pose::new(middle, Vector::new(0.0, 0.0, angle))), WALL);
             }
         }
@@ -184,21 +198,39 @@ impl Ground {
 
     /// Moves the agent's body as far as solid things let it, sliding along them.
     ///
-    /// The motion is a cast of the whole shape, so nothing is passed through at any speed.
-    pub(crate) fn slide(&self, from: [f32; 2], by: [f32; 2], met: Vec<u32>) -> Motion {
-        let mut motion = Motion { position: from, met };
-        motion.met.clear();
-        let mut left = Vector::new(by[0], by[1], 0.0);
-        let mut last_normal: Option<Vector> = None;
-        for _ in 0..SLIDES {
-            let length = left.length();
-            if length < 1e-5 {
+    /// The motion is a cast of the whole shape, so nothing is passed through at any speed; long ways are walked in
+    /// stretches, because the engine's casts lose precision with length.
+    pub(crate) fn slide(&self, from: [f32; 2], by: [f32; 2]) -> Motion {
+        let mut motion = Motion {
+            position: from,
+            met: Vec::new(),
+        };
+        let way = Vector::new(by[0], by[1], 0.0);
+        let stretches = (way.length() / STRETCH).ceil().max(1.0);
+        for _ in 0..stretches as u32 {
+            let before = motion.position;
+            self.slide_stretch(way / stretches, &mut motion);
+            if motion.position == before {
                 break;
             }
-            let hit = self.first_hit(motion.position, left);
-            let share = hit.as_ref().map_or(1.0, |(_, share, _)| *share);
+        }
+        motion
+    }
+
+    fn slide_stretch(&self, mut left: Vector, motion: &mut Motion) {
+        let mut last_normal: Option<Vector> = None;
+        for _ in 0..SLIDES {
+            if left.length() < 1e-5 {
+                break;
+            }
             let start = motion.position;
-            motion.position = [start[0] + left.x * share, start[1] + left.y * share];
+            let hit = self.first_hit(start, left);
+            let share = hit.as_ref().map_or(1.0, |(_, share, _)| *share);
+            let end = self.kept_clear(start, [start[0] + left.x * share, start[1] + left.y * share]);
+            if self.is_crossed(start, end) {
+                break;
+            }
+            motion.position = end;
             self.pass_ghosts(start, motion.position, &mut motion.met);
             let Some((handle, _, normal)) = hit else { break };
             if let Some(index) = self.object_of(handle) {
@@ -217,7 +249,49 @@ impl Ground {
             }
             last_normal = Some(normal);
         }
-        motion
+    }
+
+    /// Whether the straight way between two places leads through the surface of something solid. A cast that missed, by
+    /// rounding, what it should have met ends here: the body's middle never changes sides.
+    fn is_crossed(&self, from: [f32; 2], to: [f32; 2]) -> bool {
+        let way = Vector::new(to[0] - from[0], to[1] - from[1], 0.0);
+        let ray = Ray::new(Vector::new(from[0], from[1], self.height / 2.0), way);
+        self.query(SOLID | WALL).cast_ray(&ray, 1.0, false).is_some()
+    }
+
+    /// A place moved out of what it touches by the rounding of casts, and back into the arena that it came from.
+    fn kept_clear(&self, from: [f32; 2], at: [f32; 2]) -> [f32; 2] {
+        let mut place = at;
+        for _ in 0..3 {
+            let Some(push) = self.deepest_push(place) else { break };
+            (place[0], place[1]) = (place[0] + push.x, place[1] + push.y);
+        }
+        for axis in 0..2 {
+            let inside = self.half[axis] - self.radius - SKIN;
+            if from[axis].abs() <= inside + SKIN && inside > 0.0 {
+                place[axis] = place[axis].clamp(-inside, inside);
+            }
+        }
+        place
+    }
+
+    /// The way out of the solid thing that is nearest, if one is nearer than the skin.
+    fn deepest_push(&self, at: [f32; 2]) -> Option<Vector> {
+        let pose = Pose::from_translation(Vector::new(at[0], at[1], 0.0));
+        let reach = SharedShape::ball(self.radius + SKIN);
+        let solid = self.query(SOLID | WALL);
+        let mut worst: Option<(f32, Vector)> = None;
+        // The slice at the height of the body's middle decides: all shapes stand upright.
+        let middle = Pose::from_translation(Vector::new(at[0], at[1], self.height / 2.0));
+        for (_, collider) in solid.intersect_shape(middle, &*reach) {
+            let found = contact(&pose, &*self.agent, collider.position(), collider.shape(), SKIN);
+            let Ok(Some(found)) = found else { continue };
+            let normal = Vector::new(found.normal2.x, found.normal2.y, 0.0).normalize_or_zero();
+            if found.dist < SKIN * 0.9 && worst.is_none_or(|(least, _)| found.dist < least) {
+                worst = Some((found.dist, normal * (SKIN - found.dist).min(0.5)));
+            }
+        }
+        worst.map(|(_, push)| push)
     }
 
     /// The first solid thing on the way: its collider, the share of the way to it, and its normal in the plane.

@@ -260,7 +260,7 @@ impl Environment {
             }
             None => self.agent.forward().map(|part| part * intent.ahead),
         };
-        let motion = self.ground.slide(start, by, Vec::new());
+        let motion = self.ground.slide(start, by);
         self.agent.position = motion.position;
         let seconds = self.world.agent_params.time_step as f32;
         self.agent.velocity = [0, 1].map(|axis| (self.agent.position[axis] - start[axis]) / seconds);
