@@ -1,0 +1,285 @@
+//! Sampled worlds: the same as ever, valid, independent where they should be, alike where they should be.
+
+use std::sync::Arc;
+
+use driftworld_generator::{GeneratorError, Sampler, sample};
+use driftworld_spec::{Object, TaskSpec, World, maps};
+use proptest::prelude::*;
+
+fn example(name: &str) -> Arc<TaskSpec> {
+    let path = format!("{}/../examples/tasks/{name}.json", env!("CARGO_MANIFEST_DIR"));
+    load(&std::fs::read_to_string(path).expect("the example tasks ship with the project"))
+}
+
+fn load(text: &str) -> Arc<TaskSpec> {
+    TaskSpec::from_json("task.json", text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn world(task: &Arc<TaskSpec>, variant: &str, seed: u64, index: u64) -> World {
+    let variant = task.variant(variant).expect("the test names variants that there are");
+    sample(&variant, seed, index).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn tagged<'a>(world: &'a World, tag: &str) -> Vec<&'a Object> {
+    world
+        .objects
+        .iter()
+        .filter(|object| object.tag.as_deref() == Some(tag))
+        .collect()
+}
+
+/// `DRIFTWORLD_UPDATE_GOLDEN=1` rewrites the files: a value-breaking change.
+#[test]
+fn golden_worlds_are_drawn_as_they_were() {
+    for (task, variant, index) in [
+        ("find_objects", "red", 0),
+        ("find_objects", "red", 12_345),
+        ("find_objects", "huddle", 1),
+        ("get_to_goal", "hazards", 2),
+    ] {
+        let found = world(&example(task), variant, 7, index).to_json_pretty();
+        let path = format!(
+            "{}/tests/golden/{task}-{variant}-7-{index}.json",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        if std::env::var_os("DRIFTWORLD_UPDATE_GOLDEN").is_some() {
+            std::fs::write(&path, &found).expect("the golden file can be written");
+        }
+        let golden = std::fs::read_to_string(&path).expect("the golden file is committed");
+        assert!(found == golden, "{path} is no longer what is drawn");
+    }
+}
+
+#[test]
+fn any_order_of_drawing_gives_the_same_worlds() {
+    let task = example("find_objects");
+    let sampler = Sampler::new(&task.variant("red").expect("red is a variant"), 3).expect("the task can be drawn");
+    let forwards: Vec<String> = (0..20)
+        .map(|index| sampler.world(index).expect("it can be placed").to_json())
+        .collect();
+    for index in (0..20).rev() {
+        assert_eq!(world(&task, "red", 3, index).to_json(), forwards[index as usize]);
+    }
+    assert_ne!(forwards[0], forwards[1]);
+    assert_ne!(world(&task, "red", 4, 0).to_json(), forwards[0]);
+}
+
+#[test]
+fn variants_share_their_chance() {
+    let task = example("find_objects");
+    let (blue, penalty) = (world(&task, "red", 7, 5), world(&task, "penalty", 7, 5));
+    let mut paid = blue.clone();
+    for object in paid.objects.iter_mut().filter(|object| object.reward == 100.0) {
+        object.reward = -100.0;
+    }
+    assert_eq!(
+        paid, penalty,
+        "variants that differ in what they pay differ in nothing else"
+    );
+}
+
+#[test]
+fn a_new_parameter_group_or_object_moves_nothing_that_was_there() {
+    let text = std::fs::read_to_string(format!(
+        "{}/../examples/tasks/find_objects.json",
+        env!("CARGO_MANIFEST_DIR")
+    ))
+    .expect("the example tasks ship with the project");
+    let before = world(&load(&text), "red", 7, 9);
+    let parameter = r#""target_count": {"#;
+    let with_parameter = text.replacen(
+        parameter,
+        &format!(
+            r#""fog": {{ "role": "randomized", "type": "number", "affects": ["O"], "distribution": {{ "uniform": {{ "low": 0, "high": 1 }} }} }}, {parameter}"#
+        ),
+        1,
+    );
+    assert_eq!(world(&load(&with_parameter), "red", 7, 9), before);
+    let group = r#"{ "name": "bags", "count": 3, "object": { "class": "bag" }, "placement": { "disc": { "center": [0, 0], "radius": 25 } } }"#;
+    let with_group = text.replacen("  ],\n  \"variants\"", &format!("  , {group} ],\n  \"variants\""), 1);
+    let after = world(&load(&with_group), "red", 7, 9);
+    assert_eq!(after.objects[..before.objects.len()], before.objects[..]);
+    assert_eq!(after.objects.len(), before.objects.len() + 3);
+    let with_target = text.replacen("\"value\": 5", "\"value\": 6", 1);
+    let after = world(&load(&with_target), "red", 7, 9);
+    assert_eq!(tagged(&after, "targets")[..5], tagged(&before, "targets")[..]);
+}
+
+#[test]
+fn groups_keep_their_distances() {
+    let far = |a: &Object, b: &Object| (a.coordinates[0] - b.coordinates[0]).hypot(a.coordinates[1] - b.coordinates[1]);
+    for index in 0..50 {
+        let world = world(&example("find_objects"), "blue", 1, index);
+        assert_eq!(tagged(&world, "targets").len(), 5);
+        for (number, object) in world.objects.iter().enumerate() {
+            let separation = if object.tag.as_deref() == Some("targets") {
+                2.0
+            } else {
+                3.0
+            };
+            assert!(
+                world.objects[..number]
+                    .iter()
+                    .all(|other| far(object, other) >= separation),
+                "{index}"
+            );
+            assert!(
+                object.coordinates.iter().all(|metres| metres.abs() <= 29.0),
+                "a metre from the walls"
+            );
+            assert!(
+                object.coordinates[0].hypot(object.coordinates[1]) >= 2.0,
+                "off the agent's start"
+            );
+        }
+    }
+}
+
+#[test]
+fn nothing_stands_in_a_region_that_cannot_be_entered() {
+    for map in 1..=4_u8 {
+        let text = format!(
+            r#"{{ "name": "maps", "world": {{ "environment_params": {{ "predefined_map": {map} }} }},
+                "groups": [{{ "name": "rocks", "count": 300, "object": {{ "class": "rock" }},
+                "placement": {{ "box": {{ "low": [-100, -100], "high": [100, 100] }} }}, "wall_margin": 1.5 }}] }}"#
+        );
+        for object in &world(&load(&text), "default", 5, 0).objects {
+            let [x, y] = object.coordinates;
+            for region in maps::excluded_regions(map) {
+                // Winding number by crossing: an oracle of its own kind.
+                let turns: f64 = region
+                    .iter()
+                    .zip(region.iter().cycle().skip(1))
+                    .map(|(a, b)| {
+                        let angle = (b[1] - y).atan2(b[0] - x) - (a[1] - y).atan2(a[0] - x);
+                        (angle + 9.0 * std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI
+                    })
+                    .sum();
+                assert!(turns.abs() < 1.0, "map {map}: {x}, {y} is inside {region:?}");
+                assert!(
+                    region.iter().all(|c| (c[0] - x).hypot(c[1] - y) >= 1.5),
+                    "map {map}: too near a corner"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_placed_says_which_group_and_what_to_loosen() {
+    let crowd = load(
+        r#"{ "name": "crowd", "world": { "environment_params": { "map_size": [10, 10] } },
+             "groups": [{ "name": "crowd", "count": 100, "object": { "class": "cube" },
+                          "placement": { "box": { "low": [-5, -5], "high": [5, 5] } }, "separation": 3 }] }"#,
+    );
+    let error = sample(&crowd.variant("default").expect("it is always there"), 0, 0).expect_err("100 do not fit");
+    assert_eq!(error.code(), "generator/no-place");
+    insta::assert_snapshot!(error);
+    let beyond = load(
+        r#"{ "name": "beyond", "groups": [{ "name": "g", "count": 1, "object": { "class": "cube" },
+                          "placement": { "points": { "values": [[80, 0]] } } }] }"#,
+    );
+    let error = sample(&beyond.variant("default").expect("it is always there"), 0, 0).expect_err("80 m is outside");
+    insta::assert_snapshot!(error);
+}
+
+#[test]
+fn a_draw_outside_the_range_of_its_place_is_an_error_that_names_it() {
+    let wild = load(
+        r#"{ "name": "wild", "world": { "environment_params": { "light_intensity": { "normal": { "mean": 1, "std": 50 } } } } }"#,
+    );
+    let variant = wild.variant("default").expect("it is always there");
+    let error = (0..100)
+        .find_map(|index| sample(&variant, 0, index).err())
+        .expect("half of the draws are negative");
+    assert!(matches!(error, GeneratorError::OutOfRange { .. }));
+    insta::assert_snapshot!(error);
+}
+
+#[test]
+fn ten_thousand_objects_find_their_places() {
+    let many = load(
+        r#"{ "name": "many", "world": { "environment_params": { "map_size": [300, 300] } },
+             "groups": [{ "name": "g", "count": 10000, "object": { "class": "rock" },
+                          "placement": { "box": { "low": [-149, -149], "high": [149, 149] } }, "separation": 1 }] }"#,
+    );
+    assert_eq!(world(&many, "default", 0, 0).objects.len(), 10_000);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn every_world_is_one_that_the_strict_reader_accepts(seed in any::<u64>(), index in 0..u64::MAX) {
+        for name in ["find_objects", "get_to_goal"] {
+            let task = example(name);
+            for variant in task.all_variants() {
+                let world = sample(&variant, seed, index).unwrap_or_else(|error| panic!("{error}"));
+                let again = World::from_json("sampled", &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
+                prop_assert_eq!(again, world);
+            }
+        }
+    }
+}
+
+/// Draws from one distribution for a parameter that goes straight into the world.
+fn draws(distribution: &str, count: u64) -> Vec<f64> {
+    let text = format!(r#"{{ "name": "draws", "world": {{ "rules": {{ "step_reward": {distribution} }} }} }}"#);
+    let task = load(&text);
+    let sampler = Sampler::new(&task.variant("default").expect("it is always there"), 11).expect("it can be drawn");
+    (0..count)
+        .map(|index| {
+            sampler
+                .world(index)
+                .expect("nothing has to be placed")
+                .rules
+                .step_reward
+        })
+        .collect()
+}
+
+/// Kolmogorov–Smirnov at α = 0.001 for 20,000 draws: the largest gap between the draws' and the true cumulative function.
+#[track_caller]
+fn check(distribution: &str, cumulative: impl Fn(f64) -> f64) {
+    let mut drawn = draws(distribution, 20_000);
+    drawn.sort_by(f64::total_cmp);
+    let n = drawn.len() as f64;
+    let gap = drawn.iter().enumerate().map(|(k, x)| {
+        let expected = cumulative(*x);
+        (expected - k as f64 / n)
+            .abs()
+            .max(((k + 1) as f64 / n - expected).abs())
+    });
+    let largest = gap.fold(0.0, f64::max);
+    assert!(
+        largest < 1.95 / n.sqrt(),
+        "{distribution}: the largest gap is {largest}"
+    );
+}
+
+fn normal(z: f64) -> f64 {
+    0.5 * libm::erfc(-z / std::f64::consts::SQRT_2)
+}
+
+#[test]
+fn draws_have_the_distribution_that_they_are_declared_with() {
+    check(r#"{ "uniform": { "low": -3, "high": 5 } }"#, |x| (x + 3.0) / 8.0);
+    check(r#"{ "normal": { "mean": 2, "std": 3 } }"#, |x| normal((x - 2.0) / 3.0));
+    for (low, high) in [(-1.0, 2.0), (1.5, 9.0), (3.0, 3.5), (-8.0, 8.0)] {
+        let text = format!(r#"{{ "truncated_normal": {{ "mean": 0, "std": 1, "low": {low}, "high": {high} }} }}"#);
+        check(&text, |x| (normal(x) - normal(low)) / (normal(high) - normal(low)));
+    }
+}
+
+#[test]
+fn whole_numbers_and_choices_come_at_their_odds() {
+    let share = |drawn: &[f64], value: f64| drawn.iter().filter(|x| **x == value).count() as f64 / drawn.len() as f64;
+    let dice = draws(r#"{ "integer_uniform": { "low": 1, "high": 6 } }"#, 20_000);
+    assert!((1..=6).all(|face| (share(&dice, f64::from(face)) - 1.0 / 6.0).abs() < 0.01));
+    let weighted = draws(r#"{ "choice": { "values": [1, 2, 3], "weights": [1, 0, 3] } }"#, 20_000);
+    assert!((share(&weighted, 1.0) - 0.25).abs() < 0.012 && share(&weighted, 2.0) == 0.0);
+    let heads = draws(r#"{ "binomial": { "n": 4, "p": 0.5 } }"#, 20_000);
+    for (k, odds) in [1.0, 4.0, 6.0, 4.0, 1.0].into_iter().enumerate() {
+        assert!((share(&heads, k as f64) - odds / 16.0).abs() < 0.015, "{k} of 4");
+    }
+}
