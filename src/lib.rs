@@ -19,3 +19,8 @@ pub use driftworld_similarity as similarity;
 pub use driftworld_spec as spec;
 
 pub mod tasks;
+
+/// The README's Rust example is compiled with the documentation's tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -88,7 +88,8 @@ impl Demo {
         scores.save(folder.join("scores"), "demo", &settings)?;
         output::line(summary(&scores))?;
         output::line(
-            "\nThis agent does not learn, so nothing is gained or lost: maintenance near 0, transfer near 1.",
+            "\nThis agent knows the map and learns nothing: each evaluation repeats the last, so nothing is lost (maintenance 0) and\n\
+             nothing helps (transfer 1). A learner of your own shows what it keeps, and what carries over.",
         )?;
 
         heading("", "Everything is in")?;

@@ -78,36 +78,40 @@ impl Render {
             View::Rgb => views.first_person().rgb,
             View::Depth => views.first_person().depth,
             View::Segmentation => views.first_person().segmentation,
-            View::Sheet => {
-                let seen = views.first_person();
-                let quarter = Views::new(world, self.size * 2 / 3, self.turn as f32);
-                let row = |title: &str, words: &str, pictures| SheetRow {
-                    title: title.into(),
-                    words: words.into(),
-                    pictures,
-                };
-                sheet(
-                    &[
-                        row(
-                            "The world",
-                            "from outside, and from above with the agent",
-                            vec![views.overview(self.size * 16 / 9), views.top_down()],
-                        ),
-                        row(
-                            "What the agent sees",
-                            "colour, depth (white at 100 m), reward category",
-                            vec![seen.rgb, seen.depth, seen.segmentation],
-                        ),
-                        row(
-                            "All around the agent",
-                            "ahead, right, behind, left; 90° each",
-                            quarter.all_around(),
-                        ),
-                    ],
-                    1,
-                )?
-            }
+            View::Sheet => self.sheet(world, &views)?,
         })
+    }
+
+    fn sheet(&self, world: &World, views: &Views) -> Result<Picture, Failure> {
+        let small = Views::new(world, (self.size * 2 / 3).max(1), self.turn as f32);
+        let seen = views.first_person();
+        let row = |title: &str, words: String, pictures| SheetRow {
+            title: title.into(),
+            words,
+            pictures,
+        };
+        let (classes, close_ups): (Vec<String>, Vec<Picture>) = small.close_ups(5).into_iter().unzip();
+        let mut rows = vec![
+            row(
+                "The world",
+                "from outside, and from above: the arrow is the agent, small things are drawn larger".into(),
+                vec![views.overview(self.size * 16 / 9), views.top_down()],
+            ),
+            row(
+                "What the agent sees",
+                "colour, depth (white at 100 m), reward category".into(),
+                vec![seen.rgb, seen.depth, seen.segmentation],
+            ),
+            row(
+                "All around the agent",
+                "ahead, right, behind, left; 90° each".into(),
+                small.all_around(),
+            ),
+        ];
+        if !close_ups.is_empty() {
+            rows.push(row("What stands in it", classes.join(", "), close_ups));
+        }
+        sheet(&rows, 1)
     }
 }
 
@@ -178,6 +182,52 @@ impl<'a> Views<'a> {
             self.smooth(&camera, self.size)
         };
         [0.0, 90.0, 180.0, 270.0].map(look).to_vec()
+    }
+
+    /// The first object of each class that is nearest to the agent, from near by, with the name of its class.
+    pub(crate) fn close_ups(&self, most: usize) -> Vec<(String, Picture)> {
+        let start = self.world.agent_params.coordinates;
+        let far = |index: &usize| {
+            let [x, y] = self.world.objects[*index].coordinates;
+            (x - start[0]).hypot(y - start[1])
+        };
+        let mut indices: Vec<usize> = (0..self.world.objects.len()).collect();
+        // What pays first, then by distance.
+        indices.sort_by(|a, b| {
+            let pays = |index: &usize| self.world.objects[*index].is_target();
+            pays(b).cmp(&pays(a)).then(far(a).total_cmp(&far(b)))
+        });
+        let mut shown: Vec<(String, Picture)> = Vec::new();
+        for index in indices {
+            let class = self.world.objects[index].class.to_lowercase();
+            if shown.len() < most && !shown.iter().any(|(other, _)| *other == class) {
+                shown.push((class, self.smooth(&self.close_to(index), self.size)));
+            }
+        }
+        shown
+    }
+
+    /// A camera that looks at an object from where the agent is, so near that the object fills the picture.
+    fn close_to(&self, index: usize) -> Camera {
+        let item = &self.scene.items[index];
+        let start = self.world.agent_params.coordinates.map(|metres| metres as f32);
+        let way = [item.position[0] - start[0], item.position[1] - start[1]];
+        let heading = if way == [0.0; 2] { 0.0_f32 } else { way[0].atan2(way[1]) };
+        let size = item.asset.height.max(item.asset.radius * 1.6) * item.scale;
+        let back = 1.9 * size + item.asset.radius * item.scale;
+        let height = size * 0.75 + 0.3;
+        Camera {
+            position: [
+                item.position[0] - heading.sin() * back,
+                item.position[1] - heading.cos() * back,
+                height,
+            ],
+            heading_deg: heading.to_degrees(),
+            pitch_deg: -((height - item.asset.height * item.scale * 0.5) / back)
+                .atan()
+                .to_degrees(),
+            field_of_view_deg: 42.0,
+        }
     }
 
     /// The map with the agent's start on it.

@@ -5,6 +5,9 @@ use super::frame::Frame;
 use crate::camera::Camera;
 use crate::scene::Scene;
 
+/// Least radius of an object on the map, as a share of the map's height.
+const LEAST_SIZE: f32 = 0.014;
+
 /// A picture: 8-bit RGB, row 0 on top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
@@ -17,21 +20,24 @@ pub struct Image {
 }
 
 /// The scene from above, with the agent's position and heading as an arrow if it is given.
+///
+/// All of the arena and every object is on it; objects that would be specks are drawn larger than they are.
 pub fn top_down(scene: &Scene, width: u32, height: u32, agent: Option<([f32; 2], f32)>) -> Image {
-    // From so high that nothing leans; 6 % of margin around the walls.
-    const FAR_UP: f32 = 40.0;
-    let [wide, deep] = scene.arena_size();
-    let aspect = width as f32 / height as f32;
-    let span = deep.max(wide / aspect).max(1.0) * 1.06;
-    let camera_height = FAR_UP * span;
+    let span = span(scene, width as f32 / height as f32);
+    // From so high that nothing leans.
+    let camera_height = 40.0 * span;
     let camera = Camera {
         position: [0.0, 0.0, camera_height],
         heading_deg: 0.0,
         pitch_deg: -90.0,
-        field_of_view_deg: 2.0 * (span / 2.0 / camera_height).atan().to_degrees(),
+        field_of_view_deg: 2.0 * libm::atanf(span / 2.0 / camera_height).to_degrees(),
     };
+    let mut scene = scene.clone();
+    for item in &mut scene.items {
+        item.scale = item.scale.max(LEAST_SIZE * span / item.asset.radius);
+    }
     let mut frame = Frame::new(width, height);
-    CpuRenderer::new().render(scene, &camera, &mut frame);
+    CpuRenderer::new().render(&scene, &camera, &mut frame);
     let mut image = Image {
         width,
         height,
@@ -50,6 +56,17 @@ pub fn top_down(scene: &Scene, width: u32, height: u32, agent: Option<([f32; 2],
         image.arrow(pixel(position), heading);
     }
     image
+}
+
+/// Height of the ground that the map shows, in metres: arena and objects, with a margin of 6 %.
+fn span(scene: &Scene, aspect: f32) -> f32 {
+    let [mut wide, mut deep] = scene.arena_size();
+    for item in scene.items.iter().filter(|item| item.visible) {
+        let radius = item.asset.radius * item.scale;
+        wide = wide.max(2.0 * (item.position[0].abs() + radius));
+        deep = deep.max(2.0 * (item.position[1].abs() + radius));
+    }
+    deep.max(wide / aspect).max(1.0) * 1.06
 }
 
 impl Image {
