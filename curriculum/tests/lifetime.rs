@@ -75,9 +75,9 @@ fn everything(folder: &Path) -> String {
         for entry in std::fs::read_dir(next).expect("the log can be listed") {
             let path = entry.expect("the log can be listed").path();
             if path.is_dir() {
-                folders.push(path)
+                folders.push(path);
             } else {
-                files.push(path)
+                files.push(path);
             }
         }
     }
