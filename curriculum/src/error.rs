@@ -97,3 +97,65 @@ impl CurriculumError {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_error_has_its_message() {
+        let errors = [
+            CurriculumError::NoVariants,
+            CurriculumError::BadCount {
+                kind: "learning",
+                found: 0,
+                limit: 10,
+            },
+            CurriculumError::BadSeed { found: 9, limit: 8 },
+            CurriculumError::SameLogName {
+                a: "a#b_c".into(),
+                b: "a#bc".into(),
+                name: "a_bc".into(),
+            },
+            CurriculumError::Unknown {
+                block: 1,
+                regime: 0,
+                task: "t".into(),
+                variant: "v".into(),
+                reason: "no such task".into(),
+            },
+            CurriculumError::World {
+                block: 1,
+                regime: 0,
+                source: GeneratorError::TooMany {
+                    variant: "t#v".into(),
+                    seed: 1,
+                    index: 2,
+                    found: 9,
+                    limit: 8,
+                },
+            },
+            CurriculumError::Episode {
+                block: 1,
+                regime: 0,
+                experience: 5,
+                source: EnvError::Ended,
+            },
+            CurriculumError::Log(MetricsError::LogExists {
+                path: "logs/run".into(),
+            }),
+        ];
+        let said: Vec<String> = errors
+            .iter()
+            .map(|error| format!("{}: {error}", error.code()))
+            .collect();
+        insta::assert_snapshot!(said.join("\n"));
+        let covered: BTreeSet<&str> = errors.iter().map(|error| error.code()).collect();
+        let all: BTreeSet<&str> = include_str!("error.rs")
+            .split('"')
+            .filter(|word| word.starts_with("curriculum/") && word.len() > 11)
+            .collect();
+        assert_eq!(covered, all, "every code has a case here");
+    }
+}

@@ -49,3 +49,33 @@ impl EnvError {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_error_has_its_message() {
+        let errors = [
+            EnvError::NotFinite {
+                found: [1.0, f64::INFINITY, 0.0],
+            },
+            EnvError::NoSuchAction { found: 7, last: 6 },
+            EnvError::NotDiscrete { found: 2 },
+            EnvError::Ended,
+            EnvError::PictureSize { width: 0, height: 5000 },
+        ];
+        let said: Vec<String> = errors
+            .iter()
+            .map(|error| format!("{}: {error}", error.code()))
+            .collect();
+        insta::assert_snapshot!(said.join("\n"));
+        let covered: BTreeSet<&str> = errors.iter().map(|error| error.code()).collect();
+        let all: BTreeSet<&str> = include_str!("error.rs")
+            .split('"')
+            .filter(|word| word.starts_with("env/") && word.len() > 4)
+            .collect();
+        assert_eq!(covered, all, "every code has a case here");
+    }
+}

@@ -74,3 +74,52 @@ impl GeneratorError {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_error_has_its_message() {
+        let errors = [
+            GeneratorError::OutOfRange {
+                variant: "t#v".into(),
+                seed: 1,
+                index: 2,
+                place: "world/rules/step_reward".into(),
+                found: 7.5,
+                low: 0.0,
+                high: 1.0,
+            },
+            GeneratorError::NoPlace {
+                variant: "t#v".into(),
+                seed: 1,
+                index: 2,
+                group: "trees".into(),
+                object: 3,
+                count: 4,
+                tries: 1000,
+                reason: "lower the count".into(),
+            },
+            GeneratorError::TooMany {
+                variant: "t#v".into(),
+                seed: 1,
+                index: 2,
+                found: 100_001,
+                limit: 100_000,
+            },
+        ];
+        let said: Vec<String> = errors
+            .iter()
+            .map(|error| format!("{}: {error}", error.code()))
+            .collect();
+        insta::assert_snapshot!(said.join("\n"));
+        let covered: BTreeSet<&str> = errors.iter().map(|error| error.code()).collect();
+        let all: BTreeSet<&str> = include_str!("error.rs")
+            .split('"')
+            .filter(|word| word.starts_with("generator/") && word.len() > 10)
+            .collect();
+        assert_eq!(covered, all, "every code has a case here");
+    }
+}

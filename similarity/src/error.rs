@@ -49,16 +49,6 @@ pub enum SimilarityError {
     /// There is nothing to order.
     #[error("order: found no items, expected at least 1")]
     Empty,
-    /// A table that should be a matrix is not one.
-    #[error("line {line}: found {found}, expected {expected}")]
-    BadTable {
-        /// Line in the text, from 1.
-        line: usize,
-        /// What stands there.
-        found: String,
-        /// What should stand there.
-        expected: String,
-    },
     /// A word that names no method.
     #[error("method: found {found:?}, expected one of nearest, exact, two-opt, contrast")]
     UnknownMethod {
@@ -85,9 +75,54 @@ impl SimilarityError {
             Self::TooManyForExact { .. } => "similarity/too-many-for-exact",
             Self::NoSuchStart { .. } => "similarity/no-such-start",
             Self::Empty => "similarity/empty",
-            Self::BadTable { .. } => "similarity/bad-table",
             Self::UnknownMethod { .. } => "similarity/unknown-method",
             Self::BadWeight { .. } => "similarity/bad-weight",
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_error_has_its_message() {
+        let errors = [
+            SimilarityError::DifferentTasks {
+                a: "one".into(),
+                b: "two".into(),
+            },
+            SimilarityError::NotADistance {
+                a: "one".into(),
+                b: "two".into(),
+                found: -1.0,
+            },
+            SimilarityError::TooMany {
+                found: 30_000,
+                limit: 20_000,
+            },
+            SimilarityError::TooManyForExact { found: 14, limit: 13 },
+            SimilarityError::NoSuchStart { found: 3, last: 2 },
+            SimilarityError::Empty,
+            SimilarityError::UnknownMethod {
+                found: "shortest".into(),
+            },
+            SimilarityError::BadWeight {
+                name: "reward".into(),
+                found: f64::NAN,
+            },
+        ];
+        let said: Vec<String> = errors
+            .iter()
+            .map(|error| format!("{}: {error}", error.code()))
+            .collect();
+        insta::assert_snapshot!(said.join("\n"));
+        let covered: BTreeSet<&str> = errors.iter().map(|error| error.code()).collect();
+        let all: BTreeSet<&str> = include_str!("error.rs")
+            .split('"')
+            .filter(|word| word.starts_with("similarity/") && word.len() > 11)
+            .collect();
+        assert_eq!(covered, all, "every code has a case here");
     }
 }
