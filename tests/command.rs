@@ -239,5 +239,5 @@ fn from_variants_to_scores_step_by_step() {
     let metrics: serde_json::Value = serde_json::from_str(&metrics).expect("--json prints JSON");
     assert_eq!(metrics["num_lx"], 4);
     let again = fail(1, &["run", text(&scenario), "--agent", "random", "--logs", text(&log)]);
-    assert!(again.contains("log"), "a log is not written over: {again}");
+    assert!(again.contains("--logs"), "a log is not written over: {again}");
 }

@@ -115,7 +115,7 @@ mod tests {
             .map(|error| format!("{}: {error}", error.code()))
             .collect();
         insta::assert_snapshot!(said.join("\n"));
-        let covered: BTreeSet<&str> = errors.iter().map(|error| error.code()).collect();
+        let covered: BTreeSet<&str> = errors.iter().map(GeneratorError::code).collect();
         let all: BTreeSet<&str> = include_str!("error.rs")
             .split('"')
             .filter(|word| word.starts_with("generator/") && word.len() > 10)

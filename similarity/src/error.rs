@@ -118,7 +118,7 @@ mod tests {
             .map(|error| format!("{}: {error}", error.code()))
             .collect();
         insta::assert_snapshot!(said.join("\n"));
-        let covered: BTreeSet<&str> = errors.iter().map(|error| error.code()).collect();
+        let covered: BTreeSet<&str> = errors.iter().map(SimilarityError::code).collect();
         let all: BTreeSet<&str> = include_str!("error.rs")
             .split('"')
             .filter(|word| word.starts_with("similarity/") && word.len() > 11)

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use driftworld::curriculum::{Progress, Summary, Surroundings, logger_info, run, scenario_info};
 use driftworld::env::{Agent, OnRailsAgent, RandomAgent};
-use driftworld::metrics::{LogWriter, Timestamp};
+use driftworld::metrics::{LogWriter, MetricsError, Timestamp};
 use driftworld::spec::{BlockKind, Scenario, Variant};
 use driftworld::tasks;
 
@@ -66,7 +66,14 @@ pub(crate) fn live(scenario: &Scenario, who: Who, logs: &Path) -> Result<Summary
         Who::Random => Box::new(RandomAgent::new(0)),
         Who::Onrails => Box::new(OnRailsAgent::new()),
     };
-    let mut log = LogWriter::create(logs, &logger_info()?, &scenario_info(scenario, name))?;
+    let mut log =
+        LogWriter::create(logs, &logger_info()?, &scenario_info(scenario, name)).map_err(|error| match error {
+            MetricsError::LogExists { path } => Failure::input(format!(
+                "{}: holds something already; choose a new folder with --logs",
+                path.display()
+            )),
+            other => other.into(),
+        })?;
     let bar = output::progress(scenario.num_experiences(), "living");
     let mut around = Surroundings {
         find: &mut find,

@@ -83,15 +83,22 @@ impl<'a> Background<'a> {
 
     /// Squares of slightly different shades, so that motion can be seen; they fade with distance before they flicker.
     fn ground_at(&self, ray: [f32; 3], metres: f32) -> [u8; 3] {
-        let x = (self.position[0] + ray[0] * metres) / SQUARE;
-        let y = (self.position[1] + ray[1] * metres) / SQUARE;
-        let (cx, cy) = (x.floor() as i32, y.floor() as i32);
-        let checker = if (cx + cy) & 1 == 0 { 0.045 } else { -0.045 };
-        let speckle = 0.07 * (hash(cx as u32, cy as u32) - 0.5);
         // How many squares a pixel covers where the ray meets the ground.
         let blur = metres * self.step * metres / (self.height * SQUARE);
         let fade = (1.0 - blur * 1.3).clamp(0.0, 1.0);
+        if fade == 0.0 {
+            return self.shader.pixel(self.ground, self.ground_share);
+        }
+        let [cx, cy] = [0, 1].map(|axis| square((self.position[axis] + ray[axis] * metres) / SQUARE));
+        let checker = if (cx + cy) & 1 == 0 { 0.045 } else { -0.045 };
+        let speckle = 0.07 * (hash(cx as u32, cy as u32) - 0.5);
         let share = self.ground_share * (1.0 + (checker + speckle) * fade);
         self.shader.pixel(self.ground, share)
     }
+}
+
+/// The number of a square: `floor`, without the call that it is on processors from before 2008.
+fn square(place: f32) -> i32 {
+    let cut = place as i32;
+    if cut as f32 > place { cut - 1 } else { cut }
 }
