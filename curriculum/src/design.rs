@@ -112,6 +112,7 @@ pub fn design(variants: &[Choice], options: &Design) -> Result<Scenario, Curricu
         }
     }
     Ok(Scenario {
+        version: driftworld_spec::SCENARIO_VERSION,
         schema: None,
         name: options.name.clone(),
         description: String::new(),

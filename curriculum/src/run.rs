@@ -212,7 +212,7 @@ impl Life<'_, '_> {
             regime: place.regime,
             source,
         };
-        let sampler = Sampler::new(variant, regime.seed).map_err(wrong)?;
+        let sampler = Sampler::new(variant, regime.seed);
         let name = log_name(variant);
         self.summary.regimes.push(RegimeSummary {
             block: place.block,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use driftworld_spec::{World, maps};
+use driftworld_spec::World;
 
 use crate::assets::{Asset, asset};
 
@@ -118,7 +118,7 @@ impl Scene {
         let [x, y] = self.arena_size.map(|side| side / 2.0);
         // Clockwise, so that the inside is on the right.
         self.add_polygon(&[[-x, -y], [-x, y], [x, y], [x, -y]], height, color);
-        for region in maps::excluded_regions(environment.predefined_map) {
+        for region in environment.regions() {
             self.add_region(region, height, color);
         }
         for wall in &environment.walls {

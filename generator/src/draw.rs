@@ -1,99 +1,153 @@
-//! Draws from the declared distributions. Numbers come from `stream.rs`; transcendental functions from `libm`.
+//! Draws from the declared distributions. Numbers come from `stream.rs`, laws from the spec.
+//!
+//! Numbers are drawn by inversion: one number of chance through the distribution's quantile. Two variants under one seed so
+//! share their chance: where one draws high, so does the other. Points of discs and rings come from `rand_distr`, whose
+//! rejection needs no transcendental function; all else goes through `libm`, so that the bits are the same everywhere.
 
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
-use driftworld_spec::{Distribution, Value};
+use driftworld_spec::{Distribution, Order, Value};
+use rand_distr::{Distribution as _, UnitCircle, UnitDisc};
 
 use crate::stream::Chance;
 
-/// Draws a value. `number` is the object's number: points are taken in turn.
-pub(crate) fn draw(distribution: &Distribution, number: u32, chance: &mut Chance) -> Value {
+/// Draws a value.
+pub(crate) fn draw<'a>(distribution: &'a Distribution, chance: &mut Chance) -> Cow<'a, Value> {
     match distribution {
-        Distribution::Uniform { low, high } => Value::Number(low + (high - low) * chance.unit()),
-        Distribution::IntegerUniform { low, high } => {
-            let (low, high) = (*low as i64, *high as i64);
-            Value::Integer(low + chance.below((high - low) as u64 + 1) as i64)
+        Distribution::Constant { value } => Cow::Borrowed(value),
+        Distribution::Choice { values, .. } => Cow::Borrowed(&values[distribution.chosen_at(chance.unit())]),
+        Distribution::Mixture { parts, .. } => draw(&parts[distribution.chosen_at(chance.unit())], chance),
+        Distribution::Dirichlet { alpha } => {
+            let units: Vec<f64> = alpha[1..].iter().map(|_| chance.unit()).collect();
+            Cow::Owned(Value::Vector(shares(alpha, &units)))
         }
-        Distribution::Normal { mean, std } => Value::Number(mean + std * normal(chance)),
-        Distribution::TruncatedNormal { mean, std, low, high } => {
-            Value::Number(truncated_normal(*mean, *std, *low, *high, chance))
-        }
-        Distribution::Choice { values, weights } => values[choose(values.len(), weights.as_deref(), chance)].clone(),
-        Distribution::Bernoulli { p } => Value::Boolean(chance.unit() < *p),
-        Distribution::Binomial { n, p } => Value::Integer((0..*n as u64).filter(|_| chance.unit() < *p).count() as i64),
-        planar => Value::Point(point(planar, number, chance)),
+        planar if planar.is_planar() => Cow::Owned(Value::Point(place(planar, 0, chance).at)),
+        other => Cow::Owned(
+            other
+                .value_at(chance.unit())
+                .expect("one number of chance decides what every other distribution draws"),
+        ),
     }
 }
 
-/// Draws a point of the plane; the distribution is a planar one.
-pub(crate) fn point(distribution: &Distribution, number: u32, chance: &mut Chance) -> [f64; 2] {
-    match distribution {
-        Distribution::Box { low, high } => [
-            low[0] + (high[0] - low[0]) * chance.unit(),
-            low[1] + (high[1] - low[1]) * chance.unit(),
-        ],
-        Distribution::Disc { center, radius } => ring(*center, 0.0, *radius, chance),
-        Distribution::Annulus { center, inner, outer } => ring(*center, *inner, *outer, chance),
-        Distribution::Gaussian { mean, std } => {
-            let [a, b] = normal_pair(chance);
-            [mean[0] + std * a, mean[1] + std * b]
-        }
-        Distribution::Points { values } => values[number as usize % values.len()],
-        _ => [0.0, 0.0],
+/// Shares that sum to 1: each takes its part of what those before have left (stick breaking).
+fn shares(alpha: &[f64], units: &[f64]) -> Vec<f64> {
+    let mut rest: f64 = alpha.iter().sum();
+    let mut left = 1.0;
+    let mut shares = Vec::with_capacity(alpha.len());
+    for (shape, unit) in alpha.iter().zip(units) {
+        rest -= shape;
+        let part = Distribution::Beta {
+            alpha: *shape,
+            beta: rest.max(1e-3),
+            low: None,
+            high: None,
+        };
+        let share = left * part.quantile(*unit).expect("a beta draws numbers");
+        shares.push(share);
+        left -= share;
     }
+    shares.push(left.max(0.0));
+    shares
 }
 
-fn ring([x, y]: [f64; 2], inner: f64, outer: f64, chance: &mut Chance) -> [f64; 2] {
-    let radius = (inner * inner + (outer * outer - inner * inner) * chance.unit()).sqrt();
-    let angle = TAU * chance.unit();
-    [x + radius * libm::cos(angle), y + radius * libm::sin(angle)]
+/// A place on the ground, and what its distribution demands beside it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    pub(crate) at: [f64; 2],
+    /// Least distance to objects of the same group; 0 but for Poisson-disc sampling.
+    pub(crate) own_distance: f64,
 }
 
-fn normal_pair(chance: &mut Chance) -> [f64; 2] {
-    // 1 − u lies in (0, 1], so that its logarithm is finite.
-    let radius = (-2.0 * libm::log(1.0 - chance.unit())).sqrt();
-    let angle = TAU * chance.unit();
-    [radius * libm::cos(angle), radius * libm::sin(angle)]
-}
-
-fn normal(chance: &mut Chance) -> f64 {
-    normal_pair(chance)[0]
-}
-
-/// A normal number within bounds: by rejection, from the normal where the bounds hold much of it, else from a flat one.
-fn truncated_normal(mean: f64, std: f64, low: f64, high: f64, chance: &mut Chance) -> f64 {
-    let (a, b) = ((low - mean) / std, (high - mean) / std);
-    if a <= 1.0 && b >= -1.0 && b - a > 1.0 {
-        loop {
-            let z = normal(chance);
-            if (a..=b).contains(&z) {
-                return (mean + std * z).clamp(low, high);
-            }
+/// Draws a place; the distribution is a planar one. `number` is the object's: lists are taken in turn.
+pub(crate) fn place(distribution: &Distribution, number: u64, chance: &mut Chance) -> Place {
+    let mut own_distance = 0.0;
+    let at = match distribution {
+        Distribution::Disc { center: [x, y], radius } => {
+            let [u, v]: [f64; 2] = UnitDisc.sample(chance);
+            [x + radius * u, y + radius * v]
         }
-    }
-    // Far tails are cut where less than 2^-53 of them is left, so that a far bound costs no tries.
-    let peak = 0.0_f64.clamp(a, b);
-    let reach = 40.0 / peak.abs().max(1.0);
-    let (a, b) = (a.max(peak - reach), b.min(peak + reach));
-    loop {
-        let z = a + (b - a) * chance.unit();
-        if chance.unit() < libm::exp((peak * peak - z * z) / 2.0) {
-            return (mean + std * z).clamp(low, high);
+        Distribution::Annulus {
+            center: [x, y],
+            inner,
+            outer,
+        } => {
+            let [u, v]: [f64; 2] = UnitCircle.sample(chance);
+            let radius = (inner * inner + (outer * outer - inner * inner) * chance.unit()).sqrt();
+            [x + radius * u, y + radius * v]
         }
-    }
-}
-
-fn choose(count: usize, weights: Option<&[f64]>, chance: &mut Chance) -> usize {
-    let Some(weights) = weights else {
-        return chance.below(count as u64) as usize;
+        Distribution::Points { values, order } => values[turn(*order, values.len() as u64, number, chance)],
+        Distribution::Grid {
+            low,
+            high,
+            columns,
+            rows,
+            jitter,
+            order,
+        } => {
+            let (columns, rows) = (*columns as u64, *rows as u64);
+            let cell = turn(*order, columns * rows, number, chance) as u64;
+            let jitter = jitter.unwrap_or(0.0);
+            let mut axis = |k: usize, cell: u64, count: u64| {
+                let stray = if jitter > 0.0 {
+                    jitter * (chance.unit() - 0.5)
+                } else {
+                    0.0
+                };
+                low[k] + (high[k] - low[k]) * (cell as f64 + 0.5 + stray) / count as f64
+            };
+            [axis(0, cell % columns, columns), axis(1, cell / columns, rows)]
+        }
+        Distribution::PoissonDisc { low, high, distance } => {
+            own_distance = *distance;
+            let [u, v] = [chance.unit(), chance.unit()];
+            [low[0] + (high[0] - low[0]) * u, low[1] + (high[1] - low[1]) * v]
+        }
+        Distribution::Mixture { parts, .. } => {
+            return place(&parts[distribution.chosen_at(chance.unit())], number, chance);
+        }
+        Distribution::Constant {
+            value: Value::Point(point),
+        } => *point,
+        Distribution::Choice { values, .. } => match values[distribution.chosen_at(chance.unit())] {
+            Value::Point(point) => point,
+            _ => [0.0, 0.0],
+        },
+        other => point_at(other, [chance.unit(), chance.unit()]).unwrap_or([0.0, 0.0]),
     };
-    let mut left = weights.iter().sum::<f64>() * chance.unit();
-    for (index, weight) in weights.iter().enumerate() {
-        if left < *weight {
-            return index;
-        }
-        left -= weight;
+    Place { at, own_distance }
+}
+
+fn turn(order: Order, count: u64, number: u64, chance: &mut Chance) -> usize {
+    match order {
+        Order::Turn => (number % count) as usize,
+        Order::Random => ((chance.unit() * count as f64) as u64).min(count - 1) as usize,
     }
-    // Rounding can leave a sliver: it belongs to the last value that can occur.
-    weights.iter().rposition(|weight| *weight > 0.0).unwrap_or(0)
+}
+
+/// The point that two numbers of chance decide; `None` for distributions that more or fewer decide.
+pub(crate) fn point_at(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
+    let ring = |[x, y]: [f64; 2], inner: f64, outer: f64| {
+        let radius = (inner * inner + (outer * outer - inner * inner) * u).sqrt();
+        [x + radius * libm::cos(TAU * v), y + radius * libm::sin(TAU * v)]
+    };
+    Some(match distribution {
+        Distribution::Box { low, high } => [low[0] + (high[0] - low[0]) * u, low[1] + (high[1] - low[1]) * v],
+        Distribution::Disc { center, radius } => ring(*center, 0.0, *radius),
+        Distribution::Annulus { center, inner, outer } => ring(*center, *inner, *outer),
+        Distribution::Gaussian { mean, .. } => {
+            let [[xx, xy], [_, yy]] = distribution.gaussian_covariance()?;
+            let normal = Distribution::Normal { mean: 0.0, std: 1.0 };
+            let (a, b) = (normal.quantile(u)?, normal.quantile(v)?);
+            // Cholesky: x takes the first number, y its share of it and the rest from the second.
+            let along = xx.sqrt();
+            let shared = if along > 0.0 { xy / along } else { 0.0 };
+            [
+                mean[0] + along * a,
+                mean[1] + shared * a + (yy - shared * shared).max(0.0).sqrt() * b,
+            ]
+        }
+        _ => return None,
+    })
 }

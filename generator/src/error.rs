@@ -48,6 +48,25 @@ pub enum GeneratorError {
         /// What most places failed, the closest miss, and which field to loosen.
         reason: String,
     },
+    /// A condition that the task states holds in none of the tries.
+    #[error(
+        "{variant}, seed {seed}, index {index}: found no values in {tries} tries for which {requirement:?} holds, as \"require\" \
+         states; the last were {values}; widen the distributions, or loosen the requirement"
+    )]
+    Requirement {
+        /// The variant.
+        variant: String,
+        /// The seed.
+        seed: u64,
+        /// The world's number.
+        index: u64,
+        /// The condition.
+        requirement: String,
+        /// The last values that it was tried with.
+        values: String,
+        /// How often the values were drawn.
+        tries: u32,
+    },
     /// The groups together have more objects than a world holds.
     #[error("{variant}, seed {seed}, index {index}: found {found} objects, expected at most {limit}; lower the counts")]
     TooMany {
@@ -70,6 +89,7 @@ impl GeneratorError {
         match self {
             Self::OutOfRange { .. } => "generator/out-of-range",
             Self::NoPlace { .. } => "generator/no-place",
+            Self::Requirement { .. } => "generator/requirement",
             Self::TooMany { .. } => "generator/too-many",
         }
     }
@@ -101,6 +121,14 @@ mod tests {
                 count: 4,
                 tries: 1000,
                 reason: "lower the count".into(),
+            },
+            GeneratorError::Requirement {
+                variant: "t#v".into(),
+                seed: 1,
+                index: 2,
+                requirement: "low < high".into(),
+                values: "low = 3, high = 2".into(),
+                tries: 1000,
             },
             GeneratorError::TooMany {
                 variant: "t#v".into(),

@@ -1,13 +1,15 @@
 //! Where objects may not stand: outside the arena, and inside polygons. Where they do stand is found in `placement.rs`.
 
-use driftworld_spec::{EnvironmentParams, maps};
+use driftworld_spec::EnvironmentParams;
 
 /// The ground that is free to stand on, as far as walls go.
+#[derive(Debug)]
 pub(crate) struct Ground {
     half: [f64; 2],
     regions: Vec<Region>,
 }
 
+#[derive(Debug)]
 struct Region {
     corners: Vec<[f64; 2]>,
     low: [f64; 2],
@@ -16,13 +18,11 @@ struct Region {
 
 impl Ground {
     pub(crate) fn new(environment: &EnvironmentParams) -> Self {
-        let built_in = maps::excluded_regions(environment.predefined_map)
-            .iter()
-            .map(|corners| corners.to_vec());
+        let map = environment.regions().into_iter().map(<[[f64; 2]]>::to_vec);
         let walls = environment.walls.iter().map(|wall| wall.polygon.clone());
         Self {
             half: environment.arena_size().map(|side| side / 2.0),
-            regions: built_in.chain(walls).map(Region::new).collect(),
+            regions: map.chain(walls).map(Region::new).collect(),
         }
     }
 

@@ -1,14 +1,19 @@
 //! [`Sampler`]: a variant under a seed, compiled so that any of its worlds can be drawn at once.
 
-use driftworld_spec::{
-    Count, Distribution, Hole, MAX_OBJECTS, Object, PlacedGroup, Role, Source, Template, Value, Variant, World,
-};
+use std::sync::Arc;
+
+use driftworld_spec::maps::MapLibrary;
+use driftworld_spec::{MAX_OBJECTS, ParameterType, Requirement, Value, Variant, World};
 
 use crate::GeneratorError;
-use crate::draw::draw;
-use crate::placement::{Margins, Plot};
+use crate::compiled::{Compiled, Filled, Group, GroupCount, Look};
+use crate::coverage::Coverage;
+use crate::placement::{Anchor, Plot, Request};
 use crate::regions::Ground;
 use crate::stream::Stream;
+
+/// How often the randomized parameters of a world are drawn before a requirement that never holds is an error.
+pub(crate) const ATTEMPTS: u32 = 1000;
 
 /// Draws the worlds of one variant under one seed, any of them at once.
 ///
@@ -22,7 +27,7 @@ use crate::stream::Stream;
 /// use driftworld_spec::TaskSpec;
 /// let task = TaskSpec::from_json("t", r#"{ "name": "t", "groups": [{ "name": "cubes", "count": 3,
 ///     "object": { "class": "cube" }, "placement": { "disc": { "center": [0, 0], "radius": 20 } }, "separation": 2 }] }"#)?;
-/// let sampler = Sampler::new(&task.variant("default")?, 7)?;
+/// let sampler = Sampler::new(&task.variant("default")?, 7);
 /// assert_eq!(sampler.world(12)?.objects.len(), 3);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -30,90 +35,77 @@ use crate::stream::Stream;
 pub struct Sampler {
     variant: Variant,
     seed: u64,
-    parameters: Vec<(String, Drawn)>,
-    world: Filled<World>,
-    fixtures: Vec<Filled<Object>>,
-    groups: Vec<Group>,
-}
-
-/// A distribution with numbers settled, and the stream it draws from.
-#[derive(Debug)]
-struct Drawn {
-    distribution: Distribution,
-    stream: Stream,
-}
-
-impl Drawn {
-    fn at(&self, index: u64, number: u32) -> Value {
-        draw(&self.distribution, number, &mut self.stream.at(index, number))
-    }
-}
-
-/// A template whose constant holes are filled.
-#[derive(Debug)]
-struct Filled<T: 'static> {
-    base: T,
-    place: String,
-    holes: Vec<(Hole<T>, Fill)>,
-}
-
-/// Where a hole gets its value.
-#[derive(Debug)]
-enum Fill {
-    /// The randomized parameter of this number.
-    Parameter(usize),
-    /// A draw of its own.
-    Own(Box<Drawn>),
-}
-
-#[derive(Debug)]
-struct Group {
-    name: String,
-    count: GroupCount,
-    object: Filled<Object>,
-    placement: Drawn,
-    margins: Margins,
-}
-
-#[derive(Debug)]
-enum GroupCount {
-    Fixed(u32),
-    Drawn(Fill),
+    compiled: Compiled,
+    /// The requirements that chance has a part in.
+    requirements: Vec<Requirement>,
+    coverage: Coverage,
+    spread: Stream,
+    maps: Option<Arc<MapLibrary>>,
+    /// The ground, where it is the same in every world.
+    ground: Option<Ground>,
 }
 
 impl Sampler {
     /// Prepares a variant for drawing.
-    ///
-    /// # Errors
-    /// None today: loading the task has checked all that could fail.
-    pub fn new(variant: &Variant, seed: u64) -> Result<Self, GeneratorError> {
-        let task = variant.task();
-        let compile = Compiler { variant, seed };
-        let randomized = task
-            .parameters()
+    pub fn new(variant: &Variant, seed: u64) -> Self {
+        let compiled = Compiled::new(variant, seed);
+        let by_chance = |requirement: &&Requirement| {
+            requirement
+                .names()
+                .iter()
+                .any(|name| compiled.parameters.iter().any(|parameter| parameter.name == *name))
+        };
+        let requirements = variant
+            .task()
+            .requirements()
             .iter()
-            .filter(|(_, parameter)| parameter.role == Role::Randomized);
-        let parameters = randomized
-            .filter_map(|(name, _)| {
-                let distribution = variant.distribution(name)?;
-                Some((name.clone(), compile.drawn(distribution, &format!("parameter/{name}"))))
-            })
-            .collect::<Vec<_>>();
-        let names: Vec<&str> = parameters.iter().map(|(name, _)| name.as_str()).collect();
-        let world = compile.template(task.world(), "world", &names);
-        let fixtures = task.fixtures().iter().enumerate();
-        let fixtures = fixtures
-            .map(|(k, fixture)| compile.template(fixture, &format!("fixture/{k}"), &names))
+            .filter(by_chance)
+            .cloned()
             .collect();
-        let groups = task.groups().iter().map(|group| compile.group(group, &names)).collect();
-        Ok(Self {
+        let mut sampler = Self {
             variant: variant.clone(),
             seed,
-            parameters,
-            world,
-            fixtures,
-            groups,
-        })
+            compiled,
+            requirements,
+            coverage: Coverage::Independent,
+            spread: Stream::new(variant.task().name(), seed, "coverage"),
+            maps: None,
+            ground: None,
+        };
+        sampler.settle_ground();
+        sampler
+    }
+
+    /// Spreads the randomized parameters over many worlds.
+    #[must_use]
+    pub fn with_coverage(mut self, coverage: Coverage) -> Self {
+        self.coverage = coverage;
+        self
+    }
+
+    /// Takes the layouts of predefined maps from a library; each world carries the one it has.
+    #[must_use]
+    pub fn with_maps(mut self, maps: Arc<MapLibrary>) -> Self {
+        self.maps = Some(maps);
+        self.settle_ground();
+        self
+    }
+
+    /// Prepares the map and the ground once, if no world can have another.
+    fn settle_ground(&mut self) {
+        let shapes = ["/environment_params/predefined_map", "/environment_params/map_size"];
+        let varies = self
+            .compiled
+            .world
+            .holes
+            .iter()
+            .any(|(hole, _)| shapes.iter().any(|shape| hole.pointer.starts_with(shape)));
+        if !varies {
+            if let Some(maps) = &self.maps {
+                maps.apply(&mut self.compiled.world.base);
+            }
+            self.ground = Some(Ground::new(&self.compiled.world.base.environment_params));
+        }
     }
 
     /// The variant that it draws from.
@@ -121,39 +113,134 @@ impl Sampler {
         &self.variant
     }
 
+    /// The seed that it draws under.
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The randomized parameters of world number `index`, in the order in which the task declares them.
+    ///
+    /// # Errors
+    /// [`GeneratorError::Requirement`] if the task's requirements hold in none of the tries.
+    pub fn values(&self, index: u64) -> Result<Vec<(&str, Value)>, GeneratorError> {
+        let names = self.compiled.parameters.iter().map(|parameter| parameter.name.as_str());
+        Ok(names.zip(self.draw_values(index)?).collect())
+    }
+
+    fn draw_values(&self, index: u64) -> Result<Vec<Value>, GeneratorError> {
+        for attempt in 0..ATTEMPTS {
+            let parameters = self.compiled.parameters.iter();
+            let values: Vec<Value> = parameters
+                .map(|parameter| parameter.value(self.coverage, &self.spread, index, attempt))
+                .collect();
+            if self.requirements.is_empty() {
+                return Ok(values);
+            }
+            let value_of = |name: &str| {
+                let parameter = self
+                    .compiled
+                    .parameters
+                    .iter()
+                    .position(|parameter| parameter.name == name);
+                parameter
+                    .map(|number| values[number].clone())
+                    .or_else(|| self.variant.value(name).cloned())
+            };
+            let broken = self
+                .requirements
+                .iter()
+                .find(|requirement| requirement.holds(value_of) != Some(true));
+            match broken {
+                None => return Ok(values),
+                Some(requirement) if attempt + 1 == ATTEMPTS => {
+                    return Err(GeneratorError::Requirement {
+                        variant: self.variant.id(),
+                        seed: self.seed,
+                        index,
+                        requirement: requirement.text().to_owned(),
+                        values: requirement.describe(value_of),
+                        tries: ATTEMPTS,
+                    });
+                }
+                Some(_) => {}
+            }
+        }
+        unreachable!("the last attempt returns")
+    }
+
     /// World number `index`.
     ///
     /// # Errors
-    /// [`GeneratorError`] if an object finds no place, a draw falls out of its range, or there are too many objects.
+    /// [`GeneratorError`] if an object finds no place, a draw falls out of its range, a requirement never holds, or there are
+    /// too many objects.
     pub fn world(&self, index: u64) -> Result<World, GeneratorError> {
-        let values: Vec<Value> = self.parameters.iter().map(|(_, drawn)| drawn.at(index, 0)).collect();
-        let mut world = self.fill(&self.world, index, 0, &values)?;
-        let ground = Ground::new(&world.environment_params);
-        let mut plot = Plot::new(ground, world.agent_params.coordinates);
-        for fixture in &self.fixtures {
-            let object = self.fill(fixture, index, 0, &values)?;
+        let values = self.draw_values(index)?;
+        let mut world = self.fill(&self.compiled.world, index, 0, &values)?;
+        let own_ground;
+        let ground = if let Some(ground) = &self.ground {
+            ground
+        } else {
+            if let Some(maps) = &self.maps {
+                maps.apply(&mut world);
+            }
+            own_ground = Ground::new(&world.environment_params);
+            &own_ground
+        };
+        let mut plot = Plot::new(ground, world.agent_params.coordinates, self.compiled.groups.len());
+        for (number, fixture) in self.compiled.fixtures.iter().enumerate() {
+            let object = self.fill(fixture, index, number as u64, &values)?;
             plot.occupy(object.coordinates);
             world.objects.push(object);
         }
-        for group in &self.groups {
-            self.place(group, index, &values, &mut plot, &mut world)?;
+        // For each group, where its objects stand in the world's list.
+        let mut ranges = Vec::with_capacity(self.compiled.groups.len());
+        for (number, group) in self.compiled.groups.iter().enumerate() {
+            let first = world.objects.len();
+            let mut draft = Draft {
+                index,
+                values: &values,
+                plot: &mut plot,
+                world: &mut world,
+            };
+            match group.around {
+                None => self.place(number, group, Anchor::ORIGIN, 0, &mut draft)?,
+                Some(middle) => {
+                    let middles: std::ops::Range<usize> = std::ops::Range::clone(&ranges[middle]);
+                    for (anchor_number, object) in middles.enumerate() {
+                        let object = &draft.world.objects[object];
+                        let heading = if group.turned { object.heading } else { 0.0 };
+                        let anchor = Anchor {
+                            at: object.coordinates,
+                            heading,
+                        };
+                        self.place(number, group, anchor, anchor_number as u64, &mut draft)?;
+                    }
+                }
+            }
+            ranges.push(first..world.objects.len());
         }
         Ok(world)
     }
 
+    /// Places the objects of a group around one anchor.
     fn place(
         &self,
+        number: usize,
         group: &Group,
-        index: u64,
-        values: &[Value],
-        plot: &mut Plot,
-        world: &mut World,
+        anchor: Anchor,
+        anchor_number: u64,
+        draft: &mut Draft,
     ) -> Result<(), GeneratorError> {
+        let index = draft.index;
+        // Each anchor has numbers of its own, so that one more object around it moves nothing around another.
+        let first = anchor_number << 32;
         let count = match &group.count {
             GroupCount::Fixed(count) => *count,
-            GroupCount::Drawn(fill) => fill.value(index, 0, values).as_integer().unwrap_or(0) as u32,
+            GroupCount::Drawn(fill) => fill.with(index, first, draft.values, |value| {
+                value.as_integer().unwrap_or(0) as u32
+            }),
         };
-        let found = world.objects.len() + count as usize;
+        let found = draft.world.objects.len() + count as usize;
         if found > MAX_OBJECTS {
             let variant = self.variant.id();
             return Err(GeneratorError::TooMany {
@@ -164,23 +251,56 @@ impl Sampler {
                 limit: MAX_OBJECTS,
             });
         }
-        world.objects.reserve(count as usize);
-        for number in 0..count {
-            let mut object = self.fill(&group.object, index, number, values)?;
-            let mut chance = group.placement.stream.at(index, number);
-            object.coordinates = plot
-                .find(&group.placement.distribution, group.margins, number, &mut chance)
+        draft.world.objects.reserve(count as usize);
+        for turn in 0..u64::from(count) {
+            let mut object = self.fill(&group.object, index, first + turn, draft.values)?;
+            let mut chance = group.placement.stream.at(index, first + turn, 0);
+            let placement = &group.placement.distribution;
+            let request = Request {
+                placement,
+                margins: &group.margins,
+                anchor,
+                group: number,
+                number: turn,
+            };
+            let place = draft
+                .plot
+                .find(&request, &mut chance)
                 .map_err(|(tries, reason)| GeneratorError::NoPlace {
                     variant: self.variant.id(),
                     seed: self.seed,
                     index,
                     group: group.name.clone(),
-                    object: number + 1,
+                    object: turn as u32 + 1,
                     count,
                     tries,
                     reason,
                 })?;
-            world.objects.push(object);
+            object.coordinates = place;
+            if place.iter().any(|metres| metres.abs() > 300.0) {
+                // Only where no wall is kept out of: the arena itself is smaller.
+                return Err(self.out_of_range(
+                    index,
+                    &format!("group/{}/placement", group.name),
+                    place,
+                    [-300.0, 300.0],
+                ));
+            }
+            let towards = match &group.facing {
+                None => None,
+                Some(Look::Random(stream)) => {
+                    object.heading = 360.0 * stream.at(index, first + turn, 0).unit();
+                    None
+                }
+                Some(Look::Agent) => Some(draft.world.agent_params.coordinates),
+                Some(Look::Middle) => Some(anchor.at),
+                Some(Look::Point(point)) => Some(*point),
+                Some(Look::Group(group)) => draft.plot.group(*group).nearest(place),
+            };
+            if let Some(to) = towards.filter(|to| *to != place) {
+                object.heading = heading(place, to);
+            }
+            draft.world.objects.push(object);
         }
         Ok(())
     }
@@ -189,117 +309,67 @@ impl Sampler {
         &self,
         template: &Filled<T>,
         index: u64,
-        number: u32,
+        object: u64,
         values: &[Value],
     ) -> Result<T, GeneratorError> {
         let mut target = template.base.clone();
         for (hole, fill) in &template.holes {
-            let value = fill.value(index, number, values);
-            let [low, high] = hole.range;
-            let numbers = match &value {
-                Value::Point(point) => *point,
-                other => [other.as_number().unwrap_or(low); 2],
-            };
-            if let Some(found) = numbers.into_iter().find(|number| !(low..=high).contains(number)) {
-                return Err(GeneratorError::OutOfRange {
-                    variant: self.variant.id(),
-                    seed: self.seed,
-                    index,
-                    place: format!("{}{}", template.place, hole.pointer),
-                    found,
-                    low,
-                    high,
-                });
-            }
-            hole.fill(&mut target, &value)
-                .expect("loading the task tried every value that this hole can be given");
+            fill.with(index, object, values, |value| {
+                if hole.kind == ParameterType::Heading {
+                    let turned = value.cast(ParameterType::Heading);
+                    hole.fill(&mut target, turned.as_ref().unwrap_or(value));
+                    return Ok(());
+                }
+                let [low, high] = hole.range;
+                let outside = |number: &&f64| !(low..=high).contains(*number);
+                let found = match value {
+                    Value::Number(number) => Some(number).filter(outside).copied(),
+                    Value::Integer(whole) => Some(&(*whole as f64)).filter(outside).copied(),
+                    Value::Point(point) => point.iter().find(outside).copied(),
+                    Value::Vector(vector) => vector.iter().find(outside).copied(),
+                    _ => None,
+                };
+                if let Some(found) = found {
+                    return Err(self.out_of_range(
+                        index,
+                        &format!("{}{}", template.place, hole.pointer),
+                        [found; 2],
+                        hole.range,
+                    ));
+                }
+                hole.fill(&mut target, value)
+                    .expect("loading the task tried every value that this hole can be given");
+                Ok(())
+            })?;
         }
         Ok(target)
     }
-}
 
-impl Fill {
-    fn value(&self, index: u64, number: u32, values: &[Value]) -> Value {
-        match self {
-            Self::Parameter(parameter) => values[*parameter].clone(),
-            Self::Own(drawn) => drawn.at(index, number),
-        }
-    }
-}
-
-/// Turns what a task declares into what is drawn for one variant under one seed.
-struct Compiler<'a> {
-    variant: &'a Variant,
-    seed: u64,
-}
-
-impl Compiler<'_> {
-    fn drawn(&self, distribution: Distribution, name: &str) -> Drawn {
-        Drawn {
-            distribution,
-            stream: Stream::new(self.variant.task().name(), self.seed, name),
-        }
-    }
-
-    /// Fills holes that a fixed or variant parameter settles; leaves the rest for each draw.
-    fn template<T: Clone>(&self, template: &Template<T>, place: &str, randomized: &[&str]) -> Filled<T> {
-        let mut base = template.base.clone();
-        let mut holes = Vec::new();
-        for hole in &template.holes {
-            match self.fill(&hole.source, &format!("{place}{}", hole.pointer), randomized) {
-                Ok(fill) => holes.push((hole.clone(), fill)),
-                Err(value) => {
-                    hole.fill(&mut base, &value)
-                        .expect("loading the task tried every value that this hole can be given");
-                }
-            }
-        }
-        Filled {
-            base,
+    fn out_of_range(&self, index: u64, place: &str, found: [f64; 2], [low, high]: [f64; 2]) -> GeneratorError {
+        GeneratorError::OutOfRange {
+            variant: self.variant.id(),
+            seed: self.seed,
+            index,
             place: place.to_owned(),
-            holes,
+            found: found
+                .into_iter()
+                .find(|number| !(low..=high).contains(number))
+                .unwrap_or(found[0]),
+            low,
+            high,
         }
     }
+}
 
-    /// What fills a hole in each world, or the value that it has in all.
-    fn fill(&self, source: &Source, name: &str, randomized: &[&str]) -> Result<Fill, Value> {
-        match source {
-            Source::Distribution(distribution) => {
-                Ok(Fill::Own(Box::new(self.drawn(self.variant.settle(distribution), name))))
-            }
-            Source::Param(parameter) => match randomized.iter().position(|name| name == parameter) {
-                Some(index) => Ok(Fill::Parameter(index)),
-                None => Err(self
-                    .variant
-                    .value(parameter)
-                    .cloned()
-                    .expect("loading the task checked every reference")),
-            },
-        }
-    }
+/// A world on its way.
+struct Draft<'a, 'g> {
+    index: u64,
+    values: &'a [Value],
+    plot: &'a mut Plot<'g>,
+    world: &'a mut World,
+}
 
-    fn group(&self, group: &PlacedGroup, randomized: &[&str]) -> Group {
-        let spec = &group.spec;
-        let name = &spec.name;
-        let count = match &group.count {
-            Count::Fixed(count) => GroupCount::Fixed(*count),
-            Count::Drawn(source) => match self.fill(source, &format!("group/{name}/count"), randomized) {
-                Ok(fill) => GroupCount::Drawn(fill),
-                Err(value) => GroupCount::Fixed(value.as_integer().unwrap_or(0) as u32),
-            },
-        };
-        let mut object = self.template(&group.object, &format!("group/{name}/object"), randomized);
-        object.base.tag.get_or_insert_with(|| name.clone());
-        Group {
-            name: name.clone(),
-            count,
-            object,
-            placement: self.drawn(self.variant.settle(&spec.placement), &format!("group/{name}/placement")),
-            margins: Margins {
-                separation: self.variant.number(&spec.separation),
-                wall: self.variant.number(&spec.wall_margin),
-                agent: self.variant.number(&spec.agent_margin),
-            },
-        }
-    }
+/// The heading in degrees that looks from one place to another.
+fn heading([x, y]: [f64; 2], [to_x, to_y]: [f64; 2]) -> f64 {
+    libm::atan2(to_x - x, to_y - y).to_degrees().rem_euclid(360.0)
 }

@@ -1,61 +1,125 @@
 //! Streams of chance: every source of numbers has one of its own, addressed by world and object. What is drawn from them is in `draw.rs`.
 
-use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use std::convert::Infallible;
+
+use rand::TryRng;
 use sha2::{Digest, Sha256};
 
-/// Words that each object's share of a stream holds before it would run into its neighbour's: 2^20 draws.
-const WORDS_PER_OBJECT: u128 = 1 << 21;
+use crate::philox::philox;
 
-/// The key of one named stream of a task under a seed.
+/// One named stream of a task under a seed.
 ///
-/// The numbers are `ChaCha8`'s under a key that is the SHA-256 of task, seed and name; the world's index is the stream
-/// number and the object's number the place in it. Any of them can be had without any other.
-#[derive(Clone, Debug)]
+/// The numbers are Philox's under a key from the SHA-256 of task, seed and name; world, object and attempt are its counter.
+/// Any of them can be had without any other.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Stream {
-    base: ChaCha8Rng,
+    key: [u64; 2],
 }
 
 impl Stream {
     pub(crate) fn new(task: &str, seed: u64, name: &str) -> Self {
         let mut hash = Sha256::new();
-        hash.update(b"driftworld stream 1\0");
+        hash.update(b"driftworld stream 2\0");
         for part in [task.as_bytes(), &seed.to_le_bytes(), name.as_bytes()] {
             hash.update((part.len() as u64).to_le_bytes());
             hash.update(part);
         }
+        let digest = hash.finalize();
+        let word = |from: usize| u64::from_le_bytes(std::array::from_fn(|byte| digest[from + byte]));
         Self {
-            base: ChaCha8Rng::from_seed(hash.finalize().into()),
+            key: [word(0), word(8)],
         }
     }
 
-    /// The numbers of one object in one world.
-    pub(crate) fn at(&self, index: u64, object: u32) -> Chance {
-        let mut rng = self.base.clone();
-        rng.set_stream(index);
-        rng.set_word_pos(u128::from(object) * WORDS_PER_OBJECT);
-        Chance(rng)
+    /// The numbers of one object in one world; `attempt` counts how often the world was drawn again.
+    pub(crate) fn at(&self, index: u64, object: u64, attempt: u32) -> Chance {
+        Chance {
+            key: self.key,
+            counter: [index, object, 0, u64::from(attempt)],
+            numbers: [0; 4],
+            used: 4,
+        }
+    }
+
+    /// A number that is the same for all worlds of the stream.
+    pub(crate) fn constant(&self, number: u64) -> u64 {
+        philox(self.key, [number, 0, 0, u64::MAX])[0]
     }
 }
 
 /// A source of numbers at one place.
-pub(crate) struct Chance(ChaCha8Rng);
+pub(crate) struct Chance {
+    key: [u64; 2],
+    counter: [u64; 4],
+    numbers: [u64; 4],
+    used: usize,
+}
 
 impl Chance {
-    /// A number in 0..1, 53 bits of it chance.
-    pub(crate) fn unit(&mut self) -> f64 {
-        (self.0.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
+    fn next(&mut self) -> u64 {
+        if self.used == self.numbers.len() {
+            self.numbers = philox(self.key, self.counter);
+            self.counter[2] += 1;
+            self.used = 0;
+        }
+        self.used += 1;
+        self.numbers[self.used - 1]
     }
 
-    /// A whole number in 0..n, each alike; `n` is above 0.
-    pub(crate) fn below(&mut self, n: u64) -> u64 {
-        // Lemire's multiplication, with rejection of the short remainder.
-        let threshold = n.wrapping_neg() % n;
-        loop {
-            let product = u128::from(self.0.next_u64()) * u128::from(n);
-            if product as u64 >= threshold {
-                return (product >> 64) as u64;
-            }
+    /// A number above 0 and below 1, 52 bits of it chance.
+    pub(crate) fn unit(&mut self) -> f64 {
+        unit(self.next())
+    }
+}
+
+/// 64 bits as a number above 0 and below 1.
+pub(crate) fn unit(bits: u64) -> f64 {
+    ((bits >> 12) as f64 + 0.5) * (1.0 / (1_u64 << 52) as f64)
+}
+
+/// So that the distributions of `rand_distr` can draw from it.
+impl TryRng for Chance {
+    type Error = Infallible;
+
+    fn try_next_u32(&mut self) -> Result<u32, Infallible> {
+        Ok((self.next() >> 32) as u32)
+    }
+
+    fn try_next_u64(&mut self) -> Result<u64, Infallible> {
+        Ok(self.next())
+    }
+
+    fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
+        for chunk in bytes.chunks_mut(8) {
+            chunk.copy_from_slice(&self.next().to_le_bytes()[..chunk.len()]);
         }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_address_has_numbers_of_its_own() {
+        let stream = Stream::new("task", 7, "parameter/light");
+        let first = |stream: &Stream, index, object, attempt| stream.at(index, object, attempt).next();
+        let all = [
+            first(&stream, 0, 0, 0),
+            first(&stream, 1, 0, 0),
+            first(&stream, 0, 1, 0),
+            first(&stream, 0, 0, 1),
+            first(&Stream::new("task", 8, "parameter/light"), 0, 0, 0),
+            first(&Stream::new("task", 7, "parameter/dark"), 0, 0, 0),
+            first(&Stream::new("other", 7, "parameter/light"), 0, 0, 0),
+        ];
+        let different: std::collections::BTreeSet<u64> = all.into_iter().collect();
+        assert_eq!(different.len(), all.len());
+    }
+
+    #[test]
+    fn a_unit_number_lies_inside() {
+        assert!(unit(0) > 0.0 && unit(u64::MAX) < 1.0);
     }
 }

@@ -17,7 +17,7 @@ pub use error::SimilarityError;
 pub use matrix::{DistanceMatrix, MAX_ITEMS};
 pub use measure::color::{ciede2000, oklab_distance, srgb_distance};
 pub use measure::occupancy::{Classes, Occupancy, hamming_distance, jaccard_distance};
-pub use measure::planar::{Moments, bures_wasserstein};
+pub use measure::planar::bures_wasserstein;
 pub use measure::wasserstein::{total_variation, wasserstein_1};
 pub use order::{MAX_EXACT, Method, Ordering, order};
 pub use variant::variant_distance;

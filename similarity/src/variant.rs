@@ -1,11 +1,11 @@
 //! Distance between two variants of one task, parameter by parameter. Distances of concrete worlds are in `world.rs`.
 
-use driftworld_spec::{Distribution, Domain, Parameter, Role, Value, Variant};
+use driftworld_spec::{Distribution, Domain, Parameter, ParameterType, Role, Value, Variant};
 
 use crate::SimilarityError;
 use crate::distance::{Distance, Part, Weights};
 use crate::measure::color::oklab_distance;
-use crate::measure::planar::{Moments, bures_wasserstein};
+use crate::measure::planar::{bures_wasserstein, spread};
 use crate::measure::wasserstein::{total_variation, wasserstein_1, width};
 
 /// How one parameter differs: measure, raw number, number in 0..=1.
@@ -30,8 +30,10 @@ pub fn variant_distance(a: &Variant, b: &Variant, weights: &Weights) -> Result<D
     for (name, parameter) in a.task().parameters() {
         let difference = match parameter.role {
             Role::Fixed => None,
-            Role::Variant => a.value(name).zip(b.value(name)).map(|(a, b)| by_value(parameter, a, b)),
-            Role::Randomized => a
+            Role::Variant if parameter.kind != ParameterType::Distribution => {
+                a.value(name).zip(b.value(name)).map(|(a, b)| by_value(parameter, a, b))
+            }
+            Role::Variant | Role::Randomized => a
                 .distribution(name)
                 .zip(b.distribution(name))
                 .map(|(a, b)| by_distribution(&a, &b)),
@@ -61,6 +63,19 @@ fn by_value(parameter: &Parameter, a: &Value, b: &Value) -> Difference {
             let raw = length(*a, *b);
             ("euclidean / widest choice", raw, share(raw, widest_choice(parameter)))
         }
+        (Value::Vector(a), Value::Vector(b)) => {
+            let raw = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+            (
+                "euclidean / range",
+                raw,
+                share(raw, range(parameter) * (a.len() as f64).sqrt()),
+            )
+        }
+        _ if parameter.kind == ParameterType::Heading => {
+            let turn = (a.as_number().unwrap_or(0.0) - b.as_number().unwrap_or(0.0)).rem_euclid(360.0);
+            let raw = turn.min(360.0 - turn);
+            ("turn / 180 degrees", raw, raw / 180.0)
+        }
         _ => {
             if let (Some(a), Some(b)) = (a.as_number(), b.as_number()) {
                 (
@@ -88,7 +103,7 @@ fn by_distribution(a: &Distribution, b: &Distribution) -> Difference {
         return ("wasserstein-1 / width", raw, share(raw, wide));
     }
     if let Some(raw) = bures_wasserstein(a, b) {
-        let spread = |d| Moments::of(d).map_or(0.0, |moments| moments.std[0].hypot(moments.std[1]));
+        let spread = |distribution| spread(distribution).unwrap_or(0.0);
         // Far apart is 1, and one spread of the two apart is a half.
         return (
             "bures-wasserstein",
@@ -115,7 +130,11 @@ fn range(parameter: &Parameter) -> f64 {
     match parameter.domain() {
         Some(Domain::Range([low, high])) => high - low,
         Some(Domain::Choices(choices)) => {
-            let numbers: Vec<f64> = choices.iter().filter_map(Value::as_number).collect();
+            let numbers_of = |choice: &Value| match choice {
+                Value::Vector(numbers) => numbers.clone(),
+                other => other.as_number().into_iter().collect(),
+            };
+            let numbers: Vec<f64> = choices.iter().flat_map(numbers_of).collect();
             let least = numbers.iter().copied().fold(f64::INFINITY, f64::min);
             numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least
         }

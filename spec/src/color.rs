@@ -37,6 +37,12 @@ impl Color {
         self.0.map(|channel| channel as f32)
     }
 
+    /// The colour as six hexadecimal digits, rounded to 8 bits a channel: `ff8000`.
+    pub fn hex(self) -> String {
+        let [red, green, blue] = self.0.map(|channel| (channel * 255.0).round() as u8);
+        format!("{red:02x}{green:02x}{blue:02x}")
+    }
+
     /// The CSS name of exactly this colour, or `[r, g, b]` with two decimals: for people to read.
     pub fn describe(self) -> String {
         let name = Self::names()

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use crate::error::{Problem, SpecError};
 use crate::schema::DocumentSchema;
+use crate::version::Format;
 
 /// The longest text that is read, in bytes.
 pub const MAX_BYTES: usize = 64 << 20;
@@ -38,6 +39,12 @@ impl<'a> Document<'a> {
             problems
         }))?;
         Ok(document)
+    }
+
+    /// Brings the document to the current version of its form; fails if it is of a newer one.
+    pub(crate) fn upgrade(&mut self, format: &Format) -> Result<(), SpecError> {
+        let problem = format.upgrade(&mut self.value);
+        self.fail_on(problem.into_iter().collect())
     }
 
     /// Fails with every violation of the schema.

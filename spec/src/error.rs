@@ -104,7 +104,11 @@ pub enum SpecError {
         problems: Vec<Problem>,
     },
     /// A task has no variant of this name.
-    #[error("{task}: found variant {found:?}, expected one of {}{}", known.join(", "), did_you_mean(found, known))]
+    #[error(
+        "{task}: found variant {found:?}, expected one of {}{}",
+        first_of(known),
+        did_you_mean(found, known)
+    )]
     UnknownVariant {
         /// The task's name.
         task: String,
@@ -112,6 +116,14 @@ pub enum SpecError {
         found: String,
         /// The names there are.
         known: Vec<String>,
+    },
+    /// A variant cannot have the values asked for.
+    #[error("{}", list(variant, problems))]
+    Values {
+        /// The variant's name, with its task's.
+        variant: String,
+        /// All that is wrong.
+        problems: Vec<Problem>,
     },
 }
 
@@ -121,7 +133,9 @@ impl SpecError {
         match self {
             Self::Syntax { .. } => "spec/syntax",
             Self::TooLarge { .. } => "spec/too-large",
-            Self::Document { problems, .. } => problems.first().map_or("spec/value", |problem| problem.code),
+            Self::Document { problems, .. } | Self::Values { problems, .. } => {
+                problems.first().map_or("spec/value", |problem| problem.code)
+            }
             Self::UnknownVariant { .. } => "spec/unknown-variant",
         }
     }
@@ -129,7 +143,7 @@ impl SpecError {
     /// The problems of a document, sorted by place; empty for other errors.
     pub fn problems(&self) -> &[Problem] {
         match self {
-            Self::Document { problems, .. } => problems,
+            Self::Document { problems, .. } | Self::Values { problems, .. } => problems,
             _ => &[],
         }
     }
@@ -145,6 +159,13 @@ fn list(name: &str, problems: &[Problem]) -> String {
         lines.push(format!("{name}: and {} more", problems.len() - SHOWN));
     }
     lines.join("\n")
+}
+
+fn first_of(known: &[String]) -> String {
+    match known.get(..SHOWN) {
+        Some(first) if known.len() > SHOWN => format!("{} and {} more", first.join(", "), known.len() - SHOWN),
+        _ => known.join(", "),
+    }
 }
 
 fn did_you_mean(word: &str, known: &[String]) -> String {

@@ -4,6 +4,7 @@
 //! Units everywhere are SI; headings are degrees clockwise from +y; colours are sRGB in 0..1; x is east, y north, z up.
 
 mod color;
+mod distribution;
 mod document;
 mod error;
 mod l2explorer;
@@ -11,18 +12,21 @@ pub mod maps;
 mod scenario;
 pub mod schema;
 mod task;
+mod version;
 mod world;
 
 pub use color::Color;
+pub use distribution::{Distribution, Number, Order, ParamRef, PlanarMoments, Spread};
 pub use document::MAX_BYTES;
 pub use error::{Problem, SpecError, nearest};
 pub use l2explorer::Warning;
 pub use scenario::{Block, BlockKind, MAX_EXPERIENCES, Regime, Scenario};
 pub use task::{
-    Count, DEFAULT_VARIANT, Distribution, Domain, Element, Group, Hole, Number, ParamRef, Parameter, ParameterType,
-    PlacedGroup, Role, Source, TaskSpec, Template, Value, Variant, VariantSpec,
+    Count, DEFAULT_VARIANT, Domain, Element, Facing, Group, Hole, KeepOut, Parameter, ParameterType, PlacedGroup,
+    Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template, Value, Variant, VariantSpec,
 };
+pub use version::{SCENARIO_VERSION, TASK_VERSION, WORLD_VERSION};
 pub use world::{
     ActionModel, ActionSpace, AgentParams, EndCondition, EnvironmentParams, GameMode, ImageParams, MAX_OBJECTS,
-    Modality, Model, MotionModel, Object, Respawn, Rules, Shaping, Stimulus, Wall, World,
+    Modality, Model, MotionModel, Object, Region, Respawn, Rules, Shaping, Stimulus, Wall, World,
 };

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::Document;
 use crate::error::{Problem, SpecError};
-use crate::schema;
+use crate::version::SCENARIO_VERSION;
+use crate::{schema, version};
 
 /// The most experiences that one regime may hold.
 pub const MAX_EXPERIENCES: u32 = 10_000_000;
@@ -17,6 +18,10 @@ pub struct Scenario {
     /// Where the JSON Schema of this document is, for editors.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<String>,
+    /// The version of this form of document. Older ones are read, newer ones refused; without it, it is taken to be 1.
+    #[serde(default = "current")]
+    #[schemars(range(min = 1, max = 1))]
+    pub version: u32,
     /// The scenario's name; logs are named after it.
     #[schemars(length(min = 1, max = 100), regex(pattern = "^[0-9a-zA-Z_.-]+$"))]
     pub name: String,
@@ -26,6 +31,10 @@ pub struct Scenario {
     /// The blocks, in the order in which they are lived.
     #[schemars(length(min = 1, max = 100_000))]
     pub blocks: Vec<Block>,
+}
+
+fn current() -> u32 {
+    SCENARIO_VERSION
 }
 
 /// A block: the agent either learns, or is frozen and evaluated.
@@ -77,7 +86,8 @@ impl Scenario {
     /// # Errors
     /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
-        let document = Document::parse(name, text)?;
+        let mut document = Document::parse(name, text)?;
+        document.upgrade(&version::SCENARIO)?;
         document.check_schema(schema::scenario())?;
         let scenario: Self = document.deserialize()?;
         document.fail_on(scenario.problems())?;

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use crate::document::{describe, escape};
 use crate::error::Problem;
+use crate::maps::MapsDocument;
 use crate::scenario::Scenario;
 use crate::task::TaskDocument;
 use crate::world::World;
@@ -296,11 +297,19 @@ pub fn scenario() -> &'static DocumentSchema {
     &SCHEMA
 }
 
+/// The schema of a maps file, as [`MapLibrary`](crate::maps::MapLibrary) reads it.
+pub fn maps() -> &'static DocumentSchema {
+    static SCHEMA: LazyLock<DocumentSchema> =
+        LazyLock::new(|| DocumentSchema::new(of_type::<MapsDocument>("maps", "Driftworld maps file")));
+    &SCHEMA
+}
+
 /// The schemas of all document types with their file names.
-pub fn all() -> [(&'static str, &'static DocumentSchema); 3] {
+pub fn all() -> [(&'static str, &'static DocumentSchema); 4] {
     [
         ("world.schema.json", world()),
         ("task.schema.json", task()),
         ("scenario.schema.json", scenario()),
+        ("maps.schema.json", maps()),
     ]
 }

@@ -20,6 +20,11 @@ fn parameter(body: &str) -> SpecError {
 fn cases() -> Vec<SpecError> {
     let number = r#""parameters": { "p": { "role": "variant", "type": "number", "affects": ["S"], "range": [0, 1], "default": 0 } }"#;
     let plain = TaskSpec::from_json("t.json", "{ \"name\": \"t\" }").expect("a task with nothing but a name is one");
+    let limited = TaskSpec::from_json(
+        "t.json",
+        &format!(r#"{{ "name": "t", {number}, "require": ["p > 0"] }}"#),
+    )
+    .expect("no declared variant breaks the requirement");
     vec![
         world("{"),
         World::from_json("w.json", &" ".repeat((64 << 20) + 1)).expect_err("the text is too long"),
@@ -48,6 +53,21 @@ fn cases() -> Vec<SpecError> {
             r#""parameters": { "p": { "role": "fixed", "type": "number", "value": 1 } }, "variants": { "a": { "p": 2 } }"#,
         ),
         Scenario::from_json("s.json", r#"{ "name": "s", "blocks": [] }"#).expect_err("a scenario has blocks"),
+        world(r#"{ "version": 9 }"#),
+        task(&format!(
+            r#"{number}, "require": ["p > 2"], "variants": {{ "a": {{}} }}"#
+        )),
+        task(&format!(r#"{number}, "require": ["p +"]"#)),
+        task(&format!(
+            r#"{number}, "world": {{ "max_steps": {{ "param": "p", "index": 1 }} }}"#
+        )),
+        task(
+            r#""groups": [{ "name": "fences", "count": 1, "object": { "class": "fence" }, "around": "houses",
+               "placement": { "disc": { "center": [0, 0], "radius": 9 } } }]"#,
+        ),
+        limited
+            .variant("default")
+            .expect_err("the default breaks the requirement"),
     ]
 }
 

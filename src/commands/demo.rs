@@ -99,7 +99,7 @@ impl Demo {
     fn worlds(&self, variants: &[(String, Variant)]) -> Result<Vec<Shown>, Failure> {
         let mut shown = Vec::new();
         for (_, variant) in variants {
-            let world = Sampler::new(variant, self.seed)?.world(0)?;
+            let world = Sampler::new(variant, self.seed).world(0)?;
             let path = self.output.join("worlds").join(format!("{}.json", variant.name()));
             output::write(&path, world.to_json_pretty().as_bytes())?;
             let said = variant.task().variant_description(variant.name()).unwrap_or_default();

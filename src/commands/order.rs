@@ -108,7 +108,7 @@ pub(crate) fn matrix(variants: &[(String, Variant)]) -> Result<DistanceMatrix, F
     }
     let mut worlds = Vec::with_capacity(variants.len());
     for (_, variant) in variants {
-        let sampler = Sampler::new(variant, 0)?;
+        let sampler = Sampler::new(variant, 0);
         worlds.push(
             (0..WORLDS)
                 .map(|index| sampler.world(index))

@@ -44,7 +44,7 @@ pub(crate) struct Sample {
 
 impl Sample {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let sampler = Sampler::new(&tasks::variant(&self.task)?, self.seed)?;
+        let sampler = Sampler::new(&tasks::variant(&self.task)?, self.seed);
         let count = self.count.unwrap_or(1);
         if self.index.checked_add(count).is_none() {
             return Err(Failure::usage(format!(

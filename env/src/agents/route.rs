@@ -3,8 +3,6 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use driftworld_spec::maps;
-
 use crate::scene::Scene;
 use crate::sim::Environment;
 
@@ -46,9 +44,11 @@ impl Route {
         let world = environment.world();
         let body = world.agent_params.agent_width as f32 / 2.0;
         let margin = body + 0.15;
-        let regions: Vec<Vec<[f64; 2]>> = maps::excluded_regions(world.environment_params.predefined_map)
-            .iter()
-            .map(|corners| corners.to_vec())
+        let regions: Vec<Vec<[f64; 2]>> = world
+            .environment_params
+            .regions()
+            .into_iter()
+            .map(<[[f64; 2]]>::to_vec)
             .chain(world.environment_params.walls.iter().map(|wall| wall.polygon.clone()))
             .collect();
         let avoid = |index: usize| {

@@ -1,6 +1,6 @@
 //! Bodies on the ground: what the agent bumps into, slides along and touches. What a touch is worth is in `environment.rs`.
 
-use driftworld_spec::{World, maps};
+use driftworld_spec::World;
 use rapier3d::parry::query::{ShapeCastOptions, contact};
 use rapier3d::prelude::*;
 
@@ -74,7 +74,7 @@ impl Ground {
         };
         ground.add_arena(scene.arena_size());
         let environment = &world.environment_params;
-        for region in maps::excluded_regions(environment.predefined_map) {
+        for region in environment.regions() {
             ground.add_region(region);
         }
         for wall in &environment.walls {

@@ -105,6 +105,36 @@ impl<'a> Cumulative<'a> {
             }
             Distribution::Bernoulli { p } => Some(Self::stepped(distribution, vec![(0.0, 1.0 - p), (1.0, *p)])),
             Distribution::Binomial { n, p } => Some(Self::stepped(distribution, binomial(*n as u32, *p))),
+            Distribution::Constant { value } => Some(Self::stepped(distribution, vec![(value.as_number()?, 1.0)])),
+            Distribution::Poisson { .. } | Distribution::Geometric { .. } => {
+                let most = distribution.quantile(1.0 - 1e-15)?;
+                let at = |k: u32| distribution.cdf(f64::from(k)).unwrap_or(1.0);
+                let atom = |k: u32| (f64::from(k), if k == 0 { at(0) } else { at(k) - at(k - 1) });
+                let atoms = (0..=most.min(MOST_ATOMS) as u32).map(atom).filter(|atom| atom.1 > 0.0);
+                Some(Self::stepped(distribution, atoms.collect()))
+            }
+            Distribution::Mixture { parts, .. } => {
+                let each = parts.iter().map(Self::of).collect::<Option<Vec<_>>>()?;
+                let mut knots: Vec<f64> = each.into_iter().flat_map(|part| part.knots).collect();
+                knots.sort_by(f64::total_cmp);
+                continuous(knots)
+            }
+            Distribution::LogNormal { .. }
+            | Distribution::Exponential { .. }
+            | Distribution::Beta { .. }
+            | Distribution::Triangular { .. }
+            | Distribution::Perturb { .. }
+            | Distribution::VonMises { .. } => {
+                let tails = [1e-12, 1e-9, 1e-6, 1e-4, 1e-3];
+                let inner = (1..20).map(|k| f64::from(k) / 20.0);
+                let shares = tails
+                    .into_iter()
+                    .chain(inner)
+                    .chain(tails.into_iter().rev().map(|tail| 1.0 - tail));
+                let mut knots: Vec<f64> = shares.filter_map(|share| distribution.quantile(share)).collect();
+                knots.dedup();
+                continuous(knots)
+            }
             Distribution::Choice { values, weights } => {
                 let weight = |k: usize| weights.as_ref().map_or(1.0, |weights| weights[k]);
                 let total: f64 = (0..values.len()).map(weight).sum();
@@ -139,20 +169,13 @@ impl<'a> Cumulative<'a> {
             return if below == 0 { 0.0 } else { self.atoms[below - 1].1 };
         }
         match self.distribution {
-            Distribution::Uniform { low, high } => ((x - low) / (high - low)).clamp(0.0, 1.0),
             Distribution::IntegerUniform { low, high } => ((x - low + 0.5) / (high - low + 1.0)).clamp(0.0, 1.0),
-            Distribution::Normal { mean, std } => normal((x - mean) / std),
-            Distribution::TruncatedNormal { mean, std, low, high } => {
-                let share = |x: f64| normal((x.clamp(*low, *high) - mean) / std);
-                ((share(x) - share(*low)) / (share(*high) - share(*low))).clamp(0.0, 1.0)
-            }
-            _ => 0.0,
+            // A heading is taken as a number between the two ends opposite its mean.
+            Distribution::VonMises { mean, .. } if x <= mean - 180.0 => 0.0,
+            Distribution::VonMises { mean, .. } if x >= mean + 180.0 => 1.0,
+            other => other.cdf(x).unwrap_or(0.0),
         }
     }
-}
-
-fn normal(z: f64) -> f64 {
-    0.5 * libm::erfc(-z / std::f64::consts::SQRT_2)
 }
 
 fn binomial(n: u32, p: f64) -> Vec<(f64, f64)> {

@@ -1,10 +1,12 @@
 //! A group of objects that are made alike and placed by chance, as a spec declares it. Placing them is the generator's job.
 
+use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
-use super::distribution::{Distribution, Number};
+use super::template::Source;
+use crate::distribution::Number;
 
 /// A group of objects: how many, what each is, and where they stand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -13,33 +15,77 @@ pub struct Group {
     /// The group's name; its objects carry it as their `tag` unless the template gives another.
     #[schemars(length(min = 1, max = 100))]
     pub name: String,
-    /// How many objects: a whole number, a parameter, or a distribution.
+    /// How many objects, or how many around each object of another group: a whole number, a parameter, or a distribution.
     #[schemars(schema_with = "super::template::count_schema")]
     pub count: Json,
     /// What each object is; any leaf may be a value, a parameter, or a distribution, which is drawn for each object.
     #[schemars(schema_with = "super::template::object_schema")]
     pub object: Json,
-    /// Where they stand: box, disc, annulus, gaussian or points.
-    pub placement: Distribution<Number>,
+    /// Where they stand: a distribution of points, or a parameter that is one.
+    pub placement: Source,
+    /// A group placed before, around each of whose objects this one is placed: `count` and `placement` then hold for each of
+    /// them, with the origin at its place (co-occurrence). Absent: the world's origin.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1, max = 100))]
+    pub around: Option<String>,
+    /// With `around`: whether the placement turns with the heading of the object in its middle.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub turned: bool,
+    /// Where the objects look, in place of their template's `heading`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub facing: Option<Facing>,
     /// Least distance in metres to the centre of any object placed before.
     #[serde(default = "zero")]
     pub separation: Number,
-    /// Least distance in metres to the arena's walls and to regions that cannot be entered.
-    #[serde(default = "one")]
-    pub wall_margin: Number,
-    /// Least distance in metres to the agent's start.
-    #[serde(default = "two")]
-    pub agent_margin: Number,
+    /// What the objects keep clear of.
+    #[serde(default)]
+    pub keep_out: KeepOut,
+}
+
+/// Distances that a group's objects keep, in metres from centre to border or centre.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct KeepOut {
+    /// Least distance to the arena's walls and to regions that cannot be entered.
+    pub walls: Number,
+    /// Least distance to the agent's start.
+    pub agent: Number,
+    /// Least distance to the objects of other groups, placed before, by the group's name.
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    pub groups: IndexMap<String, Number>,
+}
+
+impl Default for KeepOut {
+    fn default() -> Self {
+        Self {
+            walls: Number::Literal(1.0),
+            agent: Number::Literal(2.0),
+            groups: IndexMap::new(),
+        }
+    }
+}
+
+/// Where an object looks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Facing {
+    /// Anywhere, each heading alike.
+    Random,
+    /// Towards the agent's start.
+    Agent,
+    /// Towards the object that it is placed around.
+    Middle,
+    /// Towards a point in metres.
+    Point([Number; 2]),
+    /// Towards the nearest object of another group, placed before; where that has none, as the template says.
+    Group(#[schemars(length(min = 1, max = 100))] String),
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_false(value: &bool) -> bool {
+    !*value
 }
 
 fn zero() -> Number {
     Number::Literal(0.0)
-}
-
-fn one() -> Number {
-    Number::Literal(1.0)
-}
-
-fn two() -> Number {
-    Number::Literal(2.0)
 }

@@ -1,9 +1,11 @@
 //! [`TaskSpec`]: typed parameters, a world template that refers to them, and named variants. Drawing worlds is the generator's job.
 
 mod check;
-mod distribution;
+mod expression;
+mod family;
 mod group;
 mod parameter;
+mod require;
 mod slots;
 mod template;
 mod value;
@@ -16,20 +18,19 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
-pub use distribution::{Distribution, Number, ParamRef};
-pub use group::Group;
+pub use family::{Spacing, Sweep};
+pub use group::{Facing, Group, KeepOut};
 pub use parameter::{Domain, Element, Parameter, Role};
+pub use require::Requirement;
 pub use template::{Hole, Source, Template};
 pub use value::{ParameterType, Value};
-pub use variant::{DEFAULT_VARIANT, Variant, VariantSpec};
+pub use variant::{DEFAULT_VARIANT, Resolved, Variant, VariantSpec};
 
+use crate::distribution::Number;
 use crate::document::Document;
-use crate::error::SpecError;
-use crate::schema;
+use crate::error::{Problem, SpecError};
 use crate::world::{Object, World};
-
-/// The variants that a document declares, by name.
-pub(crate) type VariantDocument = IndexMap<String, VariantSpec>;
+use crate::{schema, version};
 
 /// A task spec as its document has it, before anything but the schema has been checked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -38,6 +39,10 @@ pub(crate) struct TaskDocument {
     /// Where the JSON Schema of this document is, for editors.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
     pub(crate) schema: Option<String>,
+    /// The version of this form of document: 2. Older ones are read, newer ones refused; without it, it is taken to be 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 2))]
+    pub(crate) version: Option<u32>,
     /// The task's name: lower-case letters, digits and underscores.
     #[schemars(length(max = 100), regex(pattern = "^[a-z][a-z0-9_]*$"))]
     pub(crate) name: String,
@@ -56,9 +61,16 @@ pub(crate) struct TaskDocument {
     #[serde(default)]
     #[schemars(length(max = 1000))]
     pub(crate) groups: Vec<Group>,
-    /// Named variants: each sets some of the variant parameters, over another variant's values or the defaults.
+    /// Conditions over parameters that every variant and every world must meet, such as `"min_size < max_size"`: comparisons,
+    /// arithmetic, min, max, abs, and, or, not. A world that breaks one is drawn again, a bounded number of times.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 100), inner(length(min = 1, max = 500)))]
+    pub(crate) require: Vec<String>,
+    /// Named variants: each sets some of the variant parameters, over another variant's values or the defaults. One with a
+    /// grid or a sweep is a family of variants.
     #[serde(default)]
-    pub(crate) variants: VariantDocument,
+    #[schemars(schema_with = "variants_schema")]
+    pub(crate) variants: IndexMap<String, VariantSpec>,
 }
 
 fn parameters_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
@@ -66,6 +78,15 @@ fn parameters_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Sch
     schema.insert(
         "propertyNames".to_owned(),
         serde_json::json!({ "pattern": "^[a-z][a-z0-9_]*$", "maxLength": 100 }),
+    );
+    schema
+}
+
+fn variants_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    let mut schema = generator.subschema_for::<IndexMap<String, VariantSpec>>();
+    schema.insert(
+        "propertyNames".to_owned(),
+        serde_json::json!({ "pattern": "^[^#/\\\\\\s]+$", "minLength": 1, "maxLength": 100 }),
     );
     schema
 }
@@ -91,9 +112,11 @@ fn parameters_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Sch
 #[derive(Debug)]
 pub struct TaskSpec {
     document: TaskDocument,
+    variants: family::Variants,
     world: Template<World>,
     fixtures: Vec<Template<Object>>,
     groups: Vec<PlacedGroup>,
+    requirements: Vec<Requirement>,
 }
 
 /// A group of a checked task: its declaration, and its count and object as templates.
@@ -105,6 +128,12 @@ pub struct PlacedGroup {
     pub count: Count,
     /// What each object is.
     pub object: Template<Object>,
+    /// The number of the group that it is placed around.
+    pub around: Option<usize>,
+    /// The number of the group that it faces.
+    pub facing_group: Option<usize>,
+    /// The numbers of the groups that it keeps distance from, with the distances in metres.
+    pub keep_groups: Vec<(usize, Number)>,
 }
 
 /// How many objects a group has.
@@ -122,7 +151,8 @@ impl TaskSpec {
     /// # Errors
     /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
     pub fn from_json(name: &str, text: &str) -> Result<Arc<Self>, SpecError> {
-        let document = Document::parse(name, text)?;
+        let mut document = Document::parse(name, text)?;
+        document.upgrade(&version::TASK)?;
         document.check_schema(schema::task())?;
         let spec: TaskDocument = document.deserialize()?;
         match check::compile(spec) {
@@ -164,9 +194,15 @@ impl TaskSpec {
         &self.groups
     }
 
-    /// The names of the declared variants in the order of the document; [`DEFAULT_VARIANT`] alone if there are none.
+    /// The conditions that every variant and every world meets.
+    pub fn requirements(&self) -> &[Requirement] {
+        &self.requirements
+    }
+
+    /// The names of the declared variants in the order of the document, families unfolded; [`DEFAULT_VARIANT`] alone if there
+    /// are none.
     pub fn variant_names(&self) -> Vec<&str> {
-        let declared: Vec<&str> = self.document.variants.keys().map(String::as_str).collect();
+        let declared: Vec<&str> = self.variants.keys().map(String::as_str).collect();
         if declared.is_empty() {
             vec![DEFAULT_VARIANT]
         } else {
@@ -174,34 +210,103 @@ impl TaskSpec {
         }
     }
 
+    /// The names of the variants of a family, which a grid or a sweep declares, in order; `None` if there is none of this name.
+    pub fn family(&self, name: &str) -> Option<Vec<&str>> {
+        let spec = self.document.variants.get(name)?;
+        let is_family = !spec.grid.is_empty() || !spec.sweep.is_empty();
+        let members = self.variants.iter().filter(|(_, declared)| declared.origin == name);
+        is_family.then(|| members.map(|(member, _)| member.as_str()).collect())
+    }
+
     /// What a variant's author says of it.
     pub fn variant_description(&self, name: &str) -> Option<&str> {
-        self.document.variants.get(name)?.description.as_deref()
+        self.variants.get(name)?.description.as_deref()
     }
 
     /// The variant of this name. [`DEFAULT_VARIANT`], with every parameter at its default, is always there.
     ///
     /// # Errors
-    /// [`SpecError::UnknownVariant`] with the names there are.
+    /// [`SpecError::UnknownVariant`] with the names there are; [`SpecError::Values`] if the defaults break a requirement.
     pub fn variant(self: &Arc<Self>, name: &str) -> Result<Variant, SpecError> {
-        if !self.document.variants.contains_key(name) && name != DEFAULT_VARIANT {
+        if !self.variants.contains_key(name) && name != DEFAULT_VARIANT {
+            let known: Vec<&str> = match self.family(name) {
+                Some(members) => members,
+                None => self.variant_names(),
+            };
             return Err(SpecError::UnknownVariant {
                 task: self.name().to_owned(),
                 found: name.to_owned(),
-                known: self.variant_names().into_iter().map(str::to_owned).collect(),
+                known: known.into_iter().map(str::to_owned).collect(),
             });
         }
-        let values = variant::values_of(&self.document.parameters, &self.document.variants, name)
+        let values = variant::values_of(&self.document.parameters, &self.variants, name)
             .expect("loading the task checked every chain of extends");
-        Ok(Variant::new(Arc::clone(self), name, values))
+        // Declared variants were checked on loading; the defaults, which nobody may ever ask for, were not.
+        let problems = if self.variants.contains_key(name) {
+            Vec::new()
+        } else {
+            self.problems_of(&values)
+        };
+        if problems.is_empty() {
+            Ok(Variant::new(Arc::clone(self), name, values))
+        } else {
+            let variant = format!("{}#{name}", self.name());
+            Err(SpecError::Values { variant, problems })
+        }
     }
 
     /// All declared variants.
     pub fn all_variants(self: &Arc<Self>) -> Vec<Variant> {
         let names = self.variant_names();
-        names
-            .into_iter()
-            .map(|name| self.variant(name).expect("the name is one of the task's own"))
-            .collect()
+        names.into_iter().filter_map(|name| self.variant(name).ok()).collect()
+    }
+
+    /// What keeps a variant with these values from being drawn: distributions with a fault, requirements that do not hold.
+    pub(crate) fn problems_of(&self, values: &IndexMap<String, Value>) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        let mut check = |pointer: String, source: &Source| {
+            let distribution = match source {
+                Source::Distribution(distribution) => distribution,
+                Source::Param(reference) => match values.get(&reference.param) {
+                    Some(Value::Distribution(distribution)) => distribution,
+                    _ => return,
+                },
+            };
+            if let Some((found, expected)) = variant::settle(values, distribution)
+                .ok()
+                .and_then(|distribution| distribution.fault())
+            {
+                problems.push(Problem::new("spec/distribution", pointer, found, expected));
+            }
+        };
+        for (name, parameter) in &self.document.parameters {
+            parameter
+                .distribution
+                .iter()
+                .for_each(|source| check(format!("/parameters/{name}/distribution"), source));
+        }
+        for hole in &self.world.holes {
+            check(format!("/world{}", hole.pointer), &hole.source);
+        }
+        for (index, fixture) in self.fixtures.iter().enumerate() {
+            fixture
+                .holes
+                .iter()
+                .for_each(|hole| check(format!("/world/objects/{index}{}", hole.pointer), &hole.source));
+        }
+        for (index, group) in self.groups.iter().enumerate() {
+            check(format!("/groups/{index}/placement"), &group.spec.placement);
+            if let Count::Drawn(source) = &group.count {
+                check(format!("/groups/{index}/count"), source);
+            }
+            for hole in &group.object.holes {
+                check(format!("/groups/{index}/object{}", hole.pointer), &hole.source);
+            }
+        }
+        if let Some((requirement, shown)) = variant::broken(&self.requirements, values) {
+            let expected = format!("what \"require\" states: {requirement}");
+            problems.push(Problem::new("spec/requirement", "/require", shown, expected));
+        }
+        problems
     }
 }

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::distribution::{Distribution, Number};
+use super::template::Source;
 use super::value::{ParameterType, Value};
 use crate::document::escape;
 use crate::error::Problem;
@@ -96,9 +96,13 @@ pub struct Parameter {
     /// Variant only: its value in variants that do not set it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub default: Option<Value>,
-    /// Randomized only: how it is drawn.
+    /// Variant only, for values that do not interpolate: at which fraction (0..1) of a drift it switches; a half if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub distribution: Option<Distribution<Number>>,
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub switch_at: Option<f64>,
+    /// Randomized only: how it is drawn; a distribution, or a parameter that is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub distribution: Option<Source>,
 }
 
 /// The values that a variant parameter may have.
@@ -110,19 +114,28 @@ pub enum Domain {
     Range([f64; 2]),
 }
 
+/// `if` this role or type, `then` these keys: what an editor that knows JSON Schema reports while the author types.
 fn require_what_the_role_needs(schema: &mut schemars::Schema) {
-    let rule = |role: &str, needs: serde_json::Value, not: &[&str]| {
+    let role = |role: &str, needs: serde_json::Value, not: &[&str]| {
         let mut then = needs;
         then["properties"] = not.iter().map(|key| ((*key).to_owned(), json!(false))).collect();
         json!({ "if": { "properties": { "role": { "const": role } }, "required": ["role"] }, "then": then })
     };
+    let kind = |kinds: &[&str], value: serde_json::Value, range: bool| {
+        let mut then = json!({ "properties": { "value": value, "default": value, "choices": { "items": value } } });
+        if !range {
+            then["properties"]["range"] = json!(false);
+        }
+        json!({ "if": { "properties": { "type": { "enum": kinds } }, "required": ["type"] }, "then": then })
+    };
+    let number = json!({ "type": "number" });
     let rules = [
-        rule(
+        role(
             "fixed",
             json!({ "required": ["value"] }),
-            &["choices", "range", "default", "distribution"],
+            &["choices", "range", "default", "switch_at", "distribution"],
         ),
-        rule(
+        role(
             "variant",
             json!({
                 "required": ["affects", "default"],
@@ -130,11 +143,27 @@ fn require_what_the_role_needs(schema: &mut schemars::Schema) {
             }),
             &["value", "distribution"],
         ),
-        rule(
+        role(
             "randomized",
             json!({ "required": ["affects", "distribution"] }),
-            &["value", "choices", "range", "default"],
+            &["value", "choices", "range", "default", "switch_at"],
         ),
+        kind(&["number", "heading"], number.clone(), true),
+        kind(&["integer"], json!({ "type": "integer" }), true),
+        kind(&["boolean"], json!({ "type": "boolean" }), false),
+        kind(&["string"], json!({ "type": "string" }), false),
+        kind(&["color"], json!({ "$ref": "#/$defs/Color" }), false),
+        kind(
+            &["point"],
+            json!({ "type": "array", "items": number, "minItems": 2, "maxItems": 2 }),
+            false,
+        ),
+        kind(
+            &["vector"],
+            json!({ "type": "array", "items": number, "minItems": 1, "maxItems": 100 }),
+            true,
+        ),
+        kind(&["distribution"], json!({ "$ref": "#/$defs/Distribution" }), false),
     ];
     schema.insert("allOf".to_owned(), json!(rules));
 }
@@ -156,24 +185,57 @@ impl Parameter {
 
     /// The value with the parameter's type if it lies in the domain; else what was expected.
     pub(crate) fn accept(&self, value: &Value) -> Result<Value, String> {
-        let typed = value
-            .cast(self.kind)
-            .ok_or_else(|| format!("a value of type {}", self.kind.name()))?;
+        let typed = self.accept_between(value)?;
         match self.domain() {
-            Some(Domain::Range([low, high])) => {
-                let inside = typed.as_number().is_some_and(|number| (low..=high).contains(&number));
-                if inside {
-                    Ok(typed)
-                } else {
-                    Err(format!("a number in {low}..{high}"))
-                }
-            }
             Some(Domain::Choices(choices)) if !choices.contains(&typed) => {
                 let names: Vec<String> = choices.iter().map(ToString::to_string).collect();
                 Err(format!("one of {}", names.join(", ")))
             }
             _ => Ok(typed),
         }
+    }
+
+    /// As [`Parameter::accept`], but a value may lie between the choices.
+    pub(crate) fn accept_between(&self, value: &Value) -> Result<Value, String> {
+        let typed = value
+            .cast(self.kind)
+            .ok_or_else(|| format!("a value of type {}", self.kind.name()))?;
+        let length = |value: &Value| value.as_vector().map(<[f64]>::len);
+        if self.kind == ParameterType::Vector
+            && let Some(expected) = self.vector_length()
+            && length(&typed) != Some(expected)
+        {
+            return Err(format!("a list of {expected} numbers"));
+        }
+        let Some([low, high]) = self.range else {
+            return Ok(typed);
+        };
+        let inside = match (&typed, self.kind) {
+            // The range of a heading is an arc, clockwise from low to high, and may lead across north.
+            (_, ParameterType::Heading) => typed
+                .as_number()
+                .is_some_and(|degrees| (degrees - low).rem_euclid(360.0) <= high - low),
+            (Value::Vector(numbers), _) => numbers.iter().all(|number| (low..=high).contains(number)),
+            _ => typed.as_number().is_some_and(|number| (low..=high).contains(&number)),
+        };
+        if inside {
+            Ok(typed)
+        } else if self.kind == ParameterType::Vector {
+            Err(format!("numbers in {low}..{high}"))
+        } else {
+            Err(format!("a number in {low}..{high}"))
+        }
+    }
+
+    /// How many numbers a vector has: as many as the first of its value, default and choices.
+    pub fn vector_length(&self) -> Option<usize> {
+        let first = self
+            .value
+            .iter()
+            .chain(&self.default)
+            .chain(self.choices.iter().flatten())
+            .next()?;
+        first.as_vector().map(<[f64]>::len)
     }
 
     /// What the schema cannot say about one parameter alone.
@@ -190,12 +252,15 @@ impl Parameter {
                 format!("a value of type {kind}"),
             ));
         }
+        let lengths = |value: &Value| {
+            self.kind != ParameterType::Vector || value.as_vector().map(<[f64]>::len) == self.vector_length()
+        };
         for (index, choice) in self
             .choices
             .iter()
             .flatten()
             .enumerate()
-            .filter(|(_, choice)| choice.cast(self.kind).is_none())
+            .filter(|(_, choice)| choice.cast(self.kind).is_none() || !lengths(choice))
         {
             let pointer = at(&format!("choices/{index}"));
             problems.push(Problem::new(
@@ -205,56 +270,53 @@ impl Parameter {
                 format!("a value of type {kind}"),
             ));
         }
-        if let Some([low, high]) = self.range {
-            if self.choices.is_some() {
-                problems.push(Problem::new(
-                    "spec/value",
-                    at("range"),
-                    "a range beside choices",
-                    "one of the two",
-                ));
-            } else if !matches!(self.kind, ParameterType::Number | ParameterType::Integer) {
-                let advice = "list the values under \"choices\" instead";
-                problems.push(
-                    Problem::new("spec/type", at("range"), format!("a range for a {kind}"), "choices").advise(advice),
-                );
-            } else if low >= high {
-                let found = format!("low {low} and high {high}");
-                problems.push(Problem::new(
-                    "spec/range",
-                    at("range"),
-                    found,
-                    "the low end below the high end",
-                ));
-            }
-        }
+        problems.extend(self.range_problem(&at("range")));
         if let (Some(default), true) = (&self.default, problems.is_empty())
             && let Err(expected) = self.accept(default)
         {
             problems.push(Problem::new("spec/value", at("default"), default.to_string(), expected));
         }
-        if let Some(distribution) = &self.distribution {
-            if matches!(distribution, Distribution::Points { .. }) {
-                let advice = "write a choice of points to draw one of them";
-                problems.push(
-                    Problem::new(
-                        "spec/type",
-                        at("distribution"),
-                        "points, which are taken in turn",
-                        "a distribution",
-                    )
-                    .advise(advice),
-                );
-            } else if !distribution.yields(self.kind) {
-                let found = format!("the distribution {}", distribution.name());
-                problems.push(Problem::new(
-                    "spec/type",
-                    at("distribution"),
-                    found,
-                    format!("one that draws a {kind}"),
-                ));
-            }
+        if self.role == Role::Randomized && self.kind == ParameterType::Distribution {
+            let advice = "draw from it where it is used: { \"param\": … } in place of a distribution";
+            let found = "a randomized parameter of type distribution";
+            problems.push(Problem::new("spec/role", &pointer, found, "the role fixed or variant").advise(advice));
         }
         problems
+    }
+
+    fn range_problem(&self, pointer: &str) -> Option<Problem> {
+        let [low, high] = self.range?;
+        let kind = self.kind.name();
+        if self.choices.is_some() {
+            return Some(Problem::new(
+                "spec/value",
+                pointer,
+                "a range beside choices",
+                "one of the two",
+            ));
+        }
+        if !self.kind.is_numeric() {
+            let advice = "list the values under \"choices\" instead";
+            let problem = Problem::new("spec/type", pointer, format!("a range for a {kind}"), "choices");
+            return Some(problem.advise(advice));
+        }
+        let found = format!("low {low} and high {high}");
+        if low >= high {
+            return Some(Problem::new(
+                "spec/range",
+                pointer,
+                found,
+                "the low end below the high end",
+            ));
+        }
+        if self.kind == ParameterType::Heading && high - low > 360.0 {
+            return Some(Problem::new(
+                "spec/range",
+                pointer,
+                found,
+                "an arc of at most 360 degrees",
+            ));
+        }
+        None
     }
 }

@@ -32,7 +32,7 @@ const fn slot<T>(pointer: &'static str, kind: ParameterType, set: fn(&mut T, usi
     Slot { pointer, kind, set }
 }
 
-use ParameterType::{Boolean, Color, Integer, Number, Point, String};
+use ParameterType::{Boolean, Color, Heading, Integer, Number, Point, String, Vector};
 
 /// Writes one row of a table: pointer, type, the field, how to read the value.
 macro_rules! row {
@@ -83,6 +83,12 @@ pub(crate) const WORLD: &[Slot<World>] = &[
         Number,
         environment_params.wall_height,
         number
+    ),
+    row!(
+        "/environment_params/sun_direction",
+        Vector,
+        environment_params.sun_direction,
+        triple
     ),
     row!("/environment_params/sun_direction/*", Number, environment_params.sun_direction[], number),
     row!(
@@ -137,7 +143,7 @@ pub(crate) const WORLD: &[Slot<World>] = &[
     ),
     row!("/agent_params/coordinates", Point, agent_params.coordinates, point),
     row!("/agent_params/coordinates/*", Number, agent_params.coordinates[], number),
-    row!("/agent_params/heading", Number, agent_params.heading, number),
+    row!("/agent_params/heading", Heading, agent_params.heading, number),
     row!("/agent_params/time_step", Number, agent_params.time_step, number),
     row!(
         "/agent_params/field_of_view",
@@ -162,7 +168,7 @@ pub(crate) const OBJECT: &[Slot<Object>] = &[
     }),
     row!("/coordinates", Point, coordinates, point),
     row!("/coordinates/*", Number, coordinates[], number),
-    row!("/heading", Number, heading, number),
+    row!("/heading", Heading, heading, number),
     row!("/scale", Number, scale, number),
     slot("/color", Color, |object, _, value| {
         object.color = Some(color(value)?);
@@ -203,6 +209,10 @@ fn point(value: &Value) -> Option<[f64; 2]> {
     }
 }
 
+fn triple(value: &Value) -> Option<[f64; 3]> {
+    value.as_vector()?.try_into().ok()
+}
+
 fn text(value: &Value) -> Option<std::string::String> {
     if let Value::Text(text) = value {
         Some(text.clone())
@@ -229,10 +239,12 @@ mod tests {
 
     fn example(kind: ParameterType, pointer: &str) -> Value {
         match (kind, pointer) {
-            (Number, _) => Value::Number(0.625),
+            (Number | Heading, _) => Value::Number(0.625),
+            (Vector, _) => Value::Vector(vec![0.5, 0.25, 2.0]),
             (Integer, _) => Value::Integer(3),
             (Boolean, _) => Value::Boolean(false),
             (Point, _) => Value::Point([7.0, 9.0]),
+            (ParameterType::Distribution, _) => unreachable!("no place in a world holds a distribution"),
             (Color, _) => Value::Color(crate::Color([0.125, 0.25, 0.5])),
             (String, "/agent_params/action_model") => Value::Text("onrails".into()),
             (String, "/agent_params/modalities/*") => Value::Text("segmentation".into()),

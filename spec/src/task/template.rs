@@ -2,32 +2,35 @@
 
 use std::sync::LazyLock;
 
-use schemars::{Schema, SchemaGenerator};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
 
-use super::distribution::{Distribution, Number, ParamRef};
 use super::slots::{self, Slot};
 use super::value::{ParameterType, Value};
+use crate::distribution::{Distribution, Number, ParamRef};
 use crate::schema;
 use crate::world::{Object, World};
 
-/// What fills a hole.
-#[derive(Clone, Debug, PartialEq)]
+/// Where a value comes from: a parameter, or a draw.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a distribution, or {\"param\": NAME}")]
 pub enum Source {
-    /// The value of a parameter of any role.
-    Param(String),
+    /// The value of a parameter of any role, or a draw from one of type distribution.
+    Param(ParamRef),
     /// A draw of its own.
-    Distribution(Distribution<Number>),
+    Distribution(Box<Distribution<Number>>),
 }
 
 impl Source {
     /// Reads `{ "param": … }` or a distribution; `None` if the JSON is neither.
     pub(crate) fn read(json: &Json) -> Option<Self> {
-        let map = json.as_object().filter(|map| map.len() == 1)?;
+        let map = json.as_object()?;
         if map.contains_key("param") {
-            return serde_json::from_value::<ParamRef>(json.clone())
-                .ok()
-                .map(|reference| Self::Param(reference.param));
+            return serde_json::from_value(json.clone()).ok().map(Self::Param);
+        }
+        if map.len() != 1 {
+            return None;
         }
         serde_json::from_value(json.clone()).ok().map(Self::Distribution)
     }
@@ -273,6 +276,7 @@ fn open(schema: &mut Json, pointers: &[&str]) {
 fn define(generator: &mut SchemaGenerator) {
     generator.subschema_for::<ParamRef>();
     generator.subschema_for::<Distribution<Number>>();
+    generator.subschema_for::<crate::Color>();
     for (name, definition) in &SCHEMAS.definitions {
         generator
             .definitions_mut()

@@ -1,9 +1,10 @@
-//! The values that parameters take, and their types. Which value a variant has is in `variant.rs`.
+//! Values of parameters and their types. Where a value may stand in a world is in `slots.rs`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::Color;
+use crate::distribution::{Distribution, Number};
 
 /// The type of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -21,6 +22,12 @@ pub enum ParameterType {
     Color,
     /// A point on the ground, `[x, y]` in metres.
     Point,
+    /// A direction in degrees, 0 is +y, growing clockwise; 350 is as near to 10 as 10 to 30.
+    Heading,
+    /// A list of numbers, as long in every variant.
+    Vector,
+    /// A distribution: what is drawn, or where objects stand, is itself a parameter.
+    Distribution,
 }
 
 impl ParameterType {
@@ -33,12 +40,24 @@ impl ParameterType {
             Self::String => "string",
             Self::Color => "color",
             Self::Point => "point",
+            Self::Heading => "heading",
+            Self::Vector => "vector",
+            Self::Distribution => "distribution",
         }
     }
 
     /// Whether a value of this type can stand where `other` is wanted.
     pub fn fits(self, other: Self) -> bool {
-        self == other || (self == Self::Integer && other == Self::Number)
+        match self {
+            Self::Integer => matches!(other, Self::Integer | Self::Number | Self::Heading),
+            Self::Number | Self::Heading => matches!(other, Self::Number | Self::Heading),
+            _ => self == other,
+        }
+    }
+
+    /// Whether its values are numbers in an order, so that they may have a range.
+    pub fn is_numeric(self) -> bool {
+        matches!(self, Self::Number | Self::Integer | Self::Heading | Self::Vector)
     }
 }
 
@@ -46,13 +65,16 @@ impl ParameterType {
 ///
 /// Reads any JSON that can be a value; [`Value::cast`] then gives it the parameter's type.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "a number, true or false, text, [r, g, b] or [x, y]")]
+#[serde(
+    untagged,
+    expecting = "a number, true or false, text, a list of numbers, or a distribution"
+)]
 pub enum Value {
     /// True or false.
     Boolean(bool),
     /// A whole number.
     Integer(i64),
-    /// A real number.
+    /// A real number, or a heading in degrees.
     Number(f64),
     /// Text, or the name of a colour before it is cast.
     Text(String),
@@ -60,20 +82,32 @@ pub enum Value {
     Point([f64; 2]),
     /// A colour.
     Color(Color),
+    /// A list of numbers.
+    Vector(#[schemars(length(min = 1, max = 100))] Vec<f64>),
+    /// A distribution whose numbers may refer to parameters.
+    Distribution(Box<Distribution<Number>>),
 }
 
 impl Value {
-    /// This value as one of the given type, if it can be one: whole numbers are numbers, CSS names are colours.
+    /// This value as one of the given type, if it can be one: whole numbers are numbers, CSS names are colours, and a heading
+    /// of any size is turned into 0..360.
     pub fn cast(&self, kind: ParameterType) -> Option<Self> {
+        use ParameterType as P;
         match (kind, self) {
-            (ParameterType::Boolean, Self::Boolean(_))
-            | (ParameterType::Integer, Self::Integer(_))
-            | (ParameterType::Number, Self::Number(_))
-            | (ParameterType::String, Self::Text(_))
-            | (ParameterType::Point, Self::Point(_))
-            | (ParameterType::Color, Self::Color(_)) => Some(self.clone()),
-            (ParameterType::Number, Self::Integer(whole)) => Some(Self::Number(*whole as f64)),
-            (ParameterType::Color, Self::Text(name)) => Color::from_name(name).map(Self::Color),
+            (P::Boolean, Self::Boolean(_))
+            | (P::Integer, Self::Integer(_))
+            | (P::Number, Self::Number(_))
+            | (P::String, Self::Text(_))
+            | (P::Point, Self::Point(_))
+            | (P::Color, Self::Color(_))
+            | (P::Vector, Self::Vector(_))
+            | (P::Distribution, Self::Distribution(_)) => Some(self.clone()),
+            (P::Number, Self::Integer(whole)) => Some(Self::Number(*whole as f64)),
+            (P::Heading, Self::Number(_) | Self::Integer(_)) => {
+                self.as_number().map(|degrees| Self::Number(degrees.rem_euclid(360.0)))
+            }
+            (P::Color, Self::Text(name)) => Color::from_name(name).map(Self::Color),
+            (P::Vector, _) => self.as_vector().map(|vector| Self::Vector(vector.to_vec())),
             _ => None,
         }
     }
@@ -96,9 +130,28 @@ impl Value {
         }
     }
 
+    /// The numbers of a vector, or of a point or colour, which are read from JSON where a vector of their length is meant.
+    pub fn as_vector(&self) -> Option<&[f64]> {
+        match self {
+            Self::Vector(numbers) => Some(numbers),
+            Self::Point(numbers) => Some(numbers),
+            Self::Color(Color(numbers)) => Some(numbers),
+            _ => None,
+        }
+    }
+
+    /// The value, or the number at a place of a vector or point.
+    pub fn at(&self, index: Option<usize>) -> Option<Self> {
+        match index {
+            None => Some(self.clone()),
+            Some(index) => self.as_vector()?.get(index).copied().map(Self::Number),
+        }
+    }
+
     /// The value in JSON.
     pub fn to_json(&self) -> serde_json::Value {
-        serde_json::to_value(self).expect("values are numbers, texts and lists of numbers, which always serialise")
+        serde_json::to_value(self)
+            .expect("values are numbers, texts and lists and maps of them, which always serialise")
     }
 }
 
@@ -125,22 +178,35 @@ mod tests {
 
     #[test]
     fn json_becomes_a_value_of_the_parameters_type_or_none() {
+        let red = || Some(Value::Color(Color([1.0, 0.0, 0.0])));
         check("3", ParameterType::Integer, Some(Value::Integer(3)));
         check("3", ParameterType::Number, Some(Value::Number(3.0)));
         check("3.5", ParameterType::Integer, None);
-        check(
-            "\"red\"",
-            ParameterType::Color,
-            Some(Value::Color(Color([1.0, 0.0, 0.0]))),
-        );
+        check("\"red\"", ParameterType::Color, red());
         check("\"bleu\"", ParameterType::Color, None);
         check("\"red\"", ParameterType::String, Some(Value::Text("red".into())));
         check("[1, 2]", ParameterType::Point, Some(Value::Point([1.0, 2.0])));
-        check(
-            "[1, 0, 0]",
-            ParameterType::Color,
-            Some(Value::Color(Color([1.0, 0.0, 0.0]))),
-        );
+        check("[1, 0, 0]", ParameterType::Color, red());
         check("true", ParameterType::Number, None);
+        check("-90", ParameterType::Heading, Some(Value::Number(270.0)));
+        check("360", ParameterType::Heading, Some(Value::Number(0.0)));
+        check("[1, 2]", ParameterType::Vector, Some(Value::Vector(vec![1.0, 2.0])));
+        check(
+            "[0, 0, 1]",
+            ParameterType::Vector,
+            Some(Value::Vector(vec![0.0, 0.0, 1.0])),
+        );
+        check(
+            "[7, 8, 9, 10]",
+            ParameterType::Vector,
+            Some(Value::Vector(vec![7.0, 8.0, 9.0, 10.0])),
+        );
+        check("[7, 8, 9, 10]", ParameterType::Point, None);
+    }
+
+    #[test]
+    fn a_distribution_is_a_value_of_its_own_type() {
+        let value: Value = serde_json::from_str(r#"{"disc": {"center": [0, 0], "radius": {"param": "r"}}}"#).unwrap();
+        assert!(value.cast(ParameterType::Distribution).is_some() && value.cast(ParameterType::Point).is_none());
     }
 }

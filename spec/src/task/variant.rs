@@ -7,12 +7,15 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::distribution::{Distribution, Number};
+use super::TaskSpec;
+use super::family::{Sweep, Variants};
 use super::parameter::{Parameter, Role};
+use super::require::Requirement;
+use super::template::Source;
 use super::value::Value;
-use super::{TaskSpec, VariantDocument};
+use crate::distribution::{Distribution, Number, ParamRef};
 use crate::document::escape;
-use crate::error::{Problem, nearest};
+use crate::error::{Problem, SpecError, nearest};
 
 /// The name of the variant in which every parameter has its default, unless the task declares one of this name.
 pub const DEFAULT_VARIANT: &str = "default";
@@ -23,6 +26,17 @@ pub struct Variant {
     task: Arc<TaskSpec>,
     name: String,
     values: Arc<IndexMap<String, Value>>,
+}
+
+/// What a source comes to in a variant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Resolved {
+    /// The same value in every world.
+    Value(Value),
+    /// The value of this randomized parameter, or the number at a place of it.
+    Randomized(ParamRef),
+    /// A draw of its own.
+    Draw(Distribution),
 }
 
 impl Variant {
@@ -59,10 +73,33 @@ impl Variant {
         self.values.get(parameter)
     }
 
-    /// The distribution of a randomized parameter with all its numbers settled; `None` for any other parameter.
+    /// The distribution of a randomized parameter, or the one that a parameter of type distribution is, with all its numbers
+    /// settled; `None` for any other parameter.
     pub fn distribution(&self, parameter: &str) -> Option<Distribution> {
+        if let Some(Value::Distribution(distribution)) = self.values.get(parameter) {
+            return Some(self.settle(distribution));
+        }
         let declared = self.task.parameters().get(parameter)?.distribution.as_ref()?;
-        Some(self.settle(declared))
+        match self.resolve(declared) {
+            Resolved::Draw(distribution) => Some(distribution),
+            _ => None,
+        }
+    }
+
+    /// What a source comes to in this variant.
+    pub fn resolve(&self, source: &Source) -> Resolved {
+        match source {
+            Source::Distribution(distribution) => Resolved::Draw(self.settle(distribution)),
+            Source::Param(reference) => match self.values.get(&reference.param) {
+                None => Resolved::Randomized(reference.clone()),
+                Some(Value::Distribution(distribution)) => Resolved::Draw(self.settle(distribution)),
+                Some(value) => Resolved::Value(
+                    value
+                        .at(reference.index)
+                        .expect("loading the task checked the index of every reference"),
+                ),
+            },
+        }
     }
 
     /// A distribution with every reference replaced by this variant's value.
@@ -74,20 +111,109 @@ impl Variant {
     pub fn number(&self, number: &Number) -> f64 {
         settle_number(&self.values, number).expect("loading the task checked that every reference names a number")
     }
+
+    /// A variant like this one under another name, with some parameters at other values.
+    ///
+    /// Each value has its parameter's type and lies in its range; where the domain is a list of choices, it may lie between
+    /// them, as the colours of a drift do.
+    ///
+    /// # Errors
+    /// [`SpecError::Values`] with every parameter that cannot have its value, a distribution that cannot be drawn from, or a
+    /// requirement that does not hold.
+    pub fn with(&self, name: &str, changes: impl IntoIterator<Item = (String, Value)>) -> Result<Self, SpecError> {
+        let mut values = (*self.values).clone();
+        let mut problems = Vec::new();
+        for (parameter, value) in changes {
+            match accepted(self.task.parameters(), &parameter, &value) {
+                Ok(typed) => {
+                    values.insert(parameter, typed);
+                }
+                Err(problem) => problems.push(problem),
+            }
+        }
+        if problems.is_empty() {
+            problems = self.task.problems_of(&values);
+        }
+        if problems.is_empty() {
+            Ok(Self::new(Arc::clone(&self.task), name, values))
+        } else {
+            let variant = format!("{}#{name}", self.task.name());
+            Err(SpecError::Values { variant, problems })
+        }
+    }
 }
 
-/// A variant as a document declares it.
+fn accepted(parameters: &IndexMap<String, Parameter>, name: &str, value: &Value) -> Result<Value, Problem> {
+    let known: Vec<&String> = parameters
+        .iter()
+        .filter(|(_, p)| p.role == Role::Variant)
+        .map(|(name, _)| name)
+        .collect();
+    let parameter = parameters
+        .get(name)
+        .filter(|parameter| parameter.role == Role::Variant)
+        .ok_or_else(|| {
+            let names: Vec<&str> = known.iter().map(|name| name.as_str()).collect();
+            let expected = format!("a variant parameter, one of {}", names.join(", "));
+            Problem::new(
+                "spec/unknown-parameter",
+                format!("/{name}"),
+                format!("{name:?}"),
+                expected,
+            )
+            .suggest(name, &known)
+        })?;
+    parameter
+        .accept_between(value)
+        .map_err(|expected| Problem::new("spec/value", format!("/{name}"), value.to_string(), expected))
+}
+
+/// A variant, or a family of them, as a document declares it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(transform = values_of_parameters)]
 pub struct VariantSpec {
     /// The variant whose values it starts from; the defaults if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1, max = 200))]
     pub extends: Option<String>,
     /// What it is, in a sentence.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
+    /// Makes it a family: for each parameter the values that it takes; one variant for every combination, named after the
+    /// family and its values, as `look-red-0.5`.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schemars(length(min = 1, max = 20), inner(length(min = 1, max = 1000)))]
+    pub grid: IndexMap<String, Vec<Value>>,
+    /// Makes it a family: for each parameter evenly spaced values; combined with those of the grid and of each other.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schemars(length(min = 1, max = 20))]
+    pub sweep: IndexMap<String, Sweep>,
     /// Values of variant parameters.
     #[serde(flatten)]
     pub values: IndexMap<String, Value>,
+}
+
+/// The keys that a variant has beside its parameters' names.
+pub(crate) const RESERVED: [&str; 4] = ["extends", "description", "grid", "sweep"];
+
+fn values_of_parameters(schema: &mut schemars::Schema) {
+    schema.insert(
+        "propertyNames".to_owned(),
+        serde_json::json!({ "pattern": "^[a-z][a-z0-9_]*$", "maxLength": 100 }),
+    );
+    for key in ["grid", "sweep"] {
+        if let Some(map) = schema
+            .pointer_mut(&format!("/properties/{key}"))
+            .and_then(serde_json::Value::as_object_mut)
+        {
+            map.insert("minProperties".to_owned(), serde_json::json!(1));
+            map.insert("maxProperties".to_owned(), serde_json::json!(20));
+            if key == "grid" {
+                map["additionalProperties"]["minItems"] = serde_json::json!(1);
+                map["additionalProperties"]["maxItems"] = serde_json::json!(1000);
+            }
+        }
+    }
 }
 
 /// A reference that does not name a number of this variant.
@@ -97,7 +223,13 @@ pub(crate) struct Unsettled;
 pub(crate) fn settle_number(values: &IndexMap<String, Value>, number: &Number) -> Result<f64, Unsettled> {
     match number {
         Number::Literal(number) => Ok(*number),
-        Number::Param(reference) => values.get(&reference.param).and_then(Value::as_number).ok_or(Unsettled),
+        Number::Param(reference) => {
+            let value = values.get(&reference.param).ok_or(Unsettled)?;
+            value
+                .at(reference.index)
+                .and_then(|value| value.as_number())
+                .ok_or(Unsettled)
+        }
     }
 }
 
@@ -108,12 +240,24 @@ pub(crate) fn settle(
     distribution.try_map(&mut |number| settle_number(values, number))
 }
 
+/// The first requirement that speaks of settled parameters only and does not hold, with the values it fails for.
+pub(crate) fn broken<'a>(
+    requirements: &'a [Requirement],
+    values: &IndexMap<String, Value>,
+) -> Option<(&'a Requirement, String)> {
+    let value_of = |name: &str| values.get(name).cloned();
+    let broken = requirements
+        .iter()
+        .find(|requirement| requirement.holds(value_of) == Some(false))?;
+    Some((broken, broken.describe(value_of)))
+}
+
 /// The values of a variant: its own over those that it extends over the defaults.
 ///
 /// `Err` where the chain of `extends` breaks or bites its own tail; wrong values are [`problems`]' to find.
 pub(crate) fn values_of(
     parameters: &IndexMap<String, Parameter>,
-    variants: &VariantDocument,
+    variants: &Variants,
     name: &str,
 ) -> Result<IndexMap<String, Value>, Problem> {
     let mut chain = Vec::new();
@@ -131,7 +275,7 @@ pub(crate) fn values_of(
                 parent,
                 variants
                     .get(parent)
-                    .ok_or_else(|| unknown_parent(name, parent, variants))?,
+                    .ok_or_else(|| unknown_parent(&variant.origin, parent, variants))?,
             )),
         };
     }
@@ -149,7 +293,7 @@ pub(crate) fn values_of(
     Ok(values)
 }
 
-fn cycle(start: &str, again: &str, variants: &VariantDocument) -> Problem {
+fn cycle(start: &str, again: &str, variants: &Variants) -> Problem {
     let mut path = vec![again];
     let mut name = variants[again].extends.as_deref();
     while let Some(next) = name.filter(|next| *next != again) {
@@ -159,37 +303,54 @@ fn cycle(start: &str, again: &str, variants: &VariantDocument) -> Problem {
     path.push(again);
     Problem::new(
         "spec/extends-cycle",
-        format!("/variants/{}/extends", escape(start)),
+        format!("/variants/{}/extends", escape(&variants[start].origin)),
         format!("a cycle: {}", path.join(" extends ")),
         "a chain of extends that ends",
     )
 }
 
-fn unknown_parent(name: &str, parent: &str, variants: &VariantDocument) -> Problem {
+fn unknown_parent(origin: &str, parent: &str, variants: &Variants) -> Problem {
     let known: Vec<&str> = variants.keys().map(String::as_str).chain([DEFAULT_VARIANT]).collect();
+    let shown = if known.len() > 20 {
+        format!("{} and {} more", known[..20].join(", "), known.len() - 20)
+    } else {
+        known.join(", ")
+    };
     Problem::new(
         "spec/unknown-variant",
-        format!("/variants/{}/extends", escape(name)),
+        format!("/variants/{}/extends", escape(origin)),
         format!("{parent:?}"),
-        format!("one of {}", known.join(", ")),
+        format!("one of {shown}"),
     )
     .suggest(parent, known)
 }
 
 /// Everything wrong with what the variants say.
-pub(crate) fn problems(parameters: &IndexMap<String, Parameter>, variants: &VariantDocument) -> Vec<Problem> {
-    let mut problems = Vec::new();
-    for (name, variant) in variants {
-        problems.extend(values_of(parameters, variants, name).err());
+pub(crate) fn problems(
+    parameters: &IndexMap<String, Parameter>,
+    document: &IndexMap<String, VariantSpec>,
+    variants: &Variants,
+) -> Vec<Problem> {
+    let mut problems: Vec<Problem> = variants
+        .keys()
+        .filter_map(|name| values_of(parameters, variants, name).err())
+        .collect();
+    problems.dedup();
+    let check = |pointer: &str, parameter: &str, value: &Value| problem_of(parameters, pointer, parameter, value);
+    for (name, variant) in document {
         for (parameter, value) in &variant.values {
-            problems.extend(problem_of(parameters, name, parameter, value));
+            problems.extend(check(
+                &format!("/variants/{}/{}", escape(name), escape(parameter)),
+                parameter,
+                value,
+            ));
         }
+        problems.extend(super::family::problems(parameters, name, variant, check));
     }
     problems
 }
 
-fn problem_of(parameters: &IndexMap<String, Parameter>, variant: &str, name: &str, value: &Value) -> Option<Problem> {
-    let pointer = format!("/variants/{}/{}", escape(variant), escape(name));
+fn problem_of(parameters: &IndexMap<String, Parameter>, pointer: &str, name: &str, value: &Value) -> Option<Problem> {
     let Some(parameter) = parameters.get(name) else {
         let known: Vec<&String> = parameters
             .iter()
@@ -199,7 +360,7 @@ fn problem_of(parameters: &IndexMap<String, Parameter>, variant: &str, name: &st
         let names: Vec<&str> = known.iter().map(|name| name.as_str()).collect();
         let expected = format!("a variant parameter, one of {}", names.join(", "));
         let found = format!("the unknown parameter {name:?}");
-        let near = nearest(name, &known).or_else(|| nearest(name, ["extends", "description"]));
+        let near = nearest(name, &known).or_else(|| nearest(name, RESERVED));
         let problem = Problem::new("spec/unknown-key", pointer, found, expected);
         return Some(match near {
             Some(near) => problem.advise(format!("did you mean {near:?}?")),

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::Color;
+use crate::{Color, maps};
 
 /// The arena and its light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -17,6 +17,11 @@ pub struct EnvironmentParams {
     /// Which arena: 0 is an empty one of `map_size`; 1 backslash, 2 village, 3 craters, 4 bisected are 200 × 200 m.
     #[schemars(range(min = 0, max = 4))]
     pub predefined_map: u8,
+    /// Regions of the predefined map that cannot be entered, from a maps file, in place of the built-in layout of that number:
+    /// polygons in metres, corners in order, the last joins the first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(length(max = 1000))]
+    pub map_regions: Option<Vec<Region>>,
     /// Side lengths of the arena along x and y in metres, centred on the origin; ignored when a map is chosen.
     #[schemars(inner(range(min = 0.0, max = 300.0)))]
     pub map_size: [f64; 2],
@@ -47,6 +52,7 @@ impl Default for EnvironmentParams {
             bounding_wall_color: Color([0.72, 0.68, 0.60]),
             light_intensity: 2.3,
             predefined_map: 0,
+            map_regions: None,
             map_size: [100.0, 100.0],
             wall_height: 4.0,
             walls: Vec::new(),
@@ -69,12 +75,25 @@ impl EnvironmentParams {
         }
     }
 
+    /// The regions of the map that cannot be entered: those of a maps file, else of the built-in layout. `walls` come on top.
+    pub fn regions(&self) -> Vec<&[[f64; 2]]> {
+        match &self.map_regions {
+            Some(regions) => regions.iter().map(|region| region.0.as_slice()).collect(),
+            None => maps::excluded_regions(self.predefined_map).to_vec(),
+        }
+    }
+
     /// Whether a point lies within the outer walls.
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
         let [width, depth] = self.arena_size();
         x.abs() <= width / 2.0 && y.abs() <= depth / 2.0
     }
 }
+
+/// A polygon on the ground: corners in metres, in order; the last joins the first. It may touch itself.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Region(#[schemars(length(min = 3, max = 1000))] pub Vec<[f64; 2]>);
 
 /// A region that cannot be entered: a polygon on the ground, standing up as a wall.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

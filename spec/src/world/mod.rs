@@ -12,13 +12,14 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 pub use agent::{ActionModel, ActionSpace, AgentParams, Modality};
-pub use environment::{EnvironmentParams, Wall};
+pub use environment::{EnvironmentParams, Region, Wall};
 pub use object::{Model, MotionModel, Object, Respawn, Stimulus};
 pub use rules::{EndCondition, Rules, Shaping};
 
 use crate::document::Document;
 use crate::error::{Problem, SpecError};
-use crate::schema;
+use crate::version::WORLD_VERSION;
+use crate::{schema, version};
 
 /// The most objects that one world may hold.
 pub const MAX_OBJECTS: usize = 100_000;
@@ -35,12 +36,15 @@ pub const MAX_OBJECTS: usize = 100_000;
 /// assert_eq!(world.objects[0].coordinates, [3.0, 4.0]);
 /// # Ok::<(), driftworld_spec::SpecError>(())
 /// ```
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct World {
     /// Where the JSON Schema of this document is, for editors; not part of the world.
     #[serde(rename = "$schema", skip_serializing)]
     pub schema: Option<String>,
+    /// The version of this form of document. Older ones are read, newer ones refused; without it, it is taken to be 1.
+    #[schemars(range(min = 1, max = 1))]
+    pub version: u32,
     /// What the world is for.
     pub game_mode: GameMode,
     /// Steps until the episode is truncated; 0 is never.
@@ -58,6 +62,22 @@ pub struct World {
     /// What stands in the world.
     #[schemars(length(max = 100_000))]
     pub objects: Vec<Object>,
+}
+
+impl Default for World {
+    fn default() -> Self {
+        Self {
+            schema: None,
+            version: WORLD_VERSION,
+            game_mode: GameMode::default(),
+            max_steps: 0,
+            environment_params: EnvironmentParams::default(),
+            agent_params: AgentParams::default(),
+            image_params: None,
+            rules: Rules::default(),
+            objects: Vec::new(),
+        }
+    }
 }
 
 /// What a world is for.
@@ -102,7 +122,8 @@ impl World {
     /// # Errors
     /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
-        let document = Document::parse(name, text)?;
+        let mut document = Document::parse(name, text)?;
+        document.upgrade(&version::WORLD)?;
         document.check_schema(schema::world())?;
         let world: Self = document.deserialize()?;
         document.fail_on(world.problems())?;

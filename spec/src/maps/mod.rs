@@ -1,4 +1,10 @@
-//! The four built-in layouts: regions of a 200 × 200 m arena that cannot be entered. They are ours; only names and numbers are the original's.
+//! The four built-in layouts: regions of a 200 × 200 m arena that cannot be entered. They are ours; only names and numbers are
+//! the original's. Layouts from files are read in `library.rs`.
+
+mod library;
+
+pub(crate) use library::MapsDocument;
+pub use library::{MapLayout, MapLibrary};
 
 /// Regions of a predefined map that cannot be entered: polygons in metres, corners in order, the last joins the first.
 ///

@@ -1,0 +1,277 @@
+//! A task for one variant under one seed, with all that is settled filled in and a stream for all that is drawn.
+
+use driftworld_spec::{
+    Count, Distribution, Facing, Hole, Object, ParameterType, PlacedGroup, Resolved, Role, Source, Template, Value,
+    Variant, World,
+};
+
+use crate::coverage::Coverage;
+use crate::draw::{draw, point_at};
+use crate::placement::Margins;
+use crate::stream::{Chance, Stream};
+
+/// What a world is drawn from.
+#[derive(Debug)]
+pub(crate) struct Compiled {
+    pub(crate) parameters: Vec<Randomized>,
+    pub(crate) world: Filled<World>,
+    pub(crate) fixtures: Vec<Filled<Object>>,
+    pub(crate) groups: Vec<Group>,
+}
+
+/// A distribution with numbers settled, and the stream it draws from.
+#[derive(Debug)]
+pub(crate) struct Drawn {
+    pub(crate) distribution: Distribution,
+    pub(crate) stream: Stream,
+}
+
+/// A randomized parameter.
+#[derive(Debug)]
+pub(crate) struct Randomized {
+    pub(crate) name: String,
+    kind: ParameterType,
+    drawn: Drawn,
+    /// Which dimensions of a coverage it takes: the first, and how many.
+    dimensions: Option<(usize, usize)>,
+}
+
+impl Randomized {
+    /// The parameter's value in a world.
+    pub(crate) fn value(&self, coverage: Coverage, spread: &Stream, index: u64, attempt: u32) -> Value {
+        let covered = if attempt == 0 {
+            self.covered(coverage, spread, index)
+        } else {
+            None
+        };
+        let value = covered.unwrap_or_else(|| {
+            draw(&self.drawn.distribution, &mut self.drawn.stream.at(index, 0, attempt)).into_owned()
+        });
+        value
+            .cast(self.kind)
+            .expect("loading the task checked what the distribution yields")
+    }
+
+    fn covered(&self, coverage: Coverage, spread: &Stream, index: u64) -> Option<Value> {
+        let (first, count) = self.dimensions?;
+        let u = coverage.unit(spread, first, index)?;
+        if count == 1 {
+            return self.drawn.distribution.value_at(u);
+        }
+        let v = coverage.unit(spread, first + 1, index)?;
+        point_at(&self.drawn.distribution, [u, v]).map(Value::Point)
+    }
+}
+
+/// A template whose settled holes are filled.
+#[derive(Debug)]
+pub(crate) struct Filled<T: 'static> {
+    pub(crate) base: T,
+    /// Where the template stands, for messages: `group/trees/object`.
+    pub(crate) place: String,
+    pub(crate) holes: Vec<(Hole<T>, Fill)>,
+}
+
+/// Where a hole gets its value in each world.
+#[derive(Debug)]
+pub(crate) enum Fill {
+    /// The randomized parameter of this number, or a number in it.
+    Parameter(usize, Option<usize>),
+    /// A draw of its own.
+    Own(Box<Drawn>),
+}
+
+impl Fill {
+    /// Hands over the value for an object of a world.
+    pub(crate) fn with<R>(&self, index: u64, object: u64, values: &[Value], take: impl FnOnce(&Value) -> R) -> R {
+        match self {
+            Self::Parameter(parameter, None) => take(&values[*parameter]),
+            Self::Parameter(parameter, at) => {
+                take(&values[*parameter].at(*at).expect("loading the task checked the index"))
+            }
+            Self::Own(drawn) => {
+                let mut chance: Chance = drawn.stream.at(index, object, 0);
+                take(&draw(&drawn.distribution, &mut chance))
+            }
+        }
+    }
+}
+
+#[derive(Debug)]
+pub(crate) struct Group {
+    pub(crate) name: String,
+    pub(crate) count: GroupCount,
+    pub(crate) object: Filled<Object>,
+    pub(crate) placement: Drawn,
+    pub(crate) margins: Margins,
+    pub(crate) around: Option<usize>,
+    pub(crate) turned: bool,
+    pub(crate) facing: Option<Look>,
+}
+
+/// How many objects a group has.
+#[derive(Debug)]
+pub(crate) enum GroupCount {
+    Fixed(u32),
+    Drawn(Fill),
+}
+
+/// Where the objects of a group look.
+#[derive(Debug)]
+pub(crate) enum Look {
+    Random(Stream),
+    Agent,
+    Middle,
+    Point([f64; 2]),
+    Group(usize),
+}
+
+/// Turns what a task declares into what is drawn for one variant under one seed.
+struct Compiler<'a> {
+    variant: &'a Variant,
+    seed: u64,
+    randomized: Vec<&'a str>,
+}
+
+impl Compiled {
+    pub(crate) fn new(variant: &Variant, seed: u64) -> Self {
+        let task = variant.task();
+        let declared = task
+            .parameters()
+            .iter()
+            .filter(|(_, parameter)| parameter.role == Role::Randomized);
+        let randomized = declared.clone().map(|(name, _)| name.as_str()).collect();
+        let compiler = Compiler {
+            variant,
+            seed,
+            randomized,
+        };
+        let mut dimension = 0;
+        let parameters = declared
+            .filter_map(|(name, parameter)| {
+                let distribution = variant.distribution(name)?;
+                let takes = match &distribution {
+                    Distribution::Choice { .. } | Distribution::Constant { .. } => 0,
+                    Distribution::Box { .. }
+                    | Distribution::Disc { .. }
+                    | Distribution::Annulus { .. }
+                    | Distribution::Gaussian { .. } => 2,
+                    other => usize::from(other.is_scalar()),
+                };
+                let dimensions = (takes > 0).then_some((dimension, takes));
+                dimension += takes;
+                let drawn = compiler.drawn(distribution, &format!("parameter/{name}"));
+                Some(Randomized {
+                    name: name.clone(),
+                    kind: parameter.kind,
+                    drawn,
+                    dimensions,
+                })
+            })
+            .collect();
+        let fixtures = task.fixtures().iter().enumerate();
+        Self {
+            parameters,
+            world: compiler.template(task.world(), "world"),
+            fixtures: fixtures
+                .map(|(k, fixture)| compiler.template(fixture, &format!("fixture/{k}")))
+                .collect(),
+            groups: task.groups().iter().map(|group| compiler.group(group)).collect(),
+        }
+    }
+}
+
+impl Compiler<'_> {
+    fn stream(&self, name: &str) -> Stream {
+        Stream::new(self.variant.task().name(), self.seed, name)
+    }
+
+    fn drawn(&self, distribution: Distribution, name: &str) -> Drawn {
+        Drawn {
+            distribution,
+            stream: self.stream(name),
+        }
+    }
+
+    /// Fills holes that a fixed or variant parameter settles; leaves the rest for each draw.
+    fn template<T: Clone>(&self, template: &Template<T>, place: &str) -> Filled<T> {
+        let mut base = template.base.clone();
+        let mut holes = Vec::new();
+        for hole in &template.holes {
+            match self.fill(&hole.source, &format!("{place}{}", hole.pointer)) {
+                Ok(fill) => holes.push((hole.clone(), fill)),
+                Err(value) => {
+                    hole.fill(&mut base, &value)
+                        .expect("loading the task tried every value that this hole can be given");
+                }
+            }
+        }
+        Filled {
+            base,
+            place: place.to_owned(),
+            holes,
+        }
+    }
+
+    /// What fills a hole in each world, or the value that it has in all.
+    fn fill(&self, source: &Source, name: &str) -> Result<Fill, Value> {
+        match self.variant.resolve(source) {
+            Resolved::Value(value) => Err(value),
+            Resolved::Draw(distribution) => Ok(Fill::Own(Box::new(self.drawn(distribution, name)))),
+            Resolved::Randomized(reference) => {
+                let parameter = self.randomized.iter().position(|name| *name == reference.param);
+                Ok(Fill::Parameter(
+                    parameter.expect("loading the task checked every reference"),
+                    reference.index,
+                ))
+            }
+        }
+    }
+
+    fn group(&self, group: &PlacedGroup) -> Group {
+        let spec = &group.spec;
+        let name = &spec.name;
+        let count = match &group.count {
+            Count::Fixed(count) => GroupCount::Fixed(*count),
+            Count::Drawn(source) => match self.fill(source, &format!("group/{name}/count")) {
+                Ok(fill) => GroupCount::Drawn(fill),
+                Err(value) => GroupCount::Fixed(value.as_integer().unwrap_or(0) as u32),
+            },
+        };
+        let mut object = self.template(&group.object, &format!("group/{name}/object"));
+        object.base.tag.get_or_insert_with(|| name.clone());
+        let Resolved::Draw(placement) = self.variant.resolve(&spec.placement) else {
+            unreachable!("loading the task checked that placements are distributions")
+        };
+        let facing = spec.facing.as_ref().map(|facing| match facing {
+            Facing::Random => Look::Random(self.stream(&format!("group/{name}/facing"))),
+            Facing::Agent => Look::Agent,
+            Facing::Middle => Look::Middle,
+            Facing::Point([x, y]) => Look::Point([self.variant.number(x), self.variant.number(y)]),
+            Facing::Group(_) => Look::Group(
+                group
+                    .facing_group
+                    .expect("loading the task checked that the group is there"),
+            ),
+        });
+        Group {
+            name: name.clone(),
+            count,
+            object,
+            placement: self.drawn(placement, &format!("group/{name}/placement")),
+            margins: Margins {
+                separation: self.variant.number(&spec.separation),
+                walls: self.variant.number(&spec.keep_out.walls),
+                agent: self.variant.number(&spec.keep_out.agent),
+                groups: group
+                    .keep_groups
+                    .iter()
+                    .map(|(group, metres)| (*group, self.variant.number(metres)))
+                    .collect(),
+            },
+            around: group.around,
+            turned: spec.turned,
+            facing,
+        }
+    }
+}

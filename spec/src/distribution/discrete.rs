@@ -1,0 +1,153 @@
+//! Laws of counts: binomial, Poisson, geometric. Which distribution has which law is said in `cumulative.rs` and `quantile.rs`.
+
+use super::special::{beta_below, gamma_above, normal_quantile};
+
+/// Means up to this are gone through count by count; beyond, the cumulative function is searched.
+const SHORT_WALK: f64 = 64.0;
+
+/// Probability of at most `k` successes in `n` tries.
+pub(super) fn binomial_cdf(k: f64, n: f64, p: f64) -> f64 {
+    let k = k.floor();
+    if k < 0.0 {
+        0.0
+    } else if k >= n {
+        1.0
+    } else {
+        beta_below(1.0 - p, n - k, k + 1.0)
+    }
+}
+
+/// Probability of at most `k` events where `mean` are expected.
+pub(super) fn poisson_cdf(k: f64, mean: f64) -> f64 {
+    let k = k.floor();
+    if k < 0.0 {
+        0.0
+    } else if mean == 0.0 {
+        1.0
+    } else {
+        gamma_above(k + 1.0, mean)
+    }
+}
+
+/// Probability of at most `k` failures before the first success.
+pub(super) fn geometric_cdf(k: f64, p: f64) -> f64 {
+    let k = k.floor();
+    if k < 0.0 {
+        0.0
+    } else if p == 1.0 {
+        1.0
+    } else {
+        -libm::expm1((k + 1.0) * libm::log1p(-p))
+    }
+}
+
+/// The least number of successes that at most so many have a probability of at least `u`.
+pub(super) fn binomial_quantile(u: f64, n: f64, p: f64) -> f64 {
+    if p == 0.0 || n == 0.0 {
+        return 0.0;
+    }
+    if p == 1.0 || u >= 1.0 {
+        return n;
+    }
+    if n * p <= SHORT_WALK {
+        let odds = p / (1.0 - p);
+        let none = libm::exp(n * libm::log1p(-p));
+        return walk(u, none, n, |k| odds * (n - k) / (k + 1.0));
+    }
+    let deviation = (n * p * (1.0 - p)).sqrt();
+    search(u, n * p, deviation, n, |k| binomial_cdf(k, n, p))
+}
+
+/// The least number of events that at most so many have a probability of at least `u`.
+pub(super) fn poisson_quantile(u: f64, mean: f64) -> f64 {
+    if mean <= SHORT_WALK {
+        // Beyond mean + 40 deviations nothing is left of a probability in 53 bits.
+        let most = mean + 40.0 * (mean + 1.0).sqrt();
+        return walk(u, libm::exp(-mean), most.ceil(), |k| mean / (k + 1.0));
+    }
+    let most = mean + 40.0 * mean.sqrt();
+    search(u, mean, mean.sqrt(), most.ceil(), |k| poisson_cdf(k, mean))
+}
+
+/// The least number of failures that at most so many have a probability of at least `u`.
+pub(super) fn geometric_quantile(u: f64, p: f64) -> f64 {
+    if p == 1.0 || u <= 0.0 {
+        return 0.0;
+    }
+    let u = u.min(1.0 - f64::EPSILON / 2.0);
+    (libm::log1p(-u) / libm::log1p(-p) - 1.0).ceil().max(0.0)
+}
+
+/// Adds up probabilities from 0 on until they reach `u`; `step(k)` leads from that of `k` to that of `k + 1`.
+fn walk(u: f64, none: f64, most: f64, step: impl Fn(f64) -> f64) -> f64 {
+    let (mut k, mut probability, mut sum) = (0.0, none, none);
+    while sum < u && k < most {
+        probability *= step(k);
+        k += 1.0;
+        sum += probability;
+    }
+    k
+}
+
+/// The least whole number at which a cumulative function reaches `u`, sought around where a normal one would.
+fn search(u: f64, mean: f64, deviation: f64, most: f64, cdf: impl Fn(f64) -> f64) -> f64 {
+    let inner = u.clamp(1e-300, 1.0 - f64::EPSILON / 2.0);
+    let mut high = (mean + deviation * normal_quantile(inner)).round().clamp(0.0, most);
+    let mut stride = 1.0;
+    while high < most && cdf(high) < u {
+        high = (high + stride).min(most);
+        stride *= 2.0;
+    }
+    let mut low = high;
+    stride = 1.0;
+    while low >= 0.0 && cdf(low) >= u {
+        low -= stride;
+        stride *= 2.0;
+    }
+    // cdf(low) < u <= cdf(high), with -1 standing for «below everything».
+    low = low.max(-1.0);
+    while high - low > 1.0 {
+        let middle = f64::midpoint(low, high).floor();
+        if cdf(middle) < u {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quantile_is_the_least_count_whose_cumulative_probability_reaches_it() {
+        for k in 0..400 {
+            let u = f64::from(k) / 400.0;
+            for (n, p) in [(4.0, 0.5), (30.0, 0.1), (1000.0, 0.3), (100_000.0, 0.9), (7.0, 1.0)] {
+                let count = binomial_quantile(u, n, p);
+                assert!(
+                    binomial_cdf(count, n, p) >= u - 1e-12,
+                    "binomial({n}, {p}) at {u}: {count}"
+                );
+                assert!(
+                    binomial_cdf(count - 1.0, n, p) < u + 1e-12,
+                    "binomial({n}, {p}) at {u}: {count}"
+                );
+            }
+            for mean in [0.0, 0.3, 12.0, 300.0, 100_000.0] {
+                let count = poisson_quantile(u, mean);
+                assert!(poisson_cdf(count, mean) >= u - 1e-11, "poisson({mean}) at {u}: {count}");
+                assert!(
+                    poisson_cdf(count - 1.0, mean) < u + 1e-11,
+                    "poisson({mean}) at {u}: {count}"
+                );
+            }
+            for p in [1.0, 0.5, 0.01] {
+                let count = geometric_quantile(u, p);
+                assert!(geometric_cdf(count, p) >= u - 1e-12 && geometric_cdf(count - 1.0, p) < u + 1e-12);
+            }
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! What is wrong with a distribution's numbers. References and types are checked in `task/check.rs`.
+
+use super::{Distribution, Spread};
+
+/// What was found, and what was expected.
+type Fault = Option<(String, &'static str)>;
+
+impl Distribution<f64> {
+    /// What is wrong with the numbers, as (found, expected); nothing if all can be drawn from.
+    pub fn fault(&self) -> Fault {
+        match self {
+            Self::Constant { .. } | Self::Points { .. } => None,
+            Self::Choice { values, weights } => weights_fault(values.len(), weights.as_deref()),
+            Self::Mixture { parts, weights } => parts
+                .iter()
+                .find_map(Self::fault)
+                .or_else(|| weights_fault(parts.len(), weights.as_deref())),
+            Self::Uniform { low, high } => unless(low < high, format!("low {low} and high {high}"), "low below high"),
+            Self::IntegerUniform { low, high } => {
+                let whole = low.fract() == 0.0 && high.fract() == 0.0 && low.abs().max(high.abs()) <= 1e15;
+                unless(
+                    low <= high && whole,
+                    format!("low {low} and high {high}"),
+                    "whole numbers, low not above high",
+                )
+            }
+            Self::Normal { std, .. } => unless(*std >= 0.0, format!("std {std}"), "a standard deviation of at least 0"),
+            Self::TruncatedNormal { mean, std, low, high } => {
+                let fine = *std > 0.0 && low < high && *low <= mean + 6.0 * std && *high >= mean - 6.0 * std;
+                let found = format!("mean {mean}, std {std}, low {low}, high {high}");
+                unless(
+                    fine,
+                    found,
+                    "std above 0, low below high, and the range within 6 std of the mean",
+                )
+            }
+            Self::LogNormal { mu, sigma } => {
+                let fine = (0.0..=30.0).contains(sigma) && mu.abs() <= 300.0;
+                unless(
+                    fine,
+                    format!("mu {mu} and sigma {sigma}"),
+                    "mu in -300..300 and sigma in 0..30",
+                )
+            }
+            Self::Exponential { rate } => unless(*rate > 0.0, format!("rate {rate}"), "a rate above 0"),
+            Self::Beta { alpha, beta, low, high } => {
+                let shapes = (1e-3..=1e6).contains(alpha) && (1e-3..=1e6).contains(beta);
+                let fine = shapes && low.unwrap_or(0.0) < high.unwrap_or(1.0);
+                let found = format!(
+                    "alpha {alpha}, beta {beta}, low {}, high {}",
+                    low.unwrap_or(0.0),
+                    high.unwrap_or(1.0)
+                );
+                unless(fine, found, "alpha and beta in 0.001..1000000 and low below high")
+            }
+            Self::Triangular { low, mode, high } => {
+                let fine = low < high && (*low..=*high).contains(mode);
+                unless(
+                    fine,
+                    format!("low {low}, mode {mode}, high {high}"),
+                    "low below high and the mode between them",
+                )
+            }
+            Self::Perturb { noise, low, high, .. } => {
+                let limits = low.zip(*high).is_none_or(|(low, high)| low <= high);
+                unless(
+                    limits && *noise >= 0.0,
+                    perturbed(*noise, *low, *high),
+                    "noise of at least 0 and low not above high",
+                )
+            }
+            Self::VonMises { kappa, .. } => unless(
+                (0.0..=1e4).contains(kappa),
+                format!("kappa {kappa}"),
+                "a concentration in 0..10000",
+            ),
+            Self::Bernoulli { p } => unless((0.0..=1.0).contains(p), format!("p {p}"), "a probability in 0..1"),
+            Self::Binomial { n, p } => {
+                let fine = (0.0..=1.0).contains(p) && n.fract() == 0.0 && (0.0..=100_000.0).contains(n);
+                unless(fine, format!("n {n} and p {p}"), "a whole n in 0..100000 and p in 0..1")
+            }
+            Self::Poisson { mean } => unless(
+                (0.0..=1e5).contains(mean),
+                format!("mean {mean}"),
+                "a mean in 0..100000",
+            ),
+            Self::Geometric { p } => unless(
+                (1e-9..=1.0).contains(p),
+                format!("p {p}"),
+                "a probability above 0, at most 1",
+            ),
+            Self::Dirichlet { alpha } => {
+                let fine = alpha.iter().all(|shape| (1e-3..=1e6).contains(shape));
+                unless(fine, format!("alpha {alpha:?}"), "shapes in 0.001..1000000")
+            }
+            planar => planar.planar_fault(),
+        }
+    }
+
+    fn planar_fault(&self) -> Fault {
+        let rectangle = |low: &[f64; 2], high: &[f64; 2]| {
+            let fine = low[0] < high[0] && low[1] < high[1];
+            unless(
+                fine,
+                format!("low {low:?} and high {high:?}"),
+                "low below high in both coordinates",
+            )
+        };
+        match self {
+            Self::Box { low, high } => rectangle(low, high),
+            Self::Disc { radius, .. } => unless(*radius > 0.0, format!("radius {radius}"), "a radius above 0"),
+            Self::Annulus { inner, outer, .. } => {
+                let found = format!("inner {inner} and outer {outer}");
+                unless(
+                    *inner >= 0.0 && inner < outer,
+                    found,
+                    "inner at least 0 and below outer",
+                )
+            }
+            Self::Gaussian {
+                std,
+                correlation,
+                covariance,
+                ..
+            } => gaussian(std.as_ref(), *correlation, covariance.as_ref()),
+            Self::Grid {
+                low,
+                high,
+                columns,
+                rows,
+                jitter,
+                ..
+            } => rectangle(low, high).or_else(|| {
+                let whole = |n: &f64| n.fract() == 0.0 && (1.0..=1000.0).contains(n);
+                let jitter = jitter.unwrap_or(0.0);
+                let fine = whole(columns) && whole(rows) && (0.0..=1.0).contains(&jitter);
+                let found = format!("columns {columns}, rows {rows}, jitter {jitter}");
+                unless(fine, found, "whole columns and rows in 1..1000 and jitter in 0..1")
+            }),
+            Self::PoissonDisc { low, high, distance } => rectangle(low, high)
+                .or_else(|| unless(*distance > 0.0, format!("distance {distance}"), "a distance above 0")),
+            _ => None,
+        }
+    }
+}
+
+fn unless(fine: bool, found: String, expected: &'static str) -> Fault {
+    (!fine).then_some((found, expected))
+}
+
+fn weights_fault(count: usize, weights: Option<&[f64]>) -> Fault {
+    let weights = weights?;
+    let fine = weights.len() == count
+        && weights.iter().all(|weight| *weight >= 0.0 && weight.is_finite())
+        && weights.iter().sum::<f64>() > 0.0;
+    unless(
+        fine,
+        format!("weights {weights:?}"),
+        "one weight per value, none negative, not all 0",
+    )
+}
+
+fn perturbed(noise: f64, low: Option<f64>, high: Option<f64>) -> String {
+    let limit = |name: &str, limit: Option<f64>| limit.map_or_else(String::new, |limit| format!(", {name} {limit}"));
+    format!("noise {noise}{}{}", limit("low", low), limit("high", high))
+}
+
+fn gaussian(std: Option<&Spread>, correlation: Option<f64>, covariance: Option<&[[f64; 2]; 2]>) -> Fault {
+    match (std, covariance) {
+        (Some(_), Some(_)) | (None, None) => {
+            let found = if std.is_some() {
+                "std and covariance"
+            } else {
+                "neither std nor covariance"
+            };
+            Some((found.to_owned(), "one of std and covariance"))
+        }
+        (Some(std), None) => {
+            let least = match std {
+                Spread::Round(std) => *std,
+                Spread::Axes([x, y]) => x.min(*y),
+            };
+            let correlation = correlation.unwrap_or(0.0);
+            let fine = least >= 0.0 && (-1.0..=1.0).contains(&correlation);
+            let found = format!("std {least} and correlation {correlation}");
+            unless(
+                fine,
+                found,
+                "standard deviations of at least 0 and a correlation in -1..1",
+            )
+        }
+        (None, Some([[xx, xy], [yx, yy]])) => {
+            let fine = xy == yx && *xx >= 0.0 && *yy >= 0.0 && xy * xy <= xx * yy && correlation.is_none();
+            let found = format!("covariance [[{xx}, {xy}], [{yx}, {yy}]]");
+            unless(
+                fine,
+                found,
+                "a symmetric matrix without negative eigenvalues, and no correlation beside it",
+            )
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(json: &str, expected: Option<&str>) {
+        let distribution: Distribution = serde_json::from_str(json).unwrap_or_else(|error| panic!("{json}: {error}"));
+        assert_eq!(distribution.fault().map(|(_, expected)| expected), expected, "{json}");
+    }
+
+    #[test]
+    fn numbers_that_cannot_be_drawn_from_are_faults() {
+        let probability = Some("a probability in 0..1");
+        let weights = Some("one weight per value, none negative, not all 0");
+        check(r#"{"uniform": {"low": 0, "high": 1}}"#, None);
+        check(r#"{"uniform": {"low": 1, "high": 1}}"#, Some("low below high"));
+        check(
+            r#"{"normal": {"mean": 1, "std": -1}}"#,
+            Some("a standard deviation of at least 0"),
+        );
+        check(r#"{"bernoulli": {"p": 1.5}}"#, probability);
+        check(r#"{"choice": {"values": [1, 2], "weights": [0, 0]}}"#, weights);
+        check(r#"{"choice": {"values": [1, 2], "weights": [1]}}"#, weights);
+        check(r#"{"mixture": {"parts": [{"bernoulli": {"p": 2}}]}}"#, probability);
+        check(
+            r#"{"mixture": {"parts": [{"bernoulli": {"p": 1}}], "weights": [-1]}}"#,
+            weights,
+        );
+        check(
+            r#"{"annulus": {"center": [0, 0], "inner": 3, "outer": 2}}"#,
+            Some("inner at least 0 and below outer"),
+        );
+        check(
+            r#"{"binomial": {"n": 2.5, "p": 0.5}}"#,
+            Some("a whole n in 0..100000 and p in 0..1"),
+        );
+        check(r#"{"gaussian": {"mean": [0, 0]}}"#, Some("one of std and covariance"));
+        check(
+            r#"{"gaussian": {"mean": [0, 0], "std": [1, 2], "correlation": 0.5}}"#,
+            None,
+        );
+        check(
+            r#"{"gaussian": {"mean": [0, 0], "covariance": [[4, 1], [1, 2]]}}"#,
+            None,
+        );
+        check(
+            r#"{"gaussian": {"mean": [0, 0], "covariance": [[1, 2], [2, 1]]}}"#,
+            Some("a symmetric matrix without negative eigenvalues, and no correlation beside it"),
+        );
+        check(r#"{"exponential": {"rate": 0}}"#, Some("a rate above 0"));
+        check(r#"{"geometric": {"p": 0}}"#, Some("a probability above 0, at most 1"));
+        check(
+            r#"{"poisson_disc": {"low": [0, 0], "high": [1, 1], "distance": 0}}"#,
+            Some("a distance above 0"),
+        );
+        check(r#"{"dirichlet": {"alpha": [1, 0]}}"#, Some("shapes in 0.001..1000000"));
+        check(
+            r#"{"von_mises": {"mean": 0, "kappa": -1}}"#,
+            Some("a concentration in 0..10000"),
+        );
+    }
+}

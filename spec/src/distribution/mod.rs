@@ -1,0 +1,362 @@
+//! [`Distribution`]: how values scatter, as data with its laws. Drawing from it is the generator's job, comparing two `similarity`'s.
+
+mod cumulative;
+mod discrete;
+mod fault;
+mod map;
+mod moments;
+mod planar;
+mod quantile;
+mod reference;
+mod special;
+mod support;
+mod von_mises;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+pub use planar::PlanarMoments;
+pub use reference::{Number, ParamRef};
+
+use crate::task::Value;
+
+/// How values scatter. `N` is [`Number`] in a spec, where numbers may be references, and `f64` once a variant has settled them.
+///
+/// Families of numbers have closed-form laws where there are any: [`mean`](Distribution::mean),
+/// [`variance`](Distribution::variance), [`cdf`](Distribution::cdf), [`quantile`](Distribution::quantile). Families of points
+/// have [`planar_moments`](Distribution::planar_moments).
+///
+/// # Example
+/// ```
+/// use driftworld_spec::Distribution;
+/// let light = Distribution::TruncatedNormal { mean: 2.0, std: 1.0, low: 0.0, high: 4.0 };
+/// assert_eq!(light.mean(), Some(2.0));
+/// assert!((light.quantile(0.5).unwrap() - 2.0).abs() < 1e-12);
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[schemars(rename = "Distribution", transform = gaussian_needs_one_spread)]
+pub enum Distribution<N = f64> {
+    /// Always the same value, of any type.
+    Constant {
+        /// The value.
+        value: Value,
+    },
+    /// One of a list, by weight.
+    Choice {
+        /// What may be chosen.
+        #[schemars(length(min = 1, max = 10_000))]
+        values: Vec<Value>,
+        /// Weight of each value, at least 0, not all 0; all alike if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(length(min = 1, max = 10_000))]
+        weights: Option<Vec<N>>,
+    },
+    /// Every number in `low..high` alike.
+    Uniform {
+        /// Lower end, may occur.
+        low: N,
+        /// Upper end, above `low`; does not occur.
+        high: N,
+    },
+    /// Every whole number in `low..=high` alike.
+    IntegerUniform {
+        /// Least value.
+        low: N,
+        /// Greatest value, not below `low`.
+        high: N,
+    },
+    /// The normal (Gaussian) distribution of numbers.
+    Normal {
+        /// Mean.
+        mean: N,
+        /// Standard deviation, at least 0.
+        std: N,
+    },
+    /// The normal distribution, given that it falls in `low..=high`.
+    TruncatedNormal {
+        /// Mean of the normal before truncation.
+        mean: N,
+        /// Standard deviation of the normal before truncation, above 0.
+        std: N,
+        /// Least value.
+        low: N,
+        /// Greatest value, above `low`.
+        high: N,
+    },
+    /// Numbers above 0 whose logarithm is normal.
+    LogNormal {
+        /// Mean of the natural logarithm.
+        mu: N,
+        /// Standard deviation of the natural logarithm, at least 0.
+        sigma: N,
+    },
+    /// Waiting times without memory: density `rate × exp(−rate × x)` above 0.
+    Exponential {
+        /// Events per unit, above 0; the mean is 1 / `rate`.
+        rate: N,
+    },
+    /// The beta distribution, stretched from 0..1 to `low..high`.
+    Beta {
+        /// First shape, above 0: large values push towards `high`.
+        alpha: N,
+        /// Second shape, above 0: large values push towards `low`.
+        beta: N,
+        /// Lower end; 0 if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        low: Option<N>,
+        /// Upper end, above `low`; 1 if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        high: Option<N>,
+    },
+    /// A density that rises straight from `low` to `mode` and falls straight to `high`.
+    Triangular {
+        /// Lower end.
+        low: N,
+        /// Most likely value, in `low..=high`.
+        mode: N,
+        /// Upper end, above `low`.
+        high: N,
+    },
+    /// A value with uniform noise, cut off at limits.
+    Perturb {
+        /// The value in the middle.
+        value: N,
+        /// Greatest deviation to either side, at least 0.
+        noise: N,
+        /// Limit below, at which smaller results are cut off; none if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        low: Option<N>,
+        /// Limit above, at which greater results are cut off; none if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        high: Option<N>,
+    },
+    /// The von Mises distribution: headings around a mean direction, as the normal is for numbers.
+    VonMises {
+        /// Mean direction in degrees clockwise from +y.
+        mean: N,
+        /// Concentration from 0 (every heading alike) to 10,000; about 3283 / (standard deviation in degrees)² when large.
+        kappa: N,
+    },
+    /// True with probability `p`.
+    Bernoulli {
+        /// Probability, 0..1.
+        p: N,
+    },
+    /// How many of `n` tries succeed.
+    Binomial {
+        /// Number of tries, a whole number from 0 to 100,000.
+        n: N,
+        /// Probability that a try succeeds, 0..1.
+        p: N,
+    },
+    /// How many events fall into a stretch when they come independently.
+    Poisson {
+        /// Mean number of events, from 0 to 100,000.
+        mean: N,
+    },
+    /// How many tries fail before the first that succeeds.
+    Geometric {
+        /// Probability that a try succeeds, above 0, at most 1.
+        p: N,
+    },
+    /// Shares that sum to 1: a vector with one entry per shape.
+    Dirichlet {
+        /// Shape of each share, above 0; equal shapes above 1 pull towards equal shares, below 1 towards one taking all.
+        #[schemars(length(min = 2, max = 100))]
+        alpha: Vec<N>,
+    },
+    /// Every point of a rectangle alike.
+    Box {
+        /// South-west corner in metres.
+        low: [N; 2],
+        /// North-east corner in metres, above `low` in both coordinates.
+        high: [N; 2],
+    },
+    /// Every point of a disc alike.
+    Disc {
+        /// Centre in metres.
+        center: [N; 2],
+        /// Radius in metres, above 0.
+        radius: N,
+    },
+    /// Every point of a ring alike.
+    Annulus {
+        /// Centre in metres.
+        center: [N; 2],
+        /// Inner radius in metres, at least 0.
+        inner: N,
+        /// Outer radius in metres, above `inner`.
+        outer: N,
+    },
+    /// The normal distribution of the plane: `std` (round, or along each axis) with a correlation, or the covariance itself.
+    Gaussian {
+        /// Mean in metres.
+        mean: [N; 2],
+        /// Standard deviation in metres, at least 0: one number for both axes, or one for each.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        std: Option<Spread<N>>,
+        /// Correlation of x and y beside `std`, −1..1; 0 if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        correlation: Option<N>,
+        /// Covariance matrix in square metres in place of `std`: symmetric, no negative eigenvalue.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        covariance: Option<[[N; 2]; 2]>,
+    },
+    /// A list of points.
+    Points {
+        /// The points in metres.
+        #[schemars(length(min = 1, max = 100_000))]
+        values: Vec<[N; 2]>,
+        /// Whether the points are taken in turn, round and round, or drawn.
+        #[serde(default, skip_serializing_if = "is_default")]
+        order: Order,
+    },
+    /// The centres of the cells of a grid, taken in turn from the south-west, row by row, or drawn.
+    Grid {
+        /// South-west corner in metres.
+        low: [N; 2],
+        /// North-east corner in metres, above `low` in both coordinates.
+        high: [N; 2],
+        /// Cells from west to east, a whole number from 1 to 1,000.
+        columns: N,
+        /// Cells from south to north, a whole number from 1 to 1,000.
+        rows: N,
+        /// How far a point strays from its cell's centre, as a share of the cell: 0 not at all, 1 anywhere in it; 0 if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        jitter: Option<N>,
+        /// Whether the cells are taken in turn, round and round, or drawn.
+        #[serde(default, skip_serializing_if = "is_default")]
+        order: Order,
+    },
+    /// Every point of a rectangle alike, but for keeping its distance from the group's own points: Poisson-disc sampling.
+    PoissonDisc {
+        /// South-west corner in metres.
+        low: [N; 2],
+        /// North-east corner in metres, above `low` in both coordinates.
+        high: [N; 2],
+        /// Least distance in metres between two objects of the group, above 0.
+        distance: N,
+    },
+    /// One of several distributions, by weight, and then a draw from that.
+    Mixture {
+        /// The distributions: all of numbers, or all of points.
+        #[schemars(length(min = 1, max = 100))]
+        parts: Vec<Distribution<N>>,
+        /// Weight of each part, at least 0, not all 0; all alike if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(length(min = 1, max = 100))]
+        weights: Option<Vec<N>>,
+    },
+}
+
+/// The standard deviation of a normal distribution of the plane.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a number, or [x, y]")]
+#[schemars(rename = "Spread")]
+pub enum Spread<N = f64> {
+    /// The same along both axes.
+    Round(N),
+    /// Along x and along y.
+    Axes([N; 2]),
+}
+
+/// How a list of places is gone through.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Order {
+    /// The first object takes the first place, and so on, round and round.
+    #[default]
+    Turn,
+    /// Each object takes one at random.
+    Random,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_default(order: &Order) -> bool {
+    *order == Order::default()
+}
+
+fn gaussian_needs_one_spread(schema: &mut schemars::Schema) {
+    let forms = schema
+        .get_mut("oneOf")
+        .and_then(serde_json::Value::as_array_mut)
+        .into_iter()
+        .flatten();
+    for form in forms {
+        if let Some(gaussian) = form
+            .pointer_mut("/properties/gaussian")
+            .and_then(serde_json::Value::as_object_mut)
+        {
+            let one_of = json!([
+                { "required": ["std"], "properties": { "covariance": false } },
+                { "required": ["covariance"], "properties": { "std": false, "correlation": false } }
+            ]);
+            gaussian.insert("oneOf".to_owned(), one_of);
+        }
+    }
+}
+
+impl<N> Distribution<N> {
+    /// The name as documents write it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Constant { .. } => "constant",
+            Self::Choice { .. } => "choice",
+            Self::Uniform { .. } => "uniform",
+            Self::IntegerUniform { .. } => "integer_uniform",
+            Self::Normal { .. } => "normal",
+            Self::TruncatedNormal { .. } => "truncated_normal",
+            Self::LogNormal { .. } => "log_normal",
+            Self::Exponential { .. } => "exponential",
+            Self::Beta { .. } => "beta",
+            Self::Triangular { .. } => "triangular",
+            Self::Perturb { .. } => "perturb",
+            Self::VonMises { .. } => "von_mises",
+            Self::Bernoulli { .. } => "bernoulli",
+            Self::Binomial { .. } => "binomial",
+            Self::Poisson { .. } => "poisson",
+            Self::Geometric { .. } => "geometric",
+            Self::Dirichlet { .. } => "dirichlet",
+            Self::Box { .. } => "box",
+            Self::Disc { .. } => "disc",
+            Self::Annulus { .. } => "annulus",
+            Self::Gaussian { .. } => "gaussian",
+            Self::Points { .. } => "points",
+            Self::Grid { .. } => "grid",
+            Self::PoissonDisc { .. } => "poisson_disc",
+            Self::Mixture { .. } => "mixture",
+        }
+    }
+
+    /// The names of the distributions that place objects, as messages list them.
+    pub const PLANAR: &'static str = "box, disc, annulus, gaussian, points, grid, poisson_disc, or a mixture of them";
+
+    /// Whether it draws points, so that objects can be placed by it.
+    pub fn is_planar(&self) -> bool {
+        match self {
+            Self::Box { .. }
+            | Self::Disc { .. }
+            | Self::Annulus { .. }
+            | Self::Gaussian { .. }
+            | Self::Points { .. }
+            | Self::Grid { .. }
+            | Self::PoissonDisc { .. } => true,
+            Self::Constant { value } => matches!(value, Value::Point(_)),
+            Self::Choice { values, .. } => values.iter().all(|value| matches!(value, Value::Point(_))),
+            Self::Mixture { parts, .. } => parts.iter().all(Self::is_planar),
+            _ => false,
+        }
+    }
+
+    /// Whether what it draws depends on the objects before: places taken in turn, or kept apart. Only groups have such.
+    pub fn needs_group(&self) -> bool {
+        match self {
+            Self::Points { order, .. } | Self::Grid { order, .. } => *order == Order::Turn,
+            Self::PoissonDisc { .. } => true,
+            Self::Mixture { parts, .. } => parts.iter().any(Self::needs_group),
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Mean and covariance of the distributions that draw points. Those of numbers are in `moments.rs`.
+
+use super::{Distribution, Spread};
+use crate::task::Value;
+
+/// Mean and covariance of a distribution of the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanarMoments {
+    /// The mean in metres.
+    pub mean: [f64; 2],
+    /// The covariance matrix in square metres.
+    pub covariance: [[f64; 2]; 2],
+}
+
+impl PlanarMoments {
+    fn round(mean: [f64; 2], variance: f64) -> Self {
+        Self {
+            mean,
+            covariance: [[variance, 0.0], [0.0, variance]],
+        }
+    }
+
+    fn rectangle(low: [f64; 2], high: [f64; 2]) -> Self {
+        let [x, y] = [0, 1].map(|axis| (high[axis] - low[axis]) * (high[axis] - low[axis]) / 12.0);
+        Self {
+            mean: [0, 1].map(|axis| f64::midpoint(low[axis], high[axis])),
+            covariance: [[x, 0.0], [0.0, y]],
+        }
+    }
+
+    /// Of a mixture of parts, each with its weight.
+    fn mixed(parts: &[(Self, f64)]) -> Self {
+        let total: f64 = parts.iter().map(|part| part.1).sum();
+        let mean = [0, 1].map(|axis| parts.iter().map(|(part, weight)| weight * part.mean[axis]).sum::<f64>() / total);
+        let entry = |i: usize, j: usize| {
+            let each = parts.iter().map(|(part, weight)| {
+                weight * (part.covariance[i][j] + (part.mean[i] - mean[i]) * (part.mean[j] - mean[j]))
+            });
+            each.sum::<f64>() / total
+        };
+        Self {
+            mean,
+            covariance: [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]],
+        }
+    }
+}
+
+impl Distribution<f64> {
+    /// Mean and covariance, exact; of places taken in turn those of one round, of `poisson_disc` those without its distance.
+    /// `None` if it draws no points.
+    pub fn planar_moments(&self) -> Option<PlanarMoments> {
+        let points = |points: &[[f64; 2]], weights: Option<&[f64]>| {
+            let parts = points.iter().enumerate().map(|(k, point)| {
+                (
+                    PlanarMoments::round(*point, 0.0),
+                    weights.map_or(1.0, |weights| weights[k]),
+                )
+            });
+            PlanarMoments::mixed(&parts.collect::<Vec<_>>())
+        };
+        Some(match self {
+            Self::Constant {
+                value: Value::Point(point),
+            } => PlanarMoments::round(*point, 0.0),
+            Self::Choice { values, weights } => {
+                let at = |value: &Value| {
+                    if let Value::Point(point) = value {
+                        Some(*point)
+                    } else {
+                        None
+                    }
+                };
+                let values = values.iter().map(at).collect::<Option<Vec<_>>>()?;
+                points(&values, weights.as_deref())
+            }
+            Self::Box { low, high } | Self::PoissonDisc { low, high, .. } => PlanarMoments::rectangle(*low, *high),
+            Self::Disc { center, radius } => PlanarMoments::round(*center, radius * radius / 4.0),
+            Self::Annulus { center, inner, outer } => {
+                PlanarMoments::round(*center, (inner * inner + outer * outer) / 4.0)
+            }
+            Self::Gaussian { mean, .. } => PlanarMoments {
+                mean: *mean,
+                covariance: self.gaussian_covariance()?,
+            },
+            Self::Points { values, .. } => points(values, None),
+            Self::Grid {
+                low,
+                high,
+                columns,
+                rows,
+                jitter,
+                ..
+            } => {
+                let moments = PlanarMoments::rectangle(*low, *high);
+                // Cell centres have (n² − 1)/n² of the rectangle's variance; jitter gives some of the rest back.
+                let jitter = jitter.unwrap_or(0.0);
+                let axis = |variance: f64, n: f64| variance * (1.0 - (1.0 - jitter * jitter) / (n * n));
+                let [[x, _], [_, y]] = moments.covariance;
+                PlanarMoments {
+                    covariance: [[axis(x, *columns), 0.0], [0.0, axis(y, *rows)]],
+                    ..moments
+                }
+            }
+            Self::Mixture { parts, weights } => {
+                let parts = parts.iter().enumerate().map(|(k, part)| {
+                    Some((
+                        part.planar_moments()?,
+                        weights.as_ref().map_or(1.0, |weights| weights[k]),
+                    ))
+                });
+                PlanarMoments::mixed(&parts.collect::<Option<Vec<_>>>()?)
+            }
+            _ => return None,
+        })
+    }
+
+    /// The covariance matrix of a `gaussian` in square metres; `None` for any other distribution.
+    pub fn gaussian_covariance(&self) -> Option<[[f64; 2]; 2]> {
+        let Self::Gaussian {
+            std,
+            correlation,
+            covariance,
+            ..
+        } = self
+        else {
+            return None;
+        };
+        if let Some(covariance) = covariance {
+            return Some(*covariance);
+        }
+        let [x, y] = match std.as_ref()? {
+            Spread::Round(std) => [*std; 2],
+            Spread::Axes(axes) => *axes,
+        };
+        let both = correlation.unwrap_or(0.0) * x * y;
+        Some([[x * x, both], [both, y * y]])
+    }
+}

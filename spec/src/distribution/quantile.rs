@@ -1,0 +1,170 @@
+//! The inverse of the cumulative function: worlds are drawn by it, so that variants under one seed share their chance.
+
+use super::moments::ends;
+use super::special::{beta_quantile, normal_cdf, normal_quantile};
+use super::{Distribution, discrete, von_mises};
+use crate::task::Value;
+
+impl Distribution<f64> {
+    /// The least number up to which it draws with a probability of at least `p`, which lies in `0..=1`.
+    ///
+    /// The same bits on every platform. Closed forms; `beta`, `von_mises` and mixtures by root finding to the last bits.
+    /// Infinite at 0 or 1 where the distribution has no end there; headings lie in `mean − 180..=mean + 180` degrees.
+    /// `None` if it draws no numbers.
+    pub fn quantile(&self, p: f64) -> Option<f64> {
+        let p = p.clamp(0.0, 1.0);
+        Some(match self {
+            Self::Constant { value } => value.as_number()?,
+            Self::Choice { values, weights } => {
+                let weight = |k: usize| weights.as_ref().map_or(1.0, |weights| weights[k]);
+                let numbers = values
+                    .iter()
+                    .enumerate()
+                    .map(|(k, value)| Some((value.as_number()?, weight(k))));
+                let mut atoms = numbers.collect::<Option<Vec<_>>>()?;
+                atoms.retain(|atom| atom.1 > 0.0);
+                atoms.sort_by(|a, b| a.0.total_cmp(&b.0));
+                let total: f64 = atoms.iter().map(|atom| atom.1).sum();
+                let mut below = 0.0;
+                let reached = atoms.iter().find(|atom| {
+                    below += atom.1 / total;
+                    below >= p
+                });
+                reached.or(atoms.last())?.0
+            }
+            Self::Uniform { low, high } => low + (high - low) * p,
+            Self::IntegerUniform { low, high } => (low + ((high - low + 1.0) * p).ceil() - 1.0).clamp(*low, *high),
+            Self::Normal { mean, std } if *std == 0.0 => *mean,
+            Self::Normal { mean, std } => mean + std * normal_quantile(p),
+            Self::TruncatedNormal { mean, std, low, high } => truncated(p, *mean, *std, *low, *high),
+            Self::LogNormal { mu, sigma } if *sigma == 0.0 => libm::exp(*mu),
+            Self::LogNormal { mu, sigma } => libm::exp(mu + sigma * normal_quantile(p)),
+            Self::Exponential { rate } => -libm::log1p(-p) / rate,
+            Self::Beta { alpha, beta, low, high } => {
+                let (low, width) = ends(*low, *high);
+                low + width * beta_quantile(p, *alpha, *beta)
+            }
+            Self::Triangular { low, mode, high } => {
+                let (width, rise) = (high - low, mode - low);
+                if p * width < rise {
+                    low + (p * width * rise).sqrt()
+                } else {
+                    high - ((1.0 - p) * width * (high - mode)).sqrt()
+                }
+            }
+            Self::Perturb {
+                value,
+                noise,
+                low,
+                high,
+            } => (value + noise * (2.0 * p - 1.0))
+                .max(low.unwrap_or(f64::NEG_INFINITY))
+                .min(high.unwrap_or(f64::INFINITY)),
+            Self::VonMises { mean, kappa } => mean + von_mises::quantile(p, *kappa).to_degrees(),
+            Self::Bernoulli { p: odds } => f64::from(u8::from(p > 1.0 - odds)),
+            Self::Binomial { n, p: odds } => discrete::binomial_quantile(p, *n, *odds),
+            Self::Poisson { mean } if p >= 1.0 && *mean > 0.0 => f64::INFINITY,
+            Self::Poisson { mean } => discrete::poisson_quantile(p, *mean),
+            Self::Geometric { p: odds } if p >= 1.0 && *odds < 1.0 => f64::INFINITY,
+            Self::Geometric { p: odds } => discrete::geometric_quantile(p, *odds),
+            Self::Mixture { parts, weights } => self.mixed(p, parts, weights.as_deref())?,
+            _ => return None,
+        })
+    }
+
+    /// Bisects between the least and greatest quantile of the parts, down to two neighbouring numbers.
+    fn mixed(&self, p: f64, parts: &[Self], weights: Option<&[f64]>) -> Option<f64> {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (k, part) in parts.iter().enumerate() {
+            if weights.is_none_or(|weights| weights[k] > 0.0) {
+                let end = part.quantile(p)?;
+                (low, high) = (low.min(end), high.max(end));
+            }
+        }
+        if !low.is_finite() || !high.is_finite() || self.cdf(low)? >= p {
+            return Some(if p <= 0.5 || self.cdf(low).is_some_and(|at| at >= p) {
+                low
+            } else {
+                high
+            });
+        }
+        loop {
+            let middle = f64::midpoint(low, high);
+            if middle <= low || middle >= high {
+                return Some(high);
+            }
+            if self.cdf(middle)? < p {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+    }
+
+    /// The value that it draws where chance is `p` in `0..1`, if one number of chance decides it: whole numbers for counts,
+    /// true or false for a Bernoulli, any value for a constant or a choice.
+    pub fn value_at(&self, p: f64) -> Option<Value> {
+        Some(match self {
+            Self::Constant { value } => value.clone(),
+            Self::Choice { values, weights } => values[chosen(values.len(), weights.as_deref(), p)].clone(),
+            Self::Bernoulli { p: odds } => Value::Boolean(p > 1.0 - odds),
+            Self::IntegerUniform { low, high } => {
+                // Not through the quantile: `floor` of p gives each value its half-open share.
+                Value::Integer((low + ((high - low + 1.0) * p).floor()).min(*high) as i64)
+            }
+            Self::Binomial { .. } | Self::Poisson { .. } | Self::Geometric { .. } => {
+                Value::Integer(self.quantile(p)? as i64)
+            }
+            Self::Uniform { low, high } => Value::Number((low + (high - low) * p).min(high.next_down())),
+            Self::Mixture { .. } => return None,
+            Self::VonMises { .. } => Value::Number(self.quantile(p)?.rem_euclid(360.0)),
+            _ => Value::Number(self.quantile(p)?),
+        })
+    }
+}
+
+impl<N> Distribution<N> {
+    /// Whether one number of chance decides what it draws, so that [`Distribution::value_at`] gives it.
+    pub fn is_scalar(&self) -> bool {
+        !self.is_planar() && !matches!(self, Self::Mixture { .. } | Self::Dirichlet { .. })
+            || matches!(self, Self::Constant { .. } | Self::Choice { .. })
+    }
+}
+
+impl Distribution<f64> {
+    /// The number of the part of a mixture, or of the value of a choice, that is taken where chance is `p` in `0..1`; 0 for
+    /// any other distribution.
+    pub fn chosen_at(&self, p: f64) -> usize {
+        match self {
+            Self::Choice { values, weights } => chosen(values.len(), weights.as_deref(), p),
+            Self::Mixture { parts, weights } => chosen(parts.len(), weights.as_deref(), p),
+            _ => 0,
+        }
+    }
+}
+
+/// Which of `count` values is chosen where chance is `p` in `0..1`.
+fn chosen(count: usize, weights: Option<&[f64]>, p: f64) -> usize {
+    let Some(weights) = weights else {
+        return ((count as f64 * p) as usize).min(count - 1);
+    };
+    let mut left = weights.iter().sum::<f64>() * p;
+    for (index, weight) in weights.iter().enumerate() {
+        if left < *weight {
+            return index;
+        }
+        left -= weight;
+    }
+    // Rounding can leave a sliver: it belongs to the last value that can occur.
+    weights.iter().rposition(|weight| *weight > 0.0).unwrap_or(0)
+}
+
+fn truncated(p: f64, mean: f64, std: f64, low: f64, high: f64) -> f64 {
+    let z = |x: f64| (x - mean) / std;
+    if z(low) > 0.0 {
+        // The upper tail loses its digits beside 1: the mirror image has them.
+        return -truncated(1.0 - p, -mean, std, -high, -low);
+    }
+    let (below, above) = (normal_cdf(z(low)), normal_cdf(z(high)));
+    (mean + std * normal_quantile(below + (above - below) * p)).clamp(low, high)
+}

@@ -1,0 +1,42 @@
+//! [`Number`]: a number in a distribution, or a reference to a parameter that has one. Settling it is `task/variant.rs`'s job.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A number in a distribution: itself, or that of a fixed or variant parameter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a number, or {\"param\": NAME}")]
+pub enum Number {
+    /// The number itself.
+    Literal(f64),
+    /// The number that a parameter has.
+    Param(ParamRef),
+}
+
+impl From<f64> for Number {
+    fn from(number: f64) -> Self {
+        Self::Literal(number)
+    }
+}
+
+/// A reference to a parameter.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ParamRef {
+    /// The parameter's name.
+    pub param: String,
+    /// Which number of a vector or point, counted from 0; absent for the whole value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 99))]
+    pub index: Option<usize>,
+}
+
+/// As people read it: `light`, or `shares[1]`.
+impl std::fmt::Display for ParamRef {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self.index {
+            None => f.write_str(&self.param),
+            Some(index) => write!(f, "{}[{index}]", self.param),
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! Which values a distribution can draw, and of what type. How likely they are is said in `cumulative.rs`.
+
+use super::Distribution;
+use crate::task::{ParameterType, Value};
+
+impl<N> Distribution<N> {
+    /// Whether all it draws can stand where this type is wanted.
+    pub fn yields(&self, kind: ParameterType) -> bool {
+        match self {
+            Self::Constant { value } => value.cast(kind).is_some(),
+            Self::Choice { values, .. } => values.iter().all(|value| value.cast(kind).is_some()),
+            Self::Mixture { parts, .. } => parts.iter().all(|part| part.yields(kind)),
+            Self::Bernoulli { .. } => kind == ParameterType::Boolean,
+            Self::IntegerUniform { .. } | Self::Binomial { .. } | Self::Poisson { .. } | Self::Geometric { .. } => {
+                ParameterType::Integer.fits(kind)
+            }
+            Self::VonMises { .. } => kind == ParameterType::Heading,
+            Self::Dirichlet { .. } => kind == ParameterType::Vector,
+            _ if self.is_planar() => kind == ParameterType::Point,
+            _ => ParameterType::Number.fits(kind),
+        }
+    }
+
+    /// How many entries the vectors have that it draws; `None` if it draws none, or of different lengths.
+    pub fn vector_length(&self) -> Option<usize> {
+        let common = |mut lengths: Vec<Option<usize>>| {
+            lengths.dedup();
+            if let [length] = lengths[..] { length } else { None }
+        };
+        match self {
+            Self::Dirichlet { alpha } => Some(alpha.len()),
+            Self::Constant { value } => value.as_vector().map(<[f64]>::len),
+            Self::Choice { values, .. } => {
+                common(values.iter().map(|value| value.as_vector().map(<[f64]>::len)).collect())
+            }
+            Self::Mixture { parts, .. } => common(parts.iter().map(Self::vector_length).collect()),
+            _ => None,
+        }
+    }
+}
+
+impl Distribution<f64> {
+    /// The least and greatest number it can draw, or all values of a choice; `None` where that has no bounds.
+    pub fn support(&self) -> Option<Vec<Value>> {
+        let numbers = |low: f64, high: f64| Some(vec![Value::Number(low), Value::Number(high)]);
+        let counts = |low: f64, high: f64| Some(vec![Value::Integer(low as i64), Value::Integer(high as i64)]);
+        let corners = |low: [f64; 2], high: [f64; 2]| Some(vec![Value::Point(low), Value::Point(high)]);
+        match self {
+            Self::Constant { value } => Some(vec![value.clone()]),
+            Self::Choice { values, .. } => Some(values.clone()),
+            Self::Uniform { low, high }
+            | Self::TruncatedNormal { low, high, .. }
+            | Self::Triangular { low, high, .. } => numbers(*low, *high),
+            Self::Beta { low, high, .. } => numbers(low.unwrap_or(0.0), high.unwrap_or(1.0)),
+            Self::Perturb {
+                value,
+                noise,
+                low,
+                high,
+            } => {
+                let cut = |x: f64| {
+                    x.max(low.unwrap_or(f64::NEG_INFINITY))
+                        .min(high.unwrap_or(f64::INFINITY))
+                };
+                numbers(cut(value - noise), cut(value + noise))
+            }
+            Self::VonMises { .. } => numbers(0.0, 360.0),
+            Self::IntegerUniform { low, high } => counts(*low, *high),
+            Self::Binomial { n, .. } => counts(0.0, *n),
+            Self::Bernoulli { .. } => Some(vec![Value::Boolean(false), Value::Boolean(true)]),
+            Self::Dirichlet { alpha } => {
+                let end = |share: f64| Value::Vector(vec![share; alpha.len()]);
+                Some(vec![end(0.0), end(1.0)])
+            }
+            Self::Box { low, high } | Self::Grid { low, high, .. } | Self::PoissonDisc { low, high, .. } => {
+                corners(*low, *high)
+            }
+            Self::Disc { center: [x, y], radius }
+            | Self::Annulus {
+                center: [x, y],
+                outer: radius,
+                ..
+            } => corners([x - radius, y - radius], [x + radius, y + radius]),
+            Self::Points { values, .. } => Some(values.iter().copied().map(Value::Point).collect()),
+            Self::Mixture { parts, .. } => {
+                let each = parts.iter().map(Self::support).collect::<Option<Vec<_>>>()?;
+                Some(each.into_iter().flatten().collect())
+            }
+            Self::Normal { .. }
+            | Self::LogNormal { .. }
+            | Self::Exponential { .. }
+            | Self::Poisson { .. }
+            | Self::Geometric { .. }
+            | Self::Gaussian { .. } => None,
+        }
+    }
+
+    /// Some value it can draw, to try a template with.
+    pub(crate) fn example(&self) -> Value {
+        match self {
+            Self::Poisson { .. } | Self::Geometric { .. } => Value::Integer(0),
+            Self::Gaussian { mean, .. } => Value::Point(*mean),
+            Self::Mixture { parts, .. } => parts[0].example(),
+            other => other
+                .support()
+                .and_then(|values| values.into_iter().next())
+                .or_else(|| other.quantile(0.5).map(Value::Number))
+                .unwrap_or(Value::Number(0.0)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_choice_yields_the_type_that_all_its_values_have() {
+        let colors: Distribution = serde_json::from_str(r#"{"choice": {"values": ["red", [0, 0, 1]]}}"#).unwrap();
+        assert!(colors.yields(ParameterType::Color) && !colors.yields(ParameterType::String));
+    }
+
+    #[test]
+    fn headings_come_from_numbers_and_from_directions() {
+        let von_mises: Distribution = serde_json::from_str(r#"{"von_mises": {"mean": 0, "kappa": 1}}"#).unwrap();
+        let uniform: Distribution = serde_json::from_str(r#"{"uniform": {"low": 0, "high": 360}}"#).unwrap();
+        assert!(von_mises.yields(ParameterType::Heading) && !von_mises.yields(ParameterType::Number));
+        assert!(uniform.yields(ParameterType::Heading) && uniform.yields(ParameterType::Number));
+    }
+}

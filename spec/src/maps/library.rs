@@ -1,0 +1,196 @@
+//! [`MapLibrary`]: layouts read from files, in place of the built-in ones. Finding the files is the command line's job.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::name;
+use crate::document::Document;
+use crate::error::{Problem, SpecError};
+use crate::schema;
+use crate::world::{Region, World};
+
+/// A maps file as its document has it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MapsDocument {
+    /// Where the JSON Schema of this document is, for editors.
+    #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
+    schema: Option<String>,
+    /// The unit of all coordinates.
+    #[serde(default)]
+    unit: Unit,
+    /// Where the origin lies, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    origin: Option<String>,
+    /// Where the axes point, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    axes: Option<String>,
+    /// The layouts.
+    #[schemars(length(min = 1, max = 100))]
+    maps: Vec<MapLayout>,
+}
+
+/// The unit of a maps file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+enum Unit {
+    /// Metres.
+    #[default]
+    Metre,
+}
+
+/// One layout: which number it stands for, and the regions that cannot be entered.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MapLayout {
+    /// The `predefined_map` that it is the layout of.
+    #[schemars(range(min = 0, max = 4))]
+    pub id: u8,
+    /// Its name.
+    #[schemars(length(min = 1, max = 100))]
+    pub name: String,
+    /// West and east end of the arena in metres; the arena of a predefined map is 200 × 200 m, so −100 and 100.
+    #[serde(default = "whole_arena")]
+    pub x_limits: [f64; 2],
+    /// South and north end of the arena in metres; −100 and 100.
+    #[serde(default = "whole_arena")]
+    pub y_limits: [f64; 2],
+    /// The regions: polygons in metres, corners in order, the last joins the first. They may touch themselves and each other.
+    #[schemars(length(max = 1000))]
+    pub excluded_regions: Vec<Region>,
+}
+
+fn whole_arena() -> [f64; 2] {
+    [-100.0, 100.0]
+}
+
+/// Layouts by their numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MapLibrary {
+    maps: BTreeMap<u8, MapLayout>,
+}
+
+impl MapLibrary {
+    /// Reads a maps file, strictly. `name` is what messages call the document, usually its path.
+    ///
+    /// # Errors
+    /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::{World, maps::MapLibrary};
+    /// let text = r#"{ "maps": [{ "id": 2, "name": "yard", "excluded_regions": [[[0, 0], [9, 0], [9, 9]]] }] }"#;
+    /// let library = MapLibrary::from_json("maps.json", text)?;
+    /// let mut world = World::from_json("w", r#"{ "environment_params": { "predefined_map": 2 } }"#)?;
+    /// library.apply(&mut world);
+    /// assert_eq!(world.environment_params.regions().len(), 1);
+    /// # Ok::<(), driftworld_spec::SpecError>(())
+    /// ```
+    pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
+        let document = Document::parse(name, text)?;
+        document.check_schema(schema::maps())?;
+        let file: MapsDocument = document.deserialize()?;
+        document.fail_on(problems(&file.maps))?;
+        Ok(Self {
+            maps: file.maps.into_iter().map(|map| (map.id, map)).collect(),
+        })
+    }
+
+    /// Takes over the layouts of another library; those of the same number replace ours.
+    pub fn extend(&mut self, other: Self) {
+        self.maps.extend(other.maps);
+    }
+
+    /// The layouts in the order of their numbers.
+    pub fn layouts(&self) -> impl Iterator<Item = &MapLayout> {
+        self.maps.values()
+    }
+
+    /// Writes the layout of the world's predefined map into the world, if there is one: the world then needs no library.
+    pub fn apply(&self, world: &mut World) {
+        let environment = &mut world.environment_params;
+        if let Some(map) = self.maps.get(&environment.predefined_map) {
+            environment.map_regions = Some(map.excluded_regions.clone());
+        }
+    }
+}
+
+/// What the schema cannot say: numbers that stand twice, arenas of another size, corners outside.
+fn problems(maps: &[MapLayout]) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for (index, map) in maps.iter().enumerate() {
+        let pointer = |key: &str| format!("/maps/{index}/{key}");
+        if let Some(first) = maps[..index].iter().position(|other| other.id == map.id) {
+            let found = format!("{}, which map {first} has too", map.id);
+            problems.push(Problem::new(
+                "spec/duplicate-name",
+                pointer("id"),
+                found,
+                "a number of its own",
+            ));
+        }
+        for (key, limits) in [("x_limits", map.x_limits), ("y_limits", map.y_limits)] {
+            if limits != whole_arena() {
+                let expected = "[-100, 100]: a predefined map is 200 m wide";
+                problems.push(Problem::new(
+                    "spec/value",
+                    pointer(key),
+                    format!("{limits:?}"),
+                    expected,
+                ));
+            }
+        }
+        if map.id == 0 && !map.excluded_regions.is_empty() {
+            let found = format!("{} regions in map 0", map.excluded_regions.len());
+            let expected = format!("none: map 0 is the {} arena", name(0));
+            let problem = Problem::new("spec/value", pointer("excluded_regions"), found, expected);
+            problems.push(problem.advise("give the layout a number from 1 to 4"));
+        }
+        for (region, polygon) in map.excluded_regions.iter().enumerate() {
+            let outside = polygon
+                .0
+                .iter()
+                .position(|corner| corner.iter().any(|metres| metres.abs() > 150.0));
+            if let Some(corner) = outside {
+                let found = format!("{:?}", polygon.0[corner]);
+                let at = format!("/maps/{index}/excluded_regions/{region}/{corner}");
+                problems.push(Problem::new(
+                    "spec/range",
+                    at,
+                    found,
+                    "a corner at most 50 m outside the arena",
+                ));
+            }
+        }
+    }
+    problems
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(maps: &str, expected: &str) {
+        let error = MapLibrary::from_json("maps.json", &format!("{{ \"maps\": {maps} }}")).unwrap_err();
+        assert_eq!(error.to_string(), expected);
+    }
+
+    #[test]
+    fn a_layout_that_cannot_stand_in_its_place_is_refused() {
+        check(
+            r#"[{ "id": 1, "name": "a", "excluded_regions": [] }, { "id": 1, "name": "b", "excluded_regions": [] }]"#,
+            "maps.json:1:70 (/maps/1/id): found 1, which map 0 has too, expected a number of its own",
+        );
+        check(
+            r#"[{ "id": 1, "name": "a", "x_limits": [-50, 50], "excluded_regions": [] }]"#,
+            "maps.json:1:48 (/maps/0/x_limits): found [-50.0, 50.0], expected [-100, 100]: a predefined map is 200 m wide",
+        );
+        check(
+            r#"[{ "id": 1, "name": "a", "excluded_regions": [[[0, 0], [900, 0], [0, 9]]] }]"#,
+            "maps.json:1:66 (/maps/0/excluded_regions/0/1): found [900.0, 0.0], expected a corner at most 50 m outside the arena",
+        );
+    }
+}

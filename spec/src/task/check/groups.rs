@@ -1,0 +1,190 @@
+//! Groups: their counts, placements, distances, and the groups that they refer to.
+
+use serde_json::{Value as Json, json};
+
+use super::super::group::{Facing, Group};
+use super::super::template::Source;
+use super::super::value::ParameterType;
+use super::super::{Count, PlacedGroup, variant};
+use super::Check;
+use crate::MAX_OBJECTS;
+use crate::distribution::{Distribution, Number};
+use crate::document::escape;
+use crate::error::{Problem, nearest};
+
+impl Check<'_> {
+    pub(super) fn group(&mut self, index: usize, groups: &[Group]) -> Option<PlacedGroup> {
+        let before = self.problems.len();
+        let (earlier, group) = (&groups[..index], &groups[index]);
+        let root = format!("/groups/{index}");
+        let count = self.count(&format!("{root}/count"), &group.count);
+        let mut object = group.object.clone();
+        if let Some(map) = object.as_object_mut() {
+            map.insert("coordinates".to_owned(), json!([0, 0]));
+        }
+        let object = self.object(&format!("{root}/object"), &object);
+        self.placement(&format!("{root}/placement"), &group.placement);
+        let around = group
+            .around
+            .as_ref()
+            .and_then(|name| self.earlier(&format!("{root}/around"), name, earlier));
+        self.facing(&root, group, earlier);
+        let keep_groups = self.keep_out(&root, group, earlier);
+        if let Some(first) = earlier.iter().position(|other| other.name == group.name) {
+            let found = format!("{:?}, which group {first} has too", group.name);
+            self.report(Problem::new(
+                "spec/duplicate-name",
+                format!("{root}/name"),
+                found,
+                "a name of its own",
+            ));
+        }
+        let facing_group = match &group.facing {
+            Some(Facing::Group(name)) => earlier.iter().position(|other| other.name == *name),
+            _ => None,
+        };
+        let (count, object) = (count?, object?);
+        (self.problems.len() == before).then(|| PlacedGroup {
+            spec: group.clone(),
+            count,
+            object,
+            around,
+            facing_group,
+            keep_groups,
+        })
+    }
+
+    fn placement(&mut self, pointer: &str, placement: &Source) {
+        if let Source::Param(reference) = placement
+            && let Some(parameter) = self.parameters.get(&reference.param)
+            && parameter.kind != ParameterType::Distribution
+        {
+            let found = format!("the parameter {reference} of type {}", parameter.kind.name());
+            return self.report(Problem::new(
+                "spec/type",
+                pointer,
+                found,
+                "a parameter of type distribution",
+            ));
+        }
+        let sound = match placement {
+            Source::Param(reference) if !self.parameters.contains_key(&reference.param) => {
+                self.unknown_parameter(pointer, &reference.param);
+                false
+            }
+            Source::Param(_) => true,
+            Source::Distribution(distribution) => self.distribution(pointer, distribution),
+        };
+        let odd = self
+            .distributions_of(placement)
+            .into_iter()
+            .find(|distribution| !distribution.is_planar());
+        if let (true, Some(odd)) = (sound, odd) {
+            let found = format!("the distribution {}", odd.name());
+            let expected = format!("one of {}", Distribution::<f64>::PLANAR);
+            self.report(Problem::new("spec/type", pointer, found, expected));
+        }
+    }
+
+    /// The number of an earlier group of this name; reports that there is none.
+    fn earlier(&mut self, pointer: &str, name: &str, earlier: &[Group]) -> Option<usize> {
+        let found = earlier.iter().position(|group| group.name == name);
+        if found.is_none() {
+            let names: Vec<&str> = earlier.iter().map(|group| group.name.as_str()).collect();
+            let expected = if names.is_empty() {
+                "a group before this one; there is none".to_owned()
+            } else {
+                format!("a group before this one: {}", names.join(", "))
+            };
+            let problem = Problem::new("spec/unknown-group", pointer, format!("the group {name:?}"), expected);
+            self.report(match nearest(name, names) {
+                Some(near) => problem.advise(format!("did you mean {near:?}?")),
+                None => problem,
+            });
+        }
+        found
+    }
+
+    fn facing(&mut self, root: &str, group: &Group, earlier: &[Group]) {
+        let pointer = format!("{root}/facing");
+        match &group.facing {
+            Some(Facing::Group(name)) => {
+                self.earlier(&pointer, name, earlier);
+            }
+            Some(Facing::Point(point)) => {
+                for number in point {
+                    self.number(&pointer, number, [-300.0, 300.0]);
+                }
+            }
+            Some(Facing::Middle) if group.around.is_none() => {
+                let problem = Problem::new(
+                    "spec/value",
+                    pointer,
+                    "\"middle\" without around",
+                    "a group to be placed around",
+                );
+                self.report(problem.advise("name it under \"around\""));
+            }
+            _ => {}
+        }
+        if group.turned && group.around.is_none() {
+            let pointer = format!("{root}/turned");
+            self.report(Problem::new(
+                "spec/value",
+                pointer,
+                "true without around",
+                "a group to be placed around",
+            ));
+        }
+    }
+
+    /// The margins, and the earlier groups that distance is kept from.
+    fn keep_out(&mut self, root: &str, group: &Group, earlier: &[Group]) -> Vec<(usize, Number)> {
+        self.number(&format!("{root}/separation"), &group.separation, [0.0, 300.0]);
+        self.number(&format!("{root}/keep_out/walls"), &group.keep_out.walls, [0.0, 300.0]);
+        self.number(&format!("{root}/keep_out/agent"), &group.keep_out.agent, [0.0, 300.0]);
+        let mut groups = Vec::new();
+        for (name, distance) in &group.keep_out.groups {
+            let pointer = format!("{root}/keep_out/groups/{}", escape(name));
+            self.number(&pointer, distance, [0.0, 300.0]);
+            groups.extend(
+                self.earlier(&pointer, name, earlier)
+                    .map(|index| (index, distance.clone())),
+            );
+        }
+        groups
+    }
+
+    /// A number in metres, or a reference to one, that lies in a range in every variant.
+    fn number(&mut self, pointer: &str, number: &Number, [low, high]: [f64; 2]) {
+        let before = self.problems.len();
+        if let Number::Param(reference) = number {
+            self.number_reference(pointer, reference);
+        }
+        let settled = self
+            .variants
+            .iter()
+            .filter_map(|(_, values)| variant::settle_number(values, number).ok());
+        let outside = settled.into_iter().find(|metres| !(low..=high).contains(metres));
+        if let (Some(metres), true) = (outside, self.problems.len() == before) {
+            self.report(Problem::new(
+                "spec/range",
+                pointer,
+                format!("{metres} m"),
+                format!("{low} to {high} m"),
+            ));
+        }
+    }
+
+    fn count(&mut self, pointer: &str, json: &Json) -> Option<Count> {
+        if let Some(count) = json.as_u64() {
+            return u32::try_from(count).ok().map(Count::Fixed);
+        }
+        let source = Source::read(json)?;
+        let sound = self.source(pointer, &source, ParameterType::Integer) && {
+            let candidates = self.candidates(&source, ParameterType::Integer);
+            self.in_range(pointer, &candidates, [0.0, MAX_OBJECTS as f64])
+        };
+        sound.then_some(Count::Drawn(source))
+    }
+}

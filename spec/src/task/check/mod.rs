@@ -1,0 +1,228 @@
+//! From a task's document to a checked task: references, types and ranges that the schema cannot see.
+
+mod groups;
+mod sources;
+mod templates;
+
+use indexmap::IndexMap;
+
+use super::family::{self, Variants};
+use super::parameter::{Parameter, Role};
+use super::require::Requirement;
+use super::template::Source;
+use super::value::{ParameterType, Value};
+use super::variant::{self, DEFAULT_VARIANT};
+use super::{PlacedGroup, TaskDocument, TaskSpec};
+use crate::document::escape;
+use crate::error::Problem;
+
+/// The checked task, or everything that is wrong with it.
+pub(super) fn compile(document: TaskDocument) -> Result<TaskSpec, Vec<Problem>> {
+    let mut problems: Vec<Problem> = document
+        .parameters
+        .iter()
+        .flat_map(|(name, parameter)| parameter.problems(name))
+        .collect();
+    problems.extend(reserved_names(&document.parameters));
+    let variants = match family::unfold(&document.parameters, &document.variants) {
+        Ok(variants) => variants,
+        Err(found) => {
+            problems.extend(found);
+            Variants::new()
+        }
+    };
+    if problems.is_empty() {
+        problems.extend(variant::problems(&document.parameters, &document.variants, &variants));
+    }
+    fail_on(problems)?;
+
+    let mut check = Check::new(&document, &variants);
+    check.parameters();
+    let (world, fixtures) = check.world(&document.world);
+    let groups: Vec<Option<PlacedGroup>> = (0..document.groups.len())
+        .map(|index| check.group(index, &document.groups))
+        .collect();
+    let requirements = check.requirements(&document.require);
+    check.variants_meet(&requirements, &variants);
+    let problems = std::mem::take(&mut check.problems);
+    fail_on(problems)?;
+    let (Some(world), Some(fixtures), Some(groups)) =
+        (world, fixtures.into_iter().collect(), groups.into_iter().collect())
+    else {
+        unreachable!("what could not be built left a problem")
+    };
+    Ok(TaskSpec {
+        document,
+        variants,
+        world,
+        fixtures,
+        groups,
+        requirements,
+    })
+}
+
+fn fail_on(problems: Vec<Problem>) -> Result<(), Vec<Problem>> {
+    if problems.is_empty() { Ok(()) } else { Err(problems) }
+}
+
+fn reserved_names(parameters: &IndexMap<String, Parameter>) -> impl Iterator<Item = Problem> {
+    parameters
+        .keys()
+        .filter(|name| variant::RESERVED.contains(&name.as_str()))
+        .map(|name| {
+            let found = format!("a parameter named {name:?}");
+            Problem::new(
+                "spec/reserved-name",
+                format!("/parameters/{name}"),
+                found,
+                "a name that variants do not use themselves",
+            )
+        })
+}
+
+/// A check of one document: gathers problems on its way.
+struct Check<'a> {
+    parameters: &'a IndexMap<String, Parameter>,
+    /// The values of every variant, by name; the default variant first.
+    variants: Vec<(String, IndexMap<String, Value>)>,
+    problems: Vec<Problem>,
+}
+
+impl<'a> Check<'a> {
+    fn new(document: &'a TaskDocument, variants: &Variants) -> Self {
+        let names = std::iter::once(DEFAULT_VARIANT).chain(variants.keys().map(String::as_str));
+        let variants = names
+            .filter_map(|name| {
+                let values = variant::values_of(&document.parameters, variants, name).ok()?;
+                Some((name.to_owned(), values))
+            })
+            .collect();
+        Self {
+            parameters: &document.parameters,
+            variants,
+            problems: Vec::new(),
+        }
+    }
+
+    fn report(&mut self, problem: Problem) {
+        self.problems.push(problem);
+    }
+
+    /// Parameters that are, or are drawn from, distributions: their numbers and what they yield.
+    fn parameters(&mut self) {
+        for (name, parameter) in self.parameters {
+            let pointer = format!("/parameters/{}", escape(name));
+            let mut own: Vec<(String, &Value)> = Vec::new();
+            own.extend(parameter.value.iter().map(|value| (format!("{pointer}/value"), value)));
+            own.extend(
+                parameter
+                    .default
+                    .iter()
+                    .map(|value| (format!("{pointer}/default"), value)),
+            );
+            let choices = parameter.choices.iter().flatten().enumerate();
+            own.extend(choices.map(|(index, value)| (format!("{pointer}/choices/{index}"), value)));
+            for (pointer, value) in own {
+                if let (ParameterType::Distribution, Value::Distribution(distribution)) = (parameter.kind, value) {
+                    self.distribution(&pointer, distribution);
+                }
+            }
+            if let Some(source) = &parameter.distribution {
+                self.randomized(&format!("{pointer}/distribution"), parameter, source);
+            }
+        }
+    }
+
+    /// Whether a randomized parameter's distribution yields its type.
+    fn randomized(&mut self, pointer: &str, parameter: &Parameter, source: &Source) {
+        if let Source::Param(reference) = source {
+            let known = self.parameters.get(&reference.param);
+            if known.is_some_and(|known| known.kind != ParameterType::Distribution || known.role == Role::Randomized) {
+                let found = format!("the parameter {:?}", reference.param);
+                let expected = "a fixed or variant parameter of type distribution";
+                return self.report(Problem::new("spec/type", pointer, found, expected));
+            }
+        }
+        if !self.source(pointer, source, parameter.kind) {
+            return;
+        }
+        for distribution in self.distributions_of(source) {
+            if distribution.needs_group() {
+                let advice = "write \"order\": \"random\", or a choice of points, to draw one of them";
+                let found = format!("{}, which looks at the objects before", distribution.name());
+                self.report(Problem::new("spec/type", pointer, found, "a distribution").advise(advice));
+            }
+        }
+    }
+
+    /// The requirements that can be read and make sense.
+    fn requirements(&mut self, texts: &[String]) -> Vec<Requirement> {
+        let mut requirements = Vec::new();
+        for (index, text) in texts.iter().enumerate() {
+            let pointer = format!("/require/{index}");
+            match Requirement::parse(text) {
+                Err(expected) => self.report(Problem::new("spec/requirement", pointer, format!("{text:?}"), expected)),
+                Ok(requirement) => {
+                    if self.requirement(&pointer, &requirement) {
+                        requirements.push(requirement);
+                    }
+                }
+            }
+        }
+        requirements
+    }
+
+    /// Whether a requirement speaks of parameters that it can compare, and is true or false for them.
+    fn requirement(&mut self, pointer: &str, requirement: &Requirement) -> bool {
+        let before = self.problems.len();
+        for name in requirement.names() {
+            let Some(parameter) = self.parameters.get(name) else {
+                self.unknown_parameter(pointer, name);
+                continue;
+            };
+            if matches!(parameter.kind, ParameterType::Color | ParameterType::Distribution) {
+                let found = format!("the parameter {name:?} of type {}", parameter.kind.name());
+                let expected = "numbers, headings, true or false, texts, or one number of a vector or point";
+                self.report(Problem::new("spec/type", pointer, found, expected));
+            }
+        }
+        if self.problems.len() > before {
+            return false;
+        }
+        let example = |name: &str| -> Option<Value> {
+            let parameter = self.parameters.get(name)?;
+            let settled = self.variants.first()?.1.get(name).cloned();
+            settled.or_else(|| {
+                self.candidates_of_parameter(parameter)
+                    .into_iter()
+                    .next()?
+                    .cast(parameter.kind)
+            })
+        };
+        let sound = requirement.holds(example).is_some();
+        if !sound {
+            let found = format!("{:?}, which is neither true nor false", requirement.text());
+            let expected = "a condition: numbers compared with numbers, joined by and, or, not";
+            self.report(Problem::new("spec/requirement", pointer, found, expected));
+        }
+        sound
+    }
+
+    /// Whether every declared variant meets the requirements that chance has no part in.
+    fn variants_meet(&mut self, requirements: &[Requirement], variants: &Variants) {
+        let mut found = Vec::new();
+        for (name, values) in self.variants.iter().filter(|(name, _)| variants.contains_key(name)) {
+            if let Some((requirement, shown)) = variant::broken(requirements, values) {
+                let pointer = format!("/variants/{}", escape(&variants[name].origin));
+                let text = format!("{shown} in variant {name:?}");
+                found.push(Problem::new(
+                    "spec/requirement",
+                    pointer,
+                    text,
+                    format!("what \"require\" states: {requirement}"),
+                ));
+            }
+        }
+        self.problems.extend(found);
+    }
+}

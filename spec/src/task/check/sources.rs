@@ -1,0 +1,268 @@
+//! Where values come from: whether references are known, yield the wanted type, and stay in range.
+
+use super::super::parameter::{Domain, Parameter, Role};
+use super::super::template::Source;
+use super::super::value::{ParameterType, Value};
+use super::super::variant;
+use super::Check;
+use crate::distribution::{Distribution, Number, ParamRef};
+use crate::error::{Problem, nearest};
+
+impl Check<'_> {
+    /// Whether a distribution's references name numbers, and whether every variant can draw from it.
+    pub(super) fn distribution(&mut self, pointer: &str, distribution: &Distribution<Number>) -> bool {
+        let before = self.problems.len();
+        let mut references = Vec::new();
+        let collected: Result<Distribution<f64>, ()> = distribution.try_map(&mut |number| {
+            references.extend(match number {
+                Number::Param(reference) => Some(reference.clone()),
+                Number::Literal(_) => None,
+            });
+            Ok(0.0)
+        });
+        drop(collected);
+        for reference in references {
+            self.number_reference(pointer, &reference);
+        }
+        if self.problems.len() > before {
+            return false;
+        }
+        let fault = self.variants.iter().find_map(|(name, values)| {
+            let (found, expected) = variant::settle(values, distribution).ok()?.fault()?;
+            Some((name.clone(), found, expected))
+        });
+        if let Some((variant, found, expected)) = fault {
+            let found = format!("{found} in variant {variant:?}");
+            self.report(Problem::new("spec/distribution", pointer, found, expected));
+        }
+        self.problems.len() == before
+    }
+
+    /// A number in a distribution, or a group's margin, may refer to a fixed or variant number only.
+    pub(super) fn number_reference(&mut self, pointer: &str, reference: &ParamRef) {
+        let name = &reference.param;
+        let Some(parameter) = self.parameters.get(name) else {
+            return self.unknown_parameter(pointer, name);
+        };
+        if parameter.role == Role::Randomized {
+            let found = format!("the randomized parameter {name:?}");
+            let advice = "the numbers of a distribution stay the same within a variant";
+            self.report(Problem::new("spec/role", pointer, found, "a fixed or variant parameter").advise(advice));
+        } else if let Some(kind) = self.kind_at(pointer, reference)
+            && !kind.fits(ParameterType::Number)
+        {
+            let found = format!("the parameter {name:?} of type {}", kind.name());
+            self.report(Problem::new("spec/type", pointer, found, "a parameter of type number"));
+        }
+    }
+
+    /// The type of what a reference to a known parameter yields; reports an index that leads nowhere.
+    fn kind_at(&mut self, pointer: &str, reference: &ParamRef) -> Option<ParameterType> {
+        let parameter = self.parameters.get(&reference.param)?;
+        let Some(index) = reference.index else {
+            return Some(parameter.kind);
+        };
+        let length = match parameter.kind {
+            ParameterType::Point => Some(2),
+            ParameterType::Vector => parameter.vector_length().or_else(|| {
+                let source = parameter.distribution.as_ref()?;
+                self.distributions_of(source)
+                    .first()
+                    .and_then(Distribution::vector_length)
+            }),
+            _ => None,
+        };
+        if length.is_some_and(|length| index < length) {
+            return Some(ParameterType::Number);
+        }
+        let found = match length {
+            Some(length) => format!("index {index} of {:?}, which has {length} numbers", reference.param),
+            None => format!("an index into {:?} of type {}", reference.param, parameter.kind.name()),
+        };
+        self.report(Problem::new(
+            "spec/index",
+            pointer,
+            found,
+            "an index, from 0, into a vector or point",
+        ));
+        None
+    }
+
+    pub(super) fn unknown_parameter(&mut self, pointer: &str, name: &str) {
+        let known: Vec<&str> = self.parameters.keys().map(String::as_str).collect();
+        let expected = if known.is_empty() {
+            "a declared parameter; there is none".into()
+        } else {
+            format!("one of {}", known.join(", "))
+        };
+        let problem = Problem::new(
+            "spec/unknown-parameter",
+            pointer,
+            format!("the unknown parameter {name:?}"),
+            expected,
+        );
+        self.report(match nearest(name, known) {
+            Some(near) => problem.advise(format!("did you mean {near:?}?")),
+            None => problem,
+        });
+    }
+
+    /// Whether a source is known and yields the type that its place wants.
+    pub(super) fn source(&mut self, pointer: &str, source: &Source, kind: ParameterType) -> bool {
+        match source {
+            Source::Param(reference) => {
+                let name = &reference.param;
+                if !self.parameters.contains_key(name) {
+                    self.unknown_parameter(pointer, name);
+                    return false;
+                }
+                match self.kind_at(pointer, reference) {
+                    None => false,
+                    Some(ParameterType::Distribution) => self.all_yield(pointer, source, kind),
+                    Some(found) => {
+                        let text = format!("the parameter {reference} of type {}", found.name());
+                        self.type_matches(pointer, found.fits(kind), text, kind)
+                    }
+                }
+            }
+            Source::Distribution(distribution) => {
+                self.distribution(pointer, distribution) && self.all_yield(pointer, source, kind)
+            }
+        }
+    }
+
+    fn all_yield(&mut self, pointer: &str, source: &Source, kind: ParameterType) -> bool {
+        let odd = self
+            .distributions_of(source)
+            .into_iter()
+            .find(|distribution| !distribution.yields(kind));
+        let found = odd.map(|distribution| format!("the distribution {}", distribution.name()));
+        found.is_none_or(|found| self.type_matches(pointer, false, found, kind))
+    }
+
+    fn type_matches(&mut self, pointer: &str, fits: bool, found: String, kind: ParameterType) -> bool {
+        if !fits {
+            self.report(Problem::new(
+                "spec/type",
+                pointer,
+                found,
+                format!("something of type {}", kind.name()),
+            ));
+        }
+        fits
+    }
+
+    /// Every distribution that a source can be drawn from: its own, or those that a parameter may be.
+    pub(super) fn distributions_of(&self, source: &Source) -> Vec<Distribution<Number>> {
+        match source {
+            Source::Distribution(distribution) => vec![(**distribution).clone()],
+            Source::Param(reference) => {
+                let Some(parameter) = self.parameters.get(&reference.param) else {
+                    return Vec::new();
+                };
+                let values = parameter
+                    .value
+                    .iter()
+                    .chain(&parameter.default)
+                    .chain(parameter.choices.iter().flatten());
+                let own = values.filter_map(|value| match value {
+                    Value::Distribution(distribution) => Some((**distribution).clone()),
+                    _ => None,
+                });
+                own.collect()
+            }
+        }
+    }
+
+    /// Every value that a source is known to be able to give at a place of this type: ends of ranges and supports, choices,
+    /// defaults.
+    pub(super) fn candidates(&self, source: &Source, kind: ParameterType) -> Vec<Value> {
+        let turned = |value: Value| {
+            if kind == ParameterType::Heading {
+                value.cast(kind)
+            } else {
+                Some(value)
+            }
+        };
+        match source {
+            Source::Distribution(_) => self.drawn(source).into_iter().filter_map(turned).collect(),
+            Source::Param(reference) => {
+                let Some(parameter) = self.parameters.get(&reference.param) else {
+                    return Vec::new();
+                };
+                if parameter.kind == ParameterType::Distribution {
+                    return self.drawn(source).into_iter().filter_map(turned).collect();
+                }
+                let values = self.candidates_of_parameter(parameter).into_iter();
+                values.filter_map(|value| value.at(reference.index)).collect()
+            }
+        }
+    }
+
+    /// Every value that a parameter is known to be able to have.
+    pub(super) fn candidates_of_parameter(&self, parameter: &Parameter) -> Vec<Value> {
+        let typed = |value: &Value| value.cast(parameter.kind);
+        let mut values: Vec<Value> = parameter
+            .default
+            .iter()
+            .chain(&parameter.value)
+            .filter_map(typed)
+            .collect();
+        match parameter.domain() {
+            Some(Domain::Range(ends)) => values.extend(ends.map(|end| parameter.at_end(end))),
+            Some(Domain::Choices(choices)) => values.extend(choices),
+            None => {}
+        }
+        if let Some(source) = &parameter.distribution {
+            values.extend(self.drawn(source).iter().filter_map(typed));
+        }
+        values
+    }
+
+    /// The ends of what the distributions of a source can draw, in every variant.
+    fn drawn(&self, source: &Source) -> Vec<Value> {
+        let distributions = self.distributions_of(source);
+        let settled = distributions.iter().flat_map(|distribution| {
+            self.variants
+                .iter()
+                .filter_map(|(_, values)| variant::settle(values, distribution).ok())
+        });
+        let values = settled.flat_map(|distribution| {
+            let example = distribution.example();
+            distribution.support().unwrap_or_default().into_iter().chain([example])
+        });
+        values.collect()
+    }
+
+    /// Whether all that a source can give lies in the range of its place.
+    pub(super) fn in_range(&mut self, pointer: &str, candidates: &[Value], [low, high]: [f64; 2]) -> bool {
+        let numbers = candidates.iter().flat_map(|value| match value {
+            Value::Point(_) | Value::Vector(_) => value.as_vector().unwrap_or_default().to_vec(),
+            other => other.as_number().into_iter().collect(),
+        });
+        let outside = numbers.into_iter().find(|number| !(low..=high).contains(number));
+        if let Some(number) = outside {
+            let found = format!("a source that can give {number}");
+            let expected = if low == f64::MIN {
+                format!("at most {high}")
+            } else {
+                format!("numbers in {low}..{high}")
+            };
+            let advice = "narrow the parameter's range or the distribution";
+            self.report(Problem::new("spec/range", pointer, found, expected).advise(advice));
+        }
+        outside.is_none()
+    }
+}
+
+impl Parameter {
+    /// An end of the range as a value of the parameter's type.
+    pub(crate) fn at_end(&self, end: f64) -> Value {
+        match self.kind {
+            ParameterType::Integer => Value::Integer(end.ceil() as i64),
+            ParameterType::Vector => Value::Vector(vec![end; self.vector_length().unwrap_or(1)]),
+            ParameterType::Heading => Value::Number(end.rem_euclid(360.0)),
+            _ => Value::Number(end),
+        }
+    }
+}

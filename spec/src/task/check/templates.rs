@@ -1,0 +1,110 @@
+//! Templates of worlds and objects: whether each hole is one that may vary, and takes every value that it can be given.
+
+use serde_json::Value as Json;
+
+use super::super::template::{Hole, Opening, Template, openings};
+use super::super::value::Value;
+use super::Check;
+use crate::error::Problem;
+use crate::world::{Object, World};
+
+impl Check<'_> {
+    /// The world's template and those of the objects it holds.
+    pub(super) fn world(&mut self, json: &Json) -> (Option<Template<World>>, Vec<Option<Template<Object>>>) {
+        let mut json = if json.is_null() {
+            Json::Object(serde_json::Map::new())
+        } else {
+            json.clone()
+        };
+        let objects = json.as_object_mut().and_then(|map| map.shift_remove("objects"));
+        let fixtures = objects
+            .as_ref()
+            .and_then(Json::as_array)
+            .into_iter()
+            .flatten()
+            .enumerate();
+        let fixtures = fixtures
+            .map(|(index, object)| self.object(&format!("/world/objects/{index}"), object))
+            .collect();
+        let world = self.template("/world", &json, Template::<World>::hole);
+        if let Some(world) = &world {
+            for mut problem in world.base.problems() {
+                problem.pointer.insert_str(0, "/world");
+                self.report(problem);
+            }
+        }
+        (world, fixtures)
+    }
+
+    pub(super) fn object(&mut self, pointer: &str, json: &Json) -> Option<Template<Object>> {
+        self.template(pointer, json, Template::<Object>::hole)
+    }
+
+    /// A template: each hole checked, and the rest read with an example in each hole.
+    fn template<T: serde::de::DeserializeOwned + Clone>(
+        &mut self,
+        root: &str,
+        json: &Json,
+        hole_at: fn(&Opening) -> Option<Hole<T>>,
+    ) -> Option<Template<T>> {
+        let before = self.problems.len();
+        let mut example = json.clone();
+        let mut holes = Vec::new();
+        for opening in openings(json) {
+            let pointer = format!("{root}{}", opening.0);
+            let Some(hole) = hole_at(&opening) else {
+                let found = "a parameter or distribution";
+                let expected = "a plain value; this place cannot vary";
+                self.report(Problem::new("spec/value", pointer, found, expected));
+                continue;
+            };
+            if self.source(&pointer, &hole.source, hole.kind) {
+                let candidates = self.candidates(&hole.source, hole.kind);
+                if self.in_range(&pointer, &candidates, hole.range)
+                    && let (Some(value), Some(place)) = (candidates.first(), example.pointer_mut(&opening.0))
+                {
+                    *place = value.to_json();
+                    holes.push((hole, candidates));
+                }
+            }
+        }
+        if self.problems.len() > before {
+            return None;
+        }
+        let base: T = match serde_path_to_error::deserialize(&example) {
+            Ok(base) => base,
+            Err(error) => {
+                let expected = error.inner().to_string();
+                self.report(Problem::new(
+                    "spec/value",
+                    root,
+                    "a template that cannot be read",
+                    expected,
+                ));
+                return None;
+            }
+        };
+        self.fillable(root, &base, &holes);
+        (self.problems.len() == before).then(|| Template {
+            base,
+            holes: holes.into_iter().map(|(hole, _)| hole).collect(),
+        })
+    }
+
+    /// Whether each hole takes each value that it may be given, as a text that must name something.
+    fn fillable<T: Clone>(&mut self, root: &str, base: &T, holes: &[(Hole<T>, Vec<Value>)]) {
+        for (hole, candidates) in holes {
+            let mut trial = base.clone();
+            if let Some(value) = candidates.iter().find(|value| hole.fill(&mut trial, value).is_none()) {
+                let pointer = format!("{root}{}", hole.pointer);
+                let found = format!("a source that can give {value}");
+                self.report(Problem::new(
+                    "spec/value",
+                    pointer,
+                    found,
+                    "only values that can stand here",
+                ));
+            }
+        }
+    }
+}

@@ -1,0 +1,406 @@
+//! The grammar of conditions: reading and evaluating expressions. What they are for is said in `require.rs`.
+//!
+//! Written here because the crates at hand do not serve (docs/decisions/0005-requirements.md): this one needs no memory beyond
+//! its text, cannot loop, and says at which character a text goes wrong.
+
+use super::value::Value;
+
+/// The longest text, in characters.
+const MAX_CHARACTERS: usize = 500;
+
+/// The most brackets and signs that may stand inside each other.
+const MAX_DEPTH: usize = 32;
+
+/// An expression over named values.
+#[derive(Clone, Debug)]
+pub(super) struct Expression {
+    /// The names, each once, in the order of the text.
+    pub(super) names: Vec<String>,
+    root: Node,
+}
+
+/// What an expression comes to.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Term {
+    Number(f64),
+    Truth(bool),
+    Text(String),
+}
+
+#[derive(Clone, Debug)]
+enum Node {
+    Constant(Term),
+    /// The value of a name, or the number at a place of it.
+    Name(usize, Option<usize>),
+    Unary(Unary, Box<Node>),
+    Binary(Binary, Box<Node>, Box<Node>),
+    Call(Function, Vec<Node>),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Unary {
+    Minus,
+    Not,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Binary {
+    Or,
+    And,
+    Less,
+    LessOrEqual,
+    Greater,
+    GreaterOrEqual,
+    Equal,
+    NotEqual,
+    Plus,
+    Minus,
+    Times,
+    Over,
+    Remainder,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Function {
+    Min,
+    Max,
+    Abs,
+}
+
+/// The operators with their symbols and how tightly they bind.
+const BINARY: [(&str, Binary, u8); 13] = [
+    ("or", Binary::Or, 1),
+    ("and", Binary::And, 2),
+    ("<", Binary::Less, 4),
+    ("<=", Binary::LessOrEqual, 4),
+    (">", Binary::Greater, 4),
+    (">=", Binary::GreaterOrEqual, 4),
+    ("==", Binary::Equal, 4),
+    ("!=", Binary::NotEqual, 4),
+    ("+", Binary::Plus, 5),
+    ("-", Binary::Minus, 5),
+    ("*", Binary::Times, 6),
+    ("/", Binary::Over, 6),
+    ("%", Binary::Remainder, 6),
+];
+
+/// How tightly `not` binds: looser than a comparison.
+const NOT: u8 = 3;
+/// How tightly comparisons bind; they do not chain.
+const COMPARISON: u8 = 4;
+/// How tightly a sign binds.
+const SIGN: u8 = 7;
+
+impl Expression {
+    /// Reads an expression; else what was expected, where, and what was found.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        if text.chars().count() > MAX_CHARACTERS {
+            return Err(format!("at most {MAX_CHARACTERS} characters"));
+        }
+        let mut parser = Parser {
+            tokens: tokens(text)?,
+            next: 0,
+            names: Vec::new(),
+        };
+        let root = parser.expression(0, 0)?;
+        match parser.peek() {
+            (_, Token::End) => Ok(Self {
+                names: parser.names,
+                root,
+            }),
+            (at, Token::Symbol("=")) => Err(format!("\"==\" at character {at}, found \"=\"")),
+            (at, token) => Err(format!(
+                "an operator or the end at character {at}, found {}",
+                token.describe()
+            )),
+        }
+    }
+
+    /// The value, given those of [`Expression::names`]; `None` where an operator has no meaning for its operands.
+    pub(super) fn evaluate(&self, values: &[Value]) -> Option<Term> {
+        self.root.evaluate(values)
+    }
+}
+
+impl Node {
+    fn evaluate(&self, values: &[Value]) -> Option<Term> {
+        match self {
+            Self::Constant(term) => Some(term.clone()),
+            Self::Name(name, index) => match values.get(*name)?.at(*index)? {
+                Value::Boolean(truth) => Some(Term::Truth(truth)),
+                Value::Text(text) => Some(Term::Text(text)),
+                other => other.as_number().map(Term::Number),
+            },
+            Self::Unary(operator, node) => match (operator, node.evaluate(values)?) {
+                (Unary::Minus, Term::Number(number)) => Some(Term::Number(-number)),
+                (Unary::Not, Term::Truth(truth)) => Some(Term::Truth(!truth)),
+                _ => None,
+            },
+            Self::Binary(operator, a, b) => operator.apply(a.evaluate(values)?, b.evaluate(values)?),
+            Self::Call(function, nodes) => {
+                let number = |node: &Self| match node.evaluate(values)? {
+                    Term::Number(number) => Some(number),
+                    _ => None,
+                };
+                let numbers = nodes.iter().map(number).collect::<Option<Vec<f64>>>()?;
+                Some(Term::Number(match function {
+                    Function::Min => numbers.into_iter().fold(f64::INFINITY, f64::min),
+                    Function::Max => numbers.into_iter().fold(f64::NEG_INFINITY, f64::max),
+                    Function::Abs => numbers.first()?.abs(),
+                }))
+            }
+        }
+    }
+}
+
+impl Binary {
+    fn apply(self, a: Term, b: Term) -> Option<Term> {
+        match (a, b) {
+            (Term::Number(a), Term::Number(b)) => Some(match self {
+                Self::Less => Term::Truth(a < b),
+                Self::LessOrEqual => Term::Truth(a <= b),
+                Self::Greater => Term::Truth(a > b),
+                Self::GreaterOrEqual => Term::Truth(a >= b),
+                Self::Equal => Term::Truth(a == b),
+                Self::NotEqual => Term::Truth(a != b),
+                Self::Plus => Term::Number(a + b),
+                Self::Minus => Term::Number(a - b),
+                Self::Times => Term::Number(a * b),
+                Self::Over => Term::Number(a / b),
+                Self::Remainder => Term::Number(a % b),
+                Self::Or | Self::And => return None,
+            }),
+            (Term::Truth(a), Term::Truth(b)) => Some(Term::Truth(match self {
+                Self::Or => a || b,
+                Self::And => a && b,
+                Self::Equal => a == b,
+                Self::NotEqual => a != b,
+                _ => return None,
+            })),
+            (Term::Text(a), Term::Text(b)) => Some(Term::Truth(match self {
+                Self::Equal => a == b,
+                Self::NotEqual => a != b,
+                _ => return None,
+            })),
+            _ => None,
+        }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Token {
+    Number(f64),
+    Text(String),
+    Word(String),
+    Symbol(&'static str),
+    /// A character with no meaning here.
+    Odd(char),
+    End,
+}
+
+impl Token {
+    fn describe(&self) -> String {
+        match self {
+            Self::Number(number) => format!("{number}"),
+            Self::Text(text) => format!("'{text}'"),
+            Self::Word(word) => format!("{word:?}"),
+            Self::Symbol(symbol) => format!("{symbol:?}"),
+            Self::Odd(character) => format!("\"{character}\""),
+            Self::End => "the end".to_owned(),
+        }
+    }
+
+    fn binary(&self) -> Option<(Binary, u8)> {
+        let symbol = match self {
+            Self::Symbol(symbol) => *symbol,
+            Self::Word(word) => word.as_str(),
+            _ => return None,
+        };
+        BINARY
+            .iter()
+            .find(|entry| entry.0 == symbol)
+            .map(|entry| (entry.1, entry.2))
+    }
+}
+
+/// Symbols, longer ones before those that they begin with.
+const SYMBOLS: [&str; 17] = [
+    "<=", ">=", "==", "!=", "<", ">", "=", "+", "-", "*", "/", "%", "(", ")", "[", "]", ",",
+];
+
+/// A text cut into tokens, each with the character it begins at, from 1.
+fn tokens(text: &str) -> Result<Vec<(usize, Token)>, String> {
+    let characters: Vec<char> = text.chars().collect();
+    let mut tokens = Vec::new();
+    let mut at = 0;
+    while at < characters.len() {
+        let start = at;
+        let first = characters[at];
+        let run = |from: usize, inside: fn(char) -> bool| {
+            from + characters[from..]
+                .iter()
+                .take_while(|character| inside(**character))
+                .count()
+        };
+        if first.is_whitespace() {
+            at += 1;
+            continue;
+        }
+        let token = if first == '\'' {
+            let end = run(at + 1, |character| character != '\'');
+            if end == characters.len() {
+                return Err(format!(
+                    "a closing ' for the text that begins at character {}",
+                    start + 1
+                ));
+            }
+            at = end + 1;
+            Token::Text(characters[start + 1..end].iter().collect())
+        } else if first.is_ascii_digit() || first == '.' {
+            at = run(at, |character| character.is_ascii_alphanumeric() || character == '.');
+            // An exponent may have a sign.
+            if matches!(characters[at - 1], 'e' | 'E') && matches!(characters.get(at), Some('-' | '+')) {
+                at = run(at + 1, |character| character.is_ascii_digit());
+            }
+            let word: String = characters[start..at].iter().collect();
+            let number = word.parse().ok().filter(|number: &f64| number.is_finite());
+            Token::Number(number.ok_or_else(|| format!("a number at character {}, found {word:?}", start + 1))?)
+        } else if first.is_alphabetic() || first == '_' {
+            at = run(at, |character| character.is_alphanumeric() || character == '_');
+            Token::Word(characters[start..at].iter().collect())
+        } else {
+            let rest: String = characters[at..characters.len().min(at + 2)].iter().collect();
+            let symbol = SYMBOLS.into_iter().find(|symbol| rest.starts_with(symbol));
+            at += symbol.map_or(1, str::len);
+            symbol.map_or(Token::Odd(first), Token::Symbol)
+        };
+        tokens.push((start + 1, token));
+    }
+    tokens.push((characters.len() + 1, Token::End));
+    Ok(tokens)
+}
+
+struct Parser {
+    tokens: Vec<(usize, Token)>,
+    next: usize,
+    names: Vec<String>,
+}
+
+impl Parser {
+    fn peek(&self) -> (usize, &Token) {
+        // The last token is the end, and nothing goes beyond it.
+        let (at, token) = &self.tokens[self.next];
+        (*at, token)
+    }
+
+    fn take(&mut self) -> (usize, Token) {
+        let taken = self.tokens[self.next].clone();
+        self.next = (self.next + 1).min(self.tokens.len() - 1);
+        taken
+    }
+
+    fn expect(&mut self, symbol: &'static str) -> Result<(), String> {
+        match self.take() {
+            (_, Token::Symbol(found)) if found == symbol => Ok(()),
+            (at, token) => Err(format!("{symbol:?} at character {at}, found {}", token.describe())),
+        }
+    }
+
+    /// An expression whose operators all bind tighter than `floor` (precedence climbing).
+    fn expression(&mut self, floor: u8, depth: usize) -> Result<Node, String> {
+        if depth > MAX_DEPTH {
+            return Err(format!("at most {MAX_DEPTH} brackets or signs inside each other"));
+        }
+        let mut left = self.operand(depth)?;
+        while let Some((operator, binding)) = self.peek().1.binary() {
+            if binding <= floor {
+                if binding == COMPARISON && floor == COMPARISON {
+                    let (at, token) = self.peek();
+                    let found = token.describe();
+                    return Err(format!(
+                        "\"and\" or \"or\" between comparisons at character {at}, found {found}"
+                    ));
+                }
+                break;
+            }
+            self.take();
+            let right = self.expression(binding, depth + 1)?;
+            left = Node::Binary(operator, Box::new(left), Box::new(right));
+        }
+        Ok(left)
+    }
+
+    fn operand(&mut self, depth: usize) -> Result<Node, String> {
+        let (at, token) = self.take();
+        match token {
+            Token::Number(number) => Ok(Node::Constant(Term::Number(number))),
+            Token::Text(text) => Ok(Node::Constant(Term::Text(text))),
+            Token::Symbol("-") => Ok(Node::Unary(Unary::Minus, Box::new(self.expression(SIGN, depth + 1)?))),
+            Token::Symbol("(") => {
+                let inner = self.expression(0, depth + 1)?;
+                self.expect(")")?;
+                Ok(inner)
+            }
+            Token::Word(word) => self.word(at, word, depth),
+            other => Err(format!(
+                "a number, a name or a bracket at character {at}, found {}",
+                other.describe()
+            )),
+        }
+    }
+
+    fn word(&mut self, at: usize, word: String, depth: usize) -> Result<Node, String> {
+        match word.as_str() {
+            "true" => return Ok(Node::Constant(Term::Truth(true))),
+            "false" => return Ok(Node::Constant(Term::Truth(false))),
+            "not" => return Ok(Node::Unary(Unary::Not, Box::new(self.expression(NOT, depth + 1)?))),
+            "and" | "or" => {
+                return Err(format!(
+                    "a number, a name or a bracket at character {at}, found {word:?}"
+                ));
+            }
+            _ => {}
+        }
+        if *self.peek().1 == Token::Symbol("(") {
+            return self.call(at, &word, depth);
+        }
+        let name = self.names.iter().position(|name| *name == word).unwrap_or_else(|| {
+            self.names.push(word);
+            self.names.len() - 1
+        });
+        if *self.peek().1 != Token::Symbol("[") {
+            return Ok(Node::Name(name, None));
+        }
+        self.take();
+        let index = match self.take() {
+            (_, Token::Number(number)) if number.fract() == 0.0 && number < 100.0 => number as usize,
+            (at, token) => return Err(format!("an index from 0 at character {at}, found {}", token.describe())),
+        };
+        self.expect("]")?;
+        Ok(Node::Name(name, Some(index)))
+    }
+
+    fn call(&mut self, at: usize, word: &str, depth: usize) -> Result<Node, String> {
+        let function = match word {
+            "min" => Function::Min,
+            "max" => Function::Max,
+            "abs" => Function::Abs,
+            other => {
+                return Err(format!(
+                    "one of min, max, abs at character {at}, found the function {other:?}"
+                ));
+            }
+        };
+        self.expect("(")?;
+        let mut nodes = vec![self.expression(0, depth + 1)?];
+        while *self.peek().1 == Token::Symbol(",") {
+            self.take();
+            nodes.push(self.expression(0, depth + 1)?);
+        }
+        self.expect(")")?;
+        if function == Function::Abs && nodes.len() != 1 {
+            return Err(format!("one value for abs at character {at}, found {}", nodes.len()));
+        }
+        Ok(Node::Call(function, nodes))
+    }
+}

@@ -1,0 +1,307 @@
+//! Families of variants: a grid or a sweep in a document declares many at once, with names that stay. One variant is in `variant.rs`.
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::parameter::{Parameter, Role};
+use super::value::{ParameterType, Value};
+use super::variant::VariantSpec;
+use crate::document::escape;
+use crate::error::Problem;
+
+/// The most variants that one task may declare, families unfolded.
+const MAX_VARIANTS: usize = 10_000;
+
+/// Evenly spaced values of one number.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sweep {
+    /// The first value.
+    pub from: f64,
+    /// The last value.
+    pub to: f64,
+    /// How many values, both ends among them.
+    #[schemars(range(min = 2, max = 1000))]
+    pub steps: u32,
+    /// How the values are spaced.
+    #[serde(default)]
+    pub spacing: Spacing,
+}
+
+/// How the values of a sweep are spaced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Spacing {
+    /// The same difference between neighbours.
+    #[default]
+    Linear,
+    /// The same ratio between neighbours; both ends are above 0.
+    Logarithmic,
+}
+
+impl Sweep {
+    /// The values in order; to 12 digits, so that 0.1 + 0.2 is 0.3. `None` if a logarithmic sweep has an end at or below 0.
+    pub fn values(&self) -> Option<Vec<f64>> {
+        let last = f64::from(self.steps.max(2) - 1);
+        let share = |k: u32| f64::from(k) / last;
+        let value = |k: u32| match self.spacing {
+            Spacing::Linear => self.from + (self.to - self.from) * share(k),
+            Spacing::Logarithmic => {
+                let (from, to) = (libm::log(self.from), libm::log(self.to));
+                libm::exp(from + (to - from) * share(k))
+            }
+        };
+        let possible = self.spacing == Spacing::Linear || (self.from > 0.0 && self.to > 0.0);
+        possible.then(|| (0..self.steps.max(2)).map(|k| rounded(value(k))).collect())
+    }
+}
+
+fn rounded(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
+/// A variant of a family or one that stands alone, ready to be resolved.
+#[derive(Clone, Debug)]
+pub(crate) struct Declared {
+    pub(crate) extends: Option<String>,
+    pub(crate) description: Option<String>,
+    pub(crate) values: IndexMap<String, Value>,
+    /// The name that the document declares it under: its own, or its family's.
+    pub(crate) origin: String,
+}
+
+/// All variants of a task by name, families unfolded.
+pub(crate) type Variants = IndexMap<String, Declared>;
+
+/// One axis of a family: a parameter and the values that it takes in turn.
+type Axis<'a> = (&'a String, Vec<Value>);
+
+/// Unfolds the families of a document.
+pub(crate) fn unfold(
+    parameters: &IndexMap<String, Parameter>,
+    document: &IndexMap<String, VariantSpec>,
+) -> Result<Variants, Vec<Problem>> {
+    let mut variants = Variants::new();
+    let mut problems = Vec::new();
+    for (name, spec) in document {
+        let pointer = format!("/variants/{}", escape(name));
+        let axes = match axes_of(parameters, spec, &pointer) {
+            Ok(axes) => axes,
+            Err(found) => {
+                problems.extend(found);
+                continue;
+            }
+        };
+        let size = axes
+            .iter()
+            .fold(1_usize, |size, axis| size.saturating_mul(axis.1.len()));
+        if variants.len().saturating_add(size) > MAX_VARIANTS {
+            let found = format!("{} variants", variants.len().saturating_add(size));
+            problems.push(Problem::new(
+                "spec/length",
+                pointer,
+                found,
+                format!("at most {MAX_VARIANTS} in all"),
+            ));
+            continue;
+        }
+        for member in 0..size {
+            let declared = member_of(name, spec, &axes, member);
+            if variants.insert(declared.0.clone(), declared.1).is_some() {
+                let found = format!("two variants named {:?}", declared.0);
+                problems.push(Problem::new(
+                    "spec/duplicate-name",
+                    &pointer,
+                    found,
+                    "a name of its own for each variant",
+                ));
+            }
+        }
+    }
+    if problems.is_empty() {
+        Ok(variants)
+    } else {
+        Err(problems)
+    }
+}
+
+/// The axes of a family, or what is wrong with them.
+fn axes_of<'a>(
+    parameters: &IndexMap<String, Parameter>,
+    spec: &'a VariantSpec,
+    pointer: &str,
+) -> Result<Vec<Axis<'a>>, Vec<Problem>> {
+    let mut axes: Vec<Axis> = Vec::new();
+    let mut problems = Vec::new();
+    for (name, values) in &spec.grid {
+        axes.push((name, values.clone()));
+    }
+    for (name, sweep) in &spec.sweep {
+        let at = format!("{pointer}/sweep/{}", escape(name));
+        let whole = parameters
+            .get(name)
+            .is_some_and(|parameter| parameter.kind == ParameterType::Integer);
+        match sweep.values() {
+            None => {
+                let found = format!("a logarithmic sweep from {} to {}", sweep.from, sweep.to);
+                problems.push(Problem::new(
+                    "spec/value",
+                    at,
+                    found,
+                    "both ends above 0, or linear spacing",
+                ));
+            }
+            Some(values) => {
+                let mut values: Vec<Value> = values
+                    .into_iter()
+                    .map(|value| {
+                        if whole {
+                            Value::Integer(value.round() as i64)
+                        } else {
+                            Value::Number(value)
+                        }
+                    })
+                    .collect();
+                values.dedup();
+                axes.push((name, values));
+            }
+        }
+    }
+    for (index, (name, _)) in axes.iter().enumerate() {
+        if spec.values.contains_key(*name) || axes[..index].iter().any(|(other, _)| other == name) {
+            let found = format!("{name:?} set twice in one family");
+            problems.push(Problem::new(
+                "spec/duplicate-name",
+                pointer,
+                found,
+                "each parameter once",
+            ));
+        }
+    }
+    if problems.is_empty() { Ok(axes) } else { Err(problems) }
+}
+
+/// Member number `member` of a family, the last axis running fastest: its name, and what it declares.
+fn member_of(name: &str, spec: &VariantSpec, axes: &[Axis], member: usize) -> (String, Declared) {
+    let mut own = name.to_owned();
+    let mut values = spec.values.clone();
+    let mut stride: usize = axes.iter().map(|axis| axis.1.len()).product();
+    for (parameter, options) in axes {
+        stride /= options.len().max(1);
+        let index = member / stride % options.len();
+        own.push('-');
+        own.push_str(&word(&options[index], index));
+        values.insert((*parameter).clone(), options[index].clone());
+    }
+    let declared = Declared {
+        extends: spec.extends.clone(),
+        description: spec.description.clone(),
+        values,
+        origin: name.to_owned(),
+    };
+    (own, declared)
+}
+
+/// A value as part of a name: letters, digits, `.`, `+`, `_` only.
+fn word(value: &Value, index: usize) -> String {
+    let numbers = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join("_");
+    match value {
+        Value::Distribution(distribution) => format!("{}{index}", distribution.name()),
+        Value::Color(color) if color.describe().starts_with('[') => color.hex(),
+        Value::Point(point) => numbers(point),
+        Value::Vector(vector) => numbers(vector),
+        Value::Number(number) => number.to_string(),
+        other => {
+            let plain = |c: char| {
+                if c.is_alphanumeric() || matches!(c, '.' | '+' | '_') {
+                    c
+                } else {
+                    '_'
+                }
+            };
+            other.to_string().chars().map(plain).take(40).collect()
+        }
+    }
+}
+
+/// What is wrong with the values on a family's axes, with their places.
+pub(crate) fn problems(
+    parameters: &IndexMap<String, Parameter>,
+    name: &str,
+    spec: &VariantSpec,
+    problem_of: impl Fn(&str, &str, &Value) -> Option<Problem>,
+) -> Vec<Problem> {
+    let pointer = format!("/variants/{}", escape(name));
+    let mut found = Vec::new();
+    for (parameter, values) in &spec.grid {
+        for (index, value) in values.iter().enumerate() {
+            found.extend(problem_of(
+                &format!("{pointer}/grid/{}/{index}", escape(parameter)),
+                parameter,
+                value,
+            ));
+        }
+    }
+    for (parameter, sweep) in &spec.sweep {
+        let at = format!("{pointer}/sweep/{}", escape(parameter));
+        let known = parameters.get(parameter).filter(|known| known.role == Role::Variant);
+        if let Some(known) = known.filter(|known| !known.kind.is_numeric() || known.kind == ParameterType::Vector) {
+            let found_type = format!("a sweep over a {}", known.kind.name());
+            let advice = "list the values under \"grid\" instead";
+            found.push(Problem::new("spec/type", at, found_type, "a number, an integer or a heading").advise(advice));
+            continue;
+        }
+        for (end, key) in [(sweep.from, "from"), (sweep.to, "to")] {
+            let value = match known {
+                Some(known) if known.kind == ParameterType::Integer => Value::Integer(end.round() as i64),
+                _ => Value::Number(end),
+            };
+            let place = if known.is_some() {
+                format!("{at}/{key}")
+            } else {
+                at.clone()
+            };
+            let problem = problem_of(&place, parameter, &value);
+            let unknown = known.is_none() && problem.is_some();
+            found.extend(problem);
+            if unknown {
+                break;
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn family(json: &str) -> Vec<String> {
+        let spec: IndexMap<String, VariantSpec> = serde_json::from_str(json).unwrap();
+        unfold(&IndexMap::new(), &spec).unwrap().into_keys().collect()
+    }
+
+    #[test]
+    fn a_grid_unfolds_into_every_combination_the_last_axis_fastest() {
+        assert_eq!(
+            family(r#"{ "look": { "grid": { "color": ["red", [0.1, 0.2, 0.3]], "light": [0.5, 2] } } }"#),
+            ["look-red-0.5", "look-red-2", "look-1a334d-0.5", "look-1a334d-2"]
+        );
+    }
+
+    #[test]
+    fn a_sweep_has_both_ends_and_round_numbers() {
+        assert_eq!(
+            family(r#"{ "dim": { "sweep": { "light": { "from": 0.1, "to": 0.5, "steps": 5 } } } }"#),
+            ["dim-0.1", "dim-0.2", "dim-0.3", "dim-0.4", "dim-0.5"]
+        );
+        let decades = Sweep {
+            from: 0.01,
+            to: 100.0,
+            steps: 5,
+            spacing: Spacing::Logarithmic,
+        };
+        assert_eq!(decades.values(), Some(vec![0.01, 0.1, 1.0, 10.0, 100.0]));
+    }
+}

@@ -1,0 +1,110 @@
+//! Versions of the documents: a newer one is refused, an older one is brought up to date. What a version holds is said by its type.
+
+use serde_json::{Map, Value as Json, json};
+
+use crate::error::Problem;
+
+/// The version of world documents that is written.
+pub const WORLD_VERSION: u32 = 1;
+
+/// The version of task specs that is current.
+pub const TASK_VERSION: u32 = 2;
+
+/// The version of scenarios that is written.
+pub const SCENARIO_VERSION: u32 = 1;
+
+/// A kind of document with the history of its form.
+pub(crate) struct Format {
+    name: &'static str,
+    current: u32,
+    /// The first leads from version 1 to version 2, and so on.
+    upgrades: &'static [fn(&mut Map<String, Json>)],
+}
+
+pub(crate) const WORLD: Format = Format {
+    name: "world",
+    current: WORLD_VERSION,
+    upgrades: &[],
+};
+pub(crate) const TASK: Format = Format {
+    name: "task spec",
+    current: TASK_VERSION,
+    upgrades: &[margins_to_keep_out],
+};
+pub(crate) const SCENARIO: Format = Format {
+    name: "scenario",
+    current: SCENARIO_VERSION,
+    upgrades: &[],
+};
+
+impl Format {
+    /// Brings a document to the current version. A document that names none is of version 1.
+    pub(crate) fn upgrade(&self, document: &mut Json) -> Option<Problem> {
+        let map = document.as_object_mut()?;
+        let found = match map.get("version") {
+            None => 1,
+            // Anything but a whole number from 1 on is the schema's to refuse.
+            Some(version) => version.as_u64().filter(|version| *version >= 1)?,
+        };
+        if found > u64::from(self.current) {
+            let name = self.name;
+            let expected = format!("a {name} of version {} or older", self.current);
+            let advice = "it was made for a newer Driftworld: update driftworld to read it";
+            return Some(
+                Problem::new("spec/newer-version", "/version", format!("version {found}"), expected).advise(advice),
+            );
+        }
+        for upgrade in &self.upgrades[found as usize - 1..] {
+            upgrade(map);
+        }
+        if map.contains_key("version") {
+            map.insert("version".to_owned(), json!(self.current));
+        }
+        None
+    }
+}
+
+/// Version 1 had `wall_margin` and `agent_margin` beside each other; version 2 has `keep_out`, which also names groups.
+fn margins_to_keep_out(task: &mut Map<String, Json>) {
+    let groups = task
+        .get_mut("groups")
+        .and_then(Json::as_array_mut)
+        .into_iter()
+        .flatten();
+    for group in groups.filter_map(Json::as_object_mut) {
+        for (old, new) in [("wall_margin", "walls"), ("agent_margin", "agent")] {
+            if let Some(margin) = group.shift_remove(old) {
+                let keep_out = group.entry("keep_out").or_insert_with(|| json!({}));
+                if let Some(keep_out) = keep_out.as_object_mut() {
+                    keep_out.entry(new).or_insert(margin);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_older_task_is_read_as_what_it_says_today() {
+        let mut task =
+            json!({ "version": 1, "name": "t", "groups": [{ "name": "g", "wall_margin": 3, "agent_margin": 4 }] });
+        assert!(TASK.upgrade(&mut task).is_none());
+        assert_eq!(
+            task,
+            json!({ "version": 2, "name": "t", "groups": [{ "name": "g", "keep_out": { "walls": 3, "agent": 4 } }] })
+        );
+    }
+
+    #[test]
+    fn a_newer_document_is_refused_and_says_what_to_do() {
+        let problem = SCENARIO.upgrade(&mut json!({ "version": 7 })).unwrap();
+        assert_eq!(
+            problem.to_string(),
+            "(/version): found version 7, expected a scenario of version 1 or older; \
+             it was made for a newer Driftworld: update driftworld to read it"
+        );
+    }
+}
