@@ -1,9 +1,18 @@
-//! The original's own map files read without an error. They stay where they are: the test is skipped, visibly, without them.
+//! Both directions of L2Explorer's dialect: its own map files, and any world, survive writing and reading. What single
+//! values may look like is tested beside the code.
+//!
+//! The original's files stay where they are: their test is skipped, visibly, without them.
 
-use driftworld_spec::World;
+use driftworld_spec::{
+    ActionModel, ActionSpace, AgentParams, Color, EndCondition, EnvironmentParams, GameMode, ImageParams, Modality,
+    Model, MotionModel, Object, Respawn, Rules, Shaping, Stimulus, Wall, World,
+};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::select;
 
 #[test]
-fn every_map_of_the_original_reads() {
+fn every_map_of_the_original_reads_and_survives_writing() {
     let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/reference");
     let root = std::env::var("DRIFTWORLD_REFERENCE").unwrap_or_else(|_| default.to_owned());
     for (file, objects, warnings) in [
@@ -21,5 +30,327 @@ fn every_map_of_the_original_reads() {
         assert_eq!(found.len(), warnings, "{file}: {found:#?}");
         let again = World::from_json(file, &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(again, world, "{file} survives writing and strict reading");
+        let (written, lost) = world.to_l2explorer();
+        assert_eq!(lost, [], "{file}");
+        let (again, found) = World::from_l2explorer(file, &written).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(again, world, "{file} survives writing and reading in its own dialect");
+        let outside = "outside the 100 × 100 m arena";
+        assert!(
+            found.iter().all(|warning| warning.text.contains(outside)),
+            "{file}: {found:#?}"
+        );
+    }
+}
+
+const BLACK: Color = Color([0.0; 3]);
+
+fn black_is_chosen(class: &str) -> bool {
+    ["geometric", "cube", "icosphere"].contains(&class)
+}
+
+fn color() -> impl Strategy<Value = Color> {
+    [0.0..=1.0, 0.0..=1.0, 0.0..=1.0].prop_map(Color)
+}
+
+fn stimuli() -> impl Strategy<Value = Vec<Stimulus>> {
+    let all = vec![Stimulus::AgentCollide, Stimulus::AgentInteract, Stimulus::AgentInRange];
+    proptest::sample::subsequence(all, 0..=3)
+}
+
+/// Arenas, and how far an object may stand from the middle along x and y.
+fn environment() -> impl Strategy<Value = EnvironmentParams> {
+    (color(), 0.0..=100.0, 0u8..=4, [0.5..=300.0, 0.5..=300.0]).prop_map(
+        |(bounding_wall_color, light_intensity, predefined_map, map_size)| EnvironmentParams {
+            bounding_wall_color,
+            light_intensity,
+            predefined_map,
+            map_size,
+            ..EnvironmentParams::default()
+        },
+    )
+}
+
+fn agent() -> impl Strategy<Value = AgentParams> {
+    let models = [
+        ActionModel::ByVelocity,
+        ActionModel::ByWaypoint,
+        ActionModel::OnRails,
+        ActionModel::None,
+    ];
+    (
+        select(models.to_vec()),
+        (0.1..=10.0, 0.05..=10.0),
+        (0.0..=100.0, 0.0..=3600.0),
+        1u32..=4096,
+        [-300.0..=300.0, -300.0..=300.0],
+        0.0..=360.0,
+    )
+        .prop_map(
+            |(action_model, size, speed, observation_size, coordinates, heading)| AgentParams {
+                action_model,
+                agent_height: size.0,
+                agent_width: size.1,
+                max_linear_speed: speed.0,
+                max_angular_speed: speed.1,
+                observation_size,
+                coordinates,
+                heading,
+                ..AgentParams::default()
+            },
+        )
+}
+
+/// An object that the original can describe, its place as a share of the arena; `named` objects get a name later.
+fn object() -> impl Strategy<Value = (Object, bool)> {
+    let class = prop_oneof![
+        select(vec!["geometric", "cube", "icosphere", "tree", "barrel"]).prop_map(str::to_owned),
+        "[a-zé_]{1,12}"
+    ];
+    let motion = [
+        MotionModel::Stationary,
+        MotionModel::Predator,
+        MotionModel::Prey,
+        MotionModel::RandomWaypoint,
+    ];
+    (
+        (class, prop_oneof!["[0-9]{1,3}", "\\PC{1,9}"]),
+        [-0.5..=0.5, -0.5..=0.5],
+        prop_oneof![Just(BLACK), color()],
+        any::<bool>(),
+        select(motion.to_vec()),
+        (-1e9..=1e9, 0.0..=1000.0),
+        [stimuli(), stimuli(), stimuli()],
+        any::<bool>(),
+    )
+        .prop_map(
+            |((class, model), coordinates, color, own, motion_model, numbers, stimuli, named)| {
+                let chosen = black_is_chosen(&class);
+                let mut object = Object::new(class, coordinates);
+                object.model = Model(model);
+                object.color = Some(color).filter(|color| chosen || !(own || *color == BLACK));
+                object.motion_model = motion_model;
+                (object.reward, object.range_stimulus_distance) = numbers;
+                [
+                    object.reward_stimulus,
+                    object.reward_once_stimulus,
+                    object.destroy_stimulus,
+                ] = stimuli;
+                (object, named)
+            },
+        )
+}
+
+/// Worlds that the original can describe whole.
+fn sayable() -> impl Strategy<Value = World> {
+    let image =
+        (0.1..=100.0, 1u32..=360, 1u32..=360).prop_map(|(zoom, yaw_subdivisions, vertical_subdivisions)| ImageParams {
+            zoom,
+            yaw_subdivisions,
+            vertical_subdivisions,
+        });
+    (
+        select(vec![GameMode::Learn, GameMode::CollectImages]),
+        0u32..=1_000_000_000,
+        environment(),
+        agent(),
+        proptest::option::of(image),
+        vec(object(), 0..6),
+    )
+        .prop_map(
+            |(game_mode, max_steps, environment_params, agent_params, image_params, objects)| {
+                let [width, depth] = environment_params.arena_size();
+                let place = |(index, (mut object, named)): (usize, (Object, bool))| {
+                    object.coordinates = [object.coordinates[0] * width, object.coordinates[1] * depth];
+                    object.unique_name = named.then(|| format!("\"{index}\" of a World"));
+                    object
+                };
+                World {
+                    schema: None,
+                    game_mode,
+                    max_steps,
+                    environment_params,
+                    agent_params,
+                    image_params,
+                    rules: Rules::default(),
+                    objects: objects.into_iter().enumerate().map(place).collect(),
+                }
+            },
+        )
+}
+
+/// Gives an object some of what only ours have, and colours and letters that the original does not tell apart.
+fn with_extras(object: Object) -> impl Strategy<Value = Object> {
+    let point = [-300.0..=300.0, -300.0..=300.0];
+    (
+        (0.0..=360.0, 0.01..=100.0, any::<bool>(), 0.0..=1.0, 0.0..=100.0),
+        vec(point, 0..3),
+        proptest::option::of(1u32..=100_000),
+        proptest::option::of((0.0..=1e6, 0.0..=300.0)),
+        proptest::option::of("\\PC{1,100}"),
+        proptest::option::of(prop_oneof![Just(BLACK), color()]),
+        proptest::option::of("\\PC{1,100}"),
+        any::<bool>(),
+        [-300.0..=300.0, -300.0..=300.0],
+    )
+        .prop_map(
+            move |(numbers, waypoints, order, respawn, tag, color, class, patrol, place)| {
+                let mut object = object.clone();
+                (
+                    object.heading,
+                    object.scale,
+                    object.solid,
+                    object.reward_probability,
+                    object.speed,
+                ) = numbers;
+                object.waypoints = waypoints;
+                object.order = order;
+                object.respawn = respawn.map(|(delay, radius)| Respawn { delay, radius });
+                object.tag = tag;
+                object.color = color;
+                object.class = class.unwrap_or_else(|| object.class.to_uppercase());
+                if patrol {
+                    object.motion_model = MotionModel::Patrol;
+                }
+                object.coordinates = place;
+                object
+            },
+        )
+}
+
+fn rules() -> impl Strategy<Value = Rules> {
+    let condition = prop_oneof![
+        Just(EndCondition::AllCollected),
+        "\\PC{1,9}".prop_map(EndCondition::Touch),
+        (-1e6..=1e6).prop_map(EndCondition::ReturnAtLeast),
+        (-1e6..=1e6).prop_map(EndCondition::ReturnAtMost),
+    ];
+    let conditions = vec(condition, 0..3);
+    let shaping = ("\\PC{1,9}", -1e6..=1e6).prop_map(|(toward, scale)| Shaping { toward, scale });
+    (
+        -1e9..=1e9,
+        proptest::option::of(shaping),
+        conditions.clone(),
+        conditions,
+    )
+        .prop_map(|(step_reward, shaping, success, failure)| Rules {
+            step_reward,
+            shaping,
+            success,
+            failure,
+        })
+}
+
+/// Any world that reads: one that the original can describe, with anything of ours on top.
+fn any_world() -> impl Strategy<Value = World> {
+    let polygon = vec([-300.0..=300.0, -300.0..=300.0], 3..6);
+    let wall = (polygon, proptest::option::of(0.0..=50.0), proptest::option::of(color()))
+        .prop_map(|(polygon, height, color)| Wall { polygon, height, color });
+    let arena = (
+        0.0..=50.0,
+        vec(wall, 0..3),
+        [-1e6..=1e6, -1e6..=1e6, 0.1..=1e6],
+        [color(), color(), color()],
+    );
+    let actions = prop_oneof![
+        Just(ActionSpace::Continuous),
+        vec([-10.0..=10.0, -90.0..=90.0, 0.0..=1.0], 1..4).prop_map(ActionSpace::Discrete),
+    ];
+    let modalities = proptest::sample::subsequence(vec![Modality::Rgb, Modality::Depth, Modality::Segmentation], 0..=3);
+    let senses = (0.001..=10.0, 1.0..=170.0, modalities, actions);
+    (sayable(), arena, 0.0..=1.0, senses, rules())
+        .prop_flat_map(|(world, arena, ambient_light, senses, rules)| {
+            let objects: Vec<_> = world.objects.iter().cloned().map(with_extras).collect();
+            (Just((world, arena, ambient_light, senses, rules)), objects)
+        })
+        .prop_map(|((mut world, arena, ambient_light, senses, rules), objects)| {
+            let environment = &mut world.environment_params;
+            (environment.wall_height, environment.walls, environment.sun_direction, _) = arena.clone();
+            [environment.light_color, environment.sky_color, environment.ground_color] = arena.3;
+            environment.ambient_light = ambient_light;
+            let agent = &mut world.agent_params;
+            (agent.time_step, agent.field_of_view, agent.modalities, agent.actions) = senses;
+            world.rules = rules;
+            world.objects = objects;
+            world.schema = Some("world.schema.json".into());
+            world
+        })
+}
+
+/// What the original can say of a world: all else is at its default.
+fn what_remains(world: &World) -> World {
+    let environment = &world.environment_params;
+    let agent = &world.agent_params;
+    let object = |object: &Object| {
+        let class = object.class.to_ascii_lowercase();
+        Object {
+            color: object.color.filter(|color| black_is_chosen(&class) || *color != BLACK),
+            motion_model: match object.motion_model {
+                MotionModel::Patrol => MotionModel::Stationary,
+                other => other,
+            },
+            model: object.model.clone(),
+            reward: object.reward,
+            reward_stimulus: object.reward_stimulus.clone(),
+            reward_once_stimulus: object.reward_once_stimulus.clone(),
+            destroy_stimulus: object.destroy_stimulus.clone(),
+            range_stimulus_distance: object.range_stimulus_distance,
+            unique_name: object.unique_name.clone(),
+            ..Object::new(class, object.coordinates)
+        }
+    };
+    World {
+        schema: None,
+        environment_params: EnvironmentParams {
+            bounding_wall_color: environment.bounding_wall_color,
+            light_intensity: environment.light_intensity,
+            predefined_map: environment.predefined_map,
+            map_size: environment.map_size,
+            ..EnvironmentParams::default()
+        },
+        agent_params: AgentParams {
+            time_step: AgentParams::default().time_step,
+            field_of_view: AgentParams::default().field_of_view,
+            modalities: AgentParams::default().modalities,
+            actions: AgentParams::default().actions,
+            ..agent.clone()
+        },
+        rules: Rules::default(),
+        objects: world.objects.iter().map(object).collect(),
+        ..world.clone()
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(192))]
+
+    #[test]
+    fn a_world_that_the_original_can_describe_survives_without_a_warning(world in sayable()) {
+        let (text, lost) = world.to_l2explorer();
+        prop_assert_eq!(lost, vec![]);
+        let (back, found) = World::from_l2explorer("written", &text).map_err(|e| TestCaseError::fail(e.to_string()))?;
+        prop_assert_eq!(found, vec![]);
+        prop_assert_eq!(back, world);
+    }
+
+    #[test]
+    fn of_any_world_all_remains_that_the_original_can_say(world in any_world()) {
+        let json = world.to_json();
+        let strict = World::from_json("world", &json).map_err(|e| TestCaseError::fail(e.to_string()))?;
+        prop_assert_eq!(strict.to_json(), json.as_str(), "the worlds of this test are worlds");
+        let (text, lost) = world.to_l2explorer();
+        let full: serde_json::Value = serde_json::from_str(&json).expect("a world is JSON");
+        for warning in &lost {
+            let open = warning.text.starts_with("missing color");
+            prop_assert!(open || full.pointer(&warning.pointer).is_some(), "{}", warning);
+        }
+        let (back, _) = World::from_l2explorer("written", &text).map_err(|e| TestCaseError::fail(e.to_string()))?;
+        let remains = what_remains(&world);
+        prop_assert_eq!(&back, &remains);
+        // A warning for every change; without one, only for objects whose lack of a colour may be drawn black.
+        let plain = World { schema: None, ..world };
+        let colorless = |object: &Object| {
+            object.color.is_none() && black_is_chosen(&object.class.to_ascii_lowercase())
+        };
+        prop_assert_eq!(lost.is_empty(), plain == remains && !plain.objects.iter().any(colorless));
     }
 }

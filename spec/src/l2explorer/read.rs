@@ -1,39 +1,16 @@
 //! Reading the dialect of L2Explorer's reset files into a [`World`], with a warning for everything that was not plain.
+//! How a single value may be written is in `lenient.rs`; our own form of a world is read, strictly, in `world/mod.rs`.
 
 use std::collections::BTreeSet;
-use std::fmt;
 
 use serde_json::{Map, Value as Json, json};
 
+use super::lenient::{drop_decimal_point, stimuli, word};
+use super::{AGENT, ENVIRONMENT, IMAGE, Keys, OBJECT, RULES, WORLD, Warning, black_is_chosen};
 use crate::document::{Document, describe, escape};
 use crate::error::{Problem, SpecError};
 use crate::schema;
 use crate::world::World;
-
-/// Something in a file of the original that was read, but not as it stands.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Warning {
-    /// The document's name.
-    pub name: String,
-    /// JSON pointer to the value.
-    pub pointer: String,
-    /// Line in the text, from 1.
-    pub line: usize,
-    /// Column in the line, from 1.
-    pub column: usize,
-    /// What was found, and what was made of it.
-    pub text: String,
-}
-
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(
-            f,
-            "{}:{}:{} ({}): {}",
-            self.name, self.line, self.column, self.pointer, self.text
-        )
-    }
-}
 
 impl World {
     /// Reads a reset file of the original: words in any case, numbers as strings, colours in 0..255, old keys.
@@ -113,14 +90,14 @@ fn outside(world: &World, kept: &[usize]) -> impl Iterator<Item = (String, Strin
 }
 
 #[derive(Default)]
-struct Reader {
+pub(super) struct Reader {
     warnings: Vec<(String, String)>,
     /// For each object of the world, its index in the file.
     kept: Vec<usize>,
 }
 
 impl Reader {
-    fn warn(&mut self, pointer: impl Into<String>, text: impl Into<String>) {
+    pub(super) fn warn(&mut self, pointer: impl Into<String>, text: impl Into<String>) {
         self.warnings.push((pointer.into(), text.into()));
     }
 
@@ -128,21 +105,9 @@ impl Reader {
         let Some(map) = json.as_object() else {
             return json.clone();
         };
-        let mut world = self.keys(
-            "",
-            map,
-            &[
-                "game_mode",
-                "max_steps",
-                "environment_params",
-                "agent_params",
-                "image_params",
-                "objects",
-                "rules",
-            ],
-        );
+        let mut world = self.keys("", map, &WORLD);
         word(&mut world, "game_mode");
-        self.number("", &mut world, "max_steps");
+        self.whole("", &mut world, "max_steps");
         if let Some(Json::Object(map)) = world.get("environment_params").cloned() {
             world.insert("environment_params".into(), Json::Object(self.environment(&map)));
         }
@@ -150,15 +115,18 @@ impl Reader {
             world.insert("agent_params".into(), Json::Object(self.agent(&map)));
         }
         if let Some(Json::Object(map)) = world.get("image_params").cloned() {
-            let mut image = self.keys(
-                "/image_params",
-                &map,
-                &["zoom", "yaw_subdivisions", "vertical_subdivisions"],
-            );
-            for key in ["zoom", "yaw_subdivisions", "vertical_subdivisions"] {
-                self.number("/image_params", &mut image, key);
-            }
+            let at = "/image_params";
+            let mut image = self.keys(at, &map, &IMAGE);
+            self.number(at, &mut image, "zoom");
+            self.whole(at, &mut image, "yaw_subdivisions");
+            self.whole(at, &mut image, "vertical_subdivisions");
             world.insert("image_params".into(), Json::Object(image));
+        }
+        if let Some(Json::Object(map)) = world.get("rules").cloned() {
+            let mut rules = self.keys("/rules", &map, &RULES);
+            word(&mut rules, "success");
+            word(&mut rules, "failure");
+            world.insert("rules".into(), Json::Object(rules));
         }
         if let Some(Json::Array(objects)) = world.get("objects").cloned() {
             world.insert("objects".into(), Json::Array(self.objects(&objects)));
@@ -167,7 +135,7 @@ impl Reader {
     }
 
     /// The entries with their keys as we write them; keys that are not known are left out with a warning.
-    fn keys(&mut self, pointer: &str, map: &Map<String, Json>, known: &[&str]) -> Map<String, Json> {
+    fn keys(&mut self, pointer: &str, map: &Map<String, Json>, known: &Keys) -> Map<String, Json> {
         let plain = |key: &str| key.replace('_', "").to_lowercase();
         let mut renamed = Map::new();
         let mut seen = BTreeSet::new();
@@ -178,7 +146,7 @@ impl Reader {
                 _ => None,
             };
             let place = format!("{pointer}/{}", escape(key));
-            let Some(name) = old.or_else(|| known.iter().copied().find(|name| plain(name) == plain(key))) else {
+            let Some(name) = old.or_else(|| known.all().find(|name| plain(name) == plain(key))) else {
                 self.warn(place, format!("the key {key:?} has no meaning here and is left out"));
                 continue;
             };
@@ -194,46 +162,21 @@ impl Reader {
 
     fn environment(&mut self, map: &Map<String, Json>) -> Map<String, Json> {
         let at = "/environment_params";
-        let known = [
-            "bounding_wall_color",
-            "light_intensity",
-            "predefined_map",
-            "map_size",
-            "wall_height",
-            "walls",
-            "sun_direction",
-            "light_color",
-            "ambient_light",
-            "sky_color",
-            "ground_color",
-        ];
-        let mut environment = self.keys(at, map, &known);
-        for key in ["light_intensity", "predefined_map", "map_size", "wall_height"] {
+        let mut environment = self.keys(at, map, &ENVIRONMENT);
+        for key in ["light_intensity", "map_size", "wall_height"] {
             self.number(at, &mut environment, key);
         }
+        self.whole(at, &mut environment, "predefined_map");
         self.color(at, &mut environment, "bounding_wall_color");
         environment
     }
 
     fn agent(&mut self, map: &Map<String, Json>) -> Map<String, Json> {
         let at = "/agent_params";
-        let known = [
-            "action_model",
-            "agent_height",
-            "agent_width",
-            "max_linear_speed",
-            "max_angular_speed",
-            "observation_size",
-            "coordinates",
-            "heading",
-            "time_step",
-            "field_of_view",
-            "modalities",
-            "actions",
-            "pickup_range",
-        ];
-        let mut agent = self.keys(at, map, &known);
-        word(&mut agent, "action_model");
+        let mut agent = self.keys(at, map, &AGENT);
+        for key in ["action_model", "modalities", "actions"] {
+            word(&mut agent, key);
+        }
         if agent.shift_remove("pickup_range").is_some() {
             self.warn(
                 format!("{at}/pickup_range"),
@@ -245,13 +188,13 @@ impl Reader {
             "agent_width",
             "max_linear_speed",
             "max_angular_speed",
-            "observation_size",
             "coordinates",
             "heading",
         ];
         for key in numbers {
             self.number(at, &mut agent, key);
         }
+        self.whole(at, &mut agent, "observation_size");
         self.heading(at, &mut agent);
         agent
     }
@@ -277,41 +220,15 @@ impl Reader {
     }
 
     fn object(&mut self, at: &str, map: &Map<String, Json>) -> Map<String, Json> {
-        let known = [
-            "class",
-            "model",
-            "coordinates",
-            "heading",
-            "scale",
-            "color",
-            "solid",
-            "reward",
-            "reward_probability",
-            "reward_stimulus",
-            "reward_once_stimulus",
-            "destroy_stimulus",
-            "range_stimulus_distance",
-            "motion_model",
-            "speed",
-            "waypoints",
-            "order",
-            "respawn",
-            "tag",
-            "unique_name",
-            "collectible",
-            "reward_on",
-            "interaction_distance",
-        ];
-        let mut object = self.keys(at, map, &known);
+        let mut object = self.keys(at, map, &OBJECT);
         word(&mut object, "class");
-        if let Some(Json::String(model)) = object.get("motion_model") {
-            let model = model.to_lowercase();
-            let name = if model == "random_waypoints" {
-                "random_waypoint"
-            } else {
-                &model
-            };
-            object.insert("motion_model".into(), json!(name));
+        drop_decimal_point(&mut object, "model");
+        word(&mut object, "motion_model");
+        if object
+            .get("motion_model")
+            .is_some_and(|model| model == "random_waypoints")
+        {
+            object.insert("motion_model".into(), json!("random_waypoint"));
         }
         for key in [
             "coordinates",
@@ -330,8 +247,7 @@ impl Reader {
         self.old_reward(at, &mut object);
         self.color(at, &mut object, "color");
         let class = object.get("class").and_then(Json::as_str).unwrap_or_default();
-        if object.get("color") == Some(&json!([0.0, 0.0, 0.0])) && !matches!(class, "geometric" | "cube" | "icosphere")
-        {
+        if object.get("color") == Some(&json!([0.0, 0.0, 0.0])) && !black_is_chosen(class) {
             object.shift_remove("color");
         }
         object
@@ -369,97 +285,12 @@ impl Reader {
             object.entry("range_stimulus_distance").or_insert(range);
         }
     }
-
-    /// Numbers that were written as text, alone or in a list; whole numbers that were written with a decimal point.
-    fn number(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
-        let Some(value) = map.get_mut(key) else { return };
-        let mut found = Vec::new();
-        match value {
-            Json::Array(items) => items.iter_mut().for_each(|item| found.extend(to_number(item))),
-            other => found.extend(to_number(other)),
-        }
-        for text in found {
-            self.warn(format!("{at}/{key}"), format!("the text {text:?} is read as a number"));
-        }
-    }
-
-    /// Headings of any size, turned into 0..360.
-    fn heading(&mut self, at: &str, map: &mut Map<String, Json>) {
-        let Some(heading) = map.get("heading").and_then(Json::as_f64) else {
-            return;
-        };
-        if !(0.0..=360.0).contains(&heading) {
-            let turned = heading.rem_euclid(360.0);
-            self.warn(
-                format!("{at}/heading"),
-                format!("the heading {heading} is read as {turned}"),
-            );
-            map.insert("heading".into(), json!(turned));
-        }
-    }
-
-    /// Colours in 0..255, which is taken to be so where a channel is above 1.
-    fn color(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
-        self.number(at, map, key);
-        let Some(Json::Array(items)) = map.get_mut(key) else {
-            return;
-        };
-        let Some(channels) = items.iter().map(Json::as_f64).collect::<Option<Vec<f64>>>() else {
-            return;
-        };
-        let bytes = channels.iter().any(|channel| *channel > 1.0);
-        *items = channels
-            .iter()
-            .map(|channel| json!(if bytes { channel / 255.0 } else { *channel }))
-            .collect();
-        if bytes {
-            self.warn(
-                format!("{at}/{key}"),
-                "a colour with a channel above 1 is read as 0..255",
-            );
-        }
-    }
-}
-
-/// Turns text that is a number into that number and hands back the text.
-fn to_number(value: &mut Json) -> Option<String> {
-    let text = value.as_str()?.to_owned();
-    let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite())?;
-    *value = if number.fract() == 0.0 && number.abs() < 1e15 {
-        json!(number as i64)
-    } else {
-        json!(number)
-    };
-    Some(text)
-}
-
-fn word(map: &mut Map<String, Json>, key: &str) {
-    if let Some(Json::String(text)) = map.get_mut(key) {
-        *text = text.to_lowercase();
-    }
-}
-
-fn stimuli(map: &mut Map<String, Json>, key: &str) {
-    let Some(value) = map.get_mut(key) else { return };
-    if value.is_string() {
-        *value = json!([value.take()]);
-    }
-    for item in value.as_array_mut().into_iter().flatten() {
-        let known = ["AgentCollide", "AgentInteract", "AgentInRange"];
-        let plain = |text: &str| text.replace('_', "").to_lowercase();
-        let name = item
-            .as_str()
-            .and_then(|text| known.into_iter().find(|name| plain(name) == plain(text)));
-        if let Some(name) = name {
-            *item = json!(name);
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ActionModel, Stimulus};
+    use crate::{ActionModel, ActionSpace, Color, EndCondition, GameMode, Modality, MotionModel, Stimulus};
 
     fn read(text: &str) -> (World, Vec<String>) {
         let (world, warnings) = World::from_l2explorer("map.json", text).unwrap();
@@ -509,6 +340,39 @@ mod tests {
             warnings[0].contains("/objects/0): an object without a class is skipped"),
             "{warnings:?}"
         );
+    }
+
+    #[test]
+    fn words_of_every_kind_are_read_in_any_case_and_whole_numbers_with_a_point() {
+        let (world, warnings) = read(
+            r#"{ "game_mode": "Collect_Images", "max_steps": 300.0, "environment_params": { "map_size": ["50", 60.5] },
+  "agent_params": { "action_model": "OnRails", "observation_size": "64", "modalities": ["RGB"], "actions": "Continuous" },
+  "image_params": { "yaw_subdivisions": 4.0 }, "rules": { "success": ["All_Collected"] },
+  "objects": [{ "class": "Tree", "model": 2.0, "coordinates": [1, 1], "color": "Red", "motion_model": "Random_Waypoints",
+    "reward_stimulus": "AGENTCOLLIDE", "reward_once_stimulus": ["agent_in_range"], "destroy_stimulus": ["agentInteract"] }] }"#,
+        );
+        assert_eq!((world.game_mode, world.max_steps), (GameMode::CollectImages, 300));
+        assert_eq!(world.environment_params.map_size, [50.0, 60.5]);
+        let agent = &world.agent_params;
+        assert_eq!((agent.action_model, agent.observation_size), (ActionModel::OnRails, 64));
+        assert_eq!(
+            (&agent.modalities[..], &agent.actions),
+            (&[Modality::Rgb][..], &ActionSpace::Continuous)
+        );
+        assert_eq!(world.image_params.map(|image| image.yaw_subdivisions), Some(4));
+        assert_eq!(world.rules.success, [EndCondition::AllCollected]);
+        let tree = &world.objects[0];
+        assert_eq!((tree.class.as_str(), tree.model.0.as_str()), ("tree", "2"));
+        assert_eq!(
+            (tree.motion_model, tree.color),
+            (MotionModel::RandomWaypoint, Color::from_name("red"))
+        );
+        assert_eq!(tree.reward_stimulus, [Stimulus::AgentCollide]);
+        assert_eq!(tree.reward_once_stimulus, [Stimulus::AgentInRange]);
+        assert_eq!(tree.destroy_stimulus, [Stimulus::AgentInteract]);
+        assert_eq!(warnings.len(), 2, "{warnings:?}");
+        assert!(warnings[0].ends_with("(/environment_params/map_size): the text \"50\" is read as a number"));
+        assert!(warnings[1].ends_with("(/agent_params/observation_size): the text \"64\" is read as a number"));
     }
 
     #[test]

@@ -1,0 +1,191 @@
+//! The dialect of L2Explorer's reset files: its keys, and what is said where it and a [`World`](crate::World) differ.
+//! Reading it is in `read.rs`, with the leniency for single values in `lenient.rs`; writing it is in `write.rs`.
+//!
+//! The dialect is the smaller language: every file of it becomes a world, but a world may hold more than a file can.
+//! Both directions hand back a [`Warning`] for whatever did not pass as it stood. A number of a predefined map means the
+//! original's regions there, and our own here.
+
+mod lenient;
+mod read;
+mod write;
+
+use std::fmt;
+
+/// Something that did not pass between a file of the original and a world as it stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// The document's name; `world` for a warning of [`World::to_l2explorer`](crate::World::to_l2explorer).
+    pub name: String,
+    /// JSON pointer to the value: into the file that was read, or into the world that was written.
+    pub pointer: String,
+    /// Line in the text, from 1; 0 for a warning about a world, which need not have a text.
+    pub line: usize,
+    /// Column in the line, from 1; 0 where `line` is 0.
+    pub column: usize,
+    /// What was found, and what was made of it.
+    pub text: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&self.name)?;
+        if self.line > 0 {
+            write!(f, ":{}:{}", self.line, self.column)?;
+        }
+        write!(f, " ({}): {}", self.pointer, self.text)
+    }
+}
+
+/// The keys of one part of a reset file, as we write them.
+struct Keys {
+    /// Those of the original, in the order in which they are written.
+    original: &'static [&'static str],
+    /// Those that only our worlds have. The reader takes them, the writer leaves them out.
+    ours: &'static [&'static str],
+    /// Those of early files, which the reader turns into others.
+    old: &'static [&'static str],
+}
+
+impl Keys {
+    fn all(&self) -> impl Iterator<Item = &'static str> {
+        self.original.iter().chain(self.ours).chain(self.old).copied()
+    }
+}
+
+const WORLD: Keys = Keys {
+    original: &[
+        "game_mode",
+        "max_steps",
+        "environment_params",
+        "agent_params",
+        "image_params",
+        "objects",
+    ],
+    ours: &["rules"],
+    old: &[],
+};
+
+const ENVIRONMENT: Keys = Keys {
+    original: &["bounding_wall_color", "light_intensity", "predefined_map", "map_size"],
+    ours: &[
+        "wall_height",
+        "walls",
+        "sun_direction",
+        "light_color",
+        "ambient_light",
+        "sky_color",
+        "ground_color",
+    ],
+    old: &[],
+};
+
+const AGENT: Keys = Keys {
+    original: &[
+        "action_model",
+        "agent_height",
+        "agent_width",
+        "max_linear_speed",
+        "max_angular_speed",
+        "observation_size",
+        "coordinates",
+        "heading",
+    ],
+    ours: &["time_step", "field_of_view", "modalities", "actions"],
+    old: &["pickup_range"],
+};
+
+const IMAGE: Keys = Keys {
+    original: &["zoom", "yaw_subdivisions", "vertical_subdivisions"],
+    ours: &[],
+    old: &[],
+};
+
+/// Nothing of the rules is known to the original.
+const RULES: Keys = Keys {
+    original: &[],
+    ours: &["step_reward", "shaping", "success", "failure"],
+    old: &[],
+};
+
+const OBJECT: Keys = Keys {
+    original: &[
+        "class",
+        "model",
+        "coordinates",
+        "color",
+        "motion_model",
+        "reward",
+        "reward_stimulus",
+        "reward_once_stimulus",
+        "destroy_stimulus",
+        "range_stimulus_distance",
+        "unique_name",
+    ],
+    ours: &[
+        "heading",
+        "scale",
+        "solid",
+        "reward_probability",
+        "speed",
+        "waypoints",
+        "order",
+        "respawn",
+        "tag",
+    ],
+    old: &["collectible", "reward_on", "interaction_distance"],
+};
+
+/// Whether black on this class (in lower case) is a choice; on all others it is the default and means the asset's own
+/// colours.
+fn black_is_chosen(class: &str) -> bool {
+    matches!(class, "geometric" | "cube" | "icosphere")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    fn check(part: &str, keys: &Keys) {
+        let schema = crate::schema::world().json();
+        let properties = match part {
+            "World" => &schema["properties"],
+            part => &schema["$defs"][part]["properties"],
+        };
+        let fields: BTreeSet<&str> = properties
+            .as_object()
+            .expect("every part has fields")
+            .keys()
+            .map(String::as_str)
+            .filter(|key| *key != "$schema")
+            .collect();
+        let known: BTreeSet<&str> = keys.original.iter().chain(keys.ours).copied().collect();
+        assert_eq!(known, fields, "{part}");
+        assert_eq!(known.len(), keys.original.len() + keys.ours.len(), "{part}");
+    }
+
+    #[test]
+    fn every_field_of_a_world_is_either_the_originals_or_ours() {
+        check("World", &WORLD);
+        check("EnvironmentParams", &ENVIRONMENT);
+        check("AgentParams", &AGENT);
+        check("ImageParams", &IMAGE);
+        check("Rules", &RULES);
+        check("Object", &OBJECT);
+    }
+
+    #[test]
+    fn a_warning_without_a_line_names_no_line() {
+        let mut warning = Warning {
+            name: "world".into(),
+            pointer: "/rules/step_reward".into(),
+            line: 0,
+            column: 0,
+            text: "lost".into(),
+        };
+        assert_eq!(warning.to_string(), "world (/rules/step_reward): lost");
+        (warning.line, warning.column) = (3, 7);
+        assert_eq!(warning.to_string(), "world:3:7 (/rules/step_reward): lost");
+    }
+}

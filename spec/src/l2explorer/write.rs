@@ -1,0 +1,393 @@
+//! Writing a [`World`] as a reset file of L2Explorer, with a warning for every kind of thing that the dialect cannot say.
+//! Old keys and spellings are never written, and nothing is made up in place of what is left out.
+
+use indexmap::IndexMap;
+use serde::Serialize;
+use serde_json::{Map, Value as Json, json};
+
+use super::{AGENT, ENVIRONMENT, Keys, OBJECT, RULES, WORLD, Warning, black_is_chosen};
+use crate::document::describe;
+use crate::world::{MotionModel, Object, World};
+
+/// How the text of a warning ends where the original has no key for a value.
+const LEFT_OUT: &str = "left out, L2Explorer has no such key";
+
+const BLACK: [f64; 3] = [0.0, 0.0, 0.0];
+
+impl World {
+    /// The world as a reset file of the original: indented JSON with a final newline, and a warning for each kind of loss.
+    ///
+    /// The file holds the original's keys and no others. What it cannot say and is not at its default is left out with a
+    /// warning whose pointer leads into the world; objects that lose the same thing share one warning, which counts them.
+    /// [`World::from_l2explorer`] reads the file back as this world with what was left out at its default. `schema` is
+    /// not part of a world and goes without a warning.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::{Object, World};
+    /// let mut tree = Object::new("tree", [3.0, 4.0]);
+    /// tree.heading = 90.0;
+    /// let world = World { objects: vec![tree], ..World::default() };
+    /// let (text, warnings) = world.to_l2explorer();
+    /// assert!(text.contains("\"class\": \"tree\""));
+    /// assert_eq!(
+    ///     warnings[0].to_string(),
+    ///     "world (/objects/0/heading): heading of this object: left out, L2Explorer has no such key"
+    /// );
+    /// ```
+    pub fn to_l2explorer(&self) -> (String, Vec<Warning>) {
+        let mut writer = Writer::default();
+        let payload = writer.world(self);
+        let mut text = serde_json::to_string_pretty(&payload).expect("a JSON value always serialises");
+        text.push('\n');
+        (text, writer.warnings())
+    }
+}
+
+/// What many objects may lose in the same way.
+#[derive(PartialEq, Eq, Hash)]
+struct Loss {
+    /// What of the object it is: `heading`, `class`, …
+    what: &'static str,
+    /// What is made of it.
+    becomes: &'static str,
+}
+
+/// How many objects had a loss, and where the first one stands.
+struct Losers {
+    count: usize,
+    first: String,
+}
+
+#[derive(Default)]
+struct Writer {
+    warnings: Vec<Warning>,
+    /// In the order in which the kinds of loss were met first.
+    losses: IndexMap<Loss, Losers>,
+}
+
+impl Writer {
+    fn world(&mut self, world: &World) -> Json {
+        let full = map_of(world);
+        let mut payload = Map::new();
+        for key in WORLD.original {
+            let value = match *key {
+                "environment_params" => Some(self.part("/environment_params", &ENVIRONMENT, &world.environment_params)),
+                "agent_params" => Some(self.part("/agent_params", &AGENT, &world.agent_params)),
+                "objects" => Some(self.objects(&world.objects)),
+                key => full.get(key).cloned(),
+            };
+            payload.extend(value.map(|value| ((*key).to_owned(), value)));
+        }
+        self.part("/rules", &RULES, &world.rules);
+        Json::Object(payload)
+    }
+
+    /// The original's keys of a part of the world; each of ours that is not at its default gets a warning.
+    fn part<T: Serialize + Default>(&mut self, at: &str, keys: &Keys, part: &T) -> Json {
+        let full = map_of(part);
+        for (key, value) in changed(keys, &full, &map_of(&T::default())) {
+            self.warnings.push(warning(
+                format!("{at}/{key}"),
+                format!("{key} ({}): {LEFT_OUT}", describe(value)),
+            ));
+        }
+        let known = keys.original.iter().filter_map(|key| Some((*key, full.get(*key)?)));
+        known.map(|(key, value)| (key.to_owned(), value.clone())).collect()
+    }
+
+    fn objects(&mut self, objects: &[Object]) -> Json {
+        let default = map_of(&Object::new("", [0.0, 0.0]));
+        let written = objects.iter().enumerate().map(|(index, object)| {
+            let full = map_of(object);
+            for (key, _) in changed(&OBJECT, &full, &default) {
+                self.lose(index, key, key, LEFT_OUT);
+            }
+            let known = OBJECT.original.iter().filter_map(|key| {
+                let value = match *key {
+                    "class" => Some(self.class(index, &object.class)),
+                    "color" => self.color(index, object),
+                    "motion_model" => Some(self.motion_model(index, object.motion_model)),
+                    key => full.get(key).cloned(),
+                };
+                Some(((*key).to_owned(), value?))
+            });
+            known.collect()
+        });
+        Json::Array(written.collect())
+    }
+
+    /// The class in lower case, as reading makes it.
+    fn class(&mut self, index: usize, class: &str) -> Json {
+        let lower = class.to_ascii_lowercase();
+        if lower != class {
+            let becomes = "written in lower case, L2Explorer does not tell cases apart";
+            self.lose(index, "class", "class", becomes);
+        }
+        json!(lower)
+    }
+
+    /// The colour, where "the asset's own" is black unless black is a choice; then it is no colour at all.
+    fn color(&mut self, index: usize, object: &Object) -> Option<Json> {
+        let chosen = black_is_chosen(&object.class.to_ascii_lowercase());
+        match object.color {
+            None if chosen => {
+                let becomes = "left open, L2Explorer's default is black";
+                self.lose(index, "color", "missing color", becomes);
+                None
+            }
+            None => Some(json!(BLACK)),
+            Some(color) => {
+                if color.0 == BLACK && !chosen {
+                    let becomes = "reads back as the asset's own colours, [0.01, 0.01, 0.01] would stay";
+                    self.lose(index, "color", "color black", becomes);
+                }
+                Some(json!(color))
+            }
+        }
+    }
+
+    fn motion_model(&mut self, index: usize, model: MotionModel) -> Json {
+        if model != MotionModel::Patrol {
+            return json!(model);
+        }
+        let becomes = "becomes stationary, L2Explorer has no such motion model";
+        self.lose(index, "motion_model", "motion_model patrol", becomes);
+        json!(MotionModel::Stationary)
+    }
+
+    fn lose(&mut self, index: usize, key: &str, what: &'static str, becomes: &'static str) {
+        let losers = self.losses.entry(Loss { what, becomes }).or_insert_with(|| Losers {
+            count: 0,
+            first: format!("/objects/{index}/{key}"),
+        });
+        losers.count += 1;
+    }
+
+    /// The warnings in the order of the world's parts; the objects' stand last, as the objects do.
+    fn warnings(self) -> Vec<Warning> {
+        let of_objects = self.losses.into_iter().map(|(Loss { what, becomes }, losers)| {
+            let text = match losers.count {
+                1 => format!("{what} of this object: {becomes}"),
+                count => format!("{what} of {count} objects, this one first: {becomes}"),
+            };
+            warning(losers.first, text)
+        });
+        self.warnings.into_iter().chain(of_objects).collect()
+    }
+}
+
+/// Our own keys whose value is not the default; a key that the default does not write has a value only where it differs.
+fn changed<'a>(
+    keys: &Keys,
+    full: &'a Map<String, Json>,
+    default: &Map<String, Json>,
+) -> impl Iterator<Item = (&'static str, &'a Json)> {
+    let ours = keys.ours.iter().filter_map(|key| Some((*key, full.get(*key)?)));
+    ours.filter(|(key, value)| default.get(*key) != Some(*value))
+}
+
+fn map_of(value: &impl Serialize) -> Map<String, Json> {
+    match serde_json::to_value(value) {
+        Ok(Json::Object(map)) => map,
+        other => unreachable!("the parts of a world serialise as objects with string keys, not as {other:?}"),
+    }
+}
+
+fn warning(pointer: String, text: String) -> Warning {
+    Warning {
+        name: "world".to_owned(),
+        pointer,
+        line: 0,
+        column: 0,
+        text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ActionModel, ActionSpace, Color, EndCondition, Modality, Respawn, Stimulus, Wall};
+
+    fn check(world: &World, expected: &[&str]) {
+        let warnings: Vec<String> = world.to_l2explorer().1.iter().map(ToString::to_string).collect();
+        assert_eq!(warnings, expected);
+    }
+
+    fn with_objects(objects: Vec<Object>) -> World {
+        World {
+            objects,
+            ..World::default()
+        }
+    }
+
+    #[test]
+    fn what_the_original_knows_is_written_with_its_keys_and_no_warning() {
+        let mut bag = Object::new("bag", [1.0, 2.5]);
+        bag.reward = 5.0;
+        bag.reward_stimulus = vec![Stimulus::AgentInRange];
+        bag.range_stimulus_distance = 2.0;
+        bag.unique_name = Some("the bag".into());
+        let mut world = with_objects(vec![bag]);
+        world.agent_params.action_model = ActionModel::OnRails;
+        check(&world, &[]);
+        let (text, _) = world.to_l2explorer();
+        assert!(
+            text.ends_with("}\n") && text.contains("\n  \"max_steps\": 0,\n"),
+            "{text}"
+        );
+        let json: Json = serde_json::from_str(&text).unwrap();
+        assert_eq!(
+            json,
+            json!({
+                "game_mode": "learn",
+                "max_steps": 0,
+                "environment_params": {
+                    "bounding_wall_color": [0.72, 0.68, 0.60],
+                    "light_intensity": 2.3,
+                    "predefined_map": 0,
+                    "map_size": [100.0, 100.0]
+                },
+                "agent_params": {
+                    "action_model": "onrails",
+                    "agent_height": 1.0,
+                    "agent_width": 1.0,
+                    "max_linear_speed": 10.0,
+                    "max_angular_speed": 90.0,
+                    "observation_size": 84,
+                    "coordinates": [0.0, 0.0],
+                    "heading": 0.0
+                },
+                "objects": [{
+                    "class": "bag",
+                    "model": "1",
+                    "coordinates": [1.0, 2.5],
+                    "color": [0.0, 0.0, 0.0],
+                    "motion_model": "stationary",
+                    "reward": 5.0,
+                    "reward_stimulus": ["AgentInRange"],
+                    "range_stimulus_distance": 2.0,
+                    "unique_name": "the bag"
+                }]
+            })
+        );
+    }
+
+    #[test]
+    fn what_only_our_arena_agent_and_rules_have_is_left_out_with_a_warning_each() {
+        let mut world = World::default();
+        let environment = &mut world.environment_params;
+        environment.wall_height = 6.0;
+        environment.walls = vec![Wall {
+            polygon: vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]],
+            height: None,
+            color: None,
+        }];
+        environment.sun_direction = [0.0, 0.0, 1.0];
+        environment.light_color = Color([1.0, 1.0, 1.0]);
+        environment.ambient_light = 0.5;
+        environment.sky_color = Color([0.0, 0.0, 1.0]);
+        environment.ground_color = Color([0.0, 1.0, 0.0]);
+        let agent = &mut world.agent_params;
+        agent.time_step = 0.05;
+        agent.field_of_view = 90.0;
+        agent.modalities = vec![Modality::Rgb];
+        agent.actions = ActionSpace::Discrete(vec![[1.0, 0.0, 0.0]]);
+        world.rules.step_reward = -0.1;
+        world.rules.success = vec![EndCondition::AllCollected];
+        check(
+            &world,
+            &[
+                "world (/environment_params/wall_height): wall_height (6.0): left out, L2Explorer has no such key",
+                "world (/environment_params/walls): walls ([{\"polygon\":[[0.0,0.0],[1.0,0.0],[0.0,1.0]]}]): left out, L2Explorer has no such key",
+                "world (/environment_params/sun_direction): sun_direction ([0.0,0.0,1.0]): left out, L2Explorer has no such key",
+                "world (/environment_params/light_color): light_color ([1.0,1.0,1.0]): left out, L2Explorer has no such key",
+                "world (/environment_params/ambient_light): ambient_light (0.5): left out, L2Explorer has no such key",
+                "world (/environment_params/sky_color): sky_color ([0.0,0.0,1.0]): left out, L2Explorer has no such key",
+                "world (/environment_params/ground_color): ground_color ([0.0,1.0,0.0]): left out, L2Explorer has no such key",
+                "world (/agent_params/time_step): time_step (0.05): left out, L2Explorer has no such key",
+                "world (/agent_params/field_of_view): field_of_view (90.0): left out, L2Explorer has no such key",
+                "world (/agent_params/modalities): modalities ([\"rgb\"]): left out, L2Explorer has no such key",
+                "world (/agent_params/actions): actions ({\"discrete\":[[1.0,0.0,0.0]]}): left out, L2Explorer has no such key",
+                "world (/rules/step_reward): step_reward (-0.1): left out, L2Explorer has no such key",
+                "world (/rules/success): success ([\"all_collected\"]): left out, L2Explorer has no such key",
+            ],
+        );
+    }
+
+    #[test]
+    fn objects_that_lose_the_same_thing_share_one_warning() {
+        let plain = Object::new("tree", [0.0, 0.0]);
+        let mut turned = plain.clone();
+        turned.heading = 45.0;
+        turned.tag = Some("trees".into());
+        let mut guard = Object::new("barrel", [1.0, 1.0]);
+        guard.heading = 90.0;
+        guard.scale = 2.0;
+        guard.solid = false;
+        guard.reward_probability = 0.5;
+        guard.motion_model = MotionModel::Patrol;
+        guard.speed = 1.0;
+        guard.waypoints = vec![[1.0, 1.0], [2.0, 2.0]];
+        guard.order = Some(1);
+        guard.respawn = Some(Respawn {
+            delay: 1.0,
+            radius: 0.0,
+        });
+        check(
+            &with_objects(vec![plain, turned.clone(), guard, turned]),
+            &[
+                "world (/objects/1/heading): heading of 3 objects, this one first: left out, L2Explorer has no such key",
+                "world (/objects/1/tag): tag of 2 objects, this one first: left out, L2Explorer has no such key",
+                "world (/objects/2/scale): scale of this object: left out, L2Explorer has no such key",
+                "world (/objects/2/solid): solid of this object: left out, L2Explorer has no such key",
+                "world (/objects/2/reward_probability): reward_probability of this object: left out, L2Explorer has no such key",
+                "world (/objects/2/speed): speed of this object: left out, L2Explorer has no such key",
+                "world (/objects/2/waypoints): waypoints of this object: left out, L2Explorer has no such key",
+                "world (/objects/2/order): order of this object: left out, L2Explorer has no such key",
+                "world (/objects/2/respawn): respawn of this object: left out, L2Explorer has no such key",
+                "world (/objects/2/motion_model): motion_model patrol of this object: becomes stationary, L2Explorer has no such motion model",
+            ],
+        );
+    }
+
+    #[test]
+    fn colours_and_classes_that_the_original_cannot_tell_apart_are_warned_about() {
+        let black = Some(Color(BLACK));
+        let object = |class: &str, color| {
+            let mut object = Object::new(class, [0.0, 0.0]);
+            object.color = color;
+            object
+        };
+        let world = with_objects(vec![
+            object("tree", None),
+            object("cube", black),
+            object("cube", None),
+            object("Tree", black),
+            object("icosphere", None),
+        ]);
+        check(
+            &world,
+            &[
+                "world (/objects/2/color): missing color of 2 objects, this one first: left open, L2Explorer's default is black",
+                "world (/objects/3/class): class of this object: written in lower case, L2Explorer does not tell cases apart",
+                "world (/objects/3/color): color black of this object: reads back as the asset's own colours, [0.01, 0.01, 0.01] would stay",
+            ],
+        );
+        let (back, warnings) = World::from_l2explorer("written.json", &world.to_l2explorer().0).unwrap();
+        let read: Vec<_> = back
+            .objects
+            .iter()
+            .map(|object| (object.class.as_str(), object.color))
+            .collect();
+        let expected = [
+            ("tree", None),
+            ("cube", black),
+            ("cube", None),
+            ("tree", None),
+            ("icosphere", None),
+        ];
+        assert_eq!(read, expected);
+        assert_eq!(warnings, []);
+    }
+}
