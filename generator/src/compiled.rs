@@ -1,7 +1,7 @@
 //! A task for one variant under one seed, with all that is settled filled in and a stream for all that is drawn.
 
 use driftworld_spec::{
-    Count, Distribution, Facing, Hole, Object, ParameterType, PlacedGroup, Resolved, Role, Source, Template, Value,
+    Count, Distribution, Facing, Hole, MAX_OBJECTS, Object, ParameterType, PlacedGroup, Resolved, Role, Source, Template, Value,
     Variant, World,
 };
 
@@ -17,6 +17,8 @@ pub(crate) struct Compiled {
     pub(crate) world: Filled<World>,
     pub(crate) fixtures: Vec<Filled<Object>>,
     pub(crate) groups: Vec<Group>,
+    /// How many objects room is made for.
+    pub(crate) room: usize,
 }
 
 /// A distribution with numbers settled, and the stream it draws from.
@@ -107,6 +109,8 @@ pub(crate) struct Group {
     pub(crate) around: Option<usize>,
     pub(crate) turned: bool,
     pub(crate) facing: Option<Look>,
+    /// About how many objects it will have: room is made for them at once.
+    pub(crate) expected: f64,
 }
 
 /// How many objects a group has.
@@ -170,13 +174,22 @@ impl Compiled {
             })
             .collect();
         let fixtures = task.fixtures().iter().enumerate();
+        let mut groups: Vec<Group> = task.groups().iter().map(|group| compiler.group(group)).collect();
+        for number in 0..groups.len() {
+            if let Some(middle) = groups[number].around {
+                groups[number].expected *= groups[middle].expected;
+            }
+        }
+        let expected: f64 = groups.iter().map(|group| group.expected).sum();
         Self {
+            // A quarter more than the mean is enough for most worlds; few have to move when they grow beyond.
+            room: (expected * 1.25).min(MAX_OBJECTS as f64) as usize + task.fixtures().len(),
             parameters,
             world: compiler.template(task.world(), "world"),
             fixtures: fixtures
                 .map(|(k, fixture)| compiler.template(fixture, &format!("fixture/{k}")))
                 .collect(),
-            groups: task.groups().iter().map(|group| compiler.group(group)).collect(),
+            groups,
         }
     }
 }
@@ -238,6 +251,11 @@ impl Compiler<'_> {
                 Err(value) => GroupCount::Fixed(value.as_integer().unwrap_or(0) as u32),
             },
         };
+        let expected = match &count {
+            GroupCount::Fixed(count) => f64::from(*count),
+            GroupCount::Drawn(Fill::Own(drawn)) => drawn.distribution.mean().unwrap_or(0.0),
+            GroupCount::Drawn(Fill::Parameter(..)) => 0.0,
+        };
         let mut object = self.template(&group.object, &format!("group/{name}/object"));
         object.base.tag.get_or_insert_with(|| name.clone());
         let Resolved::Draw(placement) = self.variant.resolve(&spec.placement) else {
@@ -270,6 +288,7 @@ impl Compiler<'_> {
                     .collect(),
             },
             around: group.around,
+            expected,
             turned: spec.turned,
             facing,
         }

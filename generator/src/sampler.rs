@@ -187,6 +187,7 @@ impl Sampler {
             &own_ground
         };
         let mut plot = Plot::new(ground, world.agent_params.coordinates, self.compiled.groups.len());
+        world.objects.reserve_exact(self.compiled.room);
         for (number, fixture) in self.compiled.fixtures.iter().enumerate() {
             let object = self.fill(fixture, index, number as u64, &values)?;
             plot.occupy(object.coordinates);
@@ -251,7 +252,6 @@ impl Sampler {
                 limit: MAX_OBJECTS,
             });
         }
-        draft.world.objects.reserve(count as usize);
         for turn in 0..u64::from(count) {
             let mut object = self.fill(&group.object, index, first + turn, draft.values)?;
             let mut chance = group.placement.stream.at(index, first + turn, 0);

@@ -5,7 +5,7 @@
 
 use driftworld_spec::{
     ActionModel, ActionSpace, AgentParams, Color, EndCondition, EnvironmentParams, GameMode, ImageParams, Modality,
-    Model, MotionModel, Object, Respawn, Rules, Shaping, Stimulus, Wall, World,
+    Model, MotionModel, Object, Respawn, Rules, Shaping, Stimulus, Wall, WORLD_VERSION, World,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -166,6 +166,7 @@ fn sayable() -> impl Strategy<Value = World> {
                 };
                 World {
                     schema: None,
+                    version: WORLD_VERSION,
                     game_mode,
                     max_steps,
                     environment_params,

@@ -1,5 +1,6 @@
 //! The subcommands, one file each, and what they share: how they fail. What is written and shown is in `output.rs`.
 
+mod bench;
 mod curriculum;
 mod demo;
 mod distance;
@@ -46,6 +47,8 @@ pub(crate) enum Command {
     Metrics(metrics::Metrics),
     /// Write or check the JSON Schemas of the documents.
     Schema(schema::Schema),
+    /// Measure how fast this build is on this machine.
+    Bench(bench::Bench),
 }
 
 impl Command {
@@ -63,6 +66,7 @@ impl Command {
             Self::Run(command) => command.run(),
             Self::Metrics(command) => command.run(),
             Self::Schema(command) => command.run(),
+            Self::Bench(command) => command.run(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::special::root;
+use super::special::normal_quantile;
 
 /// Abscissae and weights of Gauss–Legendre quadrature with ten points, the positive half.
 #[expect(clippy::excessive_precision, reason = "the numbers as published")]
@@ -29,45 +29,67 @@ fn shape(angle: f64, kappa: f64) -> f64 {
     libm::exp(-2.0 * kappa * half * half)
 }
 
-/// ∫ f(θ) shape(θ) dθ from 0 to `to`, which is at most [`reach`].
-fn integral(to: f64, kappa: f64, f: impl Fn(f64) -> f64) -> f64 {
-    let half = to / f64::from(STRETCHES) / 2.0;
-    (0..STRETCHES)
+/// ∫ f(θ) shape(θ) dθ between two angles, cut into so many stretches.
+fn integral([from, to]: [f64; 2], stretches: u32, kappa: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let half = (to - from) / f64::from(stretches) / 2.0;
+    (0..stretches)
         .map(|stretch| {
-            let middle = half * f64::from(2 * stretch + 1);
-            let points = GAUSS
-                .iter()
-                .flat_map(|(x, weight)| [(middle - half * x, weight), (middle + half * x, weight)]);
-            half * points
-                .map(|(angle, weight)| weight * f(angle) * shape(angle, kappa))
-                .sum::<f64>()
+            let middle = from + half * f64::from(2 * stretch + 1);
+            let points =
+                GAUSS.iter().flat_map(|(x, weight)| [(middle - half * x, weight), (middle + half * x, weight)]);
+            half * points.map(|(angle, weight)| weight * f(angle) * shape(angle, kappa)).sum::<f64>()
         })
         .sum()
 }
 
+/// ∫ shape(θ) dθ over one side, from the mean to [`reach`].
+fn side(kappa: f64) -> f64 {
+    integral([0.0, reach(kappa)], STRETCHES, kappa, |_| 1.0)
+}
+
 /// Probability of an angle from −π up to `angle`, which lies in −π..=π. Absolute error below 1e-12.
 pub(super) fn cdf(angle: f64, kappa: f64) -> f64 {
-    let reach = reach(kappa);
-    let side = integral(angle.abs().min(reach), kappa, |_| 1.0) / integral(reach, kappa, |_| 1.0) / 2.0;
-    if angle < 0.0 { 0.5 - side } else { 0.5 + side }
+    let within = integral([0.0, angle.abs().min(reach(kappa))], STRETCHES, kappa, |_| 1.0);
+    let share = within / side(kappa) / 2.0;
+    if angle < 0.0 { 0.5 - share } else { 0.5 + share }
 }
 
 /// The angle in −π..=π up to which an angle lies with probability `p`.
+///
+/// Newton's method on one side; from step to step only what lies between the two angles is integrated.
 pub(super) fn quantile(p: f64, kappa: f64) -> f64 {
-    let whole = 2.0 * integral(reach(kappa), kappa, |_| 1.0);
-    root(
-        p,
-        [-PI, PI],
-        0.0,
-        |angle| cdf(angle, kappa),
-        |angle| shape(angle, kappa) / whole,
-    )
+    let (side, reach) = (side(kappa), reach(kappa));
+    let share = (2.0 * p - 1.0).abs();
+    if share >= 1.0 {
+        return if p < 0.5 { -PI } else { PI };
+    }
+    let target = share * side;
+    // A normal of the same concentration, or a flat line where there is none, is near.
+    let start = if kappa > 1.0 { normal_quantile(0.5 + share / 2.0) / kappa.sqrt() } else { share * PI };
+    let (mut low, mut high) = (0.0, reach);
+    let mut angle = start.clamp(low, high);
+    let mut within = integral([0.0, angle], STRETCHES, kappa, |_| 1.0);
+    for _ in 0..100 {
+        if within < target {
+            low = angle;
+        } else {
+            high = angle;
+        }
+        let newton = angle + (target - within) / shape(angle, kappa);
+        let next = if newton > low && newton < high { newton } else { f64::midpoint(low, high) };
+        if (next - angle).abs() <= 4.0 * f64::EPSILON * next {
+            break;
+        }
+        let stretches = if (next - angle).abs() < 0.1 * reach { 1 } else { STRETCHES };
+        within += integral([angle, next], stretches, kappa, |_| 1.0);
+        angle = next;
+    }
+    if p < 0.5 { -angle } else { angle }
 }
 
 /// Length of the mean of unit vectors: 0 where every heading is alike, 1 where all are the same.
 pub(super) fn resultant_length(kappa: f64) -> f64 {
-    let reach = reach(kappa);
-    integral(reach, kappa, libm::cos) / integral(reach, kappa, |_| 1.0)
+    integral([0.0, reach(kappa)], STRETCHES, kappa, libm::cos) / side(kappa)
 }
 
 #[cfg(test)]

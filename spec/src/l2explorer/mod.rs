@@ -61,13 +61,14 @@ const WORLD: Keys = Keys {
         "image_params",
         "objects",
     ],
-    ours: &["rules"],
+    ours: &["version", "rules"],
     old: &[],
 };
 
 const ENVIRONMENT: Keys = Keys {
     original: &["bounding_wall_color", "light_intensity", "predefined_map", "map_size"],
     ours: &[
+        "map_regions",
         "wall_height",
         "walls",
         "sun_direction",
