@@ -8,6 +8,7 @@
 )]
 
 mod deny;
+mod documents;
 mod error;
 mod examples;
 mod finding;

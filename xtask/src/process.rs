@@ -64,7 +64,7 @@ pub(crate) fn shown(command: &Command) -> String {
 }
 
 /// The program's name without its folders.
-fn program(command: &Command) -> String {
+pub(crate) fn program(command: &Command) -> String {
     let path = std::path::Path::new(command.get_program());
     path.file_stem()
         .unwrap_or(path.as_os_str())

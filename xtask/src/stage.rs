@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::error::XtaskError;
 use crate::process::{cargo, run};
 use crate::workspace::Workspace;
-use crate::{deny, examples, layers, runner, schemas, tidy};
+use crate::{deny, documents, examples, layers, runner, schemas, tidy};
 
 /// One step of `cargo xtask test`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,6 +20,7 @@ pub(crate) enum Stage {
     Docs,
     Examples,
     Schemas,
+    Documents,
     Deny,
 }
 
@@ -32,7 +33,7 @@ pub(crate) enum Outcome {
 
 impl Stage {
     /// In the order in which they run: the quick ones first, so that most mistakes show within seconds.
-    pub(crate) const ALL: [Self; 10] = [
+    pub(crate) const ALL: [Self; 11] = [
         Self::Fmt,
         Self::Layers,
         Self::Tidy,
@@ -42,6 +43,7 @@ impl Stage {
         Self::Docs,
         Self::Examples,
         Self::Schemas,
+        Self::Documents,
         Self::Deny,
     ];
 
@@ -57,6 +59,7 @@ impl Stage {
             Self::Docs => "docs",
             Self::Examples => "examples",
             Self::Schemas => "schemas",
+            Self::Documents => "documents",
             Self::Deny => "deny",
         }
     }
@@ -73,6 +76,7 @@ impl Stage {
             Self::Docs => "the documentation builds without a warning",
             Self::Examples => "every program in examples/ ends well in an empty folder",
             Self::Schemas => "schemas/*.json equal what the Rust types generate",
+            Self::Documents => "a second validator, in Python, judges tests/documents by the schemas as ours does",
             Self::Deny => "licences, advisories and sources of dependencies are as deny.toml allows",
         }
     }
@@ -106,6 +110,7 @@ impl Stage {
             }
             Self::Examples => examples::stage(workspace).map(Outcome::PassedWith),
             Self::Schemas => schemas::check(workspace).map(|()| Outcome::Passed),
+            Self::Documents => documents::stage(workspace),
             Self::Deny => deny::stage(workspace),
         }
     }

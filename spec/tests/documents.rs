@@ -1,0 +1,205 @@
+//! The documents under `tests/documents`: the committed schemas alone refuse the bad ones and accept the good ones, and
+//! each bad one earns the message beside it. What the schemas cannot see is tested in `tasks.rs` and `codes.rs`.
+
+use std::collections::BTreeSet;
+use std::panic::catch_unwind;
+use std::path::{Path, PathBuf};
+
+use driftworld_spec::{Scenario, SpecError, TaskSpec, World};
+use serde_json::Value;
+
+const KINDS: [&str; 3] = ["world", "task", "scenario"];
+/// Keys of a schema that no good document has, as pointers into the schema, each with a reason.
+const KEYS_WITHOUT_A_DOCUMENT: [(&str, &str); 0] = [];
+
+/// One file of the suite.
+struct Case {
+    kind: &'static str,
+    /// The file's path below `tests/documents`: what its messages call it.
+    name: String,
+    path: PathBuf,
+}
+
+impl Case {
+    fn text(&self) -> String {
+        std::fs::read_to_string(&self.path).expect("the file was listed")
+    }
+
+    fn value(&self) -> Value {
+        serde_json::from_str(&self.text()).unwrap_or_else(|error| panic!("{}: {error}", self.name))
+    }
+
+    /// Reads the document as an author's would be read.
+    fn load(&self) -> Result<(), SpecError> {
+        let text = self.text();
+        match self.kind {
+            "world" => World::from_json(&self.name, &text).map(drop),
+            "task" => TaskSpec::from_json(&self.name, &text).map(drop),
+            _ => Scenario::from_json(&self.name, &text).map(drop),
+        }
+    }
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn folder(verdict: &str, kind: &str) -> PathBuf {
+    root().join("tests/documents").join(verdict).join(kind)
+}
+
+/// The names, without the ending, of a folder's files that have this ending; sorted.
+fn stems(folder: &Path, ending: &str) -> BTreeSet<String> {
+    let entries = std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let names = entries.map(|entry| entry.expect("the folder can be listed").file_name());
+    names
+        .filter_map(|name| name.to_str()?.strip_suffix(ending).map(str::to_owned))
+        .collect()
+}
+
+/// The documents of a verdict and a kind, sorted by name.
+fn cases(verdict: &str, kind: &'static str) -> Vec<Case> {
+    let folder = folder(verdict, kind);
+    let case = |stem| Case {
+        kind,
+        name: format!("{verdict}/{kind}/{stem}.json"),
+        path: folder.join(format!("{stem}.json")),
+    };
+    stems(&folder, ".json").into_iter().map(case).collect()
+}
+
+fn schema(kind: &str) -> Value {
+    let path = root().join(format!("schemas/{kind}.schema.json"));
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    serde_json::from_str(&text).expect("a committed schema is JSON")
+}
+
+/// The documents of a verdict that the committed schemas judge otherwise, and how many there are in all.
+fn judged_otherwise(verdict: &str, expect_valid: bool) -> (Vec<String>, usize) {
+    let mut otherwise = Vec::new();
+    let mut count = 0;
+    for kind in KINDS {
+        let validator = jsonschema::validator_for(&schema(kind)).expect("a committed schema is a schema");
+        let cases = cases(verdict, kind);
+        count += cases.len();
+        let surprises = cases
+            .iter()
+            .filter(|case| validator.is_valid(&case.value()) != expect_valid);
+        otherwise.extend(surprises.map(|case| case.name.clone()));
+    }
+    (otherwise, count)
+}
+
+#[test]
+fn the_schemas_alone_refuse_every_bad_document() {
+    let (accepted, count) = judged_otherwise("bad", false);
+    assert!(accepted.is_empty(), "accepted, though bad: {accepted:#?}");
+    assert!(count >= 60, "{count} bad documents");
+}
+
+#[test]
+fn the_schemas_alone_accept_every_good_document() {
+    let (refused, count) = judged_otherwise("good", true);
+    assert!(refused.is_empty(), "refused, though good: {refused:#?}");
+    assert!(count >= 20, "{count} good documents");
+}
+
+#[test]
+fn every_good_document_loads() {
+    for case in KINDS.iter().flat_map(|kind| cases("good", kind)) {
+        case.load().unwrap_or_else(|error| panic!("{error}"));
+    }
+}
+
+/// Compares a bad document's message with the snapshot beside it.
+fn compare(case: &Case) {
+    let error = case.load().expect_err(&case.name);
+    let mut settings = insta::Settings::new();
+    settings.set_snapshot_path(case.path.parent().expect("a file lies in a folder"));
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    let stem = case.path.file_stem().and_then(|stem| stem.to_str());
+    settings.bind(|| insta::assert_snapshot!(stem.expect("the name was listed as text"), error.to_string()));
+}
+
+#[test]
+fn every_bad_document_earns_the_message_beside_it() {
+    // A change of wording touches many messages: go on after the first that differs.
+    let differs = |case: &Case| catch_unwind(|| compare(case)).is_err();
+    let cases = KINDS.iter().flat_map(|kind| cases("bad", kind));
+    let changed: Vec<String> = cases.filter(differs).map(|case| case.name).collect();
+    assert!(
+        changed.is_empty(),
+        "the message of each of these is not the one beside it: {changed:#?}\n\
+         if the new ones are what authors should read, rewrite them: INSTA_UPDATE=always cargo test -p driftworld-spec"
+    );
+    // Whatever insta was told to let pass: each document has its snapshot, and each snapshot its document.
+    for kind in KINDS {
+        let folder = folder("bad", kind);
+        assert_eq!(stems(&folder, ".json"), stems(&folder, ".snap"), "bad/{kind}");
+    }
+}
+
+/// Gathers the pointers of the properties of a schema that a value has; of all of them if there is no value.
+fn properties(schema: &Value, pointer: &str, value: Option<&Value>, found: &mut BTreeSet<String>) {
+    let Some(node) = schema.pointer(pointer).and_then(Value::as_object) else {
+        return;
+    };
+    if let Some(target) = node.get("$ref").and_then(Value::as_str) {
+        properties(schema, target.trim_start_matches('#'), value, found);
+    }
+    for key in ["anyOf", "oneOf", "allOf"] {
+        let count = node.get(key).and_then(Value::as_array).map_or(0, Vec::len);
+        for index in 0..count {
+            properties(schema, &format!("{pointer}/{key}/{index}"), value, found);
+        }
+    }
+    let own = node.get("properties").and_then(Value::as_object);
+    for (key, place) in own.into_iter().flatten() {
+        let inner = value.map(|value| value.get(key));
+        let place_pointer = format!("{pointer}/properties/{key}");
+        let fresh = *place != Value::Bool(false) && inner != Some(None) && found.insert(place_pointer.clone());
+        // Without a value, a place that was seen before has nothing new to show.
+        if fresh || matches!(inner, Some(Some(_))) {
+            properties(schema, &place_pointer, inner.flatten(), found);
+        }
+    }
+    let items = value.map(|value| value.as_array().into_iter().flatten().collect::<Vec<_>>());
+    for item in each(items) {
+        properties(schema, &format!("{pointer}/items"), item, found);
+    }
+    let others = value.map(|value| {
+        let entries = value.as_object().into_iter().flatten();
+        let others = entries.filter(|(key, _)| !own.is_some_and(|own| own.contains_key(*key)));
+        others.map(|(_, value)| value).collect::<Vec<_>>()
+    });
+    for other in each(others) {
+        properties(schema, &format!("{pointer}/additionalProperties"), other, found);
+    }
+}
+
+/// Each value of a list; once no value if there is no list.
+fn each(values: Option<Vec<&Value>>) -> Vec<Option<&Value>> {
+    values.map_or_else(|| vec![None], |values| values.into_iter().map(Some).collect())
+}
+
+#[test]
+fn every_key_of_the_schemas_occurs_in_a_good_document() {
+    let mut missing = BTreeSet::new();
+    for kind in KINDS {
+        let schema = schema(kind);
+        let (mut all, mut used) = (BTreeSet::new(), BTreeSet::new());
+        properties(&schema, "", None, &mut all);
+        for case in cases("good", kind) {
+            properties(&schema, "", Some(&case.value()), &mut used);
+        }
+        assert!(
+            all.len() >= 10 && used.is_subset(&all),
+            "{kind}: {} keys found",
+            all.len()
+        );
+        missing.extend(all.difference(&used).map(|pointer| format!("{kind}{pointer}")));
+    }
+    let excused = KEYS_WITHOUT_A_DOCUMENT.map(|(pointer, _)| pointer.to_owned());
+    assert_eq!(missing, BTreeSet::from(excused), "keys that no good document has");
+}
