@@ -1,8 +1,8 @@
 //! A task for one variant under one seed, with all that is settled filled in and a stream for all that is drawn.
 
 use driftworld_spec::{
-    Count, Distribution, Facing, Hole, MAX_OBJECTS, Object, ParameterType, PlacedGroup, Resolved, Role, Source, Template, Value,
-    Variant, World,
+    Count, Distribution, Facing, Hole, MAX_OBJECTS, Object, ParameterType, PlacedGroup, Resolved, Role, Source,
+    Template, Value, Variant, World,
 };
 
 use crate::coverage::Coverage;

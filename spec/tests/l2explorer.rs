@@ -5,7 +5,7 @@
 
 use driftworld_spec::{
     ActionModel, ActionSpace, AgentParams, Color, EndCondition, EnvironmentParams, GameMode, ImageParams, Modality,
-    Model, MotionModel, Object, Respawn, Rules, Shaping, Stimulus, Wall, WORLD_VERSION, World,
+    Model, MotionModel, Object, Respawn, Rules, Shaping, Stimulus, WORLD_VERSION, Wall, World,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;

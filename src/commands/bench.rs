@@ -67,11 +67,23 @@ fn generator(round: Duration) -> Result<Map<String, serde_json::Value>, Failure>
     small.objects.truncate(30);
     let text = small.to_json();
     let figures = [
-        ("worlds_per_second_per_core_map_86", rate(round, |index| of_86.world(index).map(drop))?),
-        ("worlds_per_second_per_core_find_objects", rate(round, |index| find_objects.world(index).map(drop))?),
-        ("validations_per_second_per_core", rate(round, |_| World::from_json("world.json", &text).map(drop))?),
+        (
+            "worlds_per_second_per_core_map_86",
+            rate(round, |index| of_86.world(index).map(drop))?,
+        ),
+        (
+            "worlds_per_second_per_core_find_objects",
+            rate(round, |index| find_objects.world(index).map(drop))?,
+        ),
+        (
+            "validations_per_second_per_core",
+            rate(round, |_| World::from_json("world.json", &text).map(drop))?,
+        ),
     ];
-    Ok(figures.into_iter().map(|(name, rate)| (name.to_owned(), json!(rate.round()))).collect())
+    Ok(figures
+        .into_iter()
+        .map(|(name, rate)| (name.to_owned(), json!(rate.round())))
+        .collect())
 }
 
 /// How often a job is done each second: the median of several rounds, after one to warm up.

@@ -2,6 +2,7 @@
 
 mod cumulative;
 mod discrete;
+mod display;
 mod fault;
 mod map;
 mod moments;

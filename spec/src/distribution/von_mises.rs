@@ -35,9 +35,12 @@ fn integral([from, to]: [f64; 2], stretches: u32, kappa: f64, f: impl Fn(f64) ->
     (0..stretches)
         .map(|stretch| {
             let middle = from + half * f64::from(2 * stretch + 1);
-            let points =
-                GAUSS.iter().flat_map(|(x, weight)| [(middle - half * x, weight), (middle + half * x, weight)]);
-            half * points.map(|(angle, weight)| weight * f(angle) * shape(angle, kappa)).sum::<f64>()
+            let points = GAUSS
+                .iter()
+                .flat_map(|(x, weight)| [(middle - half * x, weight), (middle + half * x, weight)]);
+            half * points
+                .map(|(angle, weight)| weight * f(angle) * shape(angle, kappa))
+                .sum::<f64>()
         })
         .sum()
 }
@@ -65,7 +68,11 @@ pub(super) fn quantile(p: f64, kappa: f64) -> f64 {
     }
     let target = share * side;
     // A normal of the same concentration, or a flat line where there is none, is near.
-    let start = if kappa > 1.0 { normal_quantile(0.5 + share / 2.0) / kappa.sqrt() } else { share * PI };
+    let start = if kappa > 1.0 {
+        normal_quantile(0.5 + share / 2.0) / kappa.sqrt()
+    } else {
+        share * PI
+    };
     let (mut low, mut high) = (0.0, reach);
     let mut angle = start.clamp(low, high);
     let mut within = integral([0.0, angle], STRETCHES, kappa, |_| 1.0);
@@ -76,11 +83,19 @@ pub(super) fn quantile(p: f64, kappa: f64) -> f64 {
             high = angle;
         }
         let newton = angle + (target - within) / shape(angle, kappa);
-        let next = if newton > low && newton < high { newton } else { f64::midpoint(low, high) };
+        let next = if newton > low && newton < high {
+            newton
+        } else {
+            f64::midpoint(low, high)
+        };
         if (next - angle).abs() <= 4.0 * f64::EPSILON * next {
             break;
         }
-        let stretches = if (next - angle).abs() < 0.1 * reach { 1 } else { STRETCHES };
+        let stretches = if (next - angle).abs() < 0.1 * reach {
+            1
+        } else {
+            STRETCHES
+        };
         within += integral([angle, next], stretches, kappa, |_| 1.0);
         angle = next;
     }

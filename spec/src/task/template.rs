@@ -200,7 +200,9 @@ static SCHEMAS: LazyLock<TemplateSchemas> = LazyLock::new(|| {
     world["description"] =
         json!("The world, but for its groups. Any leaf may be a value, a parameter, or a distribution.");
     if let Some(properties) = world["properties"].as_object_mut() {
-        properties.remove("$schema");
+        for key in ["$schema", "version"] {
+            properties.shift_remove(key);
+        }
     }
     let definitions = world_schema["$defs"].as_object().cloned().unwrap_or_default();
     TemplateSchemas {

@@ -161,6 +161,8 @@ impl std::fmt::Display for Value {
         match self {
             Self::Color(color) => f.write_str(&color.describe()),
             Self::Text(text) => f.write_str(text),
+            Self::Distribution(distribution) => write!(f, "{distribution}"),
+            Self::Number(number) => write!(f, "{number}"),
             other => write!(f, "{}", other.to_json()),
         }
     }

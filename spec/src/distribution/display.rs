@@ -1,0 +1,55 @@
+//! Distributions as people read them: `normal(mean 2, std spread)`. Documents have them as JSON.
+
+use std::fmt::{Display, Formatter, Result};
+
+use serde::Serialize;
+use serde_json::Value as Json;
+
+use super::Distribution;
+
+impl<N: Serialize> Display for Distribution<N> {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        let json = serde_json::to_value(self).unwrap_or_default();
+        f.write_str(&one(&json))
+    }
+}
+
+/// `name(key value, key value)` for a distribution, the plain value for anything else.
+fn one(json: &Json) -> String {
+    match json {
+        Json::Object(map) if map.contains_key("param") => {
+            let index = map.get("index").map_or_else(String::new, |index| format!("[{index}]"));
+            format!("{}{index}", map["param"].as_str().unwrap_or_default())
+        }
+        Json::Object(map) => {
+            let forms = map.iter().map(|(name, fields)| {
+                let fields = fields.as_object().into_iter().flatten();
+                let fields: Vec<String> = fields.map(|(key, value)| format!("{key} {}", one(value))).collect();
+                format!("{name}({})", fields.join(", "))
+            });
+            forms.collect::<Vec<_>>().join(", ")
+        }
+        Json::Array(items) => format!("[{}]", items.iter().map(one).collect::<Vec<_>>().join(", ")),
+        Json::Number(number) => number
+            .as_f64()
+            .map_or_else(|| number.to_string(), |number| number.to_string()),
+        Json::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distribution::Number;
+
+    #[test]
+    fn a_distribution_reads_as_a_call() {
+        let text = r#"{ "gaussian": { "mean": [0, 0], "std": { "param": "spread" }, "correlation": 0.5 } }"#;
+        let distribution: Distribution<Number> = serde_json::from_str(text).unwrap();
+        assert_eq!(
+            distribution.to_string(),
+            "gaussian(mean [0, 0], std spread, correlation 0.5)"
+        );
+    }
+}
