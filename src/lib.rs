@@ -1,7 +1,7 @@
 //! Driftworld: typed task specs to worlds, distances between them, curricula, and a first-person environment to live them in.
 //!
-//! This crate re-exports the rooms of the house under one roof and adds what joins them: the built-in tasks and the names
-//! by which tasks are called. Nothing is computed here.
+//! This crate re-exports the rooms of the house under one roof and adds what joins them: the built-in tasks, the names
+//! by which tasks are called, and worlds as tables. Nothing is computed here.
 //!
 //! ```
 //! use driftworld::{generator, tasks};
@@ -18,6 +18,7 @@ pub use driftworld_metrics as metrics;
 pub use driftworld_similarity as similarity;
 pub use driftworld_spec as spec;
 
+pub mod columns;
 pub mod tasks;
 
 /// The README's Rust example is compiled with the documentation's tests.

@@ -89,14 +89,21 @@ pub fn variant(name: &str) -> Result<Variant, TaskError> {
     Ok(task(name)?.variant(variant.unwrap_or(DEFAULT_VARIANT))?)
 }
 
-/// The variants that a name stands for: the one behind `#`, or all that the task declares.
+/// The variants that a name stands for: the one behind `#`, the members of the family behind `#`, or all that the task declares.
 ///
 /// # Errors
 /// [`TaskError`] if there is none, or the document is wrong.
 pub fn variants(name: &str) -> Result<Vec<Variant>, TaskError> {
-    match split(name).1 {
-        Some(_) => Ok(vec![variant(name)?]),
-        None => Ok(task(name)?.all_variants()),
+    let Some(own) = split(name).1 else {
+        return Ok(task(name)?.all_variants());
+    };
+    let task = task(name)?;
+    match task.family(own) {
+        Some(members) => Ok(members
+            .into_iter()
+            .map(|member| task.variant(member))
+            .collect::<Result<_, _>>()?),
+        None => Ok(vec![task.variant(own)?]),
     }
 }
 

@@ -1,5 +1,7 @@
 //! What can keep a world from being drawn.
 
+use driftworld_spec::SpecError;
+
 /// Everything that can go wrong in this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -81,6 +83,60 @@ pub enum GeneratorError {
         /// How many a world holds.
         limit: usize,
     },
+    /// Two variants of different tasks have nothing between them.
+    #[error(
+        "found {from} and {to}, expected two variants of one task; drift within a task, and switch between tasks in a curriculum"
+    )]
+    DifferentTasks {
+        /// The one.
+        from: String,
+        /// The other.
+        to: String,
+    },
+    /// A variant on the way of a drift cannot be had.
+    #[error("on the way of the drift: {0}")]
+    Between(#[source] SpecError),
+    /// A wanted distance has no parameter to change.
+    #[error(
+        "{variant}: found no {asked}, expected at least one variant parameter to change; name them, or another element"
+    )]
+    NothingToVary {
+        /// The variant.
+        variant: String,
+        /// What was asked for.
+        asked: String,
+    },
+    /// No variant is as far as wanted.
+    #[error(
+        "{variant}: found at most {farthest:.6} ({values}), expected a distance of {target}; ask for less, or vary more parameters"
+    )]
+    TooFar {
+        /// The variant that the distance is from.
+        variant: String,
+        /// The wanted distance.
+        target: f64,
+        /// The greatest that was reached.
+        farthest: f64,
+        /// Where it was reached.
+        values: String,
+    },
+    /// The choices leave a gap around the wanted distance.
+    #[error(
+        "{variant}: found {nearest:.6} at the nearest ({values}), expected a distance of {target} within {tolerance}; \
+         widen the tolerance, or vary a parameter with a range"
+    )]
+    NoneBetween {
+        /// The variant that the distance is from.
+        variant: String,
+        /// The wanted distance.
+        target: f64,
+        /// How far off it may be.
+        tolerance: f64,
+        /// The nearest that was reached.
+        nearest: f64,
+        /// Where it was reached.
+        values: String,
+    },
 }
 
 impl GeneratorError {
@@ -91,6 +147,11 @@ impl GeneratorError {
             Self::NoPlace { .. } => "generator/no-place",
             Self::Requirement { .. } => "generator/requirement",
             Self::TooMany { .. } => "generator/too-many",
+            Self::DifferentTasks { .. } => "generator/different-tasks",
+            Self::Between(_) => "generator/between",
+            Self::NothingToVary { .. } => "generator/nothing-to-vary",
+            Self::TooFar { .. } => "generator/too-far",
+            Self::NoneBetween { .. } => "generator/none-between",
         }
     }
 }
@@ -136,6 +197,31 @@ mod tests {
                 index: 2,
                 found: 100_001,
                 limit: 100_000,
+            },
+            GeneratorError::DifferentTasks {
+                from: "t#v".into(),
+                to: "u#w".into(),
+            },
+            GeneratorError::Between(SpecError::Values {
+                variant: "t#v..w@0.5".into(),
+                problems: Vec::new(),
+            }),
+            GeneratorError::NothingToVary {
+                variant: "t#v".into(),
+                asked: "parameters that affect A alone".into(),
+            },
+            GeneratorError::TooFar {
+                variant: "t#v".into(),
+                target: 0.9,
+                farthest: 0.5,
+                values: "pay = -100".into(),
+            },
+            GeneratorError::NoneBetween {
+                variant: "t#v".into(),
+                target: 0.3,
+                tolerance: 0.01,
+                nearest: 0.4,
+                values: "color = red".into(),
             },
         ];
         let said: Vec<String> = errors

@@ -1,10 +1,13 @@
-//! Variant, seed and index to a concrete world.
+//! Variant, seed and index to a concrete world; the variants between two variants, and those at a wanted distance.
 
+mod at_distance;
 mod compiled;
 mod coverage;
 mod crowd;
 mod draw;
+mod drift;
 mod error;
+mod oklab;
 mod philox;
 mod placement;
 mod regions;
@@ -13,7 +16,9 @@ mod stream;
 
 use driftworld_spec::{Variant, World};
 
+pub use at_distance::{Found, Subject, at_distance};
 pub use coverage::Coverage;
+pub use drift::{Drift, Schedule, Switch, drift};
 pub use error::GeneratorError;
 pub use sampler::Sampler;
 

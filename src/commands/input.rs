@@ -1,10 +1,13 @@
 //! What arguments name: tasks, variants, worlds. Names of tasks are read by the library's `tasks`.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use driftworld::generator::Sampler;
+use driftworld::spec::maps::MapLibrary;
 use driftworld::spec::{Variant, Warning, World};
-use driftworld::{generator, tasks};
+use driftworld::tasks;
 
 use super::{Failure, output};
 
@@ -52,16 +55,70 @@ pub(crate) fn is_world_file(name: &str) -> bool {
     }
 }
 
-/// The world that an argument names: a file, or number `index` of a variant under a seed.
-pub(crate) fn world(name: &str, seed: u64, index: u64, l2explorer: bool) -> Result<World, Failure> {
+/// The layouts of a maps file, or of all `.json` files of a folder.
+pub(crate) fn maps(path: &Path) -> Result<MapLibrary, Failure> {
+    let mut library = MapLibrary::default();
+    for file in json_files(path)? {
+        let read = MapLibrary::from_json(&file.display().to_string(), &text(&file)?)?;
+        for layout in read.layouts() {
+            if library.layouts().any(|known| known.id == layout.id) {
+                let id = layout.id;
+                return Err(Failure::input(format!(
+                    "{}: found map {id}, which another file of the folder has too, expected each number once",
+                    file.display()
+                )));
+            }
+        }
+        library.extend(read);
+    }
+    Ok(library)
+}
+
+/// The file named, or the `.json` files of the folder named, sorted.
+pub(crate) fn json_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let failed = |error| Failure::input(format!("{}: cannot be read: {error}", path.display()));
+    let mut files = Vec::new();
+    for entry in fs::read_dir(path).map_err(failed)? {
+        let file = entry.map_err(failed)?.path();
+        if file.extension().is_some_and(|extension| extension == "json") {
+            files.push(file);
+        }
+    }
+    if files.is_empty() {
+        return Err(Failure::input(format!("{}: holds no .json file", path.display())));
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// The world that an argument names: a file, or number `index` of a variant under a seed; with the layouts of a maps file, if
+/// there is one.
+pub(crate) fn world(
+    name: &str,
+    seed: u64,
+    index: u64,
+    l2explorer: bool,
+    maps_path: Option<&Path>,
+) -> Result<World, Failure> {
+    let maps = maps_path.map(maps).transpose()?;
     if l2explorer || is_world_file(name) {
-        let (world, warnings) = world_file(Path::new(name), l2explorer)?;
+        let (mut world, warnings) = world_file(Path::new(name), l2explorer)?;
         for warning in warnings {
             output::note(format!("warning: {warning}"));
         }
+        if let Some(maps) = maps {
+            maps.apply(&mut world);
+        }
         return Ok(world);
     }
-    Ok(generator::sample(&tasks::variant(name)?, seed, index)?)
+    let mut sampler = Sampler::new(&tasks::variant(name)?, seed);
+    if let Some(maps) = maps {
+        sampler = sampler.with_maps(Arc::new(maps));
+    }
+    Ok(sampler.world(index)?)
 }
 
 /// The variants that a list of arguments names, in that order, each once, with the names they were called by.

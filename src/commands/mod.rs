@@ -1,6 +1,7 @@
 //! The subcommands, one file each, and what they share: how they fail. What is written and shown is in `output.rs`.
 
 mod bench;
+mod convert;
 mod curriculum;
 mod demo;
 mod distance;
@@ -16,6 +17,7 @@ mod schema;
 mod table;
 mod tasks;
 mod validate;
+mod vary;
 
 use std::process::ExitCode;
 
@@ -33,6 +35,10 @@ pub(crate) enum Command {
     Validate(validate::Validate),
     /// Draw worlds from a variant of a task.
     Sample(sample::Sample),
+    /// Find a variant at a wanted distance from another.
+    Vary(vary::Vary),
+    /// Write a world in L2Explorer's form, or one of L2Explorer's in ours.
+    Convert(convert::Convert),
     /// Draw what an agent sees of a world, and the world from above.
     Render(render::Render),
     /// Measure how far apart two variants or two worlds are.
@@ -59,6 +65,8 @@ impl Command {
             Self::Tasks(command) => command.run(),
             Self::Validate(command) => command.run(),
             Self::Sample(command) => command.run(),
+            Self::Vary(command) => command.run(),
+            Self::Convert(command) => command.run(),
             Self::Render(command) => command.run(),
             Self::Distance(command) => command.run(),
             Self::Order(command) => command.run(),

@@ -26,6 +26,9 @@ pub(crate) struct Render {
     /// Read the world as L2Explorer wrote it, with warnings.
     #[arg(long)]
     l2explorer: bool,
+    /// Layouts in place of the built-in maps: a maps file, or a folder of them.
+    #[arg(long, value_name = "PATH")]
+    maps: Option<PathBuf>,
     /// Which picture.
     #[arg(long, value_enum, default_value_t = View::Sheet)]
     view: View,
@@ -59,7 +62,13 @@ enum View {
 
 impl Render {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let world = input::world(&self.world, self.seed, self.index, self.l2explorer)?;
+        let world = input::world(
+            &self.world,
+            self.seed,
+            self.index,
+            self.l2explorer,
+            self.maps.as_deref(),
+        )?;
         let picture = self.picture(&world)?;
         picture.write(&self.output)?;
         output::line(format!(

@@ -2,26 +2,33 @@
 
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use clap::Args;
-use driftworld::generator::Sampler;
+use clap::{Args, ValueEnum};
+use driftworld::columns::{Format, Row, WorldTable};
+use driftworld::generator::{Coverage, Drift, GeneratorError, Sampler, Schedule, Switch};
+use driftworld::spec::{Variant, World, maps::MapLibrary};
 use driftworld::tasks;
 use rayon::prelude::*;
 use tempfile::NamedTempFile;
 
-use super::{Failure, output};
+use super::{Failure, input, output};
 
 /// How many worlds are drawn at once while streaming; memory is bounded by it.
 const CHUNK: u64 = 1024;
 
 /// Draw worlds from a variant of a task.
 ///
-/// World number INDEX under a seed is always the same, whatever was drawn before it and on whatever machine.
+/// World number INDEX under a seed is always the same, whatever was drawn before it and on whatever machine. Worlds go to
+/// standard output, a file, a folder (one file each), JSON lines (--jsonl), or one table (a file ending in .parquet or .arrow).
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld sample find_objects#red --seed 7 --index 12345 -o -
   driftworld sample find_objects#red --seed 7 --count 1000 --jsonl -o worlds.jsonl
-  driftworld sample my_task.json#night --count 10 -o worlds/")]
+  driftworld sample find_objects#red --count 100000 --shard 2/8 -o worlds-2.parquet
+  driftworld sample find_objects#red --count 256 --sampler sobol -o worlds/
+  driftworld sample find_objects#blue --drift-to red --schedule cosine --count 50 -o drift/
+  driftworld sample my_task.json#night --maps my_maps.json --count 10 -o worlds/")]
 pub(crate) struct Sample {
     /// A task's variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
     task: String,
@@ -34,6 +41,24 @@ pub(crate) struct Sample {
     /// How many worlds, from INDEX on.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     count: Option<u64>,
+    /// Only the I-th of N equal parts of the worlds, as 1/4 to 4/4: together the parts give what one run gives.
+    #[arg(long, value_name = "I/N", requires = "count")]
+    shard: Option<Shard>,
+    /// How randomized parameters spread over the worlds.
+    #[arg(long, value_enum, default_value_t = Spread::Independent)]
+    sampler: Spread,
+    /// Drift over the worlds to this variant of the task: the first world is of the one, the last of the other.
+    #[arg(long, value_name = "VARIANT", requires = "count")]
+    drift_to: Option<String>,
+    /// How the drift goes: linear, cosine, step:N, sawtooth:N.
+    #[arg(long, value_parser = schedule, default_value = "linear", requires = "drift_to")]
+    schedule: Schedule,
+    /// Values with nothing in between switch by chance, more likely as the drift goes on, not at a point.
+    #[arg(long, requires = "drift_to")]
+    mix: bool,
+    /// Layouts in place of the built-in maps: a maps file, or a folder of them.
+    #[arg(long, value_name = "PATH")]
+    maps: Option<PathBuf>,
     /// One world a line instead of indented files.
     #[arg(long)]
     jsonl: bool,
@@ -42,9 +67,100 @@ pub(crate) struct Sample {
     output: PathBuf,
 }
 
+/// How randomized parameters spread over the worlds.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Spread {
+    /// Each world draws on its own.
+    Independent,
+    /// Sobol's sequence over the world's numbers, scrambled by the seed.
+    Sobol,
+    /// A Latin hypercube over INDEX to INDEX + COUNT.
+    #[value(alias = "latin-hypercube")]
+    Lhs,
+}
+
+/// One of several equal parts of a range, counted from 1.
+#[derive(Clone, Copy)]
+struct Shard {
+    part: u64,
+    parts: u64,
+}
+
+impl std::str::FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers = text
+            .split_once('/')
+            .and_then(|(part, parts)| Some((part.parse().ok()?, parts.parse().ok()?)));
+        match numbers {
+            Some((part, parts)) if 1 <= part && part <= parts => Ok(Self { part, parts }),
+            _ => Err("expected a part and how many there are, counted from 1, such as 1/4".to_owned()),
+        }
+    }
+}
+
+impl Shard {
+    /// Its part of `first..first + count`; the first parts are longer by one where it does not come out even.
+    fn of(self, first: u64, count: u64) -> std::ops::Range<u64> {
+        let start = |part: u64| first + (u128::from(count) * u128::from(part) / u128::from(self.parts)) as u64;
+        start(self.part - 1)..start(self.part)
+    }
+}
+
+fn schedule(text: &str) -> Result<Schedule, String> {
+    let (name, number) = text
+        .split_once(':')
+        .map_or((text, None), |(name, number)| (name, number.parse().ok()));
+    match (name, number) {
+        ("linear", None) if text == "linear" => Ok(Schedule::Linear),
+        ("cosine", None) if text == "cosine" => Ok(Schedule::Cosine),
+        ("step", Some(steps)) if steps > 0 => Ok(Schedule::Step { steps }),
+        ("sawtooth", Some(periods)) if periods > 0 => Ok(Schedule::Sawtooth { periods }),
+        _ => Err("expected linear, cosine, step:N or sawtooth:N, such as step:4".to_owned()),
+    }
+}
+
+/// Where the worlds come from: one variant, or a drift between two.
+enum Source {
+    Variant(Box<Sampler>),
+    Drift {
+        drift: Box<Drift>,
+        first: u64,
+        count: u64,
+        maps: Option<Arc<MapLibrary>>,
+        coverage: Coverage,
+        seed: u64,
+    },
+}
+
+impl Source {
+    /// World number `index` with the name of its variant.
+    fn world(&self, index: u64) -> Result<(String, World), GeneratorError> {
+        match self {
+            Self::Variant(sampler) => Ok((sampler.variant().name().to_owned(), sampler.world(index)?)),
+            Self::Drift {
+                drift,
+                first,
+                count,
+                maps,
+                coverage,
+                seed,
+            } => {
+                let progress = (index - first) as f64 / (count.saturating_sub(1).max(1)) as f64;
+                let variant = drift.at(progress, index)?;
+                let mut sampler = Sampler::new(&variant, *seed).with_coverage(*coverage);
+                if let Some(maps) = maps {
+                    sampler = sampler.with_maps(Arc::clone(maps));
+                }
+                Ok((variant.name().to_owned(), sampler.world(index)?))
+            }
+        }
+    }
+}
+
 impl Sample {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let sampler = Sampler::new(&tasks::variant(&self.task)?, self.seed);
         let count = self.count.unwrap_or(1);
         if self.index.checked_add(count).is_none() {
             return Err(Failure::usage(format!(
@@ -52,77 +168,166 @@ impl Sample {
                 self.index
             )));
         }
+        let variant = tasks::variant(&self.task)?;
+        let source = self.source(&variant, count)?;
+        let range = self
+            .shard
+            .map_or(self.index..self.index + count, |shard| shard.of(self.index, count));
+        if let Some(format) = Format::of(&self.output) {
+            if self.jsonl {
+                return Err(Failure::usage(
+                    "a table is not JSON lines: leave out --jsonl, or name a file ending in .jsonl",
+                ));
+            }
+            return self.table(&source, &variant, range, format);
+        }
         if self.jsonl {
-            return self.stream(&sampler, count);
+            return self.stream(&source, range);
         }
         if self.count.is_none() {
-            return output::write_or_print(&self.output, &line_of(&sampler, self.index)?);
+            return output::write_or_print(&self.output, &line_of(&source, self.index)?);
         }
         if self.output == Path::new("-") {
             return Err(Failure::usage(
-                "several worlds go to a folder (-o DIR), or as one world a line (--jsonl)",
+                "several worlds go to a folder (-o DIR), as one world a line (--jsonl), or to a table (-o FILE.parquet)",
             ));
         }
-        self.files(&sampler, count)
+        self.files(&source, range)
     }
 
-    fn stream(&self, sampler: &Sampler, count: u64) -> Result<(), Failure> {
-        if self.output == Path::new("-") {
-            return self.lines(sampler, count, output::print);
-        }
+    fn source(&self, variant: &Variant, count: u64) -> Result<Source, Failure> {
+        let coverage = match self.sampler {
+            Spread::Independent => Coverage::Independent,
+            Spread::Sobol => Coverage::Sobol,
+            Spread::Lhs => Coverage::LatinHypercube {
+                first: self.index,
+                count,
+            },
+        };
+        let maps = self.maps.as_deref().map(input::maps).transpose()?.map(Arc::new);
+        let Some(name) = &self.drift_to else {
+            let mut sampler = Sampler::new(variant, self.seed).with_coverage(coverage);
+            if let Some(maps) = maps {
+                sampler = sampler.with_maps(maps);
+            }
+            return Ok(Source::Variant(Box::new(sampler)));
+        };
+        // The other variant is of the same task, and may be named with or without it.
+        let (_, own) = tasks::split(name);
+        let to = match own {
+            Some(_) => tasks::variant(name)?,
+            None => variant.task().variant(name)?,
+        };
+        let switch = if self.mix {
+            Switch::Mixture { seed: self.seed }
+        } else {
+            Switch::AtPoint
+        };
+        let drift = Box::new(
+            Drift::new(variant.clone(), to)?
+                .with_schedule(self.schedule)
+                .with_switch(switch),
+        );
+        Ok(Source::Drift {
+            drift,
+            first: self.index,
+            count,
+            maps,
+            coverage,
+            seed: self.seed,
+        })
+    }
+
+    /// A file under a temporary name in the folder of the output, which appears when it is whole.
+    fn temporary(&self) -> Result<BufWriter<NamedTempFile>, Failure> {
         let folder = self
             .output
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty())
             .unwrap_or(Path::new("."));
-        let failed =
-            |error: std::io::Error| Failure::input(format!("{}: cannot be written: {error}", self.output.display()));
-        std::fs::create_dir_all(folder).map_err(failed)?;
-        let mut file = BufWriter::new(NamedTempFile::new_in(folder).map_err(failed)?);
-        self.lines(sampler, count, |text| file.write_all(text.as_bytes()).map_err(failed))?;
-        let file = file.into_inner().map_err(|error| failed(error.into_error()))?;
+        std::fs::create_dir_all(folder).map_err(|error| self.failed(&error))?;
+        Ok(BufWriter::new(
+            NamedTempFile::new_in(folder).map_err(|error| self.failed(&error))?,
+        ))
+    }
+
+    fn failed(&self, error: &dyn std::fmt::Display) -> Failure {
+        Failure::input(format!("{}: cannot be written: {error}", self.output.display()))
+    }
+
+    fn persist(&self, file: BufWriter<NamedTempFile>) -> Result<(), Failure> {
+        let file = file.into_inner().map_err(|error| self.failed(&error.into_error()))?;
         output::persist(file, &self.output)
     }
 
-    /// Hands over the worlds as lines, in order; draws a chunk at a time on all cores.
-    fn lines(
-        &self,
-        sampler: &Sampler,
-        count: u64,
-        mut take: impl FnMut(&str) -> Result<(), Failure>,
-    ) -> Result<(), Failure> {
-        let bar = output::progress(count, "sampling");
-        let end = self.index + count;
-        let mut first = self.index;
-        while first < end {
-            let next = end.min(first.saturating_add(CHUNK));
-            let lines: Vec<_> = (first..next)
-                .into_par_iter()
-                .map(|index| Ok(sampler.world(index)?.to_json() + "\n"))
-                .collect();
-            for line in lines {
-                take(&line.map_err(|error: driftworld::generator::GeneratorError| Failure::from(error))?)?;
-            }
-            bar.inc(next - first);
-            first = next;
+    fn stream(&self, source: &Source, range: std::ops::Range<u64>) -> Result<(), Failure> {
+        if self.output == Path::new("-") {
+            return each(source, range, |(_, _, world)| output::print(&(world.to_json() + "\n")));
         }
-        bar.finish_and_clear();
-        Ok(())
+        let mut file = self.temporary()?;
+        each(source, range, |(_, _, world)| {
+            file.write_all((world.to_json() + "\n").as_bytes())
+                .map_err(|error| self.failed(&error))
+        })?;
+        self.persist(file)
     }
 
-    fn files(&self, sampler: &Sampler, count: u64) -> Result<(), Failure> {
-        let bar = output::progress(count, "sampling");
-        for index in self.index..self.index + count {
+    fn table(
+        &self,
+        source: &Source,
+        variant: &Variant,
+        range: std::ops::Range<u64>,
+        format: Format,
+    ) -> Result<(), Failure> {
+        let mut table = WorldTable::new(self.temporary()?, format).map_err(|error| self.failed(&error))?;
+        let (task, seed, count) = (variant.task().name(), self.seed, range.end - range.start);
+        each(source, range, |(index, variant, world)| {
+            let row = Row {
+                task,
+                variant: &variant,
+                seed,
+                index,
+                world: &world,
+            };
+            table.push(row).map_err(|error| self.failed(&error))
+        })?;
+        self.persist(table.finish().map_err(|error| self.failed(&error))?)?;
+        output::line(format!("{count} worlds in {}", self.output.display()))
+    }
+
+    fn files(&self, source: &Source, range: std::ops::Range<u64>) -> Result<(), Failure> {
+        let count = range.end - range.start;
+        each(source, range, |(index, _, world)| {
             let path = self.output.join(format!("{index:08}.json"));
-            output::write(&path, sampler.world(index)?.to_json_pretty().as_bytes())?;
-            bar.inc(1);
-        }
-        bar.finish_and_clear();
+            output::write(&path, world.to_json_pretty().as_bytes())
+        })?;
         output::line(format!("{count} worlds in {}", self.output.display()))
     }
 }
 
+/// Hands over the worlds with their numbers and variants, in order; draws a chunk at a time on all cores.
+fn each(
+    source: &Source,
+    range: std::ops::Range<u64>,
+    mut take: impl FnMut((u64, String, World)) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let bar = output::progress(range.end - range.start, "sampling");
+    let mut first = range.start;
+    while first < range.end {
+        let next = range.end.min(first.saturating_add(CHUNK));
+        let worlds: Vec<_> = (first..next).into_par_iter().map(|index| source.world(index)).collect();
+        for (index, world) in (first..next).zip(worlds) {
+            let (variant, world) = world?;
+            take((index, variant, world))?;
+        }
+        bar.inc(next - first);
+        first = next;
+    }
+    bar.finish_and_clear();
+    Ok(())
+}
+
 /// One world as one line: alone it has the same bytes as in a stream.
-fn line_of(sampler: &Sampler, index: u64) -> Result<String, Failure> {
-    Ok(sampler.world(index)?.to_json() + "\n")
+fn line_of(source: &Source, index: u64) -> Result<String, Failure> {
+    Ok(source.world(index)?.1.to_json() + "\n")
 }

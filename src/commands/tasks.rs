@@ -1,11 +1,11 @@
 //! `driftworld tasks`: which tasks are built in, and what varies in one.
 
 use clap::{Args, Subcommand};
-use driftworld::spec::{Domain, Parameter, Role, TaskSpec, Value};
+use driftworld::spec::{Domain, Parameter, ParameterType, Role, TaskSpec, Value, Variant};
 use driftworld::tasks;
 use serde_json::json;
 
-use super::table::table;
+use super::table::wide_table;
 use super::{Failure, output};
 
 /// List the built-in tasks, or show what varies in one.
@@ -72,31 +72,79 @@ fn show(task: &std::sync::Arc<TaskSpec>, as_json: bool) -> Result<(), Failure> {
             .collect();
         return output::json(&json!({ "task": task.name(), "parameters": task.parameters(), "variants": values }));
     }
-    output::line(format!("{}: {}\n", task.name(), task.description()))?;
-    let rows = task.parameters().iter().map(|(name, parameter)| {
-        let affects: Vec<&str> = parameter.affects.iter().map(|element| element.letter()).collect();
-        [
-            name.clone(),
-            role(parameter.role).to_owned(),
-            affects.join(" "),
-            domain(parameter),
-        ]
-    });
-    output::line(table(["parameter", "role", "affects", "domain"], rows.collect(), &[]))?;
-    output::line("")?;
-    let varying: Vec<&String> = task
-        .parameters()
-        .iter()
-        .filter(|(_, p)| p.role == Role::Variant)
-        .map(|(n, _)| n)
+    output::line(format!("{}: {}", task.name(), task.description()))?;
+    for requirement in task.requirements() {
+        output::line(format!("require: {requirement}"))?;
+    }
+    let own: Vec<Vec<String>> = std::iter::once(["parameter", "role", "affects", "domain"].map(str::to_owned).to_vec())
+        .chain(task.parameters().iter().map(|(name, parameter)| {
+            let affects: Vec<&str> = parameter.affects.iter().map(|element| element.letter()).collect();
+            let domain = parameter
+                .domain()
+                .map_or_else(String::new, |domain| in_words(&domain, parameter));
+            vec![name.clone(), role(parameter.role).to_owned(), affects.join(" "), domain]
+        }))
         .collect();
-    let rows = variants.iter().map(|variant| {
-        let values = varying
-            .iter()
-            .filter_map(|name| Some(format!("{name} {}", variant.value(name)?)));
-        [variant.name().to_owned(), values.collect::<Vec<_>>().join(", ")]
-    });
-    output::line(table(["variant", "values"], rows.collect(), &[]))
+    let columns: Vec<Vec<String>> = variants
+        .iter()
+        .map(|variant| {
+            let values = task.parameters().keys().map(|name| value(variant, name));
+            std::iter::once(variant.name().to_owned()).chain(values).collect()
+        })
+        .collect();
+    for group in across(&own, &columns) {
+        output::line("")?;
+        let row = |number: usize| -> Vec<String> {
+            own[number]
+                .iter()
+                .cloned()
+                .chain(group.iter().map(|column| column[number].clone()))
+                .collect()
+        };
+        output::line(wide_table(row(0), (1..own.len()).map(row).collect(), &[]))?;
+    }
+    Ok(())
+}
+
+/// Widest table in characters: what does not fit goes into a further table, each whole in itself.
+const WIDTH: usize = 160;
+
+/// The columns of the variants in groups that fit beside a task's own columns.
+fn across<'a>(own: &[Vec<String>], columns: &'a [Vec<String>]) -> Vec<&'a [Vec<String>]> {
+    let widest =
+        |texts: &mut dyn Iterator<Item = &String>| texts.map(|text| text.chars().count() + 2).max().unwrap_or(0);
+    let left: usize = (0..own[0].len())
+        .map(|column| widest(&mut own.iter().map(|row| &row[column])))
+        .sum();
+    let (mut groups, mut start, mut width) = (Vec::new(), 0, left);
+    for (index, column) in columns.iter().enumerate() {
+        let more = widest(&mut column.iter());
+        if index > start && width + more > WIDTH {
+            groups.push(&columns[start..index]);
+            (start, width) = (index, left);
+        }
+        width += more;
+    }
+    groups.push(&columns[start..]);
+    groups
+}
+
+/// What a parameter is in a variant: its value, or how it is drawn.
+fn value(variant: &Variant, name: &str) -> String {
+    match (variant.value(name), variant.distribution(name)) {
+        (_, Some(distribution)) => short(&distribution.to_string()),
+        (Some(value), None) => short(&value.to_string()),
+        (None, None) => String::new(),
+    }
+}
+
+/// A text cut to what a column has room for.
+fn short(text: &str) -> String {
+    const MOST: usize = 44;
+    if text.chars().count() <= MOST {
+        return text.to_owned();
+    }
+    text.chars().take(MOST - 1).chain(['…']).collect()
 }
 
 fn role(role: Role) -> &'static str {
@@ -108,17 +156,17 @@ fn role(role: Role) -> &'static str {
 }
 
 /// What a parameter may be, in a few words.
-fn domain(parameter: &Parameter) -> String {
+fn in_words(domain: &Domain, parameter: &Parameter) -> String {
     let unit = parameter
         .unit
         .as_ref()
         .map_or_else(String::new, |unit| format!(" {unit}"));
-    let text = match (parameter.domain(), &parameter.value, &parameter.distribution) {
-        (Some(Domain::Range([low, high])), _, _) => format!("{low} to {high}"),
-        (Some(Domain::Choices(choices)), _, _) => choices.iter().map(Value::to_string).collect::<Vec<_>>().join(", "),
-        (None, Some(value), _) => value.to_string(),
-        (None, None, Some(distribution)) => serde_json::to_string(distribution).unwrap_or_default(),
-        (None, None, None) => String::new(),
+    let text = match domain {
+        Domain::Range([low, high]) => format!("{low} to {high}"),
+        Domain::Choices(choices) if parameter.kind == ParameterType::Distribution => {
+            format!("{} distributions", choices.len())
+        }
+        Domain::Choices(choices) => choices.iter().map(Value::to_string).collect::<Vec<_>>().join(", "),
     };
-    text + &unit
+    short(&text) + &unit
 }

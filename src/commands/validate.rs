@@ -1,16 +1,18 @@
 //! `driftworld validate`: every problem of a document with its place.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
+use driftworld::spec::maps::MapLibrary;
 use driftworld::spec::{Problem, Scenario, SpecError, TaskSpec, World};
 use serde_json::{Value, json};
 
 use super::{Failure, input, output};
 
-/// Check task specs, worlds and scenarios, and name every problem with its place.
+/// Check task specs, worlds, scenarios and maps files, and name every problem with its place.
 ///
-/// What a file is, is seen from its keys: "blocks" make a scenario, "name" a task spec, anything else a world.
+/// What a file is, is seen from its keys: "blocks" make a scenario, "maps" a maps file, "name" a task spec, anything else a
+/// world.
 #[derive(Args)]
 #[command(after_help = "Example:\n  driftworld validate examples/tasks\n  driftworld validate --l2explorer map.json")]
 pub(crate) struct Validate {
@@ -60,6 +62,7 @@ impl Validate {
         let (kind, error) = match kind_of(&text) {
             "task spec" => ("task spec", TaskSpec::from_json(&name, &text).err()),
             "scenario" => ("scenario", Scenario::from_json(&name, &text).err()),
+            "maps file" => ("maps file", MapLibrary::from_json(&name, &text).err()),
             _ if self.l2explorer => match World::from_l2explorer(&name, &text) {
                 Ok((_, found)) => {
                     warnings = found.iter().map(ToString::to_string).collect();
@@ -82,6 +85,8 @@ fn kind_of(text: &str) -> &'static str {
     let json: Value = serde_json::from_str(text).unwrap_or_default();
     if json.get("blocks").is_some() {
         "scenario"
+    } else if json.get("maps").is_some() {
+        "maps file"
     } else if json.get("name").is_some() || json.get("parameters").is_some() || json.get("groups").is_some() {
         "task spec"
     } else {
@@ -93,28 +98,7 @@ fn kind_of(text: &str) -> &'static str {
 fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut files = Vec::new();
     for path in paths {
-        if !path.is_dir() {
-            files.push(path.clone());
-            continue;
-        }
-        let mut inside = folder(path)?;
-        if inside.is_empty() {
-            return Err(Failure::input(format!("{}: holds no .json file", path.display())));
-        }
-        inside.sort();
-        files.append(&mut inside);
-    }
-    Ok(files)
-}
-
-fn folder(path: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let failed = |error| Failure::input(format!("{}: cannot be read: {error}", path.display()));
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(path).map_err(failed)? {
-        let file = entry.map_err(failed)?.path();
-        if file.extension().is_some_and(|extension| extension == "json") {
-            files.push(file);
-        }
+        files.append(&mut input::json_files(path)?);
     }
     Ok(files)
 }

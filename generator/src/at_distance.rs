@@ -1,0 +1,298 @@
+//! A variant at a wanted distance from another. The distance is handed in; what it measures is `similarity`'s to say.
+
+use driftworld_spec::{Domain, Element, Parameter, ParameterType, Role, Value, Variant};
+
+use crate::GeneratorError;
+use crate::drift::interpolate;
+
+/// The most combinations of choices that are tried.
+const MOST_COMBINATIONS: usize = 4096;
+
+/// Halvings of a stretch before it is given up.
+const HALVINGS: u32 = 80;
+
+/// What may change on the way to a wanted distance.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Subject {
+    /// The variant parameters that affect this element of the decision process, and no other.
+    Element(Element),
+    /// These variant parameters.
+    Parameters(Vec<String>),
+}
+
+/// A variant that was found, and how far it is.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The variant.
+    pub variant: Variant,
+    /// Its distance from the one that was given.
+    pub distance: f64,
+}
+
+/// Finds a variant whose distance from `from` is `target` within `tolerance`.
+///
+/// First without changing any choice, then with as few changed choices as will do, the numbers of the subject move together
+/// from where they are towards the ends of their ranges that lie farthest, and the stretch between is halved. The same
+/// arguments always find the same variant. `distance` is asked a few hundred times; it returns finite numbers, 0 for `from`.
+///
+/// # Errors
+/// [`GeneratorError::NothingToVary`] if the subject has no parameter that could change; [`GeneratorError::TooFar`] with the
+/// farthest variant if none is as far as `target`; [`GeneratorError::NoneBetween`] with the nearest miss if the choices leave a
+/// gap around `target`.
+///
+/// # Example
+/// ```
+/// use driftworld_generator::{Subject, at_distance};
+/// use driftworld_spec::{Element, TaskSpec};
+/// let task = TaskSpec::from_json("t", r#"{ "name": "t", "parameters": {
+///     "pay": { "role": "variant", "type": "number", "affects": ["R"], "range": [-100, 100], "default": 100 } } }"#)?;
+/// let variant = task.variant("default")?;
+/// let pay = |variant: &driftworld_spec::Variant| variant.value("pay").and_then(|pay| pay.as_number()).unwrap_or(0.0);
+/// let found = at_distance(&variant, &Subject::Element(Element::R), 0.25, 1e-6, |other| (100.0 - pay(other)) / 200.0)?;
+/// assert!((pay(&found.variant) - 50.0).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn at_distance(
+    from: &Variant,
+    subject: &Subject,
+    target: f64,
+    tolerance: f64,
+    distance: impl FnMut(&Variant) -> f64,
+) -> Result<Found, GeneratorError> {
+    let (smooth, listed) = parameters_of(from, subject)?;
+    let mut search = Search {
+        from,
+        target,
+        tolerance,
+        distance,
+        nearest: None,
+        farthest: None,
+    };
+    let ends = search.farthest_ends(&smooth);
+    for combination in combinations(from, &listed) {
+        let Some(base) = search.look(combination.clone()) else {
+            continue;
+        };
+        if search.meets(&base) {
+            return search.finish();
+        }
+        let Some(end) = search.look(with(&combination, &ends)) else {
+            continue;
+        };
+        let crosses = (base.distance - target) * (end.distance - target) <= 0.0;
+        if search.meets(&end) || (crosses && search.halve(&combination, &ends)) {
+            return search.finish();
+        }
+    }
+    search.finish()
+}
+
+/// A parameter that may change: its name, and how it is declared.
+type Free<'a> = (&'a str, &'a Parameter);
+
+/// Values that differ from those of the variant that was given.
+type Changes = Vec<(String, Value)>;
+
+/// The parameters that move smoothly, and those that are chosen from a list.
+fn parameters_of<'a>(from: &'a Variant, subject: &Subject) -> Result<(Vec<Free<'a>>, Vec<Free<'a>>), GeneratorError> {
+    let declared = from
+        .task()
+        .parameters()
+        .iter()
+        .filter(|(_, parameter)| parameter.role == Role::Variant);
+    let belongs = |name: &str, parameter: &Parameter| match subject {
+        Subject::Element(element) => parameter.affects == [*element],
+        Subject::Parameters(names) => names.iter().any(|wanted| wanted == name),
+    };
+    let free: Vec<Free> = declared
+        .map(|(name, parameter)| (name.as_str(), parameter))
+        .filter(|(name, parameter)| belongs(name, parameter))
+        .collect();
+    if free.is_empty() {
+        let asked = match subject {
+            Subject::Element(element) => format!("parameters that affect {} alone", element.letter()),
+            Subject::Parameters(names) => format!("variant parameters named {}", names.join(", ")),
+        };
+        return Err(GeneratorError::NothingToVary {
+            variant: from.id(),
+            asked,
+        });
+    }
+    Ok(free
+        .into_iter()
+        .partition(|(_, parameter)| matches!(parameter.domain(), Some(Domain::Range(_)))))
+}
+
+/// Every combination of choices, those with fewer changes first; bounded.
+fn combinations(from: &Variant, listed: &[Free]) -> Vec<Changes> {
+    let mut all: Vec<Changes> = vec![Vec::new()];
+    for (name, parameter) in listed {
+        let Some(Domain::Choices(choices)) = parameter.domain() else {
+            continue;
+        };
+        let others = choices.into_iter().filter(|choice| from.value(name) != Some(choice));
+        let others: Vec<Value> = others.collect();
+        let room = MOST_COMBINATIONS.saturating_sub(all.len());
+        let more: Vec<Changes> = all
+            .iter()
+            .flat_map(|before| {
+                others
+                    .iter()
+                    .map(|value| with(before, &vec![((*name).to_owned(), value.clone())]))
+            })
+            .take(room)
+            .collect();
+        all.extend(more);
+    }
+    all.sort_by_key(Vec::len);
+    all
+}
+
+fn with(changes: &Changes, more: &Changes) -> Changes {
+    changes.iter().chain(more).cloned().collect()
+}
+
+struct Search<'a, D> {
+    from: &'a Variant,
+    target: f64,
+    tolerance: f64,
+    distance: D,
+    nearest: Option<Found>,
+    farthest: Option<Found>,
+}
+
+impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
+    /// Measures a variant and remembers it; `None` if the task does not allow it.
+    fn look(&mut self, changes: Changes) -> Option<Found> {
+        let name = format!("{}@{}", self.from.name(), (self.target * 1e6).round() / 1e6);
+        let variant = self.from.with(&name, changes).ok()?;
+        let distance = (self.distance)(&variant);
+        let found = Found { variant, distance };
+        let miss = |found: &Found| (found.distance - self.target).abs();
+        if self.nearest.as_ref().is_none_or(|nearest| miss(&found) < miss(nearest)) {
+            self.nearest = Some(found.clone());
+        }
+        if self
+            .farthest
+            .as_ref()
+            .is_none_or(|farthest| found.distance > farthest.distance)
+        {
+            self.farthest = Some(found.clone());
+        }
+        Some(found)
+    }
+
+    fn meets(&self, found: &Found) -> bool {
+        (found.distance - self.target).abs() <= self.tolerance
+    }
+
+    /// The ends of the ranges that lie farthest, taken parameter by parameter.
+    fn farthest_ends(&mut self, smooth: &[Free]) -> Changes {
+        let mut ends = Changes::new();
+        for (name, parameter) in smooth {
+            let options = ends_of(self.from, name, parameter);
+            let mut best: Option<(f64, Value)> = None;
+            for value in options {
+                let change = vec![((*name).to_owned(), value.clone())];
+                let Some(found) = self.look(with(&ends, &change)) else {
+                    continue;
+                };
+                if best.as_ref().is_none_or(|best| found.distance > best.0) {
+                    best = Some((found.distance, value));
+                }
+            }
+            ends.extend(best.map(|(_, value)| ((*name).to_owned(), value)));
+        }
+        ends
+    }
+
+    /// Halves the stretch to the ends until it meets the target; false if it cannot.
+    fn halve(&mut self, combination: &Changes, ends: &Changes) -> bool {
+        let (mut low, mut high) = (0.0, 1.0);
+        let Some(start) = self.look(combination.clone()) else {
+            return false;
+        };
+        for _ in 0..HALVINGS {
+            let t = f64::midpoint(low, high);
+            let between = ends.iter().map(|(name, end)| {
+                let parameter = &self.from.task().parameters()[name];
+                let value = self.from.value(name).expect("variant parameters have values");
+                let between = interpolate(parameter.kind, false, value, end, t, (self.from, self.from));
+                (name.clone(), between.unwrap_or_else(|| end.clone()))
+            });
+            let changes = with(combination, &between.collect());
+            let Some(found) = self.look(changes) else { return false };
+            if self.meets(&found) {
+                return true;
+            }
+            if (found.distance < self.target) == (start.distance < self.target) {
+                low = t;
+            } else {
+                high = t;
+            }
+        }
+        false
+    }
+
+    /// The nearest variant if it meets the target, else what came of the search.
+    fn finish(self) -> Result<Found, GeneratorError> {
+        let (target, variant) = (self.target, self.from.id());
+        let (Some(nearest), Some(farthest)) = (self.nearest, self.farthest) else {
+            return Err(GeneratorError::NothingToVary {
+                variant,
+                asked: "variants that the task allows".to_owned(),
+            });
+        };
+        if (nearest.distance - target).abs() <= self.tolerance {
+            return Ok(nearest);
+        }
+        if farthest.distance < target {
+            let values = shown(self.from, &farthest.variant);
+            return Err(GeneratorError::TooFar {
+                variant,
+                target,
+                farthest: farthest.distance,
+                values,
+            });
+        }
+        let values = shown(self.from, &nearest.variant);
+        Err(GeneratorError::NoneBetween {
+            variant,
+            target,
+            tolerance: self.tolerance,
+            nearest: nearest.distance,
+            values,
+        })
+    }
+}
+
+/// What a number could be at the most: the ends of its range; of a heading also the opposite direction.
+fn ends_of(from: &Variant, name: &str, parameter: &Parameter) -> Vec<Value> {
+    let Some(Domain::Range([low, high])) = parameter.domain() else {
+        return Vec::new();
+    };
+    let at = |end: f64| match from.value(name) {
+        Some(Value::Integer(_)) => Value::Integer(end.round() as i64),
+        Some(Value::Vector(numbers)) => Value::Vector(vec![end; numbers.len()]),
+        _ => Value::Number(end),
+    };
+    if parameter.kind == ParameterType::Heading {
+        let here = from.value(name).and_then(Value::as_number).unwrap_or(low);
+        return vec![Value::Number((here + 180.0).rem_euclid(360.0)), at(low), at(high)];
+    }
+    vec![at(low), at(high)]
+}
+
+/// The values in which a variant differs from another.
+fn shown(from: &Variant, to: &Variant) -> String {
+    let different = to
+        .values()
+        .iter()
+        .filter(|(name, value)| from.value(name) != Some(*value));
+    let shown: Vec<String> = different.map(|(name, value)| format!("{name} = {value}")).collect();
+    if shown.is_empty() {
+        "as it stands".to_owned()
+    } else {
+        shown.join(", ")
+    }
+}

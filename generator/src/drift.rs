@@ -1,0 +1,317 @@
+//! [`Drift`]: the variants between two variants of a task. How far apart two variants are is `similarity`'s to say.
+
+use driftworld_spec::{Distribution, Domain, Number, ParameterType, Spread, Value, Variant};
+
+use crate::GeneratorError;
+use crate::oklab;
+use crate::stream::Stream;
+
+/// How far a drift has come, as a function of the progress of what it happens in.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Schedule {
+    /// Evenly.
+    #[default]
+    Linear,
+    /// Slowly at first and at last: (1 − cos π·progress) / 2.
+    Cosine,
+    /// In so many equal steps, from 1 on: the first is taken at `1 / (steps + 1)` of the way, the last at `steps / (steps + 1)`.
+    Step {
+        /// How many steps.
+        steps: u32,
+    },
+    /// Up to the end and back at once to the beginning, so many times, from 1 on.
+    Sawtooth {
+        /// How many times.
+        periods: u32,
+    },
+}
+
+impl Schedule {
+    /// How far the drift has come, 0..=1, when its surroundings have come `progress`, 0..=1.
+    pub fn at(self, progress: f64) -> f64 {
+        let progress = progress.clamp(0.0, 1.0);
+        match self {
+            Self::Linear => progress,
+            Self::Cosine => (1.0 - libm::cos(std::f64::consts::PI * progress)) / 2.0,
+            Self::Step { steps } => {
+                let steps = f64::from(steps.max(1));
+                ((progress * (steps + 1.0)).floor() / steps).min(1.0)
+            }
+            Self::Sawtooth { .. } if progress == 1.0 => 1.0,
+            Self::Sawtooth { periods } => (progress * f64::from(periods.max(1))).fract(),
+        }
+    }
+}
+
+/// How values that have nothing between them change: texts, true and false, numbers out of a list.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Switch {
+    /// At the fraction that the parameter declares as `switch_at`; a half where it declares none.
+    #[default]
+    AtPoint,
+    /// By chance: at fraction t of the drift a world has the new value with probability t, drawn under this seed.
+    Mixture {
+        /// The seed.
+        seed: u64,
+    },
+}
+
+/// The way from one variant of a task to another.
+///
+/// Numbers, points, vectors and the numbers of distributions of one family go straight; headings take the shorter way round;
+/// colours go straight in Oklab, so that they change evenly to the eye; distributions of different families are mixed; whatever
+/// has nothing in between switches. At 0 and 1 the variants are those that were given.
+///
+/// # Example
+/// ```
+/// use driftworld_generator::Drift;
+/// use driftworld_spec::TaskSpec;
+/// let task = TaskSpec::from_json("t", r#"{ "name": "t", "parameters": {
+///     "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0, 4], "default": 0 } },
+///     "variants": { "night": {}, "day": { "light": 2 } } }"#)?;
+/// let drift = Drift::new(task.variant("night")?, task.variant("day")?)?;
+/// assert_eq!(drift.at(0.25, 0)?.value("light").and_then(|light| light.as_number()), Some(0.5));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Drift {
+    from: Variant,
+    to: Variant,
+    schedule: Schedule,
+    switch: Switch,
+}
+
+/// The variant at fraction `t`, 0..=1, between two variants of one task: a linear [`Drift`] whose switches are at points.
+///
+/// # Errors
+/// As [`Drift::new`] and [`Drift::at`].
+pub fn drift(from: &Variant, to: &Variant, t: f64) -> Result<Variant, GeneratorError> {
+    Drift::new(from.clone(), to.clone())?.at(t, 0)
+}
+
+impl Drift {
+    /// The way from one variant to another of the same task, linear, switching at points.
+    ///
+    /// # Errors
+    /// [`GeneratorError::DifferentTasks`].
+    pub fn new(from: Variant, to: Variant) -> Result<Self, GeneratorError> {
+        if from.task().name() == to.task().name() {
+            Ok(Self {
+                from,
+                to,
+                schedule: Schedule::default(),
+                switch: Switch::default(),
+            })
+        } else {
+            Err(GeneratorError::DifferentTasks {
+                from: from.id(),
+                to: to.id(),
+            })
+        }
+    }
+
+    /// Goes by another schedule.
+    #[must_use]
+    pub fn with_schedule(mut self, schedule: Schedule) -> Self {
+        self.schedule = schedule;
+        self
+    }
+
+    /// Switches in another way.
+    #[must_use]
+    pub fn with_switch(mut self, switch: Switch) -> Self {
+        self.switch = switch;
+        self
+    }
+
+    /// The variant when `progress`, 0..=1, has passed, for world number `index`, which only mixing switches look at.
+    ///
+    /// # Errors
+    /// [`GeneratorError::Between`] if a variant on the way breaks a requirement or cannot be drawn from.
+    pub fn at(&self, progress: f64, index: u64) -> Result<Variant, GeneratorError> {
+        let t = self.schedule.at(progress);
+        if t == 0.0 {
+            return Ok(self.from.clone());
+        }
+        if t == 1.0 {
+            return Ok(self.to.clone());
+        }
+        let changes = self.from.values().iter().filter_map(|(name, from)| {
+            let to = self.to.value(name)?;
+            (from != to).then(|| (name.clone(), self.between(name, from, to, t, index)))
+        });
+        let name = format!("{}..{}@{}", self.from.name(), self.to.name(), (t * 1e6).round() / 1e6);
+        self.from.with(&name, changes).map_err(GeneratorError::Between)
+    }
+
+    fn between(&self, name: &str, from: &Value, to: &Value, t: f64, index: u64) -> Value {
+        let parameter = &self.from.task().parameters()[name];
+        let listed = matches!(parameter.domain(), Some(Domain::Choices(_)));
+        interpolate(parameter.kind, listed, from, to, t, (&self.from, &self.to)).unwrap_or_else(|| {
+            let threshold = match self.switch {
+                Switch::AtPoint => parameter.switch_at.unwrap_or(0.5),
+                Switch::Mixture { seed } => Stream::new(self.from.task().name(), seed, &format!("drift/{name}"))
+                    .at(index, 0, 0)
+                    .unit(),
+            };
+            if t >= threshold { to.clone() } else { from.clone() }
+        })
+    }
+}
+
+/// The value between two, or `None` if there is nothing between them. `listed`: the domain is a list of choices.
+pub(crate) fn interpolate(
+    kind: ParameterType,
+    listed: bool,
+    from: &Value,
+    to: &Value,
+    t: f64,
+    (a, b): (&Variant, &Variant),
+) -> Option<Value> {
+    let straight = |from: f64, to: f64| from + (to - from) * t;
+    match (from, to) {
+        (Value::Color(from), Value::Color(to)) => Some(Value::Color(oklab::between(*from, *to, t))),
+        (Value::Point(from), Value::Point(to)) => {
+            Some(Value::Point([straight(from[0], to[0]), straight(from[1], to[1])]))
+        }
+        (Value::Vector(from), Value::Vector(to)) => Some(Value::Vector(
+            from.iter().zip(to).map(|(from, to)| straight(*from, *to)).collect(),
+        )),
+        (Value::Distribution(from), Value::Distribution(to)) => {
+            between_distributions(&a.settle(from), &b.settle(to), t)
+                .map(|between| Value::Distribution(Box::new(literal(&between))))
+        }
+        _ if listed => None,
+        (Value::Number(from), Value::Number(to)) if kind == ParameterType::Heading => {
+            let turn = (to - from + 180.0).rem_euclid(360.0) - 180.0;
+            Some(Value::Number((from + turn * t).rem_euclid(360.0)))
+        }
+        (Value::Number(from), Value::Number(to)) => Some(Value::Number(straight(*from, *to))),
+        (Value::Integer(from), Value::Integer(to)) => {
+            Some(Value::Integer(straight(*from as f64, *to as f64).round() as i64))
+        }
+        _ => None,
+    }
+}
+
+/// A distribution as documents have it.
+fn literal(distribution: &Distribution) -> Distribution<Number> {
+    let mapped: Result<_, std::convert::Infallible> = distribution.try_map(&mut |number| Ok(Number::Literal(*number)));
+    match mapped {
+        Ok(literal) => literal,
+        Err(never) => match never {},
+    }
+}
+
+/// Distributions of one family interpolate number by number; others are mixed, where both draw numbers or both points.
+fn between_distributions(from: &Distribution, to: &Distribution, t: f64) -> Option<Distribution> {
+    let (from, to) = (comparable(from, to), comparable(to, from));
+    if skeleton(&from) == skeleton(&to) {
+        let mut ends = Vec::new();
+        map(&to, |number| {
+            ends.push(number);
+            number
+        });
+        let mut ends = ends.into_iter();
+        let between = map(&from, |number| {
+            let end = ends.next().expect("equal skeletons have equally many numbers");
+            number + (end - number) * t
+        });
+        return Some(whole(between));
+    }
+    let alike =
+        from.is_planar() == to.is_planar() && (from.is_planar() || from.mean().is_some() == to.mean().is_some());
+    alike.then(|| Distribution::Mixture {
+        parts: vec![from, to],
+        weights: Some(vec![1.0 - t, t]),
+    })
+}
+
+/// A Gaussian by its covariance where the other is written in another way.
+fn comparable(distribution: &Distribution, other: &Distribution) -> Distribution {
+    match (distribution, other) {
+        (Distribution::Gaussian { mean, .. }, Distribution::Gaussian { .. })
+            if skeleton(distribution) != skeleton(other) =>
+        {
+            Distribution::Gaussian {
+                mean: *mean,
+                std: None::<Spread>,
+                correlation: None,
+                covariance: distribution.gaussian_covariance(),
+            }
+        }
+        _ => distribution.clone(),
+    }
+}
+
+fn map(distribution: &Distribution, mut f: impl FnMut(f64) -> f64) -> Distribution {
+    let mapped: Result<_, std::convert::Infallible> = distribution.try_map(&mut |number| Ok(f(*number)));
+    match mapped {
+        Ok(mapped) => mapped,
+        Err(never) => match never {},
+    }
+}
+
+/// The distribution but for its numbers.
+fn skeleton(distribution: &Distribution) -> Distribution {
+    map(distribution, |_| 0.0)
+}
+
+/// Rounds the numbers that a family wants whole.
+fn whole(distribution: Distribution) -> Distribution {
+    match distribution {
+        Distribution::IntegerUniform { low, high } => Distribution::IntegerUniform {
+            low: low.round(),
+            high: high.round(),
+        },
+        Distribution::Binomial { n, p } => Distribution::Binomial { n: n.round(), p },
+        Distribution::Grid {
+            low,
+            high,
+            columns,
+            rows,
+            jitter,
+            order,
+        } => Distribution::Grid {
+            low,
+            high,
+            columns: columns.round(),
+            rows: rows.round(),
+            jitter,
+            order,
+        },
+        Distribution::Mixture { parts, weights } => Distribution::Mixture {
+            parts: parts.into_iter().map(whole).collect(),
+            weights,
+        },
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn schedules_begin_at_0_and_end_at_1() {
+        for schedule in [
+            Schedule::Linear,
+            Schedule::Cosine,
+            Schedule::Step { steps: 1 },
+            Schedule::Step { steps: 4 },
+            Schedule::Sawtooth { periods: 3 },
+        ] {
+            assert_eq!(schedule.at(0.0), 0.0, "{schedule:?}");
+            assert_eq!(schedule.at(1.0), 1.0, "{schedule:?}");
+        }
+        assert!((Schedule::Cosine.at(0.5) - 0.5).abs() < 1e-15 && Schedule::Cosine.at(0.1) < 0.05);
+        assert_eq!(
+            [0.3, 0.4, 0.7].map(|x| Schedule::Step { steps: 2 }.at(x)),
+            [0.0, 0.5, 1.0]
+        );
+        assert_eq!(
+            [0.125, 0.375, 0.5, 0.625].map(|x| Schedule::Sawtooth { periods: 2 }.at(x)),
+            [0.25, 0.75, 0.0, 0.25]
+        );
+    }
+}

@@ -1,0 +1,205 @@
+//! Variants between variants, and at wanted distances. The worlds drawn from variants are tested in `worlds.rs`.
+
+use std::sync::Arc;
+
+use driftworld_generator::{Drift, GeneratorError, Schedule, Subject, Switch, at_distance, drift, sample};
+use driftworld_spec::{Color, Distribution, Element, TaskSpec, Value, Variant};
+use proptest::prelude::*;
+
+const TASK: &str = r#"{
+  "version": 2, "name": "t",
+  "parameters": {
+    "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0, 4], "default": 1 },
+    "color": { "role": "variant", "type": "color", "affects": ["O"], "choices": ["red", "blue", "white"], "default": "red" },
+    "pay": { "role": "variant", "type": "number", "affects": ["R"], "range": [-100, 100], "default": 100 },
+    "count": { "role": "variant", "type": "integer", "affects": ["S"], "range": [0, 10], "default": 2 },
+    "model": { "role": "variant", "type": "string", "affects": ["S"], "choices": ["1", "2", "3"], "default": "1", "switch_at": 0.25 },
+    "solid": { "role": "variant", "type": "boolean", "affects": ["T"], "choices": [true, false], "default": true },
+    "look": { "role": "variant", "type": "heading", "affects": ["S"], "range": [0, 360], "default": 350 },
+    "scatter": { "role": "variant", "type": "distribution", "affects": ["S"], "choices": [
+      { "disc": { "center": [0, 0], "radius": 5 } }, { "disc": { "center": [10, 0], "radius": 15 } },
+      { "gaussian": { "mean": [0, 0], "std": 4 } }, { "gaussian": { "mean": [4, 0], "covariance": [[4, 1], [1, 9]] } }
+    ], "default": { "disc": { "center": [0, 0], "radius": 5 } } },
+    "steps": { "role": "randomized", "type": "number", "affects": ["R"], "distribution":
+      { "uniform": { "low": { "param": "pay" }, "high": 200 } } }
+  },
+  "world": { "agent_params": { "heading": { "param": "look" } }, "rules": { "step_reward": { "param": "steps" } },
+             "environment_params": { "light_intensity": { "param": "light" } } },
+  "groups": [{ "name": "cubes", "count": { "param": "count" }, "placement": { "param": "scatter" },
+               "object": { "class": "cube", "model": { "param": "model" }, "color": { "param": "color" },
+                           "reward": { "param": "pay" }, "solid": { "param": "solid" } } }],
+  "variants": {
+    "a": {},
+    "b": { "light": 3, "color": "blue", "pay": -100, "count": 5, "model": "3", "solid": false, "look": 30,
+           "scatter": { "disc": { "center": [10, 0], "radius": 15 } } },
+    "c": { "scatter": { "gaussian": { "mean": [0, 0], "std": 4 } } },
+    "d": { "scatter": { "gaussian": { "mean": [4, 0], "covariance": [[4, 1], [1, 9]] } } }
+  }
+}"#;
+
+fn task() -> Arc<TaskSpec> {
+    TaskSpec::from_json("t.json", TASK).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn variant(name: &str) -> Variant {
+    task().variant(name).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn between(from: &str, to: &str, t: f64) -> Variant {
+    drift(&variant(from), &variant(to), t).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn number(variant: &Variant, name: &str) -> f64 {
+    variant
+        .value(name)
+        .and_then(Value::as_number)
+        .expect("the parameter is a number")
+}
+
+#[test]
+fn numbers_go_straight_headings_the_short_way_and_counts_in_whole_steps() {
+    let half = between("a", "b", 0.5);
+    assert_eq!((number(&half, "light"), number(&half, "pay")), (2.0, 0.0));
+    assert_eq!(number(&half, "look"), 10.0, "from 350 over north to 30");
+    assert_eq!(half.value("count"), Some(&Value::Integer(4)));
+    assert_eq!(half.name(), "a..b@0.5");
+    let Some(Distribution::Disc { center, radius }) = half.distribution("scatter") else {
+        panic!("two discs have a disc between them")
+    };
+    assert_eq!((center, radius), ([5.0, 0.0], 10.0));
+    assert_eq!(
+        half.distribution("steps"),
+        Some(Distribution::Uniform { low: 0.0, high: 200.0 })
+    );
+    assert!(sample(&half, 1, 0).is_ok());
+}
+
+#[test]
+fn colours_go_through_oklab_and_may_leave_the_list_of_choices() {
+    let half = between("a", "b", 0.5);
+    let Some(Value::Color(Color([red, green, blue]))) = half.value("color") else {
+        panic!("a colour stays one")
+    };
+    // The purple that CSS Color 4 gives for color-mix(in oklab, red, blue).
+    for (found, expected) in [(red, 0.548_6), (green, 0.324_4), (blue, 0.635_4)] {
+        assert!((found - expected).abs() < 0.002, "{found}, expected {expected}");
+    }
+}
+
+#[test]
+fn what_has_nothing_between_switches_where_it_is_declared_or_by_chance() {
+    assert_eq!(between("a", "b", 0.24).value("model"), Some(&Value::Text("1".into())));
+    assert_eq!(between("a", "b", 0.25).value("model"), Some(&Value::Text("3".into())));
+    assert_eq!(between("a", "b", 0.49).value("solid"), Some(&Value::Boolean(true)));
+    let mixed = Drift::new(variant("a"), variant("b"))
+        .expect("one task")
+        .with_switch(Switch::Mixture { seed: 3 });
+    let switched = |progress| {
+        let new = |index: &u64| {
+            let at = mixed.at(progress, *index).expect("every variant on the way can be had");
+            at.value("solid") == Some(&Value::Boolean(false))
+        };
+        (0..2000).filter(new).count()
+    };
+    assert!((150..250).contains(&switched(0.1)) && (1350..1450).contains(&switched(0.7)));
+}
+
+#[test]
+fn distributions_of_two_families_are_mixed_and_gaussians_meet_in_their_covariance() {
+    let Some(Distribution::Mixture { parts, weights }) = between("a", "c", 0.25).distribution("scatter") else {
+        panic!("a disc and a gaussian are mixed")
+    };
+    assert_eq!((parts.len(), weights), (2, Some(vec![0.75, 0.25])));
+    let covariance = between("c", "d", 0.5)
+        .distribution("scatter")
+        .and_then(|d| d.gaussian_covariance());
+    assert_eq!(covariance, Some([[10.0, 0.5], [0.5, 12.5]]));
+}
+
+#[test]
+fn a_drift_begins_and_ends_with_the_variants_it_was_given() {
+    for schedule in [
+        Schedule::Linear,
+        Schedule::Cosine,
+        Schedule::Step { steps: 3 },
+        Schedule::Sawtooth { periods: 2 },
+    ] {
+        let drift = Drift::new(variant("a"), variant("b"))
+            .expect("one task")
+            .with_schedule(schedule);
+        assert_eq!(drift.at(0.0, 0).expect("the first").values(), variant("a").values());
+        assert_eq!(drift.at(1.0, 0).expect("the last").values(), variant("b").values());
+    }
+    let other = TaskSpec::from_json("u.json", r#"{ "name": "u" }"#).expect("a name is enough");
+    let other = other.variant("default").expect("it is always there");
+    assert!(matches!(
+        Drift::new(variant("a"), other),
+        Err(GeneratorError::DifferentTasks { .. })
+    ));
+}
+
+/// A distance with a known shape: of each number its share of the range, of each other value 0 or 1, by fixed weights.
+fn distance(from: &Variant) -> impl Fn(&Variant) -> f64 + '_ {
+    let parts = [("light", 4.0, 0.3), ("pay", 200.0, 0.2), ("count", 10.0, 0.2)];
+    move |other| {
+        let numbers: f64 = parts
+            .iter()
+            .map(|(name, range, weight)| weight * (number(from, name) - number(other, name)).abs() / range)
+            .sum();
+        let color = if from.value("color") == other.value("color") {
+            0.0
+        } else {
+            0.3
+        };
+        numbers + color
+    }
+}
+
+#[test]
+fn a_variant_is_found_at_the_wanted_distance_by_changing_what_may_change() {
+    let a = variant("a");
+    let found = at_distance(&a, &Subject::Element(Element::R), 0.1, 1e-9, distance(&a)).expect("half of the range");
+    assert!((number(&found.variant, "pay") - 0.0).abs() < 1e-5);
+    let changed: Vec<&String> = found
+        .variant
+        .values()
+        .iter()
+        .filter(|(name, value)| a.value(name) != Some(*value))
+        .map(|(name, _)| name)
+        .collect();
+    assert_eq!(changed, ["pay"]);
+    let again = at_distance(&a, &Subject::Element(Element::R), 0.1, 1e-9, distance(&a)).expect("as before");
+    assert_eq!(again.variant.values(), found.variant.values());
+    // More than light alone can do: the colour changes too, and light makes up the rest.
+    let both = at_distance(&a, &Subject::Element(Element::O), 0.4, 1e-6, distance(&a)).expect("colour and light");
+    assert!((both.distance - 0.4).abs() <= 1e-6 && both.variant.value("color") != a.value("color"));
+}
+
+#[test]
+fn a_distance_that_cannot_be_had_says_how_near_one_comes() {
+    let a = variant("a");
+    let far = at_distance(&a, &Subject::Element(Element::R), 0.9, 1e-3, distance(&a)).expect_err("pay is worth 0.2");
+    let gap =
+        at_distance(&a, &Subject::Parameters(vec!["color".into()]), 0.2, 1e-3, distance(&a)).expect_err("0 or 0.3");
+    let none = at_distance(&a, &Subject::Element(Element::A), 0.2, 1e-3, distance(&a)).expect_err("no such parameter");
+    insta::assert_snapshot!(format!("{far}\n{gap}\n{none}"));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn every_distance_within_reach_is_met(target in 0.0..0.7_f64) {
+        let a = variant("a");
+        let names = ["light", "pay", "color"].map(str::to_owned).to_vec();
+        let found = at_distance(&a, &Subject::Parameters(names), target, 1e-6, distance(&a));
+        prop_assert!((found.map_err(|error| TestCaseError::fail(error.to_string()))?.distance - target).abs() <= 1e-6);
+    }
+
+    #[test]
+    fn every_variant_of_a_drift_can_be_drawn(t in 0.0..=1.0_f64, index in any::<u64>()) {
+        for to in ["b", "c", "d"] {
+            prop_assert!(sample(&between("a", to, t), 5, index).is_ok());
+        }
+    }
+}
