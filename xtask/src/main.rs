@@ -7,6 +7,7 @@
     reason = "a command line speaks through its terminal"
 )]
 
+mod bench;
 mod deny;
 mod documents;
 mod error;
@@ -22,6 +23,7 @@ mod workspace;
 
 use std::process::ExitCode;
 
+use bench::Suite;
 use stage::Stage;
 use workspace::Workspace;
 
@@ -31,7 +33,8 @@ Usage:
   cargo xtask test --only STAGE     one stage (may be given several times)
   cargo xtask test --list           the stages and what each holds
   cargo xtask STAGE                 the same as `test --only STAGE`, but for `schemas`
-  cargo xtask schemas               rewrite schemas/*.json from the Rust types";
+  cargo xtask schemas               rewrite schemas/*.json from the Rust types
+  cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator)";
 
 /// What the arguments ask for.
 #[derive(Debug, PartialEq)]
@@ -40,6 +43,7 @@ enum Request {
     List,
     Run(Vec<Stage>),
     RewriteSchemas,
+    Bench(Vec<Suite>),
 }
 
 fn main() -> ExitCode {
@@ -60,6 +64,14 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
         [] => Err("found no command".into()),
         ["-h" | "--help" | "help", ..] => Ok(Request::Help),
         ["schemas"] => Ok(Request::RewriteSchemas),
+        ["bench"] => Ok(Request::Bench(Suite::ALL.to_vec())),
+        ["bench", name] => match Suite::from_name(name) {
+            Some(suite) => Ok(Request::Bench(vec![suite])),
+            None => Err(format!(
+                "found unknown bench `{name}`, expected one of {}",
+                Suite::ALL.map(Suite::name).join(", ")
+            )),
+        },
         ["test", "--list"] => Ok(Request::List),
         ["test"] => Ok(Request::Run(Stage::ALL.to_vec())),
         ["test", rest @ ..] => parse_only(rest).map(Request::Run),
@@ -103,6 +115,7 @@ fn execute(request: Request) -> ExitCode {
         }
         Request::Run(stages) => Workspace::load().and_then(|workspace| stage::run_all(&workspace, &stages)),
         Request::RewriteSchemas => Workspace::load().and_then(|workspace| schemas::rewrite(&workspace)),
+        Request::Bench(suites) => Workspace::load().and_then(|workspace| bench::measure(&workspace, &suites)),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -144,6 +157,8 @@ mod tests {
         check("test", &Ok(Request::Run(Stage::ALL.to_vec())));
         check("test --list", &Ok(Request::List));
         check("--help", &Ok(Request::Help));
+        check("bench generator", &Ok(Request::Bench(vec![Suite::Generator])));
+        check("bench", &Ok(Request::Bench(Suite::ALL.to_vec())));
     }
 
     #[test]
@@ -155,6 +170,7 @@ mod tests {
         check("test --all", &Err("unknown argument `--all`"));
         check("test --only", &Err("without the name"));
         check("test --only bake", &Err("unknown stage `bake`"));
+        check("bench cakes", &Err("unknown bench `cakes`, expected one of generator"));
         check("test --list --only fmt", &Err("unknown argument `--list`"));
     }
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::error::XtaskError;
 use crate::process::{cargo, run};
 use crate::workspace::Workspace;
-use crate::{deny, documents, examples, layers, runner, schemas, tidy};
+use crate::{bench, deny, documents, examples, layers, runner, schemas, tidy};
 
 /// One step of `cargo xtask test`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,6 +19,7 @@ pub(crate) enum Stage {
     Doctests,
     Docs,
     Examples,
+    Benches,
     Schemas,
     Documents,
     Deny,
@@ -33,7 +34,7 @@ pub(crate) enum Outcome {
 
 impl Stage {
     /// In the order in which they run: the quick ones first, so that most mistakes show within seconds.
-    pub(crate) const ALL: [Self; 11] = [
+    pub(crate) const ALL: [Self; 12] = [
         Self::Fmt,
         Self::Layers,
         Self::Tidy,
@@ -42,6 +43,7 @@ impl Stage {
         Self::Doctests,
         Self::Docs,
         Self::Examples,
+        Self::Benches,
         Self::Schemas,
         Self::Documents,
         Self::Deny,
@@ -58,6 +60,7 @@ impl Stage {
             Self::Doctests => "doctests",
             Self::Docs => "docs",
             Self::Examples => "examples",
+            Self::Benches => "benches",
             Self::Schemas => "schemas",
             Self::Documents => "documents",
             Self::Deny => "deny",
@@ -75,6 +78,7 @@ impl Stage {
             Self::Doctests => "every example in a doc comment runs",
             Self::Docs => "the documentation builds without a warning",
             Self::Examples => "every program in examples/ ends well in an empty folder",
+            Self::Benches => "every bench runs once",
             Self::Schemas => "schemas/*.json equal what the Rust types generate",
             Self::Documents => "a second validator, in Python, judges tests/documents by the schemas as ours does",
             Self::Deny => "licences, advisories and sources of dependencies are as deny.toml allows",
@@ -109,6 +113,7 @@ impl Stage {
                 run(command).map(|()| Outcome::Passed)
             }
             Self::Examples => examples::stage(workspace).map(Outcome::PassedWith),
+            Self::Benches => bench::stage(workspace).map(|()| Outcome::Passed),
             Self::Schemas => schemas::check(workspace).map(|()| Outcome::Passed),
             Self::Documents => documents::stage(workspace),
             Self::Deny => deny::stage(workspace),

@@ -1,0 +1,269 @@
+//! Groups around each other, what they keep clear of and where they look; requirements, coverage, and maps from files. How
+//! places scatter is tested by statistics of their own.
+
+use std::sync::Arc;
+
+use driftworld_generator::{Coverage, GeneratorError, Sampler, sample};
+use driftworld_spec::maps::MapLibrary;
+use driftworld_spec::{Object, TaskSpec, Value, World};
+
+fn load(text: &str) -> Arc<TaskSpec> {
+    TaskSpec::from_json("task.json", text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn sampler(task: &Arc<TaskSpec>, seed: u64) -> Sampler {
+    Sampler::new(
+        &task.variant("default").expect("the defaults meet every requirement"),
+        seed,
+    )
+}
+
+fn world(task: &Arc<TaskSpec>, index: u64) -> World {
+    sampler(task, 7).world(index).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn tagged<'a>(world: &'a World, tag: &str) -> Vec<&'a Object> {
+    world
+        .objects
+        .iter()
+        .filter(|object| object.tag.as_deref() == Some(tag))
+        .collect()
+}
+
+fn distance(a: &Object, b: &Object) -> f64 {
+    (a.coordinates[0] - b.coordinates[0]).hypot(a.coordinates[1] - b.coordinates[1])
+}
+
+/// Houses with fences around them that look at them, trees that keep away from houses, rocks that look at the nearest tree.
+fn village(fences: &str) -> Arc<TaskSpec> {
+    load(&format!(
+        r#"{{ "version": 2, "name": "village", "groups": [
+          {{ "name": "houses", "count": 4, "object": {{ "class": "building" }}, "separation": 30, "facing": "random",
+             "placement": {{ "box": {{ "low": [-45, -45], "high": [45, 45] }} }} }},
+          {{ "name": "fences", "count": {fences}, "around": "houses", "facing": "middle", "object": {{ "class": "fence" }},
+             "placement": {{ "annulus": {{ "center": [0, 0], "inner": 6, "outer": 9 }} }}, "separation": 1,
+             "keep_out": {{ "walls": 0, "agent": 0 }} }},
+          {{ "name": "trees", "count": 20, "object": {{ "class": "tree" }}, "facing": {{ "point": [50, 50] }},
+             "placement": {{ "box": {{ "low": [-49, -49], "high": [49, 49] }} }}, "keep_out": {{ "groups": {{ "houses": 12 }} }} }},
+          {{ "name": "rocks", "count": 10, "object": {{ "class": "rock" }}, "facing": {{ "group": "trees" }},
+             "placement": {{ "disc": {{ "center": [0, 0], "radius": 45 }} }} }},
+          {{ "name": "bags", "count": 3, "object": {{ "class": "bag" }}, "facing": "agent",
+             "placement": {{ "disc": {{ "center": [0, 0], "radius": 45 }} }} }} ] }}"#
+    ))
+}
+
+/// How far a heading is off the direction from one place to another, in degrees.
+fn off(object: &Object, to: [f64; 2]) -> f64 {
+    let [x, y] = object.coordinates;
+    let wanted = (to[0] - x).atan2(to[1] - y).to_degrees();
+    ((object.heading - wanted + 180.0).rem_euclid(360.0) - 180.0).abs()
+}
+
+#[test]
+fn groups_stand_around_others_keep_clear_and_look_where_they_are_told() {
+    for index in 0..50 {
+        let world = world(&village("3"), index);
+        let (houses, trees) = (tagged(&world, "houses"), tagged(&world, "trees"));
+        for (number, fence) in tagged(&world, "fences").into_iter().enumerate() {
+            let house = houses[number / 3];
+            assert!(
+                (6.0..=9.0).contains(&distance(fence, house)),
+                "{index}: {}",
+                distance(fence, house)
+            );
+            assert!(off(fence, house.coordinates) < 1e-6);
+        }
+        for tree in &trees {
+            assert!(houses.iter().all(|house| distance(tree, house) >= 12.0));
+            assert!(off(tree, [50.0, 50.0]) < 1e-6);
+        }
+        for rock in tagged(&world, "rocks") {
+            let nearest = trees
+                .iter()
+                .min_by(|a, b| distance(rock, a).total_cmp(&distance(rock, b)));
+            assert!(off(rock, nearest.expect("there are trees").coordinates) < 1e-6);
+        }
+        assert!(
+            tagged(&world, "bags")
+                .into_iter()
+                .all(|bag| off(bag, [0.0, 0.0]) < 1e-6)
+        );
+    }
+}
+
+#[test]
+fn one_more_around_each_moves_nothing_around_another() {
+    let (few, more) = (world(&village("3"), 5), world(&village("4"), 5));
+    let fences = |world: &World, around: usize, of: usize| -> Vec<Object> {
+        let all = tagged(world, "fences");
+        all[around * of..around * of + 3]
+            .iter()
+            .map(|fence| (*fence).clone())
+            .collect()
+    };
+    for house in 0..4 {
+        assert_eq!(fences(&few, house, 3), fences(&more, house, 4));
+    }
+}
+
+#[test]
+fn a_group_around_a_group_that_is_not_there_is_refused_with_the_names_there_are() {
+    let error = TaskSpec::from_json(
+        "t.json",
+        r#"{ "name": "t", "version": 2, "groups": [
+          { "name": "houses", "count": 1, "object": { "class": "building" }, "placement": { "disc": { "center": [0, 0], "radius": 5 } } },
+          { "name": "fences", "count": 1, "around": "house", "object": { "class": "fence" },
+            "placement": { "disc": { "center": [0, 0], "radius": 5 } } } ] }"#,
+    )
+    .expect_err("there is no group named house");
+    insta::assert_snapshot!(error);
+}
+
+const SIZES: &str = r#"{ "version": 2, "name": "sizes", "parameters": {
+    "low": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": 0, "high": 1 } } },
+    "high": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": 0, "high": 1 } } },
+    "gap": { "role": "variant", "type": "number", "affects": ["S"], "range": [0, 2], "default": 0.5 } },
+  "require": ["low + gap < high"],
+  "variants": { "possible": {}, "impossible": { "gap": 1.5 } } }"#;
+
+#[test]
+fn worlds_that_break_a_requirement_are_drawn_again_and_the_others_stay() {
+    let task = load(SIZES);
+    let free = load(&SIZES.replace(r#""require": ["low + gap < high"],"#, ""));
+    let (held, free) = (sampler(&task, 7), sampler(&free, 7));
+    let mut kept = 0;
+    for index in 0..500 {
+        let number = |values: &[(&str, Value)], place: usize| values[place].1.as_number().expect("a number");
+        let values = held.values(index).expect("one in eight draws holds");
+        assert!(number(&values, 0) + 0.5 < number(&values, 1), "{index}");
+        let before = free.values(index).expect("nothing is required");
+        if number(&before, 0) + 0.5 < number(&before, 1) {
+            assert_eq!(values, before, "{index}: what held at once is not drawn again");
+            kept += 1;
+        }
+    }
+    assert!((30..100).contains(&kept), "about one in eight: {kept}");
+}
+
+#[test]
+fn a_requirement_that_never_holds_is_an_error_with_the_last_values() {
+    let task = load(SIZES);
+    let impossible = task
+        .variant("impossible")
+        .expect("chance has a part in it, so loading cannot know");
+    let error = sample(&impossible, 7, 0).expect_err("the gap is wider than the range");
+    assert!(matches!(error, GeneratorError::Requirement { .. }));
+    insta::assert_snapshot!(error);
+}
+
+const SPREAD: &str = r#"{ "version": 2, "name": "spread", "parameters": {
+    "light": { "role": "randomized", "type": "number", "affects": ["O"], "distribution": { "uniform": { "low": 0, "high": 4 } } },
+    "look": { "role": "randomized", "type": "heading", "affects": ["S"], "distribution": { "uniform": { "low": 0, "high": 360 } } },
+    "start": { "role": "randomized", "type": "point", "affects": ["S"], "distribution": { "box": { "low": [0, 0], "high": [16, 16] } } },
+    "model": { "role": "randomized", "type": "string", "affects": ["S"], "distribution": { "choice": { "values": ["1", "2"] } } } } }"#;
+
+/// For each share of a parameter's range how many of the worlds fall into it.
+fn shares(
+    sampler: &Sampler,
+    worlds: std::ops::Range<u64>,
+    share_of: impl Fn(&[(&str, Value)]) -> usize,
+    count: usize,
+) -> Vec<usize> {
+    let mut shares = vec![0; count];
+    for index in worlds {
+        shares[share_of(&sampler.values(index).expect("nothing is required"))] += 1;
+    }
+    shares
+}
+
+#[test]
+fn coverage_spreads_numbers_and_points_evenly_and_stays_random_access() {
+    let task = load(SPREAD);
+    let light = |values: &[(&str, Value)]| (values[0].1.as_number().expect("a number") * 16.0) as usize;
+    let cell = |values: &[(&str, Value)]| match values[2].1 {
+        Value::Point([x, y]) => (x as usize / 4) * 4 + y as usize / 4,
+        _ => usize::MAX,
+    };
+    let sobol = sampler(&task, 3).with_coverage(Coverage::Sobol);
+    assert_eq!(shares(&sobol, 64..128, light, 64), vec![1; 64]);
+    assert_eq!(
+        shares(&sobol, 0..64, cell, 16),
+        vec![4; 16],
+        "points cover the square, not only its sides"
+    );
+    let cube = sampler(&task, 3).with_coverage(Coverage::LatinHypercube { first: 10, count: 64 });
+    assert_eq!(shares(&cube, 10..74, light, 64), vec![1; 64]);
+    let independent = sampler(&task, 3);
+    assert_ne!(shares(&independent, 64..128, light, 64), vec![1; 64]);
+    // Choices are no scalars: they are drawn as ever.
+    let model = |sampler: &Sampler, index| sampler.values(index).expect("nothing is required")[3].1.clone();
+    assert!((0..64).all(|index| model(&sobol, index) == model(&independent, index)));
+    let again = sampler(&task, 3).with_coverage(Coverage::Sobol);
+    assert_eq!(
+        again.values(100).expect("any world"),
+        sobol.values(100).expect("any world")
+    );
+    assert_ne!(
+        sampler(&task, 4)
+            .with_coverage(Coverage::Sobol)
+            .values(100)
+            .expect("any world"),
+        sobol.values(100).expect("any world")
+    );
+}
+
+/// Turns of a polygon around a point, by angles: an oracle of its own kind. Odd inside, also where it touches itself.
+fn turns(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
+    let next = polygon.iter().cycle().skip(1);
+    let angles = polygon.iter().zip(next).map(|(a, b)| {
+        let angle = (b[1] - y).atan2(b[0] - x) - (a[1] - y).atan2(a[0] - x);
+        (angle + 9.0 * std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI
+    });
+    angles.sum::<f64>() / std::f64::consts::TAU
+}
+
+#[test]
+fn a_maps_file_replaces_the_built_in_layouts_and_nothing_stands_in_its_regions() {
+    let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/reference");
+    let root = std::env::var("DRIFTWORLD_REFERENCE").unwrap_or_else(|_| default.to_owned());
+    let path = format!("{root}/l2explorer/predefined_maps.json");
+    let Ok(text) = std::fs::read_to_string(&path) else {
+        println!("skipped: {path} is not there; set DRIFTWORLD_REFERENCE");
+        return;
+    };
+    let maps = Arc::new(MapLibrary::from_json("maps.json", &text).unwrap_or_else(|error| panic!("{error}")));
+    let task = load(
+        r#"{ "version": 2, "name": "maps",
+             "world": { "environment_params": { "predefined_map": { "integer_uniform": { "low": 0, "high": 4 } } } },
+             "groups": [{ "name": "rocks", "count": 300, "object": { "class": "rock" }, "keep_out": { "walls": 0.5 },
+                          "placement": { "box": { "low": [-100, -100], "high": [100, 100] } } }] }"#,
+    );
+    let sampler = sampler(&task, 7).with_maps(Arc::clone(&maps));
+    let mut seen = std::collections::BTreeSet::new();
+    for index in 0..40 {
+        let world = sampler.world(index).unwrap_or_else(|error| panic!("{error}"));
+        let map = world.environment_params.predefined_map;
+        seen.insert(map);
+        let layout = maps
+            .layouts()
+            .find(|layout| layout.id == map)
+            .expect("the file has all five maps");
+        assert_eq!(
+            world.environment_params.map_regions.as_deref(),
+            Some(&layout.excluded_regions[..])
+        );
+        for object in &world.objects {
+            for region in &layout.excluded_regions {
+                let turns = turns(&region.0, object.coordinates);
+                assert!(
+                    turns.round() as i64 % 2 == 0,
+                    "map {map}: {:?} is inside {region:?}",
+                    object.coordinates
+                );
+            }
+        }
+        let again = World::from_json("w", &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(again, world, "the world carries its map");
+    }
+    assert_eq!(seen.len(), 5);
+}

@@ -1,0 +1,42 @@
+//! How long it takes to read and check documents. Drawing worlds is measured in generator/benches/worlds.rs.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use driftworld_spec::{Object, TaskSpec, World};
+
+fn world_of(objects: u32) -> String {
+    let mut world = World::default();
+    world.objects = (0..objects)
+        .map(|number| {
+            let mut object = Object::new("tree", [f64::from(number) * 0.71, 3.25]);
+            object.tag = Some("trees".to_owned());
+            object.heading = f64::from(number);
+            object
+        })
+        .collect();
+    world.to_json()
+}
+
+fn documents(c: &mut Criterion) {
+    let text = world_of(30);
+    c.bench_function("validate a world of 30 objects", |bench| {
+        bench.iter(|| World::from_json("world.json", black_box(&text)).expect("it is sound"));
+    });
+    let broken = text.replacen("\"heading\"", "\"haeding\"", 1);
+    c.bench_function("refuse a world of 30 objects", |bench| {
+        bench.iter(|| World::from_json("world.json", black_box(&broken)).expect_err("a key is misspelt"));
+    });
+    let world = World::from_json("world.json", &text).expect("it is sound");
+    c.bench_function("write a world of 30 objects", |bench| {
+        bench.iter(|| black_box(&world).to_json())
+    });
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/tasks/settlement.json");
+    let task = std::fs::read_to_string(path).expect("the example tasks ship with the project");
+    c.bench_function("load a task spec", |bench| {
+        bench.iter(|| TaskSpec::from_json("task.json", black_box(&task)).expect("it is sound"));
+    });
+}
+
+criterion_group!(benches, documents);
+criterion_main!(benches);
