@@ -60,6 +60,8 @@ fn every_subcommand_has_help_with_an_example() {
         "tasks",
         "validate",
         "sample",
+        "vary",
+        "convert",
         "render",
         "distance",
         "order",
@@ -67,6 +69,7 @@ fn every_subcommand_has_help_with_an_example() {
         "run",
         "metrics",
         "schema",
+        "bench",
     ] {
         assert!(all.contains(&format!("  {name} ")), "{name} is listed");
         let help = succeed(&[name, "--help"]);
@@ -86,7 +89,7 @@ fn usage_errors_exit_with_2() {
 #[test]
 fn validate_accepts_the_examples_and_the_maps_of_the_original() {
     let said = succeed(&["validate", "examples/tasks"]);
-    assert_eq!(said.lines().count(), 2, "{said}");
+    assert_eq!(said.lines().count(), 3, "{said}");
     for map in ["map_findobjects_0.json", "map_simple.json", "map_spawning.json"] {
         let Some(path) = reference(map) else { return };
         succeed(&["validate", "--l2explorer", text(&path)]);
@@ -240,4 +243,155 @@ fn from_variants_to_scores_step_by_step() {
     assert_eq!(metrics["num_lx"], 4);
     let again = fail(1, &["run", text(&scenario), "--agent", "random", "--logs", text(&log)]);
     assert!(again.contains("--logs"), "a log is not written over: {again}");
+}
+
+#[test]
+fn shards_put_together_are_what_one_run_gives_and_tables_hold_the_same_worlds() {
+    let folder = scratch();
+    let sample =
+        |more: &[&str]| succeed(&[&["sample", "get_to_goal#soft", "--seed", "3", "--count", "100"], more].concat());
+    let whole = sample(&["--jsonl"]);
+    let parts: String = ["1/3", "2/3", "3/3"]
+        .map(|part| sample(&["--jsonl", "--shard", part]))
+        .concat();
+    assert_eq!(parts, whole);
+    for name in ["worlds.parquet", "worlds.arrow"] {
+        let path = folder.path().join(name);
+        let said = sample(&["-o", text(&path)]);
+        assert!(said.starts_with("100 worlds in "), "{said}");
+        let first = std::fs::read(&path).expect("the table was written");
+        sample(&["-o", text(&path)]);
+        assert_eq!(
+            std::fs::read(&path).expect("the table was written again"),
+            first,
+            "the same bytes"
+        );
+    }
+    let error = fail(2, &["sample", "find_objects", "--count", "3", "--shard", "4/3"]);
+    assert!(error.contains("counted from 1, such as 1/4"), "{error}");
+    fail(2, &["sample", "find_objects", "--shard", "1/3"]);
+}
+
+#[test]
+fn a_drift_leads_from_one_variant_to_the_other() {
+    let drift = succeed(&[
+        "sample",
+        "find_objects#blue",
+        "--drift-to",
+        "red",
+        "--count",
+        "11",
+        "--schedule",
+        "cosine",
+        "--seed",
+        "7",
+        "--jsonl",
+    ]);
+    let worlds: Vec<&str> = drift.lines().collect();
+    let alone = |variant: &str, index: &str| {
+        succeed(&["sample", variant, "--seed", "7", "--index", index])
+            .trim_end()
+            .to_owned()
+    };
+    assert_eq!(worlds[0], alone("find_objects#blue", "0"));
+    assert_eq!(worlds[10], alone("find_objects#red", "10"));
+    let middle: serde_json::Value = serde_json::from_str(worlds[5]).expect("a world is JSON");
+    let red = middle["objects"][0]["color"][0].as_f64().expect("colours are numbers");
+    assert!((0.3..0.8).contains(&red), "between blue and red: {red}");
+    let error = fail(
+        1,
+        &[
+            "sample",
+            "find_objects#blue",
+            "--drift-to",
+            "get_to_goal#soft",
+            "--count",
+            "3",
+            "--jsonl",
+        ],
+    );
+    assert!(error.contains("two variants of one task"), "{error}");
+    fail(
+        2,
+        &[
+            "sample",
+            "find_objects#blue",
+            "--drift-to",
+            "red",
+            "--count",
+            "3",
+            "--schedule",
+            "wave",
+        ],
+    );
+}
+
+#[test]
+fn a_variant_is_found_at_a_distance_and_what_is_printed_can_be_pasted() {
+    let found = succeed(&[
+        "vary",
+        "find_objects#red",
+        "--element",
+        "R",
+        "--distance",
+        "0.5",
+        "--json",
+    ]);
+    let found: serde_json::Value = serde_json::from_str(&found).expect("--json prints JSON");
+    assert_eq!(
+        found["variant"]["found"],
+        serde_json::json!({ "extends": "red", "target_reward": 0.0 })
+    );
+    let error = fail(1, &["vary", "find_objects#red", "--element", "T", "--distance", "0.5"]);
+    assert!(error.contains("affect T alone"), "{error}");
+}
+
+#[test]
+fn a_family_of_variants_is_named_as_one() {
+    let order = succeed(&["order", "examples/tasks/settlement.json#looks", "--json"]);
+    for member in ["looks-red-annulus0", "looks-gold-gaussian1"] {
+        assert!(order.contains(member), "{order}");
+    }
+    let table = succeed(&["tasks", "show", "examples/tasks/settlement.json"]);
+    assert!(
+        table.contains("woods-20") && table.contains("von_mises(mean 0, kappa 2)"),
+        "{table}"
+    );
+}
+
+#[test]
+fn worlds_go_to_l2explorer_and_come_back() {
+    let folder = scratch();
+    let path = folder.path().join("reset.json");
+    succeed(&[
+        "convert",
+        "find_objects#red",
+        "--seed",
+        "7",
+        "--to",
+        "l2explorer",
+        "-o",
+        text(&path),
+    ]);
+    let back = succeed(&["convert", text(&path), "--l2explorer"]);
+    assert!(back.contains("\"max_steps\": 300"), "{back}");
+    let Some(maps) = reference("predefined_maps.json") else {
+        return;
+    };
+    let world = succeed(&["convert", "examples/tasks/settlement.json#near", "--maps", text(&maps)]);
+    assert!(world.contains("map_regions"), "the world carries the map");
+    succeed(&["validate", text(&maps)]);
+}
+
+#[test]
+fn the_bench_prints_its_figures_under_their_names() {
+    let figures = succeed(&["bench", "generator", "--json", "--seconds", "0.002"]);
+    let figures: serde_json::Value = serde_json::from_str(&figures).expect("--json prints JSON");
+    for name in [
+        "worlds_per_second_per_core_map_86",
+        "worlds_per_second_per_core_find_objects",
+        "validations_per_second_per_core",
+    ] {
+        assert!(figures[name].as_f64().is_some_and(|rate| rate > 0.0), "{figures}");
+    }
 }

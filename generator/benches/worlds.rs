@@ -67,7 +67,7 @@ fn values(c: &mut Criterion) {
 fn preparing(c: &mut Criterion) {
     let red = variant("find_objects", "red");
     c.bench_function("prepare a sampler", |bench| {
-        bench.iter(|| black_box(Sampler::new(&red, 7)))
+        bench.iter(|| black_box(Sampler::new(&red, 7)));
     });
     let blue = variant("find_objects", "blue");
     c.bench_function("a variant of a drift", |bench| {
