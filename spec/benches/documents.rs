@@ -6,16 +6,18 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use driftworld_spec::{Object, TaskSpec, World};
 
 fn world_of(objects: u32) -> String {
-    let mut world = World::default();
-    world.objects = (0..objects)
-        .map(|number| {
-            let mut object = Object::new("tree", [f64::from(number) * 0.71, 3.25]);
-            object.tag = Some("trees".to_owned());
-            object.heading = f64::from(number);
-            object
-        })
-        .collect();
-    world.to_json()
+    let objects = (0..objects).map(|number| {
+        let mut object = Object::new("tree", [f64::from(number) * 0.71, 3.25]);
+        object.tag = Some("trees".to_owned());
+        object.heading = f64::from(number);
+        object
+    });
+    let objects = objects.collect();
+    World {
+        objects,
+        ..World::default()
+    }
+    .to_json()
 }
 
 fn documents(c: &mut Criterion) {
@@ -29,7 +31,7 @@ fn documents(c: &mut Criterion) {
     });
     let world = World::from_json("world.json", &text).expect("it is sound");
     c.bench_function("write a world of 30 objects", |bench| {
-        bench.iter(|| black_box(&world).to_json())
+        bench.iter(|| black_box(&world).to_json());
     });
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/tasks/settlement.json");
     let task = std::fs::read_to_string(path).expect("the example tasks ship with the project");
