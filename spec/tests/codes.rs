@@ -46,7 +46,7 @@ fn cases() -> Vec<SpecError> {
         task(&format!(r#"{number}, "variants": {{ "a": {{ "extends": "a" }} }}"#)),
         task(r#""world": { "max_steps": { "param": "steps" } }"#),
         parameter(
-            r#"{ "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "normal": { "mean": 0, "std": -1 } } }"#,
+            r#"{ "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": 1, "high": 0 } } }"#,
         ),
         task(r#""parameters": { "extends": { "role": "fixed", "type": "number", "value": 1 } }"#),
         task(

@@ -61,6 +61,10 @@ fn broken_tasks_are_refused_and_the_message_says_how_to_mend_them() {
         ("\"extends\": \"red\"", "\"extends\": \"rde\""),
         ("\"light\": 0.6", "\"lihgt\": 0.6"),
         ("\"light\": 0.6", "\"light\": 60"),
+        (
+            "\"light\": 0.6",
+            "\"light\": { \"uniform\": { \"low\": 0.2, \"high\": 0.4 } }",
+        ),
         ("\"light\": 0.6", "\"target_count\": 6"),
         ("\"target_color\": \"green\"", "\"target_color\": \"gren\""),
         ("\"description\": \"The same with red cubes.\"", "\"extends\": \"dusk\""),

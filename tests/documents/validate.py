@@ -11,7 +11,7 @@ from pathlib import Path
 from jsonschema import Draft202012Validator
 
 DOCUMENTS = Path(__file__).resolve().parent
-KINDS = ("world", "task", "scenario")
+KINDS = ("world", "task", "scenario", "maps")
 
 
 def read(path: Path) -> object:

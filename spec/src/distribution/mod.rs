@@ -51,7 +51,7 @@ pub enum Distribution<N = f64> {
         values: Vec<Value>,
         /// Weight of each value, at least 0, not all 0; all alike if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(length(min = 1, max = 10_000))]
+        #[schemars(length(min = 1, max = 10_000), transform = none_negative)]
         weights: Option<Vec<N>>,
     },
     /// Every number in `low..high` alike.
@@ -64,8 +64,10 @@ pub enum Distribution<N = f64> {
     /// Every whole number in `low..=high` alike.
     IntegerUniform {
         /// Least value.
+        #[schemars(extend("multipleOf" = 1))]
         low: N,
         /// Greatest value, not below `low`.
+        #[schemars(extend("multipleOf" = 1))]
         high: N,
     },
     /// The normal (Gaussian) distribution of numbers.
@@ -73,6 +75,7 @@ pub enum Distribution<N = f64> {
         /// Mean.
         mean: N,
         /// Standard deviation, at least 0.
+        #[schemars(extend("minimum" = 0))]
         std: N,
     },
     /// The normal distribution, given that it falls in `low..=high`.
@@ -80,6 +83,7 @@ pub enum Distribution<N = f64> {
         /// Mean of the normal before truncation.
         mean: N,
         /// Standard deviation of the normal before truncation, above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         std: N,
         /// Least value.
         low: N,
@@ -89,20 +93,25 @@ pub enum Distribution<N = f64> {
     /// Numbers above 0 whose logarithm is normal.
     LogNormal {
         /// Mean of the natural logarithm.
+        #[schemars(extend("minimum" = -300, "maximum" = 300))]
         mu: N,
         /// Standard deviation of the natural logarithm, at least 0.
+        #[schemars(extend("minimum" = 0, "maximum" = 30))]
         sigma: N,
     },
     /// Waiting times without memory: density `rate × exp(−rate × x)` above 0.
     Exponential {
         /// Events per unit, above 0; the mean is 1 / `rate`.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         rate: N,
     },
     /// The beta distribution, stretched from 0..1 to `low..high`.
     Beta {
         /// First shape, above 0: large values push towards `high`.
+        #[schemars(extend("minimum" = 0.001, "maximum" = 1_000_000))]
         alpha: N,
         /// Second shape, above 0: large values push towards `low`.
+        #[schemars(extend("minimum" = 0.001, "maximum" = 1_000_000))]
         beta: N,
         /// Lower end; 0 if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -125,6 +134,7 @@ pub enum Distribution<N = f64> {
         /// The value in the middle.
         value: N,
         /// Greatest deviation to either side, at least 0.
+        #[schemars(extend("minimum" = 0))]
         noise: N,
         /// Limit below, at which smaller results are cut off; none if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -138,34 +148,40 @@ pub enum Distribution<N = f64> {
         /// Mean direction in degrees clockwise from +y.
         mean: N,
         /// Concentration from 0 (every heading alike) to 10,000; about 3283 / (standard deviation in degrees)² when large.
+        #[schemars(extend("minimum" = 0, "maximum" = 10_000))]
         kappa: N,
     },
     /// True with probability `p`.
     Bernoulli {
         /// Probability, 0..1.
+        #[schemars(extend("minimum" = 0, "maximum" = 1))]
         p: N,
     },
     /// How many of `n` tries succeed.
     Binomial {
         /// Number of tries, a whole number from 0 to 100,000.
+        #[schemars(extend("minimum" = 0, "maximum" = 100_000, "multipleOf" = 1))]
         n: N,
         /// Probability that a try succeeds, 0..1.
+        #[schemars(extend("minimum" = 0, "maximum" = 1))]
         p: N,
     },
     /// How many events fall into a stretch when they come independently.
     Poisson {
         /// Mean number of events, from 0 to 100,000.
+        #[schemars(extend("minimum" = 0, "maximum" = 100_000))]
         mean: N,
     },
     /// How many tries fail before the first that succeeds.
     Geometric {
         /// Probability that a try succeeds, above 0, at most 1.
+        #[schemars(extend("exclusiveMinimum" = 0, "maximum" = 1))]
         p: N,
     },
     /// Shares that sum to 1: a vector with one entry per shape.
     Dirichlet {
         /// Shape of each share, above 0; equal shapes above 1 pull towards equal shares, below 1 towards one taking all.
-        #[schemars(length(min = 2, max = 100))]
+        #[schemars(length(min = 2, max = 100), transform = shapes)]
         alpha: Vec<N>,
     },
     /// Every point of a rectangle alike.
@@ -180,6 +196,7 @@ pub enum Distribution<N = f64> {
         /// Centre in metres.
         center: [N; 2],
         /// Radius in metres, above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         radius: N,
     },
     /// Every point of a ring alike.
@@ -187,8 +204,10 @@ pub enum Distribution<N = f64> {
         /// Centre in metres.
         center: [N; 2],
         /// Inner radius in metres, at least 0.
+        #[schemars(extend("minimum" = 0))]
         inner: N,
         /// Outer radius in metres, above `inner`.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         outer: N,
     },
     /// The normal distribution of the plane: `std` (round, or along each axis) with a correlation, or the covariance itself.
@@ -197,9 +216,11 @@ pub enum Distribution<N = f64> {
         mean: [N; 2],
         /// Standard deviation in metres, at least 0: one number for both axes, or one for each.
         #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(transform = none_negative)]
         std: Option<Spread<N>>,
         /// Correlation of x and y beside `std`, −1..1; 0 if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("minimum" = -1, "maximum" = 1))]
         correlation: Option<N>,
         /// Covariance matrix in square metres in place of `std`: symmetric, no negative eigenvalue.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -221,11 +242,14 @@ pub enum Distribution<N = f64> {
         /// North-east corner in metres, above `low` in both coordinates.
         high: [N; 2],
         /// Cells from west to east, a whole number from 1 to 1,000.
+        #[schemars(extend("minimum" = 1, "maximum" = 1_000, "multipleOf" = 1))]
         columns: N,
         /// Cells from south to north, a whole number from 1 to 1,000.
+        #[schemars(extend("minimum" = 1, "maximum" = 1_000, "multipleOf" = 1))]
         rows: N,
         /// How far a point strays from its cell's centre, as a share of the cell: 0 not at all, 1 anywhere in it; 0 if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(extend("minimum" = 0, "maximum" = 1))]
         jitter: Option<N>,
         /// Whether the cells are taken in turn, round and round, or drawn.
         #[serde(default, skip_serializing_if = "is_default")]
@@ -238,6 +262,7 @@ pub enum Distribution<N = f64> {
         /// North-east corner in metres, above `low` in both coordinates.
         high: [N; 2],
         /// Least distance in metres between two objects of the group, above 0.
+        #[schemars(extend("exclusiveMinimum" = 0))]
         distance: N,
     },
     /// One of several distributions, by weight, and then a draw from that.
@@ -247,7 +272,7 @@ pub enum Distribution<N = f64> {
         parts: Vec<Distribution<N>>,
         /// Weight of each part, at least 0, not all 0; all alike if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(length(min = 1, max = 100))]
+        #[schemars(length(min = 1, max = 100), transform = none_negative)]
         weights: Option<Vec<N>>,
     },
 }
@@ -277,6 +302,27 @@ pub enum Order {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
 fn is_default(order: &Order) -> bool {
     *order == Order::default()
+}
+
+/// A literal number is at least 0, alone or in a list; one that a parameter gives is checked when a variant settles it.
+fn none_negative(schema: &mut schemars::Schema) {
+    if schema.get("items").is_none() {
+        schema.insert("minimum".to_owned(), json!(0));
+    }
+    limit_items(schema, &json!({ "minimum": 0 }));
+}
+
+fn shapes(schema: &mut schemars::Schema) {
+    limit_items(schema, &json!({ "minimum": 0.001, "maximum": 1_000_000 }));
+}
+
+/// Adds limits to the items of a list, beside what they are.
+fn limit_items(schema: &mut schemars::Schema, limits: &serde_json::Value) {
+    let mut items = schema.remove("items").unwrap_or_else(|| json!({}));
+    if let (Some(items), Some(limits)) = (items.as_object_mut(), limits.as_object()) {
+        items.extend(limits.clone());
+    }
+    schema.insert("items".to_owned(), items);
 }
 
 fn gaussian_needs_one_spread(schema: &mut schemars::Schema) {

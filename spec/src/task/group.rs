@@ -36,6 +36,7 @@ pub struct Group {
     pub facing: Option<Facing>,
     /// Least distance in metres to the centre of any object placed before.
     #[serde(default = "zero")]
+    #[schemars(extend("minimum" = 0, "maximum" = 300))]
     pub separation: Number,
     /// What the objects keep clear of.
     #[serde(default)]
@@ -47,11 +48,14 @@ pub struct Group {
 #[serde(default, deny_unknown_fields)]
 pub struct KeepOut {
     /// Least distance to the arena's walls and to regions that cannot be entered.
+    #[schemars(extend("minimum" = 0, "maximum" = 300))]
     pub walls: Number,
     /// Least distance to the agent's start.
+    #[schemars(extend("minimum" = 0, "maximum" = 300))]
     pub agent: Number,
     /// Least distance to the objects of other groups, placed before, by the group's name.
     #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    #[schemars(transform = distances)]
     pub groups: IndexMap<String, Number>,
 }
 
@@ -79,6 +83,14 @@ pub enum Facing {
     Point([Number; 2]),
     /// Towards the nearest object of another group, placed before; where that has none, as the template says.
     Group(#[schemars(length(min = 1, max = 100))] String),
+}
+
+fn distances(schema: &mut schemars::Schema) {
+    for (key, limit) in [("minimum", 0), ("maximum", 300)] {
+        if let Some(distance) = schema.get_mut("additionalProperties").and_then(Json::as_object_mut) {
+            distance.insert(key.to_owned(), limit.into());
+        }
+    }
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
