@@ -92,7 +92,8 @@ impl<'a> Document<'a> {
     fn error(&self, mut problems: Vec<Problem>) -> SpecError {
         self.with_ast(|root| {
             for problem in &mut problems {
-                let offset = offset_of(root, &problem.pointer, problem.code == "spec/unknown-key");
+                let at_key = matches!(problem.code, "spec/unknown-key" | "spec/name");
+                let offset = offset_of(root, &problem.pointer, at_key);
                 (problem.line, problem.column) = line_and_column(self.text, offset);
             }
         });
@@ -195,10 +196,10 @@ pub(crate) fn describe(value: &Value) -> String {
         Value::Object(map) if map.len() > 2 => format!("an object with {} keys", map.len()),
         other => {
             let text = other.to_string();
-            if text.chars().count() > 60 {
-                "a large value".to_owned()
-            } else {
-                text
+            match other {
+                Value::Object(_) if text.chars().count() > 60 => "an object".to_owned(),
+                Value::Array(_) if text.chars().count() > 60 => "a list".to_owned(),
+                _ => text,
             }
         }
     }

@@ -48,6 +48,7 @@ fn cases() -> Vec<SpecError> {
         parameter(
             r#"{ "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": 1, "high": 0 } } }"#,
         ),
+        task(r#""parameters": { "max-steps": { "role": "fixed", "type": "integer", "value": 1 } }"#),
         task(r#""parameters": { "extends": { "role": "fixed", "type": "number", "value": 1 } }"#),
         task(
             r#""parameters": { "p": { "role": "fixed", "type": "number", "value": 1 } }, "variants": { "a": { "p": 2 } }"#,

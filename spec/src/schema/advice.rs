@@ -1,0 +1,78 @@
+//! What to do about values that come near to what was meant: names, numbers and truths in the wrong dress. Colours are in `color.rs`.
+
+use serde_json::Value;
+
+/// The advice for a value where these types of JSON Schema may stand.
+pub(super) fn for_types(value: &Value, allows: impl Fn(&str) -> bool) -> Option<String> {
+    let text = value.as_str()?.trim();
+    if allows("number") || allows("integer") {
+        return for_number(text);
+    }
+    let truth = match text.to_lowercase().as_str() {
+        "yes" | "true" | "on" => true,
+        "no" | "false" | "off" => false,
+        _ => return None,
+    };
+    allows("boolean").then(|| format!("write {truth}, without quotes"))
+}
+
+fn for_number(text: &str) -> Option<String> {
+    if let Some(number) = finite(text) {
+        return Some(format!("drop the quotes: {number}"));
+    }
+    let end = text.find(|c: char| !matches!(c, '0'..='9' | '.' | '-' | '+'))?;
+    let number = finite(&text[..end])?;
+    Some(format!("write the number alone: {number}"))
+}
+
+fn finite(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+/// A name in lower-case letters, digits and underscores for one that was written otherwise: `max_steps` for `maxSteps` and `max-steps`.
+pub(super) fn snake_case(name: &str) -> Option<String> {
+    let mut snake = String::new();
+    let mut after_small = false;
+    for c in name.trim().chars() {
+        if c.is_ascii_uppercase() && after_small {
+            snake.push('_');
+        }
+        after_small = c.is_ascii_lowercase() || c.is_ascii_digit();
+        match c {
+            '-' | ' ' | '.' | '/' => snake.push('_'),
+            c => snake.push(c.to_ascii_lowercase()),
+        }
+    }
+    let starts = snake.starts_with(|c: char| c.is_ascii_lowercase());
+    let rest = snake.chars().all(|c| matches!(c, 'a'..='z' | '0'..='9' | '_'));
+    (starts && rest && snake != name).then_some(snake)
+}
+
+/// The known word that one may stand for that begins alike: `param` for `parameter`.
+pub(super) fn begins_alike<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let alike =
+        |known: &&&str| word.len().min(known.len()) >= 4 && (word.starts_with(**known) || known.starts_with(word));
+    known.iter().filter(alike).max_by_key(|known| known.len()).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_brought_into_lower_case_with_underscores_where_that_is_all_they_lack() {
+        assert_eq!(snake_case("max-steps").as_deref(), Some("max_steps"));
+        assert_eq!(snake_case("FindObjects").as_deref(), Some("find_objects"));
+        assert_eq!(snake_case("RGB light").as_deref(), Some("rgb_light"));
+        assert_eq!(snake_case("3d_maze"), None);
+        assert_eq!(snake_case("größe"), None);
+    }
+
+    #[test]
+    fn numbers_in_quotes_are_taken_out_of_them() {
+        assert_eq!(for_number("+1.50").as_deref(), Some("drop the quotes: 1.5"));
+        assert_eq!(for_number("2 m").as_deref(), Some("write the number alone: 2"));
+        assert_eq!(for_number("many"), None);
+        assert_eq!(for_number("inf"), None);
+    }
+}

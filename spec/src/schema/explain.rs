@@ -1,0 +1,253 @@
+//! From the errors of a schema to problems that an author can mend. Values that may take several forms are `forms.rs`'s.
+
+use std::collections::BTreeMap;
+
+use jsonschema::ValidationError;
+use jsonschema::error::{TypeKind, ValidationErrorKind};
+use serde_json::Value;
+
+use super::advice;
+use super::wording::{code_of, either, expected};
+use crate::document::{describe, escape};
+use crate::error::Problem;
+
+/// A problem, and how sure it is that nothing narrower can be said.
+pub(super) struct Finding {
+    pub(super) problem: Problem,
+    /// How many forms it offers, where a value has none of them; 0 for every other problem.
+    pub(super) forms: usize,
+}
+
+impl Finding {
+    /// Of two findings about one value the lower says it all; `None` for those that stand beside every other.
+    fn rank(&self) -> Option<usize> {
+        match (self.problem.code, self.forms) {
+            ("spec/name" | "spec/missing-key", _) => None,
+            ("spec/unknown-key", _) => Some(0),
+            // That a value is of the wrong kind is worth more than that it lies outside its limits.
+            (_, 1) => Some(1),
+            (_, 0) => Some(2),
+            (_, forms) => Some(forms + 1),
+        }
+    }
+}
+
+impl From<Problem> for Finding {
+    fn from(problem: Problem) -> Self {
+        Self { problem, forms: 0 }
+    }
+}
+
+/// Everything that a schema's errors say about a document, each once, and of what is said of one value only the narrowest.
+pub(super) fn problems<'a>(
+    schema: &Value,
+    document: &Value,
+    errors: impl Iterator<Item = ValidationError<'a>>,
+) -> Vec<Problem> {
+    let explainer = Explainer { schema, document };
+    let findings: Vec<Finding> = errors.flat_map(|error| explainer.explain(&error)).collect();
+    let mut best: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+    for (index, finding) in findings.iter().enumerate() {
+        if let Some(rank) = finding.rank() {
+            let least = best.entry(&finding.problem.pointer).or_insert((rank, index));
+            *least = (*least).min((rank, index));
+        }
+    }
+    let kept = findings.iter().enumerate().filter(|(index, finding)| {
+        let pointer = finding.problem.pointer.as_str();
+        let narrowest = finding.rank().is_none_or(|rank| {
+            // Two rules may forbid one key; once is enough.
+            best.get(pointer)
+                .is_none_or(|(least, first)| rank == *least && (rank > 0 || first == index))
+        });
+        // What stands inside a value of the wrong kind, or under a key that may not be there, does not matter.
+        narrowest && !parents(pointer).any(|parent| best.get(parent).is_some_and(|(least, _)| *least <= 1))
+    });
+    kept.map(|(_, finding)| finding.problem.clone()).collect()
+}
+
+/// The pointers of all values around that of a pointer.
+fn parents(pointer: &str) -> impl Iterator<Item = &str> {
+    pointer.match_indices('/').map(|(slash, _)| &pointer[..slash])
+}
+
+/// Explains errors of a schema about a document.
+pub(super) struct Explainer<'a> {
+    pub(super) schema: &'a Value,
+    pub(super) document: &'a Value,
+}
+
+impl Explainer<'_> {
+    pub(super) fn explain(&self, error: &ValidationError) -> Vec<Finding> {
+        let pointer = error.instance_path().as_str();
+        match error.kind() {
+            ValidationErrorKind::AdditionalProperties { unexpected } => {
+                let known = self.known_keys(error);
+                unexpected
+                    .iter()
+                    .map(|key| unknown_key(pointer, key, &known).into())
+                    .collect()
+            }
+            ValidationErrorKind::Required { property } => {
+                vec![missing_key(pointer, &property.to_string()).into()]
+            }
+            ValidationErrorKind::FalseSchema => vec![self.forbidden_key(error).into()],
+            ValidationErrorKind::AnyOf { context }
+            | ValidationErrorKind::OneOfNotValid { context }
+            | ValidationErrorKind::OneOfMultipleValid { context } => self.alternatives(error, context),
+            ValidationErrorKind::PropertyNames { error: name } => vec![self.name(pointer, name).into()],
+            // Where a text must have characters, an empty one has been told so.
+            ValidationErrorKind::Pattern { .. }
+                if error.instance().as_str() == Some("") && self.parent(error).get("minLength").is_some() =>
+            {
+                Vec::new()
+            }
+            _ => vec![self.plain(error)],
+        }
+    }
+
+    /// The part of the schema that holds the keyword at fault.
+    pub(super) fn parent(&self, error: &ValidationError) -> &Value {
+        let place = error.schema_path().as_str();
+        let parent = place.rfind('/').map_or("", |slash| &place[..slash]);
+        self.schema.pointer(parent).unwrap_or(&Value::Null)
+    }
+
+    /// The problem of an error about the value alone.
+    fn plain(&self, error: &ValidationError) -> Finding {
+        let value = error.instance();
+        let problem = Problem::new(
+            code_of(error.kind()),
+            error.instance_path().as_str(),
+            describe(value),
+            self.expected(error),
+        );
+        let advice = match error.kind() {
+            ValidationErrorKind::Type { kind } => advice::for_types(value, |name| match kind {
+                TypeKind::Single(kind) => kind.to_string() == name,
+                TypeKind::Multiple(kinds) => kinds.iter().any(|kind| kind.to_string() == name),
+            }),
+            ValidationErrorKind::Pattern { .. } => renamed(error),
+            _ => None,
+        };
+        Finding {
+            forms: usize::from(matches!(error.kind(), ValidationErrorKind::Type { .. })),
+            problem: match advice {
+                Some(advice) => problem.advise(advice),
+                None => problem,
+            },
+        }
+    }
+
+    fn expected(&self, error: &ValidationError) -> String {
+        match error.kind() {
+            ValidationErrorKind::Enum { options } => {
+                let words = options.as_array().into_iter().flatten().map(describe);
+                format!("one of {}", words.collect::<Vec<_>>().join(", "))
+            }
+            _ => expected(error, self.parent(error)),
+        }
+    }
+
+    /// The problem of a key that is not formed as names are.
+    fn name(&self, pointer: &str, error: &ValidationError) -> Problem {
+        let name = error.instance().as_str().unwrap_or_default();
+        let place = format!("{pointer}/{}", escape(name));
+        let problem = Problem::new("spec/name", place, format!("the name {name:?}"), self.expected(error));
+        match renamed(error) {
+            Some(advice) => problem.advise(advice),
+            None => problem,
+        }
+    }
+
+    /// The keys that the object at fault may have.
+    fn known_keys(&self, error: &ValidationError) -> Vec<String> {
+        let keys = self.parent(error).get("properties").and_then(Value::as_object);
+        keys.into_iter()
+            .flatten()
+            .map(|(key, _)| key.clone())
+            .filter(|key| key != "$schema")
+            .collect()
+    }
+
+    /// The problem of a key that may not stand beside another, or not beside what that says.
+    fn forbidden_key(&self, error: &ValidationError) -> Problem {
+        let pointer = error.instance_path().as_str();
+        let (parent, key) = pointer.rsplit_once('/').unwrap_or(("", pointer));
+        let place = error.schema_path().as_str();
+        let rule = place.rsplit_once("/properties/").map_or("", |(rule, _)| rule);
+        let told = |expected: String, advice: String| {
+            Problem::new("spec/unknown-key", pointer, format!("the key {key:?}"), expected).advise(advice)
+        };
+        let condition = rule.strip_suffix("/then").and_then(|rule| {
+            self.schema
+                .pointer(rule)?
+                .pointer("/if/properties")?
+                .as_object()?
+                .keys()
+                .next()
+        });
+        let Some(condition) = condition else {
+            let beside = self.schema.pointer(rule).and_then(|rule| rule.pointer("/required/0"));
+            let beside = beside.and_then(Value::as_str).unwrap_or("what stands there");
+            return told(
+                format!("no such key beside {beside:?}"),
+                "remove one of the two".to_owned(),
+            );
+        };
+        let found = self.document.pointer(parent).and_then(|object| object.get(condition));
+        let found = found.unwrap_or(&Value::Null);
+        if condition == "role" {
+            let roles = self.roles_with(rule, key);
+            let advice = format!("remove it, or make the role {}", either(roles));
+            let expected = format!("no such key in a {} parameter", found.as_str().unwrap_or_default());
+            return told(expected, advice);
+        }
+        let advice = if key == "range" {
+            "list the values under \"choices\" instead"
+        } else {
+            "remove it"
+        };
+        told(format!("no such key beside {condition:?}: {found}"), advice.to_owned())
+    }
+
+    /// The roles whose parameters may have a key, by the rules beside the one that forbids it.
+    fn roles_with(&self, rule: &str, key: &str) -> Vec<String> {
+        let rules = rule
+            .split("/allOf/")
+            .next()
+            .and_then(|node| self.schema.pointer(node)?.get("allOf")?.as_array());
+        let allowing = rules.into_iter().flatten().filter_map(|rule| {
+            let role = rule.pointer("/if/properties/role/const")?.as_str()?;
+            let forbidden = rule.pointer(&format!("/then/properties/{key}")) == Some(&Value::Bool(false));
+            (!forbidden).then(|| role.to_owned())
+        });
+        allowing.collect()
+    }
+}
+
+/// The problem of a key that is not there; `key` with its quotes.
+pub(super) fn missing_key(pointer: &str, key: &str) -> Problem {
+    Problem::new("spec/missing-key", pointer, "nothing", format!("the key {key}"))
+}
+
+fn unknown_key(pointer: &str, key: &str, known: &[String]) -> Problem {
+    let expected = match known {
+        [] => "no further keys".to_owned(),
+        [only] => format!("no key beside {only:?}"),
+        _ => format!("one of {}", known.join(", ")),
+    };
+    Problem::new(
+        "spec/unknown-key",
+        format!("{pointer}/{}", escape(key)),
+        format!("the unknown key {key:?}"),
+        expected,
+    )
+    .suggest(key, known)
+}
+
+/// What a name may have been meant to be, where its pattern wants another.
+fn renamed(error: &ValidationError) -> Option<String> {
+    let near = advice::snake_case(error.instance().as_str()?)?;
+    Some(format!("did you mean {near:?}?"))
+}

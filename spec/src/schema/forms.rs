@@ -1,0 +1,375 @@
+//! Values that may take one of several forms: which one their author meant, or which there are. Other errors are `explain.rs`'s.
+
+use jsonschema::ValidationError;
+use jsonschema::error::ValidationErrorKind;
+use serde_json::{Map, Value};
+
+use super::explain::{Explainer, Finding, missing_key};
+use super::wording::{article, both, either, object};
+use super::{advice, color};
+use crate::document::describe;
+use crate::error::{Problem, nearest};
+
+/// The definitions that messages call by a name of their own rather than by what they consist of.
+const NAMED: [&str; 3] = ["Color", "ParamRef", "Distribution"];
+
+/// One form that a value may take, and what keeps this value from having it.
+struct Form<'a, 'e> {
+    /// Its schema, all references followed.
+    schema: &'a Value,
+    /// The definition that it belongs to, if messages know that by name.
+    name: Option<&'a str>,
+    errors: Vec<&'e ValidationError<'static>>,
+}
+
+impl Form<'_, '_> {
+    fn is(&self, name: &str) -> bool {
+        self.name == Some(name)
+    }
+
+    fn has_type(&self, name: &str) -> bool {
+        match &self.schema["type"] {
+            Value::String(kind) => kind == name,
+            Value::Array(kinds) => kinds.iter().any(|kind| kind == name),
+            _ => false,
+        }
+    }
+
+    /// Whether the value is of another JSON type than this form.
+    fn is_of_another_type(&self, own: &str) -> bool {
+        let wrong = |kind: &ValidationErrorKind| matches!(kind, ValidationErrorKind::Type { .. });
+        self.errors_at(own).any(|error| wrong(error.kind()))
+    }
+
+    /// Whether the value is another word than this form has.
+    fn is_another_word(&self, own: &str) -> bool {
+        use ValidationErrorKind as Kind;
+        let wrong = |kind: &Kind| matches!(kind, Kind::Constant { .. } | Kind::Enum { .. });
+        self.errors_at(own).any(|error| wrong(error.kind()))
+    }
+
+    fn errors_at(&self, own: &str) -> impl Iterator<Item = &ValidationError<'static>> {
+        self.errors
+            .iter()
+            .copied()
+            .filter(move |error| error.instance_path().as_str() == own)
+    }
+
+    fn properties(&self) -> Option<&Map<String, Value>> {
+        self.schema["properties"].as_object()
+    }
+
+    /// The one key that tells this form of an object from others: `uniform` of `{ "uniform": … }`.
+    fn tag(&self) -> Option<&str> {
+        let alone = self.is("ParamRef") || self.properties().is_some_and(|properties| properties.len() == 1);
+        match self.schema["required"].as_array().map(Vec::as_slice) {
+            Some([key]) if alone => key.as_str(),
+            _ => None,
+        }
+    }
+
+    /// The words that this form consists of.
+    fn words(&self) -> Vec<&str> {
+        let options = self.schema["enum"].as_array().into_iter().flatten();
+        options
+            .chain(self.schema.get("const"))
+            .filter_map(Value::as_str)
+            .collect()
+    }
+
+    /// Its name in a list of forms, with the place that this has there; `None` for what needs no mention.
+    fn label(&self, beside_text: bool) -> Option<(usize, String)> {
+        let of_numbers = self.schema.pointer("/items/type").is_some_and(|kind| kind == "number");
+        let label = match self.name {
+            Some("Color") if beside_text => (6, "a colour".to_owned()),
+            Some("Color") => (6, color::EXPECTED.to_owned()),
+            Some("ParamRef") => (9, "a parameter ({\"param\": …})".to_owned()),
+            Some(_) => (10, "a distribution".to_owned()),
+            None if self.has_type("null") => return None,
+            None if self.has_type("number") => (0, article("number")),
+            None if self.has_type("integer") => (1, article("integer")),
+            None if self.has_type("string") => (2, article("string")),
+            None if self.has_type("boolean") => (3, article("boolean")),
+            None if self.has_type("array") && of_numbers && self.schema["maxItems"] == 2 => {
+                (5, "a point [x, y]".to_owned())
+            }
+            None if self.has_type("array") && of_numbers => (7, "a list of numbers".to_owned()),
+            None => match self.tag() {
+                Some(tag) => (8, format!("{{{tag:?}: …}}")),
+                None if self.has_type("object") => (8, object(self.schema)),
+                None => (8, article(self.schema["type"].as_str().unwrap_or("value"))),
+            },
+        };
+        Some(label)
+    }
+}
+
+impl Explainer<'_> {
+    /// What to say of a value that has none of several forms, or several of them.
+    pub(super) fn alternatives(
+        &self,
+        error: &ValidationError,
+        context: &[Vec<ValidationError<'static>>],
+    ) -> Vec<Finding> {
+        let place = error.schema_path().as_str();
+        let branches = self
+            .schema
+            .pointer(place)
+            .and_then(Value::as_array)
+            .map_or(&[][..], Vec::as_slice);
+        if let Some(findings) = self.one_of_the_keys(error, branches, context) {
+            return findings;
+        }
+        let name = place.rsplit('/').nth(1).filter(|name| NAMED.contains(name));
+        let name = name.and_then(|name| NAMED.into_iter().find(|known| *known == name));
+        let own = error.instance_path().as_str();
+        let mut forms = Vec::new();
+        self.unfold(own, branches, context, name, &mut forms);
+        let value = error.instance();
+        let of_its_type: Vec<&Form> = forms.iter().filter(|form| !form.is_of_another_type(own)).collect();
+        if !of_its_type.is_empty()
+            && of_its_type.iter().all(|form| form.is("Color"))
+            && let Some(problem) = color::problem(own, value)
+        {
+            return vec![Finding { problem, forms: 1 }];
+        }
+        let meant = match &**value {
+            Value::Object(map) => match meant_object(own, map, &forms) {
+                Ok(meant) => meant,
+                Err(problem) => return vec![problem.into()],
+            },
+            _ => meant_value(own, &of_its_type),
+        };
+        match meant {
+            Some(form) => form.errors.iter().flat_map(|error| self.explain(error)).collect(),
+            None => vec![none_of(own, value, &forms)],
+        }
+    }
+
+    /// Of objects that need one of several keys: none of these is there, or too many.
+    fn one_of_the_keys(
+        &self,
+        error: &ValidationError,
+        branches: &[Value],
+        context: &[Vec<ValidationError<'static>>],
+    ) -> Option<Vec<Finding>> {
+        let key = |branch: &Value| {
+            let key = branch.pointer("/required/0")?.as_str()?.to_owned();
+            branch.get("type").is_none().then_some(key)
+        };
+        let keys: Vec<String> = branches.iter().map(key).collect::<Option<_>>()?;
+        let (pointer, object) = (error.instance_path().as_str(), error.instance().as_object()?);
+        let mut present = keys.iter().enumerate().filter(|(_, key)| object.contains_key(*key));
+        let problem = match (present.next(), present.next()) {
+            (None, _) if keys.len() == 1 => missing_key(pointer, &format!("{:?}", keys[0])),
+            (None, _) => {
+                let found = format!("neither {}", keys.join(" nor "));
+                Problem::new("spec/missing-key", pointer, found, "one of the two")
+            }
+            (Some((index, _)), None) => {
+                return Some(
+                    context
+                        .get(index)?
+                        .iter()
+                        .flat_map(|error| self.explain(error))
+                        .collect(),
+                );
+            }
+            (Some(_), Some(_)) => {
+                let found = format!("both {}", keys.join(" and "));
+                Problem::new("spec/value", pointer, found, "one of the two").advise("remove one")
+            }
+        };
+        Some(vec![problem.into()])
+    }
+
+    /// Gathers the forms behind branches, those of nested choices too.
+    fn unfold<'a, 'e>(
+        &'a self,
+        own: &str,
+        branches: &'a [Value],
+        context: &'e [Vec<ValidationError<'static>>],
+        name: Option<&'a str>,
+        forms: &mut Vec<Form<'a, 'e>>,
+    ) {
+        for (branch, errors) in branches.iter().zip(context) {
+            let (mut schema, mut name) = (branch, name);
+            while let Some(reference) = schema.get("$ref").and_then(Value::as_str) {
+                let definition = reference.rsplit('/').next().unwrap_or_default();
+                name = name.or_else(|| NAMED.contains(&definition).then_some(definition));
+                let Some(target) = self.schema.pointer(reference.trim_start_matches('#')) else {
+                    break;
+                };
+                schema = target;
+            }
+            let inner = schema
+                .get("anyOf")
+                .or_else(|| schema.get("oneOf"))
+                .and_then(Value::as_array);
+            let nested = errors.iter().find_map(|error| match error.kind() {
+                ValidationErrorKind::AnyOf { context } | ValidationErrorKind::OneOfNotValid { context } => {
+                    (error.instance_path().as_str() == own).then_some(context)
+                }
+                _ => None,
+            });
+            match (inner, nested) {
+                (Some(inner), Some(nested)) => self.unfold(own, inner, nested, name, forms),
+                _ => forms.push(Form {
+                    schema,
+                    name,
+                    errors: errors.iter().collect(),
+                }),
+            }
+        }
+    }
+}
+
+/// The form that a value which is no object was meant to have: of those of its type, that which it misses least.
+fn meant_value<'f, 'a, 'e>(own: &str, of_its_type: &[&'f Form<'a, 'e>]) -> Option<&'f Form<'a, 'e>> {
+    let fitting: Vec<_> = of_its_type
+        .iter()
+        .copied()
+        .filter(|form| !form.is_another_word(own))
+        .collect();
+    let best = fitting
+        .iter()
+        .copied()
+        .min_by_key(|form| (form.errors_at(own).count(), form.errors.len()))?;
+    // A list that is too long or too short for each of several forms has none of them in particular.
+    (fitting.len() == 1 || best.errors_at(own).count() == 0).then_some(best)
+}
+
+/// The form that an object was meant to have, by its keys; else that it has several at once.
+fn meant_object<'f, 'a, 'e>(
+    own: &str,
+    object: &Map<String, Value>,
+    forms: &'f [Form<'a, 'e>],
+) -> Result<Option<&'f Form<'a, 'e>>, Problem> {
+    let tagged = |key: &String| forms.iter().find(|form| form.tag() == Some(key));
+    let present: Vec<_> = object
+        .keys()
+        .filter_map(|key| Some((key.as_str(), tagged(key)?)))
+        .collect();
+    match &present[..] {
+        [(_, form)] => Ok(Some(form)),
+        [] => {
+            let mut structs = forms
+                .iter()
+                .filter(|form| form.has_type("object") && form.tag().is_none());
+            Ok(structs.next().filter(|_| structs.next().is_none()))
+        }
+        several => {
+            let keys: Vec<&str> = several.iter().map(|(key, _)| *key).collect();
+            let (count, advice) = match keys.len() {
+                2 => ("two", "remove one"),
+                3 => ("three", "remove two"),
+                _ => ("several", "remove all but one"),
+            };
+            let found = format!("{count} forms, {}", both(&keys));
+            Err(Problem::new("spec/value", own, found, "one").advise(advice))
+        }
+    }
+}
+
+/// Says which forms a value could have had, when it has the form of none.
+fn none_of(own: &str, value: &Value, forms: &[Form]) -> Finding {
+    let words: Vec<&str> = forms
+        .iter()
+        .filter(|form| form.name.is_none())
+        .flat_map(Form::words)
+        .collect();
+    let beside_text = forms
+        .iter()
+        .any(|form| form.name.is_none() && form.has_type("string") && form.words().is_empty());
+    let mut labels: Vec<(usize, String)> = forms
+        .iter()
+        .filter(|form| form.words().is_empty() || form.name.is_some())
+        .filter_map(|form| form.label(beside_text))
+        .collect();
+    labels.sort_by_key(|(rank, _)| *rank);
+    labels.dedup();
+    if labels.first().is_some_and(|(rank, _)| *rank == 0) {
+        labels.retain(|(rank, _)| *rank != 1);
+    }
+    let expected = if labels.is_empty() && words.len() > 1 {
+        format!(
+            "one of {}",
+            words
+                .iter()
+                .map(|word| format!("{word:?}"))
+                .collect::<Vec<_>>()
+                .join(", ")
+        )
+    } else {
+        let words = words.iter().map(|word| format!("{word:?}"));
+        either(words.chain(labels.iter().map(|(_, label)| label.clone())).collect())
+    };
+    let families: Vec<&str> = forms
+        .iter()
+        .filter(|form| form.is("Distribution"))
+        .filter_map(Form::tag)
+        .collect();
+    let expected = if value.is_object() && !families.is_empty() {
+        format!("{expected} ({})", families.join(", "))
+    } else {
+        expected
+    };
+    let problem = Problem::new("spec/value", own, describe(value), expected);
+    let problem = match advice_for(value, forms, &words) {
+        Some(advice) => problem.advise(advice),
+        None => problem,
+    };
+    let forms = labels.len().max(1);
+    Finding { problem, forms }
+}
+
+/// What to do about a value that has none of these forms, where it shows what was meant.
+fn advice_for(value: &Value, forms: &[Form], words: &[&str]) -> Option<String> {
+    let tags: Vec<&str> = forms.iter().filter_map(Form::tag).collect();
+    match value {
+        Value::String(text) => {
+            if let Some(near) = nearest(text, words) {
+                return Some(format!("did you mean {near:?}?"));
+            }
+            if let Some(parameter) = text.strip_prefix('$').filter(|_| tags.contains(&"param")) {
+                return Some(format!("write {{\"param\": {parameter:?}}}"));
+            }
+            if tags.contains(&text.as_str()) {
+                return Some(format!("write {{{text:?}: …}}"));
+            }
+            if let Some(near) = nearest(text, &tags) {
+                return Some(format!("did you mean {{{near:?}: …}}?"));
+            }
+            advice::for_types(value, |name| forms.iter().any(|form| form.has_type(name)))
+        }
+        Value::Object(object) => {
+            let named = ["type", "kind", "name", "distribution"]
+                .iter()
+                .find_map(|key| object.get(*key)?.as_str());
+            if let Some(tag) = named.filter(|tag| tags.contains(tag)) {
+                return Some(format!("write {{{tag:?}: {{…}}}}"));
+            }
+            let key = object.keys().next()?;
+            let near = nearest(key, &tags).or_else(|| advice::begins_alike(key, &tags).map(str::to_owned));
+            if let Some(near) = near {
+                return Some(format!("did you mean {near:?}?"));
+            }
+            let tag = forms.iter().find_map(|form| holds(form, object))?;
+            Some(format!("name it, as in {{{tag:?}: {{…}}}}"))
+        }
+        _ => None,
+    }
+}
+
+/// The tag of a form whose inside has just these keys.
+fn holds<'f>(form: &'f Form, object: &Map<String, Value>) -> Option<&'f str> {
+    let tag = form.tag()?;
+    let inside = form.properties()?.get(tag)?;
+    let known = inside.get("properties")?.as_object()?;
+    let required = inside.get("required")?.as_array()?;
+    let all_there = required
+        .iter()
+        .filter_map(Value::as_str)
+        .all(|key| object.contains_key(key));
+    (all_there && object.keys().all(|key| known.contains_key(key))).then_some(tag)
+}

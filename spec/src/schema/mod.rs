@@ -1,0 +1,96 @@
+//! The JSON Schemas of the documents, made from the Rust types, and what they find wrong. Checks over several values are the types' own.
+
+mod advice;
+mod color;
+mod explain;
+mod forms;
+mod wording;
+
+use std::sync::LazyLock;
+
+use jsonschema::Validator;
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema};
+use serde_json::{Value, json};
+
+use crate::error::Problem;
+use crate::maps::MapsDocument;
+use crate::scenario::Scenario;
+use crate::task::TaskDocument;
+use crate::world::World;
+
+/// One document type's schema, ready to check values.
+pub struct DocumentSchema {
+    json: Value,
+    validator: Validator,
+}
+
+impl DocumentSchema {
+    pub(crate) fn new(json: Value) -> Self {
+        let validator = jsonschema::validator_for(&json).expect("the schema is made from our own types and is tested");
+        Self { json, validator }
+    }
+
+    /// The schema as JSON.
+    pub fn json(&self) -> &Value {
+        &self.json
+    }
+
+    /// Everything in a value that the schema does not allow.
+    pub(crate) fn problems(&self, value: &Value) -> Vec<Problem> {
+        // Nearly every document is sound, and the short answer is much faster than the list.
+        if self.validator.is_valid(value) {
+            return Vec::new();
+        }
+        explain::problems(&self.json, value, self.validator.iter_errors(value))
+    }
+}
+
+/// The schema of a Rust type under a title and an identifier of its own.
+pub(crate) fn of_type<T: JsonSchema>(id: &str, title: &str) -> Value {
+    let schema: Schema = SchemaSettings::draft2020_12()
+        .into_generator()
+        .into_root_schema_for::<T>();
+    let mut json = Value::from(schema);
+    json["$id"] = json!(format!("urn:driftworld:{id}"));
+    json["title"] = json!(title);
+    json
+}
+
+/// The schema of [`World`].
+pub fn world() -> &'static DocumentSchema {
+    static SCHEMA: LazyLock<DocumentSchema> =
+        LazyLock::new(|| DocumentSchema::new(of_type::<World>("world", "Driftworld world")));
+    &SCHEMA
+}
+
+/// The schema of [`TaskSpec`](crate::TaskSpec).
+pub fn task() -> &'static DocumentSchema {
+    static SCHEMA: LazyLock<DocumentSchema> =
+        LazyLock::new(|| DocumentSchema::new(of_type::<TaskDocument>("task", "Driftworld task spec")));
+    &SCHEMA
+}
+
+/// The schema of [`Scenario`].
+pub fn scenario() -> &'static DocumentSchema {
+    static SCHEMA: LazyLock<DocumentSchema> =
+        LazyLock::new(|| DocumentSchema::new(of_type::<Scenario>("scenario", "Driftworld scenario")));
+    &SCHEMA
+}
+
+/// The schema of a maps file, as [`MapLibrary`](crate::maps::MapLibrary) reads it.
+pub fn maps() -> &'static DocumentSchema {
+    static SCHEMA: LazyLock<DocumentSchema> =
+        LazyLock::new(|| DocumentSchema::new(of_type::<MapsDocument>("maps", "Driftworld maps file")));
+    &SCHEMA
+}
+
+/// The schemas of all document types with their file names.
+pub fn all() -> [(&'static str, &'static DocumentSchema); 4] {
+    [
+        ("world.schema.json", world()),
+        ("task.schema.json", task()),
+        ("scenario.schema.json", scenario()),
+        ("maps.schema.json", maps()),
+    ]
+}

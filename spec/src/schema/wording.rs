@@ -1,0 +1,119 @@
+//! How messages word what a schema asks for: types, limits, patterns. Which error is worth a message is decided in `explain.rs`.
+
+use jsonschema::ValidationError;
+use jsonschema::error::{TypeKind, ValidationErrorKind};
+use serde_json::Value;
+
+pub(super) fn code_of(kind: &ValidationErrorKind) -> &'static str {
+    match kind {
+        ValidationErrorKind::Type { .. } => "spec/type",
+        ValidationErrorKind::Minimum { .. }
+        | ValidationErrorKind::Maximum { .. }
+        | ValidationErrorKind::ExclusiveMinimum { .. }
+        | ValidationErrorKind::ExclusiveMaximum { .. } => "spec/range",
+        ValidationErrorKind::MinItems { .. } | ValidationErrorKind::MaxItems { .. } => "spec/length",
+        _ => "spec/value",
+    }
+}
+
+/// What an error says was expected; `schema` is the part of the schema that holds the keyword at fault.
+pub(super) fn expected(error: &ValidationError, schema: &Value) -> String {
+    match error.kind() {
+        ValidationErrorKind::Type {
+            kind: TypeKind::Single(kind),
+        } if kind.to_string() == "object" => object(schema),
+        ValidationErrorKind::Type {
+            kind: TypeKind::Single(kind),
+        } => article(&kind.to_string()),
+        ValidationErrorKind::Type {
+            kind: TypeKind::Multiple(kinds),
+        } => {
+            // Null stands for an absent key, which nobody who wrote a value wants to hear of.
+            let kinds = kinds.iter().map(|kind| kind.to_string());
+            either(kinds.filter(|kind| kind != "null").map(|kind| article(&kind)).collect())
+        }
+        ValidationErrorKind::Minimum { limit } => format!("at least {}", plain(limit)),
+        ValidationErrorKind::Maximum { limit } => format!("at most {}", plain(limit)),
+        ValidationErrorKind::ExclusiveMinimum { limit } => format!("more than {}", plain(limit)),
+        ValidationErrorKind::ExclusiveMaximum { limit } => format!("less than {}", plain(limit)),
+        ValidationErrorKind::MinItems { limit } | ValidationErrorKind::MaxItems { limit }
+            if schema.get("minItems") == schema.get("maxItems") =>
+        {
+            format!("exactly {}", counted(*limit, "value"))
+        }
+        ValidationErrorKind::MinItems { limit } => format!("at least {}", counted(*limit, "value")),
+        ValidationErrorKind::MaxItems { limit } => format!("at most {}", counted(*limit, "value")),
+        ValidationErrorKind::MinLength { limit } => format!("at least {}", counted(*limit, "character")),
+        ValidationErrorKind::MaxLength { limit } => format!("at most {}", counted(*limit, "character")),
+        ValidationErrorKind::MinProperties { limit } => format!("at least {}", counted(*limit, "key")),
+        ValidationErrorKind::MaxProperties { limit } => format!("at most {}", counted(*limit, "key")),
+        ValidationErrorKind::MultipleOf { multiple_of } if (multiple_of - 1.0).abs() < f64::EPSILON => {
+            article("integer")
+        }
+        ValidationErrorKind::Pattern { pattern } => letters(pattern),
+        ValidationErrorKind::Constant { expected_value } => expected_value.to_string(),
+        ValidationErrorKind::UniqueItems => "no value twice".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+/// The patterns of our schemas in words.
+fn letters(pattern: &str) -> String {
+    match pattern {
+        "^[a-z][a-z0-9_]*$" => "lower-case letters, digits and underscores, starting with a letter".to_owned(),
+        "^[0-9a-zA-Z_.-]+$" => "letters, digits, underscores, dots and hyphens".to_owned(),
+        "^[^#/\\\\\\s]+$" => "a name without spaces, #, / and \\".to_owned(),
+        other => format!("text of the form {other}"),
+    }
+}
+
+/// A limit as people write it: 360 rather than 360.0.
+fn plain(limit: &Value) -> String {
+    limit
+        .as_f64()
+        .map_or_else(|| limit.to_string(), |number| number.to_string())
+}
+
+fn counted(number: u64, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}
+
+/// A type of JSON Schema as people call it.
+pub(super) fn article(kind: &str) -> String {
+    match kind {
+        "integer" => "a whole number".to_owned(),
+        "array" => "a list".to_owned(),
+        "object" => "an object".to_owned(),
+        "boolean" => "true or false".to_owned(),
+        "string" => "text".to_owned(),
+        other => format!("a {other}"),
+    }
+}
+
+/// An object of a schema, by the keys that it must have.
+pub(super) fn object(schema: &Value) -> String {
+    let required = schema["required"].as_array().into_iter().flatten();
+    let keys: Vec<&str> = required.filter_map(Value::as_str).collect();
+    match keys.len() {
+        0 => article("object"),
+        1 => format!("an object with the key {}", both(&keys)),
+        _ => format!("an object with the keys {}", both(&keys)),
+    }
+}
+
+/// «a, b or c».
+pub(super) fn either(mut words: Vec<String>) -> String {
+    match words.pop() {
+        Some(last) if !words.is_empty() => format!("{} or {last}", words.join(", ")),
+        last => last.unwrap_or_default(),
+    }
+}
+
+/// «"a" and "b"».
+pub(super) fn both(words: &[&str]) -> String {
+    let mut words: Vec<String> = words.iter().map(|word| format!("{word:?}")).collect();
+    match words.pop() {
+        Some(last) if !words.is_empty() => format!("{} and {last}", words.join(", ")),
+        last => last.unwrap_or_default(),
+    }
+}
