@@ -27,7 +27,7 @@ fn worlds(c: &mut Criterion) {
     let crowd = TaskSpec::from_json("crowd.json", CROWD).expect("it is sound");
     let cases = [
         (
-            "find_objects, 17 to 21 objects",
+            "find_objects, 15 to 19 objects",
             Sampler::new(&variant("find_objects", "red"), 7),
         ),
         (
