@@ -29,8 +29,8 @@ pub enum GeneratorError {
     },
     /// An object found no place within the tries it has.
     #[error(
-        "{variant}, seed {seed}, index {index}: group {group:?}, object {object} of {count}: found no free place in {tries} \
-         tries; {reason}"
+        "{variant}, seed {seed}, index {index}: group {group:?}, object {object} of {count}: found no free place in {}; {reason}",
+        tried(*tries)
     )]
     NoPlace {
         /// The variant.
@@ -137,6 +137,14 @@ pub enum GeneratorError {
         /// Where it was reached.
         values: String,
     },
+}
+
+fn tried(tries: u32) -> String {
+    if tries == 1 {
+        "1 try".to_owned()
+    } else {
+        format!("{tries} tries")
+    }
 }
 
 impl GeneratorError {

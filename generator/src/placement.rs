@@ -230,7 +230,10 @@ fn reason(failed: [u32; Condition::ALL.len()], closest: Option<Miss>) -> String 
     let counts: Vec<String> = Condition::ALL
         .into_iter()
         .filter(|condition| count(*condition) > 0)
-        .map(|condition| format!("{} were {}", count(condition), condition.broken()))
+        .map(|condition| {
+            let were = if count(condition) == 1 { "was" } else { "were" };
+            format!("{} {were} {}", count(condition), condition.broken())
+        })
         .collect();
     let miss = closest.map_or_else(String::new, |Miss { condition, has, wants }| {
         format!(

@@ -1,6 +1,7 @@
 //! The schemas themselves: valid as schemas, equal to the committed files, and in agreement with the types.
 
 use driftworld_spec::{Object, World, schema};
+use serde_json::Value;
 
 #[test]
 fn every_schema_is_a_valid_schema() {
@@ -25,4 +26,89 @@ fn what_the_types_write_the_schema_accepts() {
     world.objects.push(Object::new("tree", [1.0, 2.0]));
     let again = World::from_json("written", &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(again, world);
+}
+
+/// Every part of a schema with its pointer, conditions (`if`, `then`) left out: they say again what stands elsewhere.
+fn parts(part: &Value, pointer: &str, visit: &mut impl FnMut(&str, &Value)) {
+    visit(pointer, part);
+    let keep = |key: &str| !matches!(key, "if" | "then" | "examples" | "default" | "allOf" | "not");
+    match part {
+        Value::Object(map) => {
+            for (key, child) in map.iter().filter(|(key, _)| keep(key)) {
+                parts(child, &format!("{pointer}/{key}"), visit);
+            }
+        }
+        Value::Array(items) => {
+            for (index, item) in items.iter().enumerate() {
+                parts(item, &format!("{pointer}/{index}"), visit);
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn every_key_has_a_description_and_every_schema_an_identifier() {
+    for (name, schema) in schema::all() {
+        assert!(
+            schema.json()["$id"]
+                .as_str()
+                .is_some_and(|id| id.starts_with("urn:driftworld:")),
+            "{name}"
+        );
+        let mut silent = Vec::new();
+        parts(schema.json(), "", &mut |pointer, part| {
+            for (key, property) in part["properties"].as_object().into_iter().flatten() {
+                let referred = property["$ref"]
+                    .as_str()
+                    .and_then(|text| schema.json().pointer(text.trim_start_matches('#')));
+                let described = |schema: &Value| schema["description"].is_string();
+                if property.is_object() && !described(property) && !referred.is_some_and(described) {
+                    silent.push(format!("{pointer}/properties/{key}"));
+                }
+            }
+        });
+        assert_eq!(
+            silent,
+            Vec::<String>::new(),
+            "{name}: keys that an editor cannot explain"
+        );
+    }
+}
+
+#[test]
+fn every_definition_of_an_object_has_examples_and_every_example_is_valid() {
+    for (name, schema) in schema::all() {
+        let json = schema.json();
+        assert!(
+            json["examples"].as_array().is_some_and(|examples| !examples.is_empty()),
+            "{name}"
+        );
+        let mut all: Vec<(String, Value)> = vec![(name.to_owned(), json.clone())];
+        for (definition, part) in json["$defs"].as_object().into_iter().flatten() {
+            let is_object = part["properties"].is_object() || part["oneOf"].is_array();
+            assert!(
+                !is_object || part["examples"].is_array() || is_enumeration(part),
+                "{name}: {definition} has no example"
+            );
+            let examples = part["examples"].as_array().cloned().unwrap_or_default();
+            let reference = format!("#/$defs/{definition}");
+            let alone = serde_json::json!({ "$ref": reference, "$defs": json["$defs"], "examples": examples });
+            all.push((format!("{name}: {definition}"), alone));
+        }
+        for (place, schema) in all {
+            let validator = jsonschema::validator_for(&schema).unwrap_or_else(|error| panic!("{place}: {error}"));
+            for example in schema["examples"].as_array().into_iter().flatten() {
+                let errors: Vec<String> = validator.iter_errors(example).map(|error| error.to_string()).collect();
+                assert_eq!(errors, Vec::<String>::new(), "{place}: {example}");
+            }
+        }
+    }
+}
+
+/// Words alone need no example: they are listed.
+fn is_enumeration(part: &Value) -> bool {
+    part["oneOf"]
+        .as_array()
+        .is_some_and(|forms| forms.iter().all(|form| form["const"].is_string()))
 }

@@ -237,13 +237,22 @@ fn unknown_key(pointer: &str, key: &str, known: &[String]) -> Problem {
         [only] => format!("no key beside {only:?}"),
         _ => format!("one of {}", known.join(", ")),
     };
-    Problem::new(
+    let problem = Problem::new(
         "spec/unknown-key",
         format!("{pointer}/{}", escape(key)),
         format!("the unknown key {key:?}"),
         expected,
-    )
-    .suggest(key, known)
+    );
+    // Keys of version 1 of the task spec, in one that says it is of version 2.
+    match key {
+        "wall_margin" if known.iter().any(|key| key == "keep_out") => {
+            problem.advise("write \"keep_out\": { \"walls\": … }")
+        }
+        "agent_margin" if known.iter().any(|key| key == "keep_out") => {
+            problem.advise("write \"keep_out\": { \"agent\": … }")
+        }
+        _ => problem.suggest(key, known),
+    }
 }
 
 /// What a name may have been meant to be, where its pattern wants another.

@@ -2,10 +2,12 @@
 
 mod advice;
 mod color;
+mod examples;
 mod explain;
 mod forms;
 mod wording;
 
+use std::collections::BTreeSet;
 use std::sync::LazyLock;
 
 use jsonschema::Validator;
@@ -54,7 +56,69 @@ pub(crate) fn of_type<T: JsonSchema>(id: &str, title: &str) -> Value {
     let mut json = Value::from(schema);
     json["$id"] = json!(format!("urn:driftworld:{id}"));
     json["title"] = json!(title);
+    drop_unused(&mut json);
+    describe_forms(&mut json);
+    examples::add(&mut json, title);
     json
+}
+
+/// Takes out definitions that nothing refers to: those that templates have opened and written out.
+fn drop_unused(schema: &mut Value) {
+    let mut used = BTreeSet::new();
+    let mut next = schema.clone();
+    if let Some(map) = next.as_object_mut() {
+        map.remove("$defs");
+    }
+    let mut open = vec![next];
+    while let Some(part) = open.pop() {
+        for name in references(&part) {
+            if used.insert(name.clone()) {
+                open.push(schema["$defs"][&name].clone());
+            }
+        }
+    }
+    if let Some(definitions) = schema.get_mut("$defs").and_then(Value::as_object_mut) {
+        definitions.retain(|name, _| used.contains(name));
+    }
+}
+
+/// The definitions that a part of a schema refers to.
+fn references(part: &Value) -> Vec<String> {
+    match part {
+        Value::Object(map) => {
+            let own = map
+                .get("$ref")
+                .and_then(Value::as_str)
+                .and_then(|text| text.strip_prefix("#/$defs/"));
+            own.map(str::to_owned)
+                .into_iter()
+                .chain(map.values().flat_map(references))
+                .collect()
+        }
+        Value::Array(items) => items.iter().flat_map(references).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// A form that is one key says what it is beside the form; editors look for it beside the key.
+fn describe_forms(part: &mut Value) {
+    match part {
+        Value::Object(map) => {
+            let said = map.get("description").cloned();
+            if let (Some(said), Some(properties)) = (said, map.get_mut("properties").and_then(Value::as_object_mut))
+                && properties.len() == 1
+            {
+                for (_, property) in properties {
+                    if let Some(property) = property.as_object_mut() {
+                        property.entry("description").or_insert_with(|| said.clone());
+                    }
+                }
+            }
+            map.values_mut().for_each(describe_forms);
+        }
+        Value::Array(items) => items.iter_mut().for_each(describe_forms),
+        _ => {}
+    }
 }
 
 /// The schema of [`World`].

@@ -13,6 +13,9 @@ use crate::error::Problem;
 /// The most variants that one task may declare, families unfolded.
 const MAX_VARIANTS: usize = 10_000;
 
+/// The longest name of a variant in characters, as scenarios have room for.
+const MAX_NAME: usize = 100;
+
 /// Evenly spaced values of one number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -108,6 +111,13 @@ pub(crate) fn unfold(
         }
         for member in 0..size {
             let declared = member_of(name, spec, &axes, member);
+            let characters = declared.0.chars().count();
+            if characters > MAX_NAME {
+                let found = format!("the variant {:?} of {characters} characters", declared.0);
+                let problem = Problem::new("spec/length", &pointer, found, format!("names of at most {MAX_NAME}"));
+                problems.push(problem.advise("shorten the family's name, or list fewer parameters in it"));
+                break;
+            }
             if variants.insert(declared.0.clone(), declared.1).is_some() {
                 let found = format!("two variants named {:?}", declared.0);
                 problems.push(Problem::new(

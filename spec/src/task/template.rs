@@ -224,6 +224,10 @@ fn inline(schema: &Json, node: &Json) -> Json {
     } else {
         node.clone()
     };
+    // An example of the whole says nothing of a template, and would be repeated at every place.
+    if let Some(map) = copy.as_object_mut() {
+        map.shift_remove("examples");
+    }
     if let Some(properties) = copy.get_mut("properties").and_then(Json::as_object_mut) {
         for property in properties.values_mut() {
             *property = inline(schema, &strip_default(property));
