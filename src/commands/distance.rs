@@ -62,7 +62,7 @@ impl Distance {
                 return Ok((variant_distance(&a, &b, &weights)?, "parameter by parameter"));
             }
         }
-        let world = |name: &str| input::world(name, self.seed, self.index, false, None);
+        let world = |name: &str| input::world(name, self.seed, self.index, false);
         Ok((
             world_distance(&world(&self.a)?, &world(&self.b)?, &weights),
             "world to world",

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use clap::Args;
 use driftworld::generator::Sampler;
 use driftworld::spec::maps::MapLibrary;
 use driftworld::spec::{Variant, Warning, World};
@@ -94,31 +95,54 @@ pub(crate) fn json_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(files)
 }
 
-/// The world that an argument names: a file, or number `index` of a variant under a seed; with the layouts of a maps file, if
-/// there is one.
-pub(crate) fn world(
-    name: &str,
+/// Which world a command is about: one of a file, or one drawn from a variant.
+#[derive(Args)]
+pub(crate) struct WorldChoice {
+    /// A world file, or a task's variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
+    world: String,
+    /// The seed, where the world is drawn from a variant.
+    #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// The number of the world, where it is drawn from a variant.
+    #[arg(long, default_value_t = 0)]
     index: u64,
+    /// Read the world as L2Explorer wrote it, with warnings.
+    #[arg(long)]
     l2explorer: bool,
-    maps_path: Option<&Path>,
-) -> Result<World, Failure> {
-    let maps = maps_path.map(maps).transpose()?;
-    if l2explorer || is_world_file(name) {
-        let (mut world, warnings) = world_file(Path::new(name), l2explorer)?;
-        for warning in warnings {
-            output::note(format!("warning: {warning}"));
+    /// Layouts in place of the built-in maps: a maps file, or a folder of them.
+    #[arg(long, value_name = "PATH")]
+    maps: Option<PathBuf>,
+}
+
+impl WorldChoice {
+    /// Reads or draws the world.
+    pub(crate) fn world(&self) -> Result<World, Failure> {
+        let maps = self.maps.as_deref().map(maps).transpose()?;
+        if !self.l2explorer && !is_world_file(&self.world) {
+            let mut sampler = Sampler::new(&tasks::variant(&self.world)?, self.seed);
+            if let Some(maps) = maps {
+                sampler = sampler.with_maps(Arc::new(maps));
+            }
+            return Ok(sampler.world(self.index)?);
         }
+        let mut world = world(&self.world, self.seed, self.index, self.l2explorer)?;
         if let Some(maps) = maps {
             maps.apply(&mut world);
         }
-        return Ok(world);
+        Ok(world)
     }
-    let mut sampler = Sampler::new(&tasks::variant(name)?, seed);
-    if let Some(maps) = maps {
-        sampler = sampler.with_maps(Arc::new(maps));
+}
+
+/// The world that an argument names: a file, or number `index` of a variant under a seed.
+pub(crate) fn world(name: &str, seed: u64, index: u64, l2explorer: bool) -> Result<World, Failure> {
+    if !l2explorer && !is_world_file(name) {
+        return Ok(Sampler::new(&tasks::variant(name)?, seed).world(index)?);
     }
-    Ok(sampler.world(index)?)
+    let (world, warnings) = world_file(Path::new(name), l2explorer)?;
+    for warning in warnings {
+        output::note(format!("warning: {warning}"));
+    }
+    Ok(world)
 }
 
 /// The variants that a list of arguments names, in that order, each once, with the names they were called by.

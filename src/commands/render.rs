@@ -6,8 +6,9 @@ use clap::{Args, ValueEnum};
 use driftworld::env::{Camera, CpuRenderer, Frame, Scene, category_color, depth_to_gray, top_down};
 use driftworld::spec::World;
 
+use super::input::WorldChoice;
 use super::pictures::{Picture, SheetRow, sheet};
-use super::{Failure, input, output};
+use super::{Failure, output};
 
 /// Draw what an agent sees of a world, and the world from above.
 #[derive(Args)]
@@ -15,20 +16,8 @@ use super::{Failure, input, output};
   driftworld render find_objects#dusk --seed 7 -o dusk.png
   driftworld render map.json --l2explorer --view overview --size 800 -o map.png")]
 pub(crate) struct Render {
-    /// A world file, or a task's variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
-    world: String,
-    /// The seed, where the world is drawn from a variant.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
-    /// The number of the world, where it is drawn from a variant.
-    #[arg(long, default_value_t = 0)]
-    index: u64,
-    /// Read the world as L2Explorer wrote it, with warnings.
-    #[arg(long)]
-    l2explorer: bool,
-    /// Layouts in place of the built-in maps: a maps file, or a folder of them.
-    #[arg(long, value_name = "PATH")]
-    maps: Option<PathBuf>,
+    #[command(flatten)]
+    choice: WorldChoice,
     /// Which picture.
     #[arg(long, value_enum, default_value_t = View::Sheet)]
     view: View,
@@ -62,13 +51,7 @@ enum View {
 
 impl Render {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let world = input::world(
-            &self.world,
-            self.seed,
-            self.index,
-            self.l2explorer,
-            self.maps.as_deref(),
-        )?;
+        let world = self.choice.world()?;
         let picture = self.picture(&world)?;
         picture.write(&self.output)?;
         output::line(format!(

@@ -3,7 +3,10 @@
 //! Written here because the crates at hand do not serve (docs/decisions/0005-requirements.md): this one needs no memory beyond
 //! its text, cannot loop, and says at which character a text goes wrong.
 
+mod token;
+
 use super::value::Value;
+use token::{Token, tokens};
 
 /// The longest text, in characters.
 const MAX_CHARACTERS: usize = 500;
@@ -187,97 +190,17 @@ impl Binary {
     }
 }
 
-#[derive(Clone, Debug, PartialEq)]
-enum Token {
-    Number(f64),
-    Text(String),
-    Word(String),
-    Symbol(&'static str),
-    /// A character with no meaning here.
-    Odd(char),
-    End,
-}
-
-impl Token {
-    fn describe(&self) -> String {
-        match self {
-            Self::Number(number) => format!("{number}"),
-            Self::Text(text) => format!("'{text}'"),
-            Self::Word(word) => format!("{word:?}"),
-            Self::Symbol(symbol) => format!("{symbol:?}"),
-            Self::Odd(character) => format!("\"{character}\""),
-            Self::End => "the end".to_owned(),
-        }
-    }
-
-    fn binary(&self) -> Option<(Binary, u8)> {
-        let symbol = match self {
-            Self::Symbol(symbol) => *symbol,
-            Self::Word(word) => word.as_str(),
-            _ => return None,
-        };
-        BINARY
-            .iter()
-            .find(|entry| entry.0 == symbol)
-            .map(|entry| (entry.1, entry.2))
-    }
-}
-
-/// Symbols, longer ones before those that they begin with.
-const SYMBOLS: [&str; 17] = [
-    "<=", ">=", "==", "!=", "<", ">", "=", "+", "-", "*", "/", "%", "(", ")", "[", "]", ",",
-];
-
-/// A text cut into tokens, each with the character it begins at, from 1.
-fn tokens(text: &str) -> Result<Vec<(usize, Token)>, String> {
-    let characters: Vec<char> = text.chars().collect();
-    let mut tokens = Vec::new();
-    let mut at = 0;
-    while at < characters.len() {
-        let start = at;
-        let first = characters[at];
-        let run = |from: usize, inside: fn(char) -> bool| {
-            from + characters[from..]
-                .iter()
-                .take_while(|character| inside(**character))
-                .count()
-        };
-        if first.is_whitespace() {
-            at += 1;
-            continue;
-        }
-        let token = if first == '\'' {
-            let end = run(at + 1, |character| character != '\'');
-            if end == characters.len() {
-                return Err(format!(
-                    "a closing ' for the text that begins at character {}",
-                    start + 1
-                ));
-            }
-            at = end + 1;
-            Token::Text(characters[start + 1..end].iter().collect())
-        } else if first.is_ascii_digit() || first == '.' {
-            at = run(at, |character| character.is_ascii_alphanumeric() || character == '.');
-            // An exponent may have a sign.
-            if matches!(characters[at - 1], 'e' | 'E') && matches!(characters.get(at), Some('-' | '+')) {
-                at = run(at + 1, |character| character.is_ascii_digit());
-            }
-            let word: String = characters[start..at].iter().collect();
-            let number = word.parse().ok().filter(|number: &f64| number.is_finite());
-            Token::Number(number.ok_or_else(|| format!("a number at character {}, found {word:?}", start + 1))?)
-        } else if first.is_alphabetic() || first == '_' {
-            at = run(at, |character| character.is_alphanumeric() || character == '_');
-            Token::Word(characters[start..at].iter().collect())
-        } else {
-            let rest: String = characters[at..characters.len().min(at + 2)].iter().collect();
-            let symbol = SYMBOLS.into_iter().find(|symbol| rest.starts_with(symbol));
-            at += symbol.map_or(1, str::len);
-            symbol.map_or(Token::Odd(first), Token::Symbol)
-        };
-        tokens.push((start + 1, token));
-    }
-    tokens.push((characters.len() + 1, Token::End));
-    Ok(tokens)
+/// The operator that a token is, and how tightly it binds.
+fn binary(token: &Token) -> Option<(Binary, u8)> {
+    let symbol = match token {
+        Token::Symbol(symbol) => *symbol,
+        Token::Word(word) => word.as_str(),
+        _ => return None,
+    };
+    BINARY
+        .iter()
+        .find(|entry| entry.0 == symbol)
+        .map(|entry| (entry.1, entry.2))
 }
 
 struct Parser {
@@ -312,7 +235,7 @@ impl Parser {
             return Err(format!("at most {MAX_DEPTH} brackets or signs inside each other"));
         }
         let mut left = self.operand(depth)?;
-        while let Some((operator, binding)) = self.peek().1.binary() {
+        while let Some((operator, binding)) = binary(self.peek().1) {
             if binding <= floor {
                 if binding == COMPARISON && floor == COMPARISON {
                     let (at, token) = self.peek();
