@@ -8,7 +8,7 @@ impl Distribution<f64> {
     /// Probability that it draws a number up to `x`; false counts as 0 and true as 1.
     ///
     /// Headings are counted from the one opposite the mean direction, clockwise: `x` is taken to the turn that has
-    /// `mean − 180° ≤ x < mean + 180°`. Closed forms, with an absolute error below 1e-11; `von_mises` by quadrature, below
+    /// `mean − 180° ≤ x < mean + 180°`. Closed forms, with an absolute error below 1e-10 (far below it but for counts of 100,000); `von_mises` by quadrature, below
     /// 1e-12. `None` if it draws no numbers.
     pub fn cdf(&self, x: f64) -> Option<f64> {
         Some(match self {

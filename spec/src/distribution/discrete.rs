@@ -75,7 +75,13 @@ pub(super) fn geometric_quantile(u: f64, p: f64) -> f64 {
         return 0.0;
     }
     let u = u.min(1.0 - f64::EPSILON / 2.0);
-    (libm::log1p(-u) / libm::log1p(-p) - 1.0).ceil().max(0.0)
+    let count = (libm::log1p(-u) / libm::log1p(-p) - 1.0).ceil().max(0.0);
+    // Where u is one of the cumulative probabilities, rounding may have led one too far.
+    if count >= 1.0 && geometric_cdf(count - 1.0, p) >= u {
+        count - 1.0
+    } else {
+        count
+    }
 }
 
 /// Adds up probabilities from 0 on until they reach `u`; `step(k)` leads from that of `k` to that of `k + 1`.
