@@ -6,6 +6,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::Distribution;
+use crate::document::plain_number;
 
 impl<N: Serialize> Display for Distribution<N> {
     fn fmt(&self, f: &mut Formatter) -> Result {
@@ -30,9 +31,7 @@ fn one(json: &Json) -> String {
             forms.collect::<Vec<_>>().join(", ")
         }
         Json::Array(items) => format!("[{}]", items.iter().map(one).collect::<Vec<_>>().join(", ")),
-        Json::Number(number) => number
-            .as_f64()
-            .map_or_else(|| number.to_string(), |number| number.to_string()),
+        Json::Number(number) => number.as_f64().map_or_else(|| number.to_string(), plain_number),
         Json::String(text) => text.clone(),
         other => other.to_string(),
     }

@@ -68,9 +68,11 @@ impl Distribution<f64> {
             Self::IntegerUniform { low, high } => counts(*low, *high),
             Self::Binomial { n, .. } => counts(0.0, *n),
             Self::Bernoulli { .. } => Some(vec![Value::Boolean(false), Value::Boolean(true)]),
+            // The corners: one share takes all.
             Self::Dirichlet { alpha } => {
-                let end = |share: f64| Value::Vector(vec![share; alpha.len()]);
-                Some(vec![end(0.0), end(1.0)])
+                let corner =
+                    |all: usize| Value::Vector((0..alpha.len()).map(|k| f64::from(u8::from(k == all))).collect());
+                Some((0..alpha.len()).map(corner).collect())
             }
             Self::Box { low, high } | Self::Grid { low, high, .. } | Self::PoissonDisc { low, high, .. } => {
                 corners(*low, *high)

@@ -309,6 +309,9 @@ impl Parameter {
                 "the low end below the high end",
             ));
         }
+        if self.kind == ParameterType::Integer && (low.fract() != 0.0 || high.fract() != 0.0) {
+            return Some(Problem::new("spec/range", pointer, found, "whole numbers at both ends"));
+        }
         if self.kind == ParameterType::Heading && high - low > 360.0 {
             return Some(Problem::new(
                 "spec/range",

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Color;
 use crate::distribution::{Distribution, Number};
+use crate::document::plain_number;
 
 /// The type of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -162,7 +163,7 @@ impl std::fmt::Display for Value {
             Self::Color(color) => f.write_str(&color.describe()),
             Self::Text(text) => f.write_str(text),
             Self::Distribution(distribution) => write!(f, "{distribution}"),
-            Self::Number(number) => write!(f, "{number}"),
+            Self::Number(number) => f.write_str(&plain_number(*number)),
             other => write!(f, "{}", other.to_json()),
         }
     }

@@ -6,6 +6,7 @@ use super::super::value::{ParameterType, Value};
 use super::super::variant;
 use super::Check;
 use crate::distribution::{Distribution, Number, ParamRef};
+use crate::document::plain_number;
 use crate::error::{Problem, nearest};
 
 impl Check<'_> {
@@ -242,7 +243,7 @@ impl Check<'_> {
         });
         let outside = numbers.into_iter().find(|number| !(low..=high).contains(number));
         if let Some(number) = outside {
-            let found = format!("a source that can give {number}");
+            let found = format!("a source that can give {}", plain_number(number));
             let expected = if low == f64::MIN {
                 format!("at most {high}")
             } else {

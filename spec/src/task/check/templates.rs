@@ -5,6 +5,7 @@ use serde_json::Value as Json;
 use super::super::template::{Hole, Opening, Template, openings};
 use super::super::value::Value;
 use super::Check;
+use crate::document::{describe, pointer_of};
 use crate::error::Problem;
 use crate::world::{Object, World};
 
@@ -74,13 +75,16 @@ impl Check<'_> {
         let base: T = match serde_path_to_error::deserialize(&example) {
             Ok(base) => base,
             Err(error) => {
-                let expected = error.inner().to_string();
-                self.report(Problem::new(
-                    "spec/value",
-                    root,
-                    "a template that cannot be read",
-                    expected,
-                ));
+                let pointer = format!("{root}{}", pointer_of(error.path()));
+                let found = example
+                    .pointer(&pointer_of(error.path()))
+                    .map_or_else(|| "nothing".to_owned(), describe);
+                let text = error.inner().to_string();
+                // «invalid length 2, expected an array of length 3»: the first half is what was found.
+                let expected = text
+                    .split_once(", expected ")
+                    .map_or(text.as_str(), |(_, expected)| expected);
+                self.report(Problem::new("spec/value", pointer, found, expected));
                 return None;
             }
         };
