@@ -288,7 +288,7 @@ fn warnings_name_what_is_not_as_its_author_may_think() {
     assert!(matches!(&warnings[0], Warning::UnknownAsset { class, .. } if class == "dragon"));
     assert_eq!(
         warnings[1].to_string(),
-        "/objects/0/motion_model: objects do not move yet; it stands still"
+        "/objects/0/motion_model: found no speed, or a patrol without waypoints; it stands still"
     );
     assert_eq!(warnings.len(), 2);
 }

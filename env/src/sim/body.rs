@@ -8,7 +8,7 @@ use crate::assets::ColliderShape;
 use crate::scene::{Item, Scene};
 
 /// Distance that the agent keeps from what it slides along, in metres.
-const SKIN: f32 = 0.01;
+pub(super) const SKIN: f32 = 0.01;
 
 /// Distance at which a touch counts, in metres: a little more than the skin.
 const TOUCH: f32 = 0.03;
@@ -20,28 +20,33 @@ const STRETCH: f32 = 1.0;
 const SLIDES: usize = 5;
 
 /// Bodies that stop the agent.
-const SOLID: Group = Group::GROUP_1;
+pub(super) const SOLID: Group = Group::GROUP_1;
 /// Bodies that it passes through.
 const GHOST: Group = Group::GROUP_2;
 /// Walls: they stop it, and are nobody's object.
-const WALL: Group = Group::GROUP_3;
+pub(super) const WALL: Group = Group::GROUP_3;
+
+/// The agent, as objects that move meet it.
+pub(super) const AGENT: Group = Group::GROUP_4;
 
 /// All bodies of a world. Nothing moves by forces, so there is no time step here: only questions about shapes.
 pub(crate) struct Ground {
     bodies: RigidBodySet,
-    colliders: ColliderSet,
-    broad_phase: BroadPhaseBvh,
+    pub(super) colliders: ColliderSet,
+    pub(super) broad_phase: BroadPhaseBvh,
     narrow_phase: NarrowPhase,
     islands: IslandManager,
     soft_bodies: SoftBodySet,
     /// For each object, its collider while it is there.
-    handles: Vec<Option<ColliderHandle>>,
-    agent: SharedShape,
+    pub(super) handles: Vec<Option<ColliderHandle>>,
+    /// The agent's own collider, where objects move and may meet it.
+    pub(super) agent_handle: Option<ColliderHandle>,
+    pub(super) agent: SharedShape,
     touch: SharedShape,
     radius: f32,
     height: f32,
     /// Half the arena's sides.
-    half: [f32; 2],
+    pub(super) half: [f32; 2],
 }
 
 /// Where a motion led.
@@ -65,7 +70,8 @@ impl Ground {
             narrow_phase: NarrowPhase::new(),
             islands: IslandManager::new(),
             soft_bodies: SoftBodySet::new(),
-            handles: Vec::with_capacity(scene.items.len()),
+            handles: vec![None; scene.items.len()],
+            agent_handle: None,
             agent: capsule(radius),
             touch: capsule(radius + TOUCH),
             radius,
@@ -86,7 +92,7 @@ impl Ground {
         ground
     }
 
-    fn insert(&mut self, collider: ColliderBuilder, group: Group) -> ColliderHandle {
+    pub(super) fn insert(&mut self, collider: ColliderBuilder, group: Group) -> ColliderHandle {
         let groups = InteractionGroups::new(group, Group::ALL, InteractionTestMode::And);
         let handle = self.colliders.insert(collider.collision_groups(groups));
         let aabb = self.colliders[handle].compute_aabb();
@@ -134,7 +140,8 @@ impl Ground {
         }
     }
 
-    fn add_object(&mut self, index: u32, item: &Item, solid: bool) {
+    /// Puts an object's body where its item stands.
+    pub(crate) fn add_object(&mut self, index: u32, item: &Item, solid: bool) {
         let scale = item.scale;
         let (shape, height, tilt) = match item.asset.collider {
             ColliderShape::Box { half } => {
@@ -159,7 +166,7 @@ impl Ground {
             .position(Pose::new(at, turn))
             .user_data(u128::from(index));
         let handle = self.insert(collider, if solid { SOLID } else { GHOST });
-        self.handles.push(Some(handle));
+        self.handles[index as usize] = Some(handle);
     }
 
     /// Takes an object away.
@@ -186,8 +193,14 @@ impl Ground {
     }
 
     fn query(&self, groups: Group) -> QueryPipeline<'_> {
-        let filter =
-            QueryFilter::default().groups(InteractionGroups::new(Group::ALL, groups, InteractionTestMode::And));
+        self.query_but(groups, None)
+    }
+
+    /// Questions about bodies of these groups, one body left aside.
+    pub(super) fn query_but(&self, groups: Group, but: Option<ColliderHandle>) -> QueryPipeline<'_> {
+        let groups = InteractionGroups::new(Group::ALL, groups, InteractionTestMode::And);
+        let mut filter = QueryFilter::default().groups(groups);
+        filter.exclude_collider = but;
         self.broad_phase.as_query_pipeline(
             self.narrow_phase.query_dispatcher(),
             &self.bodies,

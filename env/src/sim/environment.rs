@@ -7,6 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use super::action::{Action, Intent};
 use super::body::Ground;
 use super::event::{Event, Step, Warning};
+use super::motion::Mover;
 use crate::EnvError;
 use crate::agents::{Agent, OnRailsAgent};
 use crate::camera::Camera;
@@ -41,7 +42,7 @@ pub struct ObjectState {
     pub present: bool,
     /// Whether it has paid, or was destroyed: places in a sequence count on it.
     pub collected: bool,
-    in_range: bool,
+    pub(super) in_range: bool,
 }
 
 /// A world that runs: reset, step, look.
@@ -59,18 +60,22 @@ pub struct ObjectState {
 /// # Ok::<(), driftworld_env::EnvError>(())
 /// ```
 pub struct Environment {
-    world: World,
-    scene: Scene,
-    ground: Ground,
-    objects: Vec<ObjectState>,
-    agent: AgentState,
-    steps: u32,
+    pub(super) world: World,
+    pub(super) scene: Scene,
+    pub(super) ground: Ground,
+    pub(super) objects: Vec<ObjectState>,
+    pub(super) agent: AgentState,
+    pub(super) steps: u32,
     episode_return: f64,
     had_targets: bool,
     ended: bool,
-    chance: ChaCha8Rng,
+    pub(super) chance: ChaCha8Rng,
     /// Objects in contact at the end of the last step, in rising order.
     contacts: Vec<u32>,
+    /// The objects that move by themselves.
+    pub(super) movers: Vec<Mover>,
+    /// Destroyed objects that come back, with the number of steps after which they do.
+    pub(super) returning: Vec<(usize, u64)>,
     rails: Option<OnRailsAgent>,
     renderer: CpuRenderer,
     frame: Frame,
@@ -121,6 +126,8 @@ impl Environment {
             chance: chance(&world),
             rails: (start.action_model == ActionModel::OnRails).then(OnRailsAgent::new),
             contacts: Vec::new(),
+            movers: Mover::all(&world),
+            returning: Vec::new(),
             steps: 0,
             episode_return: 0.0,
             ended: false,
@@ -196,11 +203,9 @@ impl Environment {
                     model,
                 });
             }
-            if object.motion_model != MotionModel::Stationary {
+            let patrols_nowhere = object.motion_model == MotionModel::Patrol && object.waypoints.is_empty();
+            if object.motion_model != MotionModel::Stationary && (object.speed == 0.0 || patrols_nowhere) {
                 warnings.push(Warning::StandsStill { object: index });
-            }
-            if object.respawn.is_some() {
-                warnings.push(Warning::NoRespawn { object: index });
             }
         }
         warnings
@@ -218,6 +223,8 @@ impl Environment {
         let intent = self.intent(numbers);
         let distance_before = self.shaping_distance();
         let met = self.carry_out(intent);
+        self.bring_back();
+        self.move_objects();
         let mut step = Step {
             reward: self.world.rules.step_reward,
             ..Step::default()
@@ -321,6 +328,10 @@ impl Environment {
             self.scene.items[index].visible = false;
             self.ground.remove(index as u32);
             self.contacts.retain(|contact| *contact != index as u32);
+            if let Some(respawn) = &object.respawn {
+                let steps = (respawn.delay / self.world.agent_params.time_step).ceil() as u64;
+                self.returning.push((index, u64::from(self.steps) + 1 + steps.max(1)));
+            }
         }
         step.events.push(Event {
             object: index,
@@ -430,10 +441,14 @@ impl Environment {
     }
 }
 
-/// The world's own chance, which bandit arms draw from: it depends on the world alone.
+/// The world's own chance, which bandit arms and returning objects draw from: it depends on the world alone.
 fn chance(world: &World) -> ChaCha8Rng {
     let mut seed = [0; 32];
-    if world.objects.iter().any(|object| object.reward_probability < 1.0) {
+    if world
+        .objects
+        .iter()
+        .any(|object| object.reward_probability < 1.0 || object.respawn.is_some())
+    {
         let hash = world.hash();
         seed.iter_mut()
             .zip(hash.bytes())

@@ -51,13 +51,8 @@ pub enum Warning {
         /// Its model.
         model: String,
     },
-    /// The object asks to move, and stands still: objects do not move yet.
+    /// The object asks to move, and stands still: it has no speed, or a patrol no waypoints.
     StandsStill {
-        /// Index of the object.
-        object: usize,
-    },
-    /// The object asks to come back once destroyed, and will not: objects do not respawn yet.
-    NoRespawn {
         /// Index of the object.
         object: usize,
     },
@@ -77,11 +72,8 @@ impl std::fmt::Display for Warning {
             Self::StandsStill { object } => {
                 write!(
                     f,
-                    "/objects/{object}/motion_model: objects do not move yet; it stands still"
+                    "/objects/{object}/motion_model: found no speed, or a patrol without waypoints; it stands still"
                 )
-            }
-            Self::NoRespawn { object } => {
-                write!(f, "/objects/{object}/respawn: destroyed objects do not come back yet")
             }
             Self::NoImageCollection => {
                 f.write_str("/game_mode: collect_images is not there yet; the world runs as learn")

@@ -4,6 +4,9 @@ mod action;
 mod body;
 mod environment;
 mod event;
+mod motion;
+mod moving_body;
+mod objects;
 
 pub use action::Action;
 pub use environment::{AgentState, Environment, ObjectState};

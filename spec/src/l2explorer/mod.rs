@@ -128,6 +128,8 @@ const OBJECT: Keys = Keys {
         "solid",
         "reward_probability",
         "speed",
+        "turn_rate",
+        "sight_range",
         "waypoints",
         "order",
         "respawn",

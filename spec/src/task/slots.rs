@@ -183,6 +183,14 @@ pub(crate) const OBJECT: &[Slot<Object>] = &[
     row!("/range_stimulus_distance", Number, range_stimulus_distance, number),
     row!("/motion_model", String, motion_model, word::<MotionModel>),
     row!("/speed", Number, speed, number),
+    slot("/turn_rate", Number, |object, _, value| {
+        object.turn_rate = Some(number(value)?);
+        Some(())
+    }),
+    slot("/sight_range", Number, |object, _, value| {
+        object.sight_range = Some(number(value)?);
+        Some(())
+    }),
 ];
 
 fn number(value: &Value) -> Option<f64> {
@@ -291,6 +299,8 @@ mod tests {
         object.reward_probability = 0.5;
         object.range_stimulus_distance = 1.0;
         object.speed = 1.0;
+        object.turn_rate = Some(1.0);
+        object.sight_range = Some(1.0);
         check(OBJECT, &object);
     }
 

@@ -67,6 +67,14 @@ pub struct Object {
     #[serde(default, skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0.0, max = 100.0))]
     pub speed: f64,
+    /// Largest turn of the object's own motion in degrees per second; at once if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 3600.0))]
+    pub turn_rate: Option<f64>,
+    /// How far a predator or prey sees the agent in metres, from centre to centre; everywhere if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 1000.0))]
+    pub sight_range: Option<f64>,
     /// Points in metres that the object walks along, in order, then back to the first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 1000))]
@@ -107,6 +115,8 @@ impl Object {
             range_stimulus_distance: 0.0,
             motion_model: MotionModel::Stationary,
             speed: 0.0,
+            turn_rate: None,
+            sight_range: None,
             waypoints: Vec::new(),
             order: None,
             respawn: None,

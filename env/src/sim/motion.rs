@@ -1,0 +1,137 @@
+//! How objects move by themselves: where each wants to go. How far it comes is found in `moving_body.rs`.
+
+use driftworld_spec::{MotionModel, Object, World};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Distance at which a waypoint counts as reached, in metres.
+const REACHED: f32 = 0.3;
+
+/// Share of the way it meant to go below which a wanderer gives its goal up.
+const STUCK: f32 = 0.2;
+
+/// An object that moves: what it is about to do.
+#[derive(Clone, Debug)]
+pub(crate) struct Mover {
+    /// The object's number in the world.
+    pub(crate) object: usize,
+    /// Number of the next point of a patrol.
+    next: usize,
+    /// Where a wanderer is going.
+    goal: Option<[f32; 2]>,
+    /// The wanderer's own chance: it depends on the world and the object alone.
+    chance: ChaCha8Rng,
+}
+
+/// What a mover sees before it decides.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    /// Where it is, in metres.
+    pub(crate) position: [f32; 2],
+    /// Where it faces, in degrees.
+    pub(crate) heading_deg: f32,
+    /// Where the agent is.
+    pub(crate) agent: [f32; 2],
+    /// Half the arena's sides.
+    pub(crate) half: [f32; 2],
+    /// Seconds of a step.
+    pub(crate) seconds: f32,
+}
+
+/// What a mover means to do in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stride {
+    /// Its new heading in degrees.
+    pub(crate) heading_deg: f32,
+    /// The way it means to go, in metres.
+    pub(crate) by: [f32; 2],
+}
+
+impl Mover {
+    /// The movers of a world: all objects with a motion model and a speed.
+    pub(crate) fn all(world: &World) -> Vec<Self> {
+        let moves = |object: &Object| object.motion_model != MotionModel::Stationary && object.speed > 0.0;
+        if !world.objects.iter().any(moves) {
+            return Vec::new();
+        }
+        let mut seed = [0; 32];
+        seed.iter_mut()
+            .zip(world.hash().bytes())
+            .for_each(|(byte, letter)| *byte = letter);
+        let movers = world.objects.iter().enumerate().filter(|(_, object)| moves(object));
+        movers
+            .map(|(object, _)| {
+                let mut chance = ChaCha8Rng::from_seed(seed);
+                // Stream 0 is the bandit arms'.
+                chance.set_stream(object as u64 + 1);
+                Self {
+                    object,
+                    next: 0,
+                    goal: None,
+                    chance,
+                }
+            })
+            .collect()
+    }
+
+    /// What the object means to do; `None` if it stands still.
+    pub(crate) fn decide(&mut self, object: &Object, view: View) -> Option<Stride> {
+        let wanted = self.direction(object, view)?;
+        let bearing = libm::atan2f(wanted[0], wanted[1]).to_degrees();
+        let turn = (bearing - view.heading_deg + 180.0).rem_euclid(360.0) - 180.0;
+        let most = object.turn_rate.map_or(180.0, |rate| rate as f32 * view.seconds);
+        let heading_deg = (view.heading_deg + turn.clamp(-most, most)).rem_euclid(360.0);
+        let mut metres = object.speed as f32 * view.seconds;
+        // Not past a waypoint, so that it is met; who runs or hunts has no such end.
+        if matches!(object.motion_model, MotionModel::Patrol | MotionModel::RandomWaypoint) {
+            metres = metres.min(length(wanted));
+        }
+        let heading = heading_deg.to_radians();
+        Some(Stride {
+            heading_deg,
+            by: [libm::sinf(heading) * metres, libm::cosf(heading) * metres],
+        })
+    }
+
+    /// The way to where the object wants to be, in metres; for prey, away from the agent.
+    fn direction(&mut self, object: &Object, view: View) -> Option<[f32; 2]> {
+        let to = |point: [f32; 2]| [point[0] - view.position[0], point[1] - view.position[1]];
+        let to_agent = to(view.agent);
+        let seen = object.sight_range.is_none_or(|range| length(to_agent) <= range as f32);
+        let way = match object.motion_model {
+            MotionModel::Predator if seen => to_agent,
+            MotionModel::Prey if seen => to_agent.map(|metres| -metres),
+            MotionModel::Stationary | MotionModel::Predator | MotionModel::Prey => return None,
+            MotionModel::Patrol => {
+                let point = |number: usize| object.waypoints[number].map(|metres| metres as f32);
+                if object.waypoints.is_empty() {
+                    return None;
+                }
+                if length(to(point(self.next))) < REACHED {
+                    self.next = (self.next + 1) % object.waypoints.len();
+                }
+                to(point(self.next))
+            }
+            MotionModel::RandomWaypoint => {
+                if self.goal.is_none_or(|goal| length(to(goal)) < REACHED) {
+                    let [x, y] = view.half.map(|half| (half - 1.0).max(0.0));
+                    let mut draw = |side: f32| (self.chance.random::<f32>() * 2.0 - 1.0) * side;
+                    self.goal = Some([draw(x), draw(y)]);
+                }
+                to(self.goal?)
+            }
+        };
+        (length(way) > 1e-4).then_some(way)
+    }
+
+    /// Hears how far it came: a wanderer that hardly moved looks for another goal.
+    pub(crate) fn moved(&mut self, meant: [f32; 2], came: [f32; 2]) {
+        if length(came) < STUCK * length(meant) {
+            self.goal = None;
+        }
+    }
+}
+
+fn length([x, y]: [f32; 2]) -> f32 {
+    (x * x + y * y).sqrt()
+}

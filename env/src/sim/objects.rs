@@ -1,0 +1,82 @@
+//! What objects do by themselves between the agent's steps: moving, and coming back. Where each wants to go is in `motion.rs`.
+
+use rand::RngExt;
+
+use super::environment::Environment;
+use super::motion::View;
+
+impl Environment {
+    /// Lets every object that moves by itself go its way.
+    pub(super) fn move_objects(&mut self) {
+        if self.movers.is_empty() {
+            return;
+        }
+        self.ground.place_agent(self.agent.position);
+        let half = self.scene.arena_size().map(|side| side / 2.0);
+        let seconds = self.world.agent_params.time_step as f32;
+        for mover in &mut self.movers {
+            let index = mover.object;
+            if !self.objects[index].present {
+                continue;
+            }
+            let item = &mut self.scene.items[index];
+            let view = View {
+                position: item.position,
+                heading_deg: item.heading_deg,
+                agent: self.agent.position,
+                half,
+                seconds,
+            };
+            let Some(stride) = mover.decide(&self.world.objects[index], view) else {
+                continue;
+            };
+            let came = self.ground.push(index as u32, stride.by, stride.heading_deg);
+            item.position = [item.position[0] + came[0], item.position[1] + came[1]];
+            item.heading_deg = stride.heading_deg;
+            mover.moved(stride.by, came);
+        }
+    }
+
+    /// Puts back the destroyed objects whose time has come: near their first place, where nothing stands.
+    pub(super) fn bring_back(&mut self) {
+        let now = u64::from(self.steps) + 1;
+        let mut waiting = Vec::new();
+        for (index, due) in std::mem::take(&mut self.returning) {
+            if due > now || !self.put_back(index) {
+                waiting.push((index, due));
+            }
+        }
+        self.returning = waiting;
+    }
+
+    /// Puts an object back at a free place; false if none is found in this step.
+    fn put_back(&mut self, index: usize) -> bool {
+        /// Places tried in one step.
+        const TRIES: u32 = 16;
+        let object = &self.world.objects[index];
+        let Some(respawn) = &object.respawn else { return true };
+        self.ground.place_agent(self.agent.position);
+        let radius = self.scene.items[index].asset.collider.radius() * self.scene.items[index].scale;
+        let first = object.coordinates.map(|metres| metres as f32);
+        for _ in 0..TRIES {
+            let distance = respawn.radius as f32 * self.chance.random::<f32>().sqrt();
+            let angle = std::f32::consts::TAU * self.chance.random::<f32>();
+            let place = [
+                first[0] + distance * libm::cosf(angle),
+                first[1] + distance * libm::sinf(angle),
+            ];
+            if self.ground.is_free(place, radius) {
+                let item = &mut self.scene.items[index];
+                item.position = place;
+                item.heading_deg = object.heading as f32;
+                item.reward = object.reward as f32;
+                item.visible = true;
+                self.ground.add_object(index as u32, item, object.solid);
+                let state = &mut self.objects[index];
+                (state.present, state.reward, state.in_range) = (true, object.reward, false);
+                return true;
+            }
+        }
+        false
+    }
+}

@@ -1,0 +1,189 @@
+//! Objects that move by themselves and objects that come back. What touching them does is tested in `simulation.rs`.
+
+use driftworld_env::{Action, Environment};
+use driftworld_spec::{MotionModel, Object, Respawn, Stimulus, Wall, World};
+
+const STAND: Action = Action::Continuous([0.0, 0.0, 0.0]);
+
+fn mover(model: MotionModel, at: [f64; 2], speed: f64) -> Object {
+    let mut object = Object::new("barrel", at);
+    object.motion_model = model;
+    object.speed = speed;
+    object
+}
+
+fn start(objects: Vec<Object>) -> Environment {
+    let mut world = World {
+        objects,
+        ..World::default()
+    };
+    world.environment_params.map_size = [40.0, 40.0];
+    Environment::new(world).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn position(environment: &Environment, index: usize) -> [f32; 2] {
+    environment.scene().items[index].position
+}
+
+fn distance([ax, ay]: [f32; 2], [bx, by]: [f32; 2]) -> f32 {
+    ((ax - bx) * (ax - bx) + (ay - by) * (ay - by)).sqrt()
+}
+
+fn step(environment: &mut Environment) -> driftworld_env::Step {
+    environment.step(STAND).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn a_predator_comes_and_touches_the_agent_once() {
+    let mut predator = mover(MotionModel::Predator, [0.0, 10.0], 2.0);
+    predator.reward = -5.0;
+    predator.reward_stimulus = vec![Stimulus::AgentCollide];
+    let mut environment = start(vec![predator]);
+    let paid: Vec<f64> = (0..100).map(|_| step(&mut environment).reward).collect();
+    assert_eq!(
+        paid.iter().filter(|reward| **reward == -5.0).count(),
+        1,
+        "one contact, however long it lasts"
+    );
+    let apart = distance(position(&environment, 0), environment.agent().position);
+    assert!((0.5..1.2).contains(&apart), "it stops in front of the agent: {apart}");
+}
+
+#[test]
+fn a_predator_that_does_not_see_the_agent_stands_still() {
+    let mut predator = mover(MotionModel::Predator, [0.0, 10.0], 2.0);
+    predator.sight_range = Some(5.0);
+    let mut environment = start(vec![predator]);
+    step(&mut environment);
+    assert_eq!(position(&environment, 0), [0.0, 10.0]);
+}
+
+#[test]
+fn prey_runs_from_the_agent_and_stays_in_the_arena() {
+    let mut environment = start(vec![mover(MotionModel::Prey, [1.0, 5.0], 3.0)]);
+    let before = distance(position(&environment, 0), [0.0, 0.0]);
+    step(&mut environment);
+    assert!(
+        distance(position(&environment, 0), [0.0, 0.0]) > before + 0.25,
+        "3 m/s for 0.1 s"
+    );
+    for _ in 0..300 {
+        step(&mut environment);
+        assert!(position(&environment, 0).iter().all(|metres| metres.abs() < 20.0));
+    }
+}
+
+#[test]
+fn a_patrol_walks_its_points_in_order_round_and_round() {
+    let mut guard = mover(MotionModel::Patrol, [-5.0, 5.0], 4.0);
+    guard.waypoints = vec![[5.0, 5.0], [5.0, 10.0], [-5.0, 10.0]];
+    let points: Vec<[f32; 2]> = guard
+        .waypoints
+        .iter()
+        .map(|point| point.map(|metres| metres as f32))
+        .collect();
+    let mut environment = start(vec![guard]);
+    let mut visited = Vec::new();
+    for _ in 0..250 {
+        step(&mut environment);
+        let here = points
+            .iter()
+            .position(|point| distance(*point, position(&environment, 0)) < 0.35);
+        if let Some(point) = here.filter(|point| visited.last() != Some(point)) {
+            visited.push(point);
+        }
+    }
+    assert!(
+        visited.len() >= 6 && visited.windows(2).all(|pair| (pair[0] + 1) % 3 == pair[1]),
+        "{visited:?}"
+    );
+}
+
+#[test]
+fn a_turn_rate_makes_a_wide_bend() {
+    let mut slow = mover(MotionModel::Predator, [10.0, 0.0], 2.0);
+    slow.turn_rate = Some(30.0);
+    let mut environment = start(vec![slow]);
+    for steps in 1..=10 {
+        step(&mut environment);
+        let turned = 360.0 - environment.scene().items[0].heading_deg;
+        assert!(
+            (turned - 3.0 * steps as f32).abs() < 1e-3,
+            "3 degrees a step, to the west: {turned}"
+        );
+    }
+}
+
+#[test]
+fn wanderers_cover_the_arena_stay_in_it_and_out_of_walls() {
+    let mut world = World {
+        objects: vec![mover(MotionModel::RandomWaypoint, [10.0, 10.0], 8.0)],
+        ..World::default()
+    };
+    world.environment_params.map_size = [40.0, 40.0];
+    let block = vec![[-3.0, -15.0], [3.0, -15.0], [3.0, -5.0], [-3.0, -5.0]];
+    world.environment_params.walls.push(Wall {
+        polygon: block,
+        height: None,
+        color: None,
+    });
+    let walk = |world: &World| -> Vec<[f32; 2]> {
+        let mut environment = Environment::new(world.clone()).unwrap_or_else(|error| panic!("{error}"));
+        (0..3000)
+            .map(|_| {
+                step(&mut environment);
+                position(&environment, 0)
+            })
+            .collect()
+    };
+    let places = walk(&world);
+    assert_eq!(places, walk(&world), "the same world, the same walk");
+    assert!(places.iter().all(|[x, y]| x.abs() < 20.0 && y.abs() < 20.0));
+    assert!(
+        !places.iter().any(|[x, y]| x.abs() < 2.9 && (-14.9..-5.1).contains(y)),
+        "the block is not entered"
+    );
+    for corner in [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]] {
+        let there = |[x, y]: &[f32; 2]| x * corner[0] > 5.0 && y * corner[1] > 5.0;
+        assert!(places.iter().any(there), "every corner is visited: {corner:?}");
+    }
+    world.objects.push(Object::new("tree", [-15.0, 15.0]));
+    assert_ne!(places, walk(&world), "another world has another chance");
+}
+
+#[test]
+fn what_was_destroyed_comes_back_after_its_delay_and_pays_again() {
+    let mut coin = Object::new("barrel", [0.0, 1.2]);
+    coin.reward = 1.0;
+    coin.reward_once_stimulus = vec![Stimulus::AgentInRange];
+    coin.destroy_stimulus = vec![Stimulus::AgentInRange];
+    coin.range_stimulus_distance = 3.0;
+    coin.respawn = Some(Respawn {
+        delay: 0.5,
+        radius: 1.0,
+    });
+    coin.coordinates = [0.0, 3.5];
+    let mut environment = start(vec![coin]);
+    assert!(environment.warnings().is_empty());
+    // A step ahead brings the coin into range; then the agent stands.
+    let reward = environment
+        .step(Action::Continuous([10.0, 0.0, 0.0]))
+        .unwrap_or_else(|error| panic!("{error}"))
+        .reward;
+    assert_eq!(reward, 1.0);
+    assert!(!environment.objects()[0].present);
+    let paid: Vec<(u32, f64)> = (2..40)
+        .map(|number| (number, step(&mut environment).reward))
+        .filter(|(_, reward)| *reward != 0.0)
+        .collect();
+    assert!(paid.len() >= 4, "again and again: {paid:?}");
+    assert!(
+        paid.windows(2).all(|pair| pair[1].0 - pair[0].0 >= 5),
+        "never before half a second has passed: {paid:?}"
+    );
+    let first = position(&environment, 0);
+    assert!(
+        distance(first, [0.0, 3.5]) <= 1.0 + 1e-4,
+        "within a metre of its first place: {first:?}"
+    );
+}
