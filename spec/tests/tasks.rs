@@ -95,3 +95,23 @@ fn broken_tasks_are_refused_and_the_message_says_how_to_mend_them() {
         .collect();
     insta::assert_snapshot!(report.join("\n"));
 }
+
+#[test]
+fn a_task_spec_of_version_1_is_read_and_its_margins_are_kept() {
+    let text = r#"{ VERSION "name": "old", "groups": [{ "name": "trees", "count": 3, "object": { "class": "tree" },
+        "placement": { "disc": { "center": [0, 0], "radius": 20 } }, "wall_margin": 3, "agent_margin": 5 }] }"#;
+    for version in ["", "\"version\": 1,"] {
+        let task = TaskSpec::from_json("old.json", &text.replace("VERSION", version)).unwrap();
+        let keep_out = &task.groups()[0].spec.keep_out;
+        assert_eq!(
+            (keep_out.walls.clone(), keep_out.agent.clone()),
+            (3.0.into(), 5.0.into())
+        );
+    }
+    let error = TaskSpec::from_json("old.json", &text.replace("VERSION", "\"version\": 2,")).unwrap_err();
+    assert_eq!(
+        error.code(),
+        "spec/unknown-key",
+        "in a document of version 2 they are unknown"
+    );
+}

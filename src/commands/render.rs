@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use driftworld::env::{Camera, CpuRenderer, Frame, Scene, category_color, depth_to_gray, top_down};
+use driftworld::env::{Camera, CpuRenderer, Environment, Frame, Scene, category_color, depth_to_gray, top_down};
 use driftworld::spec::World;
 
 use super::input::WorldChoice;
@@ -52,6 +52,7 @@ enum View {
 impl Render {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let world = self.choice.world()?;
+        warn(&world)?;
         let picture = self.picture(&world)?;
         picture.write(&self.output)?;
         output::line(format!(
@@ -105,6 +106,21 @@ impl Render {
         }
         sheet(&rows, 1)
     }
+}
+
+/// The most warnings that are printed.
+const MOST_WARNINGS: usize = 10;
+
+/// Says what the world asks for that is not as its author may think.
+fn warn(world: &World) -> Result<(), Failure> {
+    let warnings = Environment::new(world.clone())?.warnings();
+    for warning in warnings.iter().take(MOST_WARNINGS) {
+        output::note(format!("warning: {warning}"));
+    }
+    if warnings.len() > MOST_WARNINGS {
+        output::note(format!("warning: and {} more", warnings.len() - MOST_WARNINGS));
+    }
+    Ok(())
 }
 
 /// The pictures of one world.
