@@ -83,16 +83,29 @@ pub(crate) enum Fill {
     Own(Box<Drawn>),
 }
 
+/// Where in the streams of chance a value is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Address {
+    /// The world's number.
+    pub(crate) index: u64,
+    /// The object's number in its group.
+    pub(crate) object: u64,
+    /// How often the world was drawn again.
+    pub(crate) attempt: u32,
+}
+
 impl Fill {
-    /// Hands over the value for an object of a world.
-    pub(crate) fn with<R>(&self, index: u64, object: u64, values: &[Value], take: impl FnOnce(&Value) -> R) -> R {
+    /// Hands over the value at an address.
+    pub(crate) fn with<R>(&self, at: Address, values: &[Value], take: impl FnOnce(&Value) -> R) -> R {
         match self {
             Self::Parameter(parameter, None) => take(&values[*parameter]),
-            Self::Parameter(parameter, at) => {
-                take(&values[*parameter].at(*at).expect("loading the task checked the index"))
-            }
+            Self::Parameter(parameter, place) => take(
+                &values[*parameter]
+                    .at(*place)
+                    .expect("loading the task checked the index"),
+            ),
             Self::Own(drawn) => {
-                let mut chance: Chance = drawn.stream.at(index, object, 0);
+                let mut chance: Chance = drawn.stream.at(at.index, at.object, at.attempt);
                 take(&draw(&drawn.distribution, &mut chance))
             }
         }

@@ -50,6 +50,24 @@ pub enum GeneratorError {
         /// What most places failed, the closest miss, and which field to loosen.
         reason: String,
     },
+    /// The agent starts outside the arena or in a region that cannot be entered.
+    #[error(
+        "{variant}, seed {seed}, index {index}: found the agent's start at {start:?} in {}, expected free ground inside the arena; \
+         move agent_params.coordinates, or widen what they are drawn from",
+        tried(*tries)
+    )]
+    NoStart {
+        /// The variant.
+        variant: String,
+        /// The seed.
+        seed: u64,
+        /// The world's number.
+        index: u64,
+        /// The last start that was tried, in metres.
+        start: [f64; 2],
+        /// How many were tried.
+        tries: u32,
+    },
     /// A condition that the task states holds in none of the tries.
     #[error(
         "{variant}, seed {seed}, index {index}: found no values in {tries} tries for which {requirement:?} holds, as \"require\" \
@@ -153,6 +171,7 @@ impl GeneratorError {
         match self {
             Self::OutOfRange { .. } => "generator/out-of-range",
             Self::NoPlace { .. } => "generator/no-place",
+            Self::NoStart { .. } => "generator/no-start",
             Self::Requirement { .. } => "generator/requirement",
             Self::TooMany { .. } => "generator/too-many",
             Self::DifferentTasks { .. } => "generator/different-tasks",
@@ -190,6 +209,13 @@ mod tests {
                 count: 4,
                 tries: 1000,
                 reason: "lower the count".into(),
+            },
+            GeneratorError::NoStart {
+                variant: "t#v".into(),
+                seed: 1,
+                index: 2,
+                start: [0.0, 0.5],
+                tries: 1,
             },
             GeneratorError::Requirement {
                 variant: "t#v".into(),

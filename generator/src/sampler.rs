@@ -6,7 +6,7 @@ use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{MAX_OBJECTS, ParameterType, Requirement, Value, Variant, World};
 
 use crate::GeneratorError;
-use crate::compiled::{Compiled, Filled, Group, GroupCount, Look};
+use crate::compiled::{Address, Compiled, Filled, Group, GroupCount, Look};
 use crate::coverage::Coverage;
 use crate::placement::{Anchor, Plot, Request};
 use crate::regions::Ground;
@@ -43,6 +43,8 @@ pub struct Sampler {
     maps: Option<Arc<MapLibrary>>,
     /// The ground, where it is the same in every world.
     ground: Option<Ground>,
+    /// Whether chance has a part in where the agent starts, or in what ground there is.
+    start_varies: bool,
 }
 
 impl Sampler {
@@ -71,6 +73,7 @@ impl Sampler {
             spread: Stream::new(variant.task().name(), seed, "coverage"),
             maps: None,
             ground: None,
+            start_varies: false,
         };
         sampler.settle_ground();
         sampler
@@ -100,6 +103,13 @@ impl Sampler {
             .holes
             .iter()
             .any(|(hole, _)| shapes.iter().any(|shape| hole.pointer.starts_with(shape)));
+        self.start_varies = varies
+            || self
+                .compiled
+                .world
+                .holes
+                .iter()
+                .any(|(hole, _)| hole.pointer.starts_with("/agent_params/coordinates"));
         if !varies {
             if let Some(maps) = &self.maps {
                 maps.apply(&mut self.compiled.world.base);
@@ -121,20 +131,23 @@ impl Sampler {
     /// The randomized parameters of world number `index`, in the order in which the task declares them.
     ///
     /// # Errors
-    /// [`GeneratorError::Requirement`] if the task's requirements hold in none of the tries.
+    /// [`GeneratorError::Requirement`] if the task's requirements hold in none of the tries, [`GeneratorError::NoStart`] if the
+    /// agent's start is free ground in none, [`GeneratorError::OutOfRange`] for a draw that cannot stand in the world.
     pub fn values(&self, index: u64) -> Result<Vec<(&str, Value)>, GeneratorError> {
         let names = self.compiled.parameters.iter().map(|parameter| parameter.name.as_str());
-        Ok(names.zip(self.draw_values(index)?).collect())
+        Ok(names.zip(self.empty_world(index)?.1).collect())
     }
 
-    fn draw_values(&self, index: u64) -> Result<Vec<Value>, GeneratorError> {
-        for attempt in 0..ATTEMPTS {
+    /// The randomized parameters from the first attempt on, counted from `first`, for which the requirements hold; and that
+    /// attempt.
+    fn draw_values(&self, index: u64, first: u32) -> Result<(Vec<Value>, u32), GeneratorError> {
+        for attempt in first..ATTEMPTS {
             let parameters = self.compiled.parameters.iter();
             let values: Vec<Value> = parameters
                 .map(|parameter| parameter.value(self.coverage, &self.spread, index, attempt))
                 .collect();
             if self.requirements.is_empty() {
-                return Ok(values);
+                return Ok((values, attempt));
             }
             let value_of = |name: &str| {
                 let parameter = self
@@ -151,7 +164,7 @@ impl Sampler {
                 .iter()
                 .find(|requirement| requirement.holds(value_of) != Some(true));
             match broken {
-                None => return Ok(values),
+                None => return Ok((values, attempt)),
                 Some(requirement) if attempt + 1 == ATTEMPTS => {
                     return Err(GeneratorError::Requirement {
                         variant: self.variant.id(),
@@ -165,31 +178,79 @@ impl Sampler {
                 Some(_) => {}
             }
         }
-        unreachable!("the last attempt returns")
+        unreachable!("callers begin below the last attempt, which returns")
+    }
+
+    /// The world but for its objects, with the ground it stands on where that is its own. The agent's start is free ground: a
+    /// start that is drawn is drawn again, together with the parameters, until it is.
+    fn empty_world(&self, index: u64) -> Result<(World, Vec<Value>, Option<Ground>), GeneratorError> {
+        let mut first = 0;
+        loop {
+            let (values, attempt) = self.draw_values(index, first)?;
+            let mut world = self.fill(
+                &self.compiled.world,
+                Address {
+                    index,
+                    object: 0,
+                    attempt,
+                },
+                &values,
+            )?;
+            let mut own_ground = None;
+            if self.ground.is_none() {
+                if let Some(maps) = &self.maps {
+                    maps.apply(&mut world);
+                }
+                own_ground = Some(Ground::new(&world.environment_params));
+            }
+            let ground = self
+                .ground
+                .as_ref()
+                .or(own_ground.as_ref())
+                .expect("one of the two is there");
+            let start = world.agent_params.coordinates;
+            if ground.clearance(start, 0.0) > 0.0 {
+                return Ok((world, values, own_ground));
+            }
+            let tries = attempt + 1;
+            if !self.start_varies || tries == ATTEMPTS {
+                let variant = self.variant.id();
+                return Err(GeneratorError::NoStart {
+                    variant,
+                    seed: self.seed,
+                    index,
+                    start,
+                    tries,
+                });
+            }
+            first = tries;
+        }
     }
 
     /// World number `index`.
     ///
     /// # Errors
-    /// [`GeneratorError`] if an object finds no place, a draw falls out of its range, a requirement never holds, or there are
+    /// [`GeneratorError`] if an object or the agent finds no place, a draw falls out of its range, a requirement never holds, or there are
     /// too many objects.
     pub fn world(&self, index: u64) -> Result<World, GeneratorError> {
-        let values = self.draw_values(index)?;
-        let mut world = self.fill(&self.compiled.world, index, 0, &values)?;
-        let own_ground;
-        let ground = if let Some(ground) = &self.ground {
-            ground
-        } else {
-            if let Some(maps) = &self.maps {
-                maps.apply(&mut world);
-            }
-            own_ground = Ground::new(&world.environment_params);
-            &own_ground
-        };
+        let (mut world, values, own_ground) = self.empty_world(index)?;
+        let ground = self
+            .ground
+            .as_ref()
+            .or(own_ground.as_ref())
+            .expect("one of the two is there");
         let mut plot = Plot::new(ground, world.agent_params.coordinates, self.compiled.groups.len());
         world.objects.reserve_exact(self.compiled.room);
         for (number, fixture) in self.compiled.fixtures.iter().enumerate() {
-            let object = self.fill(fixture, index, number as u64, &values)?;
+            let object = self.fill(
+                fixture,
+                Address {
+                    index,
+                    object: number as u64,
+                    attempt: 0,
+                },
+                &values,
+            )?;
             plot.occupy(object.coordinates);
             world.objects.push(object);
         }
@@ -237,9 +298,15 @@ impl Sampler {
         let first = anchor_number << 32;
         let count = match &group.count {
             GroupCount::Fixed(count) => *count,
-            GroupCount::Drawn(fill) => fill.with(index, first, draft.values, |value| {
-                value.as_integer().unwrap_or(0) as u32
-            }),
+            GroupCount::Drawn(fill) => fill.with(
+                Address {
+                    index,
+                    object: first,
+                    attempt: 0,
+                },
+                draft.values,
+                |value| value.as_integer().unwrap_or(0) as u32,
+            ),
         };
         let found = draft.world.objects.len() + count as usize;
         if found > MAX_OBJECTS {
@@ -253,7 +320,15 @@ impl Sampler {
             });
         }
         for turn in 0..u64::from(count) {
-            let mut object = self.fill(&group.object, index, first + turn, draft.values)?;
+            let mut object = self.fill(
+                &group.object,
+                Address {
+                    index,
+                    object: first + turn,
+                    attempt: 0,
+                },
+                draft.values,
+            )?;
             let mut chance = group.placement.stream.at(index, first + turn, 0);
             let placement = &group.placement.distribution;
             let request = Request {
@@ -305,16 +380,10 @@ impl Sampler {
         Ok(())
     }
 
-    fn fill<T: Clone>(
-        &self,
-        template: &Filled<T>,
-        index: u64,
-        object: u64,
-        values: &[Value],
-    ) -> Result<T, GeneratorError> {
+    fn fill<T: Clone>(&self, template: &Filled<T>, at: Address, values: &[Value]) -> Result<T, GeneratorError> {
         let mut target = template.base.clone();
         for (hole, fill) in &template.holes {
-            fill.with(index, object, values, |value| {
+            fill.with(at, values, |value| {
                 if hole.kind == ParameterType::Heading {
                     let turned = value.cast(ParameterType::Heading);
                     hole.fill(&mut target, turned.as_ref().unwrap_or(value));
@@ -331,7 +400,7 @@ impl Sampler {
                 };
                 if let Some(found) = found {
                     return Err(self.out_of_range(
-                        index,
+                        at.index,
                         &format!("{}{}", template.place, hole.pointer),
                         [found; 2],
                         hole.range,

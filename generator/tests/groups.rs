@@ -234,7 +234,8 @@ fn a_maps_file_replaces_the_built_in_layouts_and_nothing_stands_in_its_regions()
     let maps = Arc::new(MapLibrary::from_json("maps.json", &text).unwrap_or_else(|error| panic!("{error}")));
     let task = load(
         r#"{ "version": 2, "name": "maps",
-             "world": { "environment_params": { "predefined_map": { "integer_uniform": { "low": 0, "high": 4 } } } },
+             "world": { "environment_params": { "predefined_map": { "integer_uniform": { "low": 0, "high": 4 } } },
+                        "agent_params": { "coordinates": { "box": { "low": [-99, -99], "high": [99, 99] } } } },
              "groups": [{ "name": "rocks", "count": 300, "object": { "class": "rock" }, "keep_out": { "walls": 0.5 },
                           "placement": { "box": { "low": [-100, -100], "high": [100, 100] } } }] }"#,
     );
@@ -252,6 +253,14 @@ fn a_maps_file_replaces_the_built_in_layouts_and_nothing_stands_in_its_regions()
             world.environment_params.map_regions.as_deref(),
             Some(&layout.excluded_regions[..])
         );
+        let start = world.agent_params.coordinates;
+        assert!(
+            layout
+                .excluded_regions
+                .iter()
+                .all(|region| turns(&region.0, start).round() as i64 % 2 == 0),
+            "{start:?}"
+        );
         for object in &world.objects {
             for region in &layout.excluded_regions {
                 let turns = turns(&region.0, object.coordinates);
@@ -266,4 +275,23 @@ fn a_maps_file_replaces_the_built_in_layouts_and_nothing_stands_in_its_regions()
         assert_eq!(again, world, "the world carries its map");
     }
     assert_eq!(seen.len(), 5);
+}
+
+#[test]
+fn an_agent_never_starts_inside_a_region_that_cannot_be_entered() {
+    let inside =
+        load(r#"{ "version": 2, "name": "inside", "world": { "environment_params": { "predefined_map": 1 } } }"#);
+    let error = sampler(&inside, 7)
+        .world(0)
+        .expect_err("the ridge of the backslash lies on the origin");
+    assert!(matches!(error, GeneratorError::NoStart { tries: 1, .. }));
+    insta::assert_snapshot!(error);
+    let never = load(
+        r#"{ "version": 2, "name": "never", "world": { "environment_params": { "predefined_map": 1 },
+             "agent_params": { "coordinates": { "disc": { "center": [0, 0], "radius": 1 } } } } }"#,
+    );
+    let error = sampler(&never, 7)
+        .world(0)
+        .expect_err("a metre around the origin is all ridge");
+    assert!(matches!(error, GeneratorError::NoStart { tries: 1000, .. }), "{error}");
 }

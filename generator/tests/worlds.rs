@@ -139,7 +139,7 @@ fn groups_keep_their_distances() {
 fn nothing_stands_in_a_region_that_cannot_be_entered() {
     for map in 1..=4_u8 {
         let text = format!(
-            r#"{{ "name": "maps", "world": {{ "environment_params": {{ "predefined_map": {map} }} }},
+            r#"{{ "name": "maps", "world": {{ "environment_params": {{ "predefined_map": {map} }}, "agent_params": {{ "coordinates": {{ "box": {{ "low": [-99, -99], "high": [99, 99] }} }} }} }},
                 "groups": [{{ "name": "rocks", "count": 300, "object": {{ "class": "rock" }},
                 "placement": {{ "box": {{ "low": [-100, -100], "high": [100, 100] }} }}, "keep_out": {{ "walls": 1.5 }} }}] }}"#
         );
