@@ -24,8 +24,11 @@ use parquet::basic::Compression;
 use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
 
-/// How many worlds are gathered before they are written: memory is bounded by it.
+/// How many worlds are gathered before they are written.
 const ROWS: usize = 1024;
+
+/// How many bytes of JSON are gathered before they are written: memory is bounded by it and by one world.
+const BYTES: usize = 64 << 20;
 
 /// The form of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,7 +117,11 @@ impl<W: Write + Send> WorldTable<W> {
     /// [`ColumnsError`] if what was gathered cannot be written.
     pub fn push(&mut self, row: Row) -> Result<(), ColumnsError> {
         self.rows.push(row);
-        if self.rows.count == ROWS { self.flush() } else { Ok(()) }
+        if self.rows.count == ROWS || self.rows.bytes >= BYTES {
+            self.flush()
+        } else {
+            Ok(())
+        }
     }
 
     fn flush(&mut self) -> Result<(), ColumnsError> {
@@ -184,6 +191,7 @@ fn schema() -> SchemaRef {
 /// Rows that wait to be written.
 struct Rows {
     count: usize,
+    bytes: usize,
     task: StringBuilder,
     variant: StringBuilder,
     seed: UInt64Builder,
@@ -199,6 +207,7 @@ impl Default for Rows {
         let item = Field::new("item", DataType::Struct(OBJECT.clone()), false);
         Self {
             count: 0,
+            bytes: 0,
             task: StringBuilder::new(),
             variant: StringBuilder::new(),
             seed: UInt64Builder::new(),
@@ -246,12 +255,14 @@ impl Rows {
             columns.append(true);
         }
         self.objects.append(true);
-        self.world.append_value(row.world.to_json());
+        let json = row.world.to_json();
+        self.bytes += json.len();
+        self.world.append_value(json);
     }
 
     /// The rows as a batch; none are left.
     fn take(&mut self) -> Result<RecordBatch, ArrowError> {
-        self.count = 0;
+        (self.count, self.bytes) = (0, 0);
         let [x, y, heading] = &mut self.agent;
         let columns: Vec<ArrayRef> = vec![
             Arc::new(self.task.finish()),

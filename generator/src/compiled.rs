@@ -1,8 +1,8 @@
 //! A task for one variant under one seed, with all that is settled filled in and a stream for all that is drawn.
 
 use driftworld_spec::{
-    Count, Distribution, Facing, Hole, MAX_OBJECTS, Object, ParameterType, PlacedGroup, Resolved, Role, Source,
-    Template, Value, Variant, World,
+    Count, Distribution, Facing, Hole, Object, ParameterType, PlacedGroup, Resolved, Role, Source, Template, Value,
+    Variant, World,
 };
 
 use crate::coverage::Coverage;
@@ -196,7 +196,7 @@ impl Compiled {
         let expected: f64 = groups.iter().map(|group| group.expected).sum();
         Self {
             // A quarter more than the mean is enough for most worlds; few have to move when they grow beyond.
-            room: (expected * 1.25).min(MAX_OBJECTS as f64) as usize + task.fixtures().len(),
+            room: (expected * 1.25).min(4096.0) as usize + task.fixtures().len(),
             parameters,
             world: compiler.template(task.world(), "world"),
             fixtures: fixtures

@@ -9,15 +9,16 @@ pub(crate) const MAX_DIMENSIONS: usize = 100;
 
 /// How randomized parameters cover what they can be, over the worlds of a variant.
 ///
-/// Numbers and points that one or two numbers of chance decide take part, in the order in which the task declares them, as do
-/// the shares of no other: choices, counts and what stands in groups stay independent draws. Every world is still had at once.
+/// Randomized parameters that one or two numbers of chance decide take part, in the order in which the task declares them, so
+/// that one declared before another shifts its dimension. Choices, mixtures, Dirichlet shares and what is drawn inside groups
+/// stay independent draws, as do parameters beyond 100 dimensions and worlds that a requirement has drawn again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Coverage {
     /// Each world draws on its own.
     #[default]
     Independent,
     /// World `index` has point number `index` of Sobol's sequence, scrambled by the seed: any 2^k worlds from a multiple of 2^k
-    /// on spread evenly, in each parameter and in pairs of them.
+    /// on spread evenly in each parameter, and in most pairs of them.
     Sobol,
     /// A Latin hypercube over the worlds `first..first + count`: each parameter has one world in each of `count` equal shares
     /// of its probability.

@@ -68,7 +68,8 @@ impl Crowd {
                 least = (squared, Some(other));
             }
         };
-        let span = (reach / CELL).ceil() as i32;
+        // The farthest two places of a world are from each other is less than this.
+        let span = (reach.min(1000.0) / CELL).ceil() as i32;
         match &self.cells {
             Some((cells, before)) if (2 * i64::from(span) + 1).pow(2) < self.places.len() as i64 * 4 => {
                 let [cx, cy] = cell(place);

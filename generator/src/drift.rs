@@ -1,6 +1,6 @@
 //! [`Drift`]: the variants between two variants of a task. How far apart two variants are is `similarity`'s to say.
 
-use driftworld_spec::{Distribution, Domain, Number, ParameterType, Spread, Value, Variant};
+use driftworld_spec::{Distribution, Domain, Number, Parameter, ParameterType, Spread, Value, Variant};
 
 use crate::GeneratorError;
 use crate::oklab;
@@ -58,7 +58,7 @@ pub enum Switch {
 
 /// The way from one variant of a task to another.
 ///
-/// Numbers, points, vectors and the numbers of distributions of one family go straight; headings take the shorter way round;
+/// Numbers, points, vectors and the numbers of distributions of one family go straight; headings take the shorter way round, or the way through their range;
 /// colours go straight in Oklab, so that they change evenly to the eye; distributions of different families are mixed; whatever
 /// has nothing in between switches. At 0 and 1 the variants are those that were given.
 ///
@@ -147,7 +147,7 @@ impl Drift {
     fn between(&self, name: &str, from: &Value, to: &Value, t: f64, index: u64) -> Value {
         let parameter = &self.from.task().parameters()[name];
         let listed = matches!(parameter.domain(), Some(Domain::Choices(_)));
-        interpolate(parameter.kind, listed, from, to, t, (&self.from, &self.to)).unwrap_or_else(|| {
+        interpolate(parameter, listed, from, to, t, (&self.from, &self.to)).unwrap_or_else(|| {
             let threshold = match self.switch {
                 Switch::AtPoint => parameter.switch_at.unwrap_or(0.5),
                 Switch::Mixture { seed } => Stream::new(self.from.task().name(), seed, &format!("drift/{name}"))
@@ -161,7 +161,7 @@ impl Drift {
 
 /// The value between two, or `None` if there is nothing between them. `listed`: the domain is a list of choices.
 pub(crate) fn interpolate(
-    kind: ParameterType,
+    parameter: &Parameter,
     listed: bool,
     from: &Value,
     to: &Value,
@@ -182,7 +182,14 @@ pub(crate) fn interpolate(
                 .map(|between| Value::Distribution(Box::new(literal(&between))))
         }
         _ if listed => None,
-        (Value::Number(from), Value::Number(to)) if kind == ParameterType::Heading => {
+        (Value::Number(from), Value::Number(to)) if parameter.kind == ParameterType::Heading => {
+            if let Some([low, high]) = parameter.range.filter(|[low, high]| high - low < 360.0) {
+                // Within the arc that the parameter declares, which may be the longer way.
+                let along = |degrees: f64| (degrees - low).rem_euclid(360.0).min(high - low);
+                return Some(Value::Number(
+                    (low + straight(along(*from), along(*to))).rem_euclid(360.0),
+                ));
+            }
             let turn = (to - from + 180.0).rem_euclid(360.0) - 180.0;
             Some(Value::Number((from + turn * t).rem_euclid(360.0)))
         }

@@ -167,7 +167,7 @@ impl<'a> Plot<'a> {
     fn miss(&self, place: [f64; 2], own_distance: f64, request: &Request) -> Option<Miss> {
         let margins = request.margins;
         let wall = self.ground.clearance(place, margins.walls);
-        if wall < margins.walls {
+        if wall.is_nan() || wall < margins.walls {
             return Some(Miss {
                 condition: Condition::Wall,
                 has: wall,

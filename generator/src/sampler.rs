@@ -305,10 +305,10 @@ impl Sampler {
                     attempt: 0,
                 },
                 draft.values,
-                |value| value.as_integer().unwrap_or(0) as u32,
+                whole,
             ),
         };
-        let found = draft.world.objects.len() + count as usize;
+        let found = draft.world.objects.len().saturating_add(count as usize);
         if found > MAX_OBJECTS {
             let variant = self.variant.id();
             return Err(GeneratorError::TooMany {
@@ -438,7 +438,16 @@ struct Draft<'a, 'g> {
     world: &'a mut World,
 }
 
+/// A drawn count; what does not fit is as good as too many.
+fn whole(value: &Value) -> u32 {
+    value
+        .as_integer()
+        .map_or(0, |count| u32::try_from(count.max(0)).unwrap_or(u32::MAX))
+}
+
 /// The heading in degrees that looks from one place to another.
 fn heading([x, y]: [f64; 2], [to_x, to_y]: [f64; 2]) -> f64 {
-    libm::atan2(to_x - x, to_y - y).to_degrees().rem_euclid(360.0)
+    let turned = libm::atan2(to_x - x, to_y - y).to_degrees().rem_euclid(360.0);
+    // A tiny negative angle would be rounded up to 360 itself.
+    if turned >= 360.0 { 0.0 } else { turned }
 }

@@ -115,3 +115,55 @@ fn a_task_spec_of_version_1_is_read_and_its_margins_are_kept() {
         "in a document of version 2 they are unknown"
     );
 }
+
+/// A task that broke something once: what it is refused with, or `None` if it is sound.
+#[track_caller]
+fn said(text: &str) -> Option<String> {
+    TaskSpec::from_json("t.json", text).err().map(|error| error.to_string())
+}
+
+#[test]
+fn counts_written_in_any_way_are_read_or_refused_and_never_panic() {
+    let with = |count: &str| {
+        said(&format!(
+            r#"{{ "version": 2, "name": "t", "parameters": {{ "v": {{ "role": "fixed", "type": "vector", "value": [1, 2] }} }},
+                "groups": [{{ "name": "g", "count": {count}, "object": {{ "class": "cube" }},
+                "placement": {{ "disc": {{ "center": [0, 0], "radius": 20 }} }} }}] }}"#
+        ))
+    };
+    assert_eq!(with("3.0"), None);
+    assert_eq!(with("1e2"), None);
+    assert_eq!(with("-0"), None);
+    assert!(with("1.5").is_some() && with("1e9").is_some() && with("-1").is_some());
+    assert!(with(r#"{ "param": "v", "index": 1.0 }"#).is_some());
+}
+
+#[test]
+fn what_a_single_place_draws_looks_at_no_objects_before() {
+    let start = |law: &str| {
+        said(&format!(
+            r#"{{ "version": 2, "name": "t", "world": {{ "agent_params": {{ "coordinates": {law} }} }} }}"#
+        ))
+    };
+    assert!(
+        start(r#"{ "points": { "values": [[1, 1], [2, 2]] } }"#)
+            .is_some_and(|said| said.contains("\"order\": \"random\""))
+    );
+    assert_eq!(
+        start(r#"{ "points": { "values": [[1, 1], [2, 2]], "order": "random" } }"#),
+        None
+    );
+    assert!(start(r#"{ "annulus": { "center": [0, 0], "inner": 1e199, "outer": 1e200 } }"#).is_some());
+}
+
+#[test]
+fn an_index_is_checked_against_the_shortest_vector_that_there_can_be() {
+    let text = r#"{ "version": 2, "name": "t", "parameters": {
+        "d": { "role": "variant", "type": "distribution", "affects": ["R"],
+               "choices": [{ "dirichlet": { "alpha": [1, 1, 1] } }, { "dirichlet": { "alpha": [1, 1] } }],
+               "default": { "dirichlet": { "alpha": [1, 1, 1] } } },
+        "v": { "role": "randomized", "type": "vector", "affects": ["R"], "distribution": { "param": "d" } } },
+      "world": { "rules": { "step_reward": { "param": "v", "index": INDEX } } } }"#;
+    assert_eq!(said(&text.replace("INDEX", "1")), None);
+    assert!(said(&text.replace("INDEX", "2")).is_some_and(|said| said.contains("which has 2 numbers")));
+}

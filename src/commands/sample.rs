@@ -14,8 +14,11 @@ use tempfile::NamedTempFile;
 
 use super::{Failure, input, output};
 
-/// How many worlds are drawn at once while streaming; memory is bounded by it.
+/// The most worlds that are drawn at once while streaming.
 const CHUNK: u64 = 1024;
+
+/// About the most objects that are held at once while streaming: worlds of many objects are drawn in smaller chunks.
+const OBJECTS: u64 = 100_000;
 
 /// Draw worlds from a variant of a task.
 ///
@@ -313,14 +316,19 @@ fn each(
 ) -> Result<(), Failure> {
     let bar = output::progress(range.end - range.start, "sampling");
     let mut first = range.start;
+    let mut chunk = 16;
     while first < range.end {
-        let next = range.end.min(first.saturating_add(CHUNK));
+        let next = range.end.min(first.saturating_add(chunk));
+        let mut objects = 0;
         let worlds: Vec<_> = (first..next).into_par_iter().map(|index| source.world(index)).collect();
         for (index, world) in (first..next).zip(worlds) {
             let (variant, world) = world?;
+            objects += world.objects.len() as u64;
             take((index, variant, world))?;
         }
         bar.inc(next - first);
+        let each = (objects / (next - first)).max(1);
+        chunk = (OBJECTS / each).clamp(4, CHUNK);
         first = next;
     }
     bar.finish_and_clear();

@@ -29,7 +29,7 @@ pub(crate) struct Vary {
     #[arg(long, value_parser = distance)]
     distance: f64,
     /// How far off the distance may be.
-    #[arg(long, default_value_t = 0.001)]
+    #[arg(long, default_value = "0.001", value_parser = distance, allow_negative_numbers = true)]
     tolerance: f64,
     /// The new variant's name.
     #[arg(long, default_value = "found")]

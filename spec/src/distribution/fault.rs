@@ -87,13 +87,13 @@ impl Distribution<f64> {
             Self::Geometric { p } => unless(
                 (1e-9..=1.0).contains(p),
                 format!("p {p}"),
-                "a probability above 0, at most 1",
+                "a probability in 0.000000001..1",
             ),
             Self::Dirichlet { alpha } => {
                 let fine = alpha.iter().all(|shape| (1e-3..=1e6).contains(shape));
                 unless(fine, format!("alpha {alpha:?}"), "shapes in 0.001..1000000")
             }
-            planar => planar.planar_fault(),
+            planar => planar.planar_fault().or_else(|| planar.far_fault()),
         }
     }
 
@@ -137,10 +137,30 @@ impl Distribution<f64> {
                 let found = format!("columns {columns}, rows {rows}, jitter {jitter}");
                 unless(fine, found, "whole columns and rows in 1..1000 and jitter in 0..1")
             }),
-            Self::PoissonDisc { low, high, distance } => rectangle(low, high)
-                .or_else(|| unless(*distance > 0.0, format!("distance {distance}"), "a distance above 0")),
+            Self::PoissonDisc { low, high, distance } => rectangle(low, high).or_else(|| {
+                unless(
+                    (1e-9..=600.0).contains(distance),
+                    format!("distance {distance}"),
+                    "a distance above 0, at most 600 m",
+                )
+            }),
             _ => None,
         }
+    }
+}
+
+impl Distribution<f64> {
+    /// Numbers of a place that lie beyond any arena, where squares would overflow.
+    fn far_fault(&self) -> Fault {
+        let mut far = None;
+        let mapped: Result<Self, std::convert::Infallible> = self.try_map(&mut |number| {
+            if number.is_nan() || number.abs() > 1e6 {
+                far = Some(*number);
+            }
+            Ok(*number)
+        });
+        drop(mapped);
+        far.map(|number| (crate::document::plain_number(number), "metres in -1000000..1000000"))
     }
 }
 
@@ -251,10 +271,10 @@ mod tests {
             Some("a symmetric matrix without negative eigenvalues, and no correlation beside it"),
         );
         check(r#"{"exponential": {"rate": 0}}"#, Some("a rate above 0"));
-        check(r#"{"geometric": {"p": 0}}"#, Some("a probability above 0, at most 1"));
+        check(r#"{"geometric": {"p": 0}}"#, Some("a probability in 0.000000001..1"));
         check(
             r#"{"poisson_disc": {"low": [0, 0], "high": [1, 1], "distance": 0}}"#,
-            Some("a distance above 0"),
+            Some("a distance above 0, at most 600 m"),
         );
         check(r#"{"dirichlet": {"alpha": [1, 0]}}"#, Some("shapes in 0.001..1000000"));
         check(

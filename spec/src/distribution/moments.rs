@@ -123,6 +123,10 @@ fn truncated(mean: f64, std: f64, low: f64, high: f64) -> (f64, f64) {
         return (-mirrored, variance);
     }
     let mass = normal_cdf(b) - normal_cdf(a);
+    if mass <= 0.0 {
+        // So narrow that the density is flat: nothing is left of the difference.
+        return (f64::midpoint(low, high), square(high - low) / 12.0);
+    }
     let (at_a, at_b) = (normal_density(a), normal_density(b));
     let edge = |end: f64, density: f64| if end.is_finite() { end * density } else { 0.0 };
     let shift = (at_a - at_b) / mass;

@@ -3,7 +3,7 @@
 use super::moments::ends;
 use super::special::{beta_quantile, normal_cdf, normal_quantile};
 use super::{Distribution, discrete, von_mises};
-use crate::task::Value;
+use crate::task::{ParameterType, Value};
 
 impl Distribution<f64> {
     /// The least number up to which it draws with a probability of at least `p`, which lies in `0..=1`.
@@ -117,7 +117,7 @@ impl Distribution<f64> {
             }
             Self::Uniform { low, high } => Value::Number((low + (high - low) * p).min(high.next_down())),
             Self::Mixture { .. } => return None,
-            Self::VonMises { .. } => Value::Number(self.quantile(p)?.rem_euclid(360.0)),
+            Self::VonMises { .. } => Value::Number(self.quantile(p)?).cast(ParameterType::Heading)?,
             _ => Value::Number(self.quantile(p)?),
         })
     }

@@ -303,6 +303,20 @@ impl TaskSpec {
                 check(format!("/groups/{index}/object{}", hole.pointer), &hole.source);
             }
         }
+        for (index, group) in self.groups.iter().enumerate() {
+            let margins = [
+                ("separation", &group.spec.separation),
+                ("keep_out/walls", &group.spec.keep_out.walls),
+                ("keep_out/agent", &group.spec.keep_out.agent),
+            ];
+            for (key, number) in margins {
+                let metres = variant::settle_number(values, number).unwrap_or(0.0);
+                if !(0.0..=300.0).contains(&metres) {
+                    let pointer = format!("/groups/{index}/{key}");
+                    problems.push(Problem::new("spec/range", pointer, format!("{metres} m"), "0 to 300 m"));
+                }
+            }
+        }
         if let Some((requirement, shown)) = variant::broken(&self.requirements, values) {
             let expected = format!("what \"require\" states: {requirement}");
             problems.push(Problem::new("spec/requirement", "/require", shown, expected));

@@ -218,14 +218,18 @@ fn point(value: &Value) -> Option<[f64; 2]> {
 }
 
 fn triple(value: &Value) -> Option<[f64; 3]> {
-    value.as_vector()?.try_into().ok()
+    // A direction of no length is none.
+    value
+        .as_vector()?
+        .try_into()
+        .ok()
+        .filter(|numbers: &[f64; 3]| *numbers != [0.0; 3])
 }
 
 fn text(value: &Value) -> Option<std::string::String> {
-    if let Value::Text(text) = value {
-        Some(text.clone())
-    } else {
-        None
+    match value {
+        Value::Text(text) if (1..=100).contains(&text.chars().count()) => Some(text.clone()),
+        _ => None,
     }
 }
 

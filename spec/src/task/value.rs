@@ -51,7 +51,7 @@ impl ParameterType {
     pub fn fits(self, other: Self) -> bool {
         match self {
             Self::Integer => matches!(other, Self::Integer | Self::Number | Self::Heading),
-            Self::Number | Self::Heading => matches!(other, Self::Number | Self::Heading),
+            Self::Number => matches!(other, Self::Number | Self::Heading),
             _ => self == other,
         }
     }
@@ -105,7 +105,7 @@ impl Value {
             | (P::Distribution, Self::Distribution(_)) => Some(self.clone()),
             (P::Number, Self::Integer(whole)) => Some(Self::Number(*whole as f64)),
             (P::Heading, Self::Number(_) | Self::Integer(_)) => {
-                self.as_number().map(|degrees| Self::Number(degrees.rem_euclid(360.0)))
+                self.as_number().map(|degrees| Self::Number(turned(degrees)))
             }
             (P::Color, Self::Text(name)) => Color::from_name(name).map(Self::Color),
             (P::Vector, _) => self.as_vector().map(|vector| Self::Vector(vector.to_vec())),
@@ -154,6 +154,12 @@ impl Value {
         serde_json::to_value(self)
             .expect("values are numbers, texts and lists and maps of them, which always serialise")
     }
+}
+
+/// A heading of any size as one in 0..360: a tiny negative one would be rounded up to 360 itself.
+pub(crate) fn turned(degrees: f64) -> f64 {
+    let turned = degrees.rem_euclid(360.0);
+    if turned >= 360.0 { 0.0 } else { turned }
 }
 
 /// As people read it: colours by name where they have one.

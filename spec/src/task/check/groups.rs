@@ -9,7 +9,7 @@ use super::super::{Count, PlacedGroup, variant};
 use super::Check;
 use crate::MAX_OBJECTS;
 use crate::distribution::{Distribution, Number};
-use crate::document::escape;
+use crate::document::{describe, escape, plain_number};
 use crate::error::{Problem, nearest};
 
 impl Check<'_> {
@@ -23,6 +23,11 @@ impl Check<'_> {
             map.insert("coordinates".to_owned(), json!([0, 0]));
         }
         let object = self.object(&format!("{root}/object"), &object);
+        if group.object.get("unique_name").is_some_and(|name| !name.is_null()) {
+            let expected = "no unique_name: every object of the group would have it";
+            let problem = Problem::new("spec/value", format!("{root}/object/unique_name"), "a name", expected);
+            self.report(problem.advise("name them together by \"tag\""));
+        }
         self.placement(&format!("{root}/placement"), &group.placement);
         let around = group
             .around
@@ -177,10 +182,19 @@ impl Check<'_> {
     }
 
     fn count(&mut self, pointer: &str, json: &Json) -> Option<Count> {
-        if let Some(count) = json.as_u64() {
-            return u32::try_from(count).ok().map(Count::Fixed);
+        if let Some(number) = json.as_f64() {
+            if number.fract() == 0.0 && (0.0..=MAX_OBJECTS as f64).contains(&number) {
+                return Some(Count::Fixed(number as u32));
+            }
+            let expected = format!("a whole number from 0 to {MAX_OBJECTS}");
+            self.report(Problem::new("spec/range", pointer, plain_number(number), expected));
+            return None;
         }
-        let source = Source::read(json)?;
+        let Some(source) = Source::read(json) else {
+            let expected = "a whole number, a parameter ({\"param\": …}) or a distribution";
+            self.report(Problem::new("spec/value", pointer, describe(json), expected));
+            return None;
+        };
         let sound = self.source(pointer, &source, ParameterType::Integer) && {
             let candidates = self.candidates(&source, ParameterType::Integer);
             self.in_range(pointer, &candidates, [0.0, MAX_OBJECTS as f64])

@@ -143,16 +143,7 @@ impl<'a> Check<'a> {
                 return self.report(Problem::new("spec/type", pointer, found, expected));
             }
         }
-        if !self.source(pointer, source, parameter.kind) {
-            return;
-        }
-        for distribution in self.distributions_of(source) {
-            if distribution.needs_group() {
-                let advice = "write \"order\": \"random\", or a choice of points, to draw one of them";
-                let found = format!("{}, which looks at the objects before", distribution.name());
-                self.report(Problem::new("spec/type", pointer, found, "a distribution").advise(advice));
-            }
-        }
+        self.source(pointer, source, parameter.kind);
     }
 
     /// The requirements that can be read and make sense.

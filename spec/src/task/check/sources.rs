@@ -51,6 +51,7 @@ impl Check<'_> {
             self.report(Problem::new("spec/role", pointer, found, "a fixed or variant parameter").advise(advice));
         } else if let Some(kind) = self.kind_at(pointer, reference)
             && !kind.fits(ParameterType::Number)
+            && kind != ParameterType::Heading
         {
             let found = format!("the parameter {name:?} of type {}", kind.name());
             self.report(Problem::new("spec/type", pointer, found, "a parameter of type number"));
@@ -67,9 +68,9 @@ impl Check<'_> {
             ParameterType::Point => Some(2),
             ParameterType::Vector => parameter.vector_length().or_else(|| {
                 let source = parameter.distribution.as_ref()?;
-                self.distributions_of(source)
-                    .first()
-                    .and_then(Distribution::vector_length)
+                // The shortest that it can be.
+                let lengths = self.distributions_of(source).into_iter().map(|law| law.vector_length());
+                lengths.min().flatten()
             }),
             _ => None,
         };
@@ -137,8 +138,27 @@ impl Check<'_> {
             .distributions_of(source)
             .into_iter()
             .find(|distribution| !distribution.yields(kind));
+        if odd.is_none() && !self.stands_alone(pointer, source) {
+            return false;
+        }
         let found = odd.map(|distribution| format!("the distribution {}", distribution.name()));
         found.is_none_or(|found| self.type_matches(pointer, false, found, kind))
+    }
+
+    /// Whether what a source draws looks at no objects before: places in turn, or kept apart, are for groups.
+    fn stands_alone(&mut self, pointer: &str, source: &Source) -> bool {
+        let grouped = self
+            .distributions_of(source)
+            .into_iter()
+            .find(Distribution::needs_group);
+        if let Some(grouped) = &grouped {
+            let advice = "write \"order\": \"random\", or a choice of points, to draw one of them";
+            let found = format!("{}, which looks at the objects before", grouped.name());
+            self.report(
+                Problem::new("spec/type", pointer, found, "a distribution that draws on its own").advise(advice),
+            );
+        }
+        grouped.is_none()
     }
 
     fn type_matches(&mut self, pointer: &str, fits: bool, found: String, kind: ParameterType) -> bool {
