@@ -395,3 +395,27 @@ fn the_bench_prints_its_figures_under_their_names() {
         assert!(figures[name].as_f64().is_some_and(|rate| rate > 0.0), "{figures}");
     }
 }
+
+/// A result that was renamed over a device would take the device's place; over a link, the link's.
+#[cfg(unix)]
+#[test]
+fn devices_and_links_stay_what_they_are() {
+    use std::os::unix::fs::FileTypeExt;
+    let sample = ["sample", "find_objects#red", "--seed", "7", "-o"];
+    let printed = succeed(&[&sample[..], &["-"]].concat());
+
+    // Under `output()` standard output is a pipe.
+    assert_eq!(succeed(&[&sample[..], &["/dev/stdout"]].concat()), printed);
+    succeed(&[&sample[..], &["/dev/null"]].concat());
+    let null = std::fs::metadata("/dev/null").expect("every unix has one");
+    assert!(null.file_type().is_char_device());
+
+    let folder = scratch();
+    let (file, link) = (folder.path().join("world.json"), folder.path().join("latest.json"));
+    std::fs::write(&file, "").expect("the folder is ours");
+    std::os::unix::fs::symlink(&file, &link).expect("the folder is ours");
+    succeed(&[&sample[..], &[text(&link)]].concat());
+    assert!(link.is_symlink());
+    let written = std::fs::read_to_string(&file).expect("the link led here");
+    assert_eq!(written, printed);
+}

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -50,23 +50,53 @@ pub(crate) fn note(text: impl AsRef<str>) {
 
 /// Writes a file under a temporary name beside its own and renames it: it is there whole or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| Failure::input(format!("{}: cannot be written: {error}", path.display()));
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    fs::create_dir_all(folder).map_err(failed)?;
-    let mut file = NamedTempFile::new_in(folder).map_err(failed)?;
+    let failed = |error: std::io::Error| unwritable(path, &error);
+    let mut file = temporary(path).map_err(failed)?;
     file.write_all(bytes).map_err(failed)?;
     persist(file, path)
 }
 
+/// A file to write into until it can take `path`'s name: in the same folder, which is made where it is missing.
+pub(crate) fn temporary(path: &Path) -> std::io::Result<NamedTempFile> {
+    if is_special(path) {
+        return NamedTempFile::new();
+    }
+    let path = behind_links(path);
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    fs::create_dir_all(folder)?;
+    NamedTempFile::new_in(folder)
+}
+
 /// Gives a finished temporary file its name.
+///
+/// A device or a pipe cannot be given away: what was written is copied into it instead.
 pub(crate) fn persist(file: NamedTempFile, path: &Path) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| Failure::input(format!("{}: cannot be written: {error}", path.display()));
+    let failed = |error: std::io::Error| unwritable(path, &error);
+    if is_special(path) {
+        let mut out = fs::OpenOptions::new().write(true).open(path).map_err(failed)?;
+        std::io::copy(&mut file.reopen().map_err(failed)?, &mut out).map_err(failed)?;
+        return Ok(());
+    }
     file.as_file().sync_all().map_err(failed)?;
-    let file = file.persist(path).map_err(|error| failed(error.error))?;
+    let file = file.persist(behind_links(path)).map_err(|error| failed(error.error))?;
     readable_by_all(&file).map_err(failed)
+}
+
+fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::input(format!("{}: cannot be written: {error}", path.display()))
+}
+
+/// Whether the path is there and is neither a file nor a folder: `/dev/null`, a pipe, a terminal.
+fn is_special(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
+}
+
+/// The file that a symbolic link leads to, so that the link stays; else the path itself.
+fn behind_links(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
 }
 
 /// Temporary files are private to their owner; results are not.

@@ -243,15 +243,8 @@ impl Sample {
 
     /// A file under a temporary name in the folder of the output, which appears when it is whole.
     fn temporary(&self) -> Result<BufWriter<NamedTempFile>, Failure> {
-        let folder = self
-            .output
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty())
-            .unwrap_or(Path::new("."));
-        std::fs::create_dir_all(folder).map_err(|error| self.failed(&error))?;
-        Ok(BufWriter::new(
-            NamedTempFile::new_in(folder).map_err(|error| self.failed(&error))?,
-        ))
+        let file = output::temporary(&self.output).map_err(|error| self.failed(&error))?;
+        Ok(BufWriter::new(file))
     }
 
     fn failed(&self, error: &dyn std::fmt::Display) -> Failure {
