@@ -11,6 +11,7 @@ mod error;
 mod render;
 mod scene;
 mod sim;
+mod vector;
 
 pub use agents::{Agent, OnRailsAgent, RandomAgent};
 pub use assets::{Asset, ColliderShape, Mesh, Paint, Part, asset, classes};
@@ -18,7 +19,7 @@ pub use camera::Camera;
 pub use error::EnvError;
 pub use render::{
     CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, CpuRenderer,
-    FAR_DEPTH, Frame, Image, category_color, depth_to_gray, top_down,
+    FAR_DEPTH, Frame, Image, Target, category_color, depth_to_gray, top_down,
 };
 pub use scene::{Item, Light, Scene, WallPanel};
 pub use sim::{Action, AgentState, Environment, Event, ObjectState, Step, Warning};

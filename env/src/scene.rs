@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use driftworld_spec::World;
 
-use crate::assets::{Asset, asset};
+use crate::assets::{Asset, Block, Coat, Mesh, Paint, Part, asset};
 
 /// Everything that a picture of a world depends on, but for the camera.
 #[derive(Clone, Debug)]
@@ -18,6 +18,23 @@ pub struct Scene {
     /// Walls: the arena's own and regions that cannot be entered.
     pub walls: Vec<WallPanel>,
     arena_size: [f32; 2],
+    panels: Vec<PanelGroup>,
+    num_classes: usize,
+}
+
+/// How many of a scene's walls, the first ones, are the arena's own: west, north, east, south.
+pub(crate) const ARENA_WALLS: usize = 4;
+
+/// Wall panels that are drawn together: one wall of the arena, or all of a region.
+#[derive(Clone, Debug)]
+pub(crate) struct PanelGroup {
+    /// Middle of a ball that holds all of them, in metres.
+    pub(crate) middle: [f32; 3],
+    /// Its radius.
+    pub(crate) radius: f32,
+    /// Their colour, sRGB.
+    pub(crate) color: [f32; 3],
+    pub(crate) blocks: Vec<Block>,
 }
 
 /// One object in the scene.
@@ -56,6 +73,8 @@ pub struct Light {
     pub ambient: f32,
     /// Colour of the sky at the zenith, sRGB.
     pub sky_color: [f32; 3],
+    /// Distance in metres at which half of what is seen is fog; no fog if absent.
+    pub fog_distance: Option<f32>,
 }
 
 /// An upright rectangle on the ground, seen from its right-hand side when walking from `from` to `to`.
@@ -81,6 +100,8 @@ impl Scene {
             ground_color: environment.ground_color.to_f32(),
             walls: Vec::new(),
             arena_size: environment.arena_size().map(|side| side as f32),
+            panels: Vec::new(),
+            num_classes: 0,
         };
         scene.add_walls(world);
         let mut classes: Vec<String> = Vec::new();
@@ -103,6 +124,7 @@ impl Scene {
                 visible: true,
             });
         }
+        scene.num_classes = classes.len();
         scene
     }
 
@@ -111,13 +133,26 @@ impl Scene {
         self.arena_size
     }
 
+    /// The walls as they are drawn: the arena's four, then one group for each region.
+    pub(crate) fn panels(&self) -> &[PanelGroup] {
+        &self.panels
+    }
+
+    /// How many classes the scene's items are of.
+    pub(crate) fn num_classes(&self) -> usize {
+        self.num_classes
+    }
+
     fn add_walls(&mut self, world: &World) {
         let environment = &world.environment_params;
         let color = environment.bounding_wall_color.to_f32();
         let height = environment.wall_height as f32;
         let [x, y] = self.arena_size.map(|side| side / 2.0);
         // Clockwise, so that the inside is on the right.
-        self.add_polygon(&[[-x, -y], [-x, y], [x, y], [x, -y]], height, color);
+        let corners = [[-x, -y], [-x, y], [x, y], [x, -y]];
+        for (k, from) in corners.into_iter().enumerate() {
+            self.add_panels(&[(from, corners[(k + 1) % 4])], height, color);
+        }
         for region in environment.regions() {
             self.add_region(region, height, color);
         }
@@ -142,18 +177,46 @@ impl Scene {
         if twice_area < 0.0 {
             corners.reverse();
         }
-        self.add_polygon(&corners, height, color);
+        let next = corners.iter().cycle().skip(1);
+        let edges: Vec<_> = corners.iter().copied().zip(next.copied()).collect();
+        self.add_panels(&edges, height, color);
     }
 
-    fn add_polygon(&mut self, corners: &[[f32; 2]], height: f32, color: [f32; 3]) {
-        let next = corners.iter().cycle().skip(1);
-        self.walls
-            .extend(corners.iter().zip(next).map(|(&from, &to)| WallPanel {
+    /// Panels that stand on these edges, of one height and colour.
+    fn add_panels(&mut self, edges: &[([f32; 2], [f32; 2])], height: f32, color: [f32; 3]) {
+        let mut mesh = Mesh::default();
+        for &(from, to) in edges {
+            self.walls.push(WallPanel {
                 from,
                 to,
                 height,
                 color,
-            }));
+            });
+            if from != to && height > 0.0 {
+                let first = mesh.corners.len() as u32;
+                let [[ax, ay], [bx, by]] = [from, to];
+                mesh.corners
+                    .extend([[ax, ay, 0.0], [bx, by, 0.0], [bx, by, height], [ax, ay, height]]);
+                mesh.triangles
+                    .extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
+            }
+        }
+        let part = Part::new(mesh, Paint::Fixed(color));
+        let corners = &part.mesh.corners;
+        let side = |axis: usize| {
+            let values = corners.iter().map(|corner| corner[axis]);
+            values.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], value| {
+                [low.min(value), high.max(value)]
+            })
+        };
+        let sides = [side(0), side(1), side(2)];
+        let halves = sides.map(|[low, high]| ((high - low) / 2.0).max(0.0));
+        self.panels.push(PanelGroup {
+            middle: sides.map(|[low, high]| if low <= high { f32::midpoint(low, high) } else { 0.0 }),
+            radius: halves.iter().map(|half| half * half).sum::<f32>().sqrt(),
+            color,
+            blocks: Coat::new(&part).blocks,
+        });
     }
 }
 
@@ -169,5 +232,6 @@ fn light(world: &World) -> Light {
         exposure: 1.72 * intensity / (intensity + 1.65),
         ambient: environment.ambient_light as f32,
         sky_color: environment.sky_color.to_f32(),
+        fog_distance: None,
     }
 }

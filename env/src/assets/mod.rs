@@ -1,5 +1,6 @@
 //! What objects look like: meshes made by code from class and model number, and their colliders. Where they stand is the scene's.
 
+mod blocks;
 mod catalogue;
 mod furniture;
 mod mesh;
@@ -12,8 +13,8 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use driftworld_spec::Model;
 
+pub(crate) use blocks::{BLOCK, Block, Coat};
 pub use mesh::Mesh;
-pub(crate) use mesh::hash;
 
 /// The look and the body of one model of one class, at scale 1.
 #[derive(Clone, Debug)]
@@ -28,6 +29,30 @@ pub struct Asset {
     pub radius: f32,
     /// Whether class and model are known; if not, this is the placeholder.
     pub known: bool,
+    /// What is drawn, from all of it to the coarsest.
+    levels: Vec<Level>,
+}
+
+/// An asset's parts, all of them or simplified, ready to be drawn.
+#[derive(Clone, Debug)]
+struct Level {
+    /// How far the surface may be from where it should be, in metres at scale 1.
+    error: f32,
+    coats: Vec<Coat>,
+}
+
+impl Asset {
+    /// What to draw where an error of so many metres, at scale 1, cannot be seen.
+    pub(crate) fn level(&self, error: f32) -> &[Coat] {
+        let good = self.levels.iter().rev().find(|level| level.error <= error);
+        good.or(self.levels.first()).map_or(&[], |level| &level.coats)
+    }
+
+    /// Radius of the ball around the middle of the asset's height that holds all of it, in metres at scale 1.
+    pub(crate) fn ball_radius(&self) -> f32 {
+        let half = self.height / 2.0;
+        (self.radius * self.radius + half * half).sqrt()
+    }
 }
 
 /// A mesh of one colour.
@@ -166,13 +191,17 @@ impl Builder {
             height,
             radius,
             known: true,
+            levels: vec![Level {
+                error: 0.0,
+                coats: self.0.iter().map(Coat::new).collect(),
+            }],
             parts: self.0,
         }
     }
 }
 
 impl Part {
-    fn new(mesh: Mesh, paint: Paint) -> Self {
+    pub(crate) fn new(mesh: Mesh, paint: Paint) -> Self {
         let normal = |triangle: &[u32; 3]| {
             let [a, b, c] = triangle.map(|corner| mesh.corners[corner as usize]);
             let (u, v) = (

@@ -1,281 +1,359 @@
-//! The renderer that needs nothing but a processor: sky and ground by formula, walls and objects by scan conversion.
+//! The renderer that needs nothing but a processor: chooses the instruction set, and draws what is in sight, near to far.
+//! Triangles are drawn in `raster.rs`, images made in `compose.rs`.
 
+use super::backdrop::Backdrop;
+use super::canvas::Canvas;
+use super::compose::{CATEGORY_BITS, Composition, Scratch, Walls};
+use super::frame::{CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, Frame};
+#[cfg(target_arch = "x86_64")]
+use super::lanes::{Avx2, Avx512};
+use super::lanes::{Lanes, MOST_LANES, Portable};
+use super::raster::{Paintwork, draw_block};
+use super::shade::Shader;
+use super::target::Target;
+use super::view::{NEAR, Pose, View};
+use crate::EnvError;
 use crate::assets::Paint;
-use crate::camera::{Axes, Camera};
-use crate::render::background::Background;
-use crate::render::frame::{
-    CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, FAR_DEPTH, Frame,
-};
-use crate::render::shade::Shader;
-use crate::scene::{Item, Scene, WallPanel};
+use crate::camera::Camera;
+use crate::scene::{ARENA_WALLS, Item, PanelGroup, Scene};
 
-/// Nearest distance at which anything is drawn, in metres.
-const NEAR: f32 = 0.05;
+/// Largest error of a simplified mesh that is drawn, in pixels.
+const TOLERANCE: f32 = 0.5;
 
-/// Draws scenes on the processor. Keeps its buffers from picture to picture; draws the same pixels on every machine.
-#[derive(Clone, Debug, Default)]
+/// Draws scenes on the processor. Keeps its buffers from picture to picture, and allocates nothing once they are large enough.
+///
+/// The same scene and camera give the same pixels on every machine, whichever instruction set is used.
+#[derive(Clone, Debug)]
 pub struct CpuRenderer {
-    /// 1 / depth per pixel; 0 is infinitely far.
-    inverse_depth: Vec<f32>,
-    order: Vec<(f32, u32)>,
-    corners: Vec<[f32; 3]>,
+    set: Set,
+    canvas: Canvas,
+    backdrop: Backdrop,
+    order: Vec<InSight>,
+    offsets: Vec<f32>,
+    classes: Vec<u16>,
+    scratch: Scratch,
 }
 
-/// What all pixels of a triangle share.
-#[derive(Clone, Copy)]
-struct Ink {
-    rgb: [u8; 3],
-    category: u8,
-    class: u16,
-    instance: u32,
+/// An instruction set that this processor has.
+#[derive(Clone, Copy, Debug)]
+enum Set {
+    Portable(Portable),
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Avx2),
+    #[cfg(target_arch = "x86_64")]
+    Avx512(Avx512),
 }
 
-/// A camera ready to project: screen x and y at depth 1, and depth.
-struct View {
-    axes: Axes,
-    position: [f32; 3],
-    scale: f32,
-    half: [f32; 2],
+/// Something that may be in the picture.
+#[derive(Clone, Copy, Debug)]
+struct InSight {
+    /// Depth of its nearest point in metres.
+    nearest: f32,
+    /// Depth of its middle.
+    middle: f32,
+    what: What,
 }
 
-impl View {
-    fn new(camera: &Camera, frame: &Frame) -> Self {
-        let half = [frame.width as f32 / 2.0, frame.height as f32 / 2.0];
-        Self {
-            axes: camera.axes(),
-            position: camera.position,
-            scale: half[1] / camera.tangent(),
-            half,
-        }
-    }
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum What {
+    Item(u32),
+    Panels(u32),
+}
 
-    /// A point of the world in the camera's frame: right, up, forward, in metres.
-    fn view_from_world(&self, point: [f32; 3]) -> [f32; 3] {
-        let d = sub(point, self.position);
-        [dot(d, self.axes.right), dot(d, self.axes.up), dot(d, self.axes.forward)]
-    }
-
-    /// Pixel coordinates and 1 / depth of a point in the camera's frame in front of the near plane.
-    fn project(&self, [right, up, forward]: [f32; 3]) -> [f32; 3] {
-        let inverse = 1.0 / forward;
-        [
-            self.half[0] + right * self.scale * inverse,
-            self.half[1] - up * self.scale * inverse,
-            inverse,
-        ]
-    }
-
-    /// Whether a ball may be in the picture.
-    fn sees(&self, [right, up, forward]: [f32; 3], radius: f32) -> bool {
-        if forward + radius < NEAR {
-            return false;
-        }
-        let [tx, ty] = [self.half[0] / self.scale, self.half[1] / self.scale];
-        right.abs() - tx * forward <= radius * (1.0 + tx * tx).sqrt()
-            && up.abs() - ty * forward <= radius * (1.0 + ty * ty).sqrt()
+impl Default for CpuRenderer {
+    fn default() -> Self {
+        Self::new()
     }
 }
 
 impl CpuRenderer {
-    /// A renderer.
+    /// A renderer with the widest instructions that this processor has.
     pub fn new() -> Self {
-        Self::default()
+        let sets = Set::all();
+        Self::with(sets[sets.len() - 1])
     }
 
-    /// Draws what the camera sees of the scene into the frame, at the frame's size.
+    /// One renderer for each set of instructions that this processor has, with the set's name; the widest last.
+    ///
+    /// They draw the same pixels: this is for tests and measurements.
+    pub fn each_instruction_set() -> Vec<(&'static str, Self)> {
+        Set::all()
+            .into_iter()
+            .map(|set| (set.name(), Self::with(set)))
+            .collect()
+    }
+
+    fn with(set: Set) -> Self {
+        Self {
+            set,
+            canvas: Canvas::default(),
+            backdrop: Backdrop::default(),
+            order: Vec::new(),
+            offsets: Vec::new(),
+            classes: Vec::new(),
+            scratch: Scratch::default(),
+        }
+    }
+
+    /// The name of the instruction set in use: `portable`, `avx2` or `avx512`.
+    pub fn instruction_set(&self) -> &'static str {
+        self.set.name()
+    }
+
+    /// Draws all images of a frame.
     pub fn render(&mut self, scene: &Scene, camera: &Camera, frame: &mut Frame) {
-        let pixels = frame.width as usize * frame.height as usize;
-        self.inverse_depth.clear();
-        self.inverse_depth.resize(pixels, 0.0);
-        frame.class.fill(0);
-        frame.instance.fill(0);
-        let view = View::new(camera, frame);
-        let shader = Shader::new(&scene.light);
-        self.draw_items(scene, &view, &shader, frame);
-        for wall in &scene.walls {
-            self.draw_wall(wall, &view, &shader, frame);
-        }
-        Background::new(scene, &shader, camera, frame).fill(&self.inverse_depth, frame);
-        for (depth, inverse) in frame.depth.iter_mut().zip(&self.inverse_depth) {
-            if *inverse > 0.0 {
-                *depth = (1.0 / inverse).min(FAR_DEPTH);
-            }
+        if frame.width > 0 && frame.height > 0 {
+            self.run(scene, camera, &mut frame.target());
         }
     }
 
-    /// Nearest first, so that most hidden pixels fail the depth test.
-    fn draw_items(&mut self, scene: &Scene, view: &View, shader: &Shader, frame: &mut Frame) {
-        let mut order = std::mem::take(&mut self.order);
-        order.clear();
-        for (index, item) in scene.items.iter().enumerate().filter(|(_, item)| item.visible) {
-            let radius = item.asset.radius.max(item.asset.height) * item.scale;
-            let centre =
-                view.view_from_world([item.position[0], item.position[1], item.asset.height * item.scale / 2.0]);
-            if view.sees(centre, radius) {
-                order.push((centre[2], index as u32));
-            }
+    /// Draws the images that the target asks for.
+    ///
+    /// # Errors
+    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels and every image has room for exactly as many.
+    pub fn draw(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) -> Result<(), EnvError> {
+        if !target.is_sound() {
+            let (width, height) = (target.width, target.height);
+            return Err(EnvError::PictureSize { width, height });
         }
-        order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        for &(_, index) in &order {
-            self.draw_item(&scene.items[index as usize], index, view, shader, frame);
+        self.run(scene, camera, target);
+        Ok(())
+    }
+
+    fn run(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) {
+        match self.set {
+            Set::Portable(lanes) => self.draw_any(lanes, scene, camera, target),
+            #[cfg(target_arch = "x86_64")]
+            #[expect(
+                unsafe_code,
+                reason = "the value in the set proves that the processor has the instructions"
+            )]
+            // SAFETY: an `Avx2` exists only where `avx2` was detected.
+            Set::Avx2(lanes) => unsafe { self.draw_avx2(lanes, scene, camera, target) },
+            #[cfg(target_arch = "x86_64")]
+            #[expect(
+                unsafe_code,
+                reason = "the value in the set proves that the processor has the instructions"
+            )]
+            // SAFETY: an `Avx512` exists only where `avx512f` and `avx512bw` were detected; both have AVX2 in them.
+            Set::Avx512(lanes) => unsafe { self.draw_avx512(lanes, scene, camera, target) },
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn draw_avx2(&mut self, lanes: Avx2, scene: &Scene, camera: &Camera, target: &mut Target<'_>) {
+        self.draw_any(lanes, scene, camera, target);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,avx512f,avx512bw")]
+    fn draw_avx512(&mut self, lanes: Avx512, scene: &Scene, camera: &Camera, target: &mut Target<'_>) {
+        self.draw_any(lanes, scene, camera, target);
+    }
+
+    #[inline(always)]
+    fn draw_any<L: Lanes>(&mut self, lanes: L, scene: &Scene, camera: &Camera, target: &mut Target<'_>) {
+        // Where class and category do not fit into a label together, pixels remember their item.
+        let fits = scene.num_classes() < 1 << (8 - CATEGORY_BITS);
+        if target.instance.is_some() || (target.class.is_some() && !fits) {
+            self.draw_with::<L, true>(lanes, scene, camera, target);
+        } else {
+            self.draw_with::<L, false>(lanes, scene, camera, target);
+        }
+    }
+
+    #[inline(always)]
+    fn draw_with<L: Lanes, const ITEMS: bool>(
+        &mut self,
+        lanes: L,
+        scene: &Scene,
+        camera: &Camera,
+        target: &mut Target<'_>,
+    ) {
+        let (width, height) = (target.width as usize, target.height as usize);
+        let view = View::new(camera, width, height);
+        let shader = Shader::new(&scene.light);
+        let walls = Walls::around(scene, &view, &shader);
+        self.canvas.clear(width, height, ITEMS);
+        self.find(scene, &view, walls.is_some());
+        let order = std::mem::take(&mut self.order);
+        for &sight in &order {
+            match sight.what {
+                What::Item(index) => {
+                    let item = &scene.items[index as usize];
+                    self.draw_item::<L, ITEMS>(lanes, item, index, sight, &view, &shader, scene);
+                }
+                What::Panels(index) => {
+                    let group = &scene.panels()[index as usize];
+                    self.draw_panels::<L, ITEMS>(lanes, group, sight, &view, &shader, scene);
+                }
+            }
         }
         self.order = order;
+        self.backdrop.prepare(lanes, scene, &view, &shader, height);
+        self.measure_columns(&view, width);
+        self.classes.clear();
+        if ITEMS && target.class.is_some() {
+            self.classes.extend(scene.items.iter().map(|item| item.class_id));
+        }
+        let composition = Composition {
+            canvas: &self.canvas,
+            backdrop: &self.backdrop,
+            walls,
+            view,
+            offsets: &self.offsets,
+            fog_distance: scene.light.fog_distance,
+            classes: &self.classes,
+        };
+        composition.write::<L, ITEMS>(lanes, &mut self.scratch, target);
     }
 
-    fn draw_item(&mut self, item: &Item, index: u32, view: &View, shader: &Shader, frame: &mut Frame) {
-        let heading = item.heading_deg.to_radians();
-        let (sin, cos) = (libm::sinf(heading), libm::cosf(heading));
-        // Headings turn clockwise.
-        let turn = |[x, y, z]: [f32; 3]| [x * cos + y * sin, y * cos - x * sin, z];
-        let category = match item.reward {
-            _ if item.building => CATEGORY_BUILDING,
-            reward if reward > 0.0 => CATEGORY_POSITIVE,
-            reward if reward < 0.0 => CATEGORY_NEGATIVE,
-            _ => CATEGORY_NEUTRAL,
+    /// Puts what may be seen in order, near to far: what is behind is then mostly hidden when it comes.
+    fn find(&mut self, scene: &Scene, view: &View, walls_are_drawn: bool) {
+        self.order.clear();
+        let mut note = |middle: [f32; 3], radius: f32, what: What| {
+            let middle = view.view_from_world(middle);
+            if view.sees(middle, radius) {
+                self.order.push(InSight {
+                    nearest: middle[2] - radius,
+                    middle: middle[2],
+                    what,
+                });
+            }
         };
-        for part in &item.asset.parts {
-            let color = match part.paint {
+        for (index, item) in scene.items.iter().enumerate() {
+            if item.visible {
+                let [x, y] = item.position;
+                let half = item.asset.height * item.scale / 2.0;
+                note(
+                    [x, y, half],
+                    item.asset.ball_radius() * item.scale,
+                    What::Item(index as u32),
+                );
+            }
+        }
+        for (index, group) in scene.panels().iter().enumerate() {
+            if index >= ARENA_WALLS || !walls_are_drawn {
+                note(group.middle, group.radius, What::Panels(index as u32));
+            }
+        }
+        self.order
+            .sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.what.cmp(&b.what)));
+    }
+
+    /// How far columns are from the picture's middle, padded to whole vectors.
+    fn measure_columns(&mut self, view: &View, width: usize) {
+        self.offsets.clear();
+        let padded = width.next_multiple_of(MOST_LANES);
+        self.offsets
+            .extend((0..padded).map(|column| view.offset(0, column as f32)));
+    }
+
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "an item, and all that its looks depend on")]
+    fn draw_item<L: Lanes, const ITEMS: bool>(
+        &mut self,
+        lanes: L,
+        item: &Item,
+        index: u32,
+        sight: InSight,
+        view: &View,
+        shader: &Shader,
+        scene: &Scene,
+    ) {
+        let pose = Pose {
+            position: [item.position[0], item.position[1], 0.0],
+            heading_deg: item.heading_deg,
+            scale: item.scale,
+        };
+        let at = view.placement(&pose, scene.light.direction);
+        let label = if ITEMS {
+            0
+        } else {
+            u32::from(item.class_id) << CATEGORY_BITS
+        };
+        let mut paint = Paintwork {
+            color: [0.0; 3],
+            ambient: shader.ambient,
+            label: (label | u32::from(category(item))) << 24,
+            item: index + 1,
+            may_be_cut: sight.nearest < NEAR,
+        };
+        let pixels_per_metre = view.scale * item.scale / sight.middle.max(NEAR);
+        for coat in item.asset.level(TOLERANCE / pixels_per_metre) {
+            let color = match coat.paint {
                 Paint::Main(own) => item.color.unwrap_or(own),
                 Paint::Fixed(color) => color,
             };
-            self.corners.clear();
-            self.corners.extend(part.mesh.corners.iter().map(|corner| {
-                let [x, y, z] = turn(corner.map(|metres| metres * item.scale));
-                view.view_from_world([x + item.position[0], y + item.position[1], z])
-            }));
-            for (triangle, normal) in part.mesh.triangles.iter().zip(&part.normals) {
-                let corners = triangle.map(|corner| self.corners[corner as usize]);
-                if faces_away(corners) {
-                    continue;
-                }
-                let rgb = shader.lit(color, turn(*normal));
-                let ink = Ink {
-                    rgb,
-                    category,
-                    class: item.class_id,
-                    instance: index + 1,
-                };
-                self.draw_triangle(corners, ink, view, frame);
+            paint.color = shader.in_light(color);
+            for block in &coat.blocks {
+                draw_block::<L, ITEMS>(lanes, &mut self.canvas, block, &at, &paint);
             }
         }
     }
 
-    fn draw_wall(&mut self, wall: &WallPanel, view: &View, shader: &Shader, frame: &mut Frame) {
-        let along = [wall.to[0] - wall.from[0], wall.to[1] - wall.from[1]];
-        let length = (along[0] * along[0] + along[1] * along[1]).sqrt();
-        if length == 0.0 || wall.height <= 0.0 {
-            return;
-        }
-        let normal = [along[1] / length, -along[0] / length, 0.0];
-        let at = |[x, y]: [f32; 2], z: f32| view.view_from_world([x, y, z]);
-        let corners = [
-            at(wall.from, 0.0),
-            at(wall.to, 0.0),
-            at(wall.to, wall.height),
-            at(wall.from, wall.height),
-        ];
-        if faces_away([corners[0], corners[1], corners[2]]) {
-            return;
-        }
-        let ink = Ink {
-            rgb: shader.lit(wall.color, normal),
-            category: CATEGORY_MAP,
-            class: 0,
-            instance: 0,
+    #[inline(always)]
+    fn draw_panels<L: Lanes, const ITEMS: bool>(
+        &mut self,
+        lanes: L,
+        group: &PanelGroup,
+        sight: InSight,
+        view: &View,
+        shader: &Shader,
+        scene: &Scene,
+    ) {
+        let pose = Pose {
+            position: [0.0; 3],
+            heading_deg: 0.0,
+            scale: 1.0,
         };
-        self.draw_triangle([corners[0], corners[1], corners[2]], ink, view, frame);
-        self.draw_triangle([corners[0], corners[2], corners[3]], ink, view, frame);
-    }
-
-    /// Cuts a triangle at the near plane and draws what is left.
-    fn draw_triangle(&mut self, corners: [[f32; 3]; 3], ink: Ink, view: &View, frame: &mut Frame) {
-        if corners.iter().all(|corner| corner[2] >= NEAR) {
-            return self.fill(corners.map(|corner| view.project(corner)), ink, frame);
-        }
-        let mut polygon = [[0.0; 3]; 4];
-        let mut count = 0;
-        for k in 0..3 {
-            let (a, b) = (corners[k], corners[(k + 1) % 3]);
-            if a[2] >= NEAR {
-                polygon[count] = a;
-                count += 1;
-            }
-            if (a[2] >= NEAR) != (b[2] >= NEAR) {
-                let share = (NEAR - a[2]) / (b[2] - a[2]);
-                polygon[count] = [a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share, NEAR];
-                count += 1;
-            }
-        }
-        for k in 2..count {
-            let corners = [polygon[0], polygon[k - 1], polygon[k]];
-            self.fill(corners.map(|corner| view.project(corner)), ink, frame);
-        }
-    }
-
-    /// Fills the pixels whose centres lie in a triangle and that nothing nearer has taken.
-    fn fill(&mut self, [a, b, c]: [[f32; 3]; 3], ink: Ink, frame: &mut Frame) {
-        let (width, height) = (frame.width as f32, frame.height as f32);
-        let least = |axis: usize| a[axis].min(b[axis]).min(c[axis]);
-        let most = |axis: usize| a[axis].max(b[axis]).max(c[axis]);
-        let (left, right) = (
-            (least(0) - 0.5).ceil().max(0.0),
-            (most(0) - 0.5).floor().min(width - 1.0),
-        );
-        let (top, bottom) = (
-            (least(1) - 0.5).ceil().max(0.0),
-            (most(1) - 0.5).floor().min(height - 1.0),
-        );
-        let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        if !(left <= right && top <= bottom && area < 0.0) {
-            return;
-        }
-        // Share of corner b and of corner c at a pixel's centre, and how they change from pixel to pixel.
-        let inverse_area = 1.0 / area;
-        let (bx, by) = ((c[1] - a[1]) * inverse_area, (a[0] - c[0]) * inverse_area);
-        let (cx, cy) = ((a[1] - b[1]) * inverse_area, (b[0] - a[0]) * inverse_area);
-        let (zb, zc) = (b[2] - a[2], c[2] - a[2]);
-        for row in top as usize..=bottom as usize {
-            let dy = row as f32 + 0.5 - a[1];
-            let offset = row * frame.width as usize;
-            for column in left as usize..=right as usize {
-                let dx = column as f32 + 0.5 - a[0];
-                let (share_b, share_c) = (dx * bx + dy * by, dx * cx + dy * cy);
-                if share_b < 0.0 || share_c < 0.0 || share_b + share_c > 1.0 {
-                    continue;
-                }
-                let inverse = a[2] + share_b * zb + share_c * zc;
-                let pixel = offset + column;
-                if inverse > self.inverse_depth[pixel] {
-                    self.inverse_depth[pixel] = inverse;
-                    frame.rgb[pixel * 3..pixel * 3 + 3].copy_from_slice(&ink.rgb);
-                    frame.category[pixel] = ink.category;
-                    frame.class[pixel] = ink.class;
-                    frame.instance[pixel] = ink.instance;
-                }
-            }
+        let at = view.placement(&pose, scene.light.direction);
+        let paint = Paintwork {
+            color: shader.in_light(group.color),
+            ambient: shader.ambient,
+            label: u32::from(CATEGORY_MAP) << 24,
+            item: 0,
+            may_be_cut: sight.nearest < NEAR,
+        };
+        for block in &group.blocks {
+            draw_block::<L, ITEMS>(lanes, &mut self.canvas, block, &at, &paint);
         }
     }
 }
 
-/// Whether a triangle of the camera's frame shows its back: its corners run clockwise.
-fn faces_away([a, b, c]: [[f32; 3]; 3]) -> bool {
-    let normal = cross(sub(b, a), sub(c, a));
-    // The camera's frame (right, up, forward) is left-handed, so the sign is turned.
-    dot(normal, a) <= 0.0
+impl Set {
+    /// What this processor has, the widest last.
+    fn all() -> Vec<Self> {
+        let portable = Self::Portable(Portable);
+        #[cfg(target_arch = "x86_64")]
+        {
+            let mut sets = vec![portable];
+            sets.extend(Avx2::detect().map(Self::Avx2));
+            sets.extend(Avx512::detect().map(Self::Avx512));
+            sets
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        vec![portable]
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Portable(_) => "portable",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(_) => "avx2",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(_) => "avx512",
+        }
+    }
 }
 
-pub(crate) fn sub(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(crate) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(crate) fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+/// The reward category of an item.
+pub(crate) fn category(item: &Item) -> u8 {
+    match item.reward {
+        _ if item.building => CATEGORY_BUILDING,
+        reward if reward > 0.0 => CATEGORY_POSITIVE,
+        reward if reward < 0.0 => CATEGORY_NEGATIVE,
+        _ => CATEGORY_NEUTRAL,
+    }
 }

@@ -1,0 +1,97 @@
+//! Meshes as the processor likes them: triangles in blocks, one array for each coordinate. How they are drawn is the renderer's.
+
+use super::{Mesh, Paint, Part};
+
+/// Triangles in a block: as many as the widest vectors of the renderer hold.
+pub(crate) const BLOCK: usize = 16;
+
+/// Up to [`BLOCK`] triangles of one colour that face about the same way. What is left over faces nowhere.
+#[derive(Clone, Debug)]
+#[repr(align(64))]
+pub(crate) struct Block {
+    /// x, y, z of the first corner, then of the second and the third, in metres in the object's frame.
+    pub(crate) corners: [[f32; BLOCK]; 9],
+    /// x, y, z of the normals of length 1.
+    pub(crate) normal: [[f32; BLOCK]; 3],
+    /// Distance of the triangles' planes from the origin along their normals.
+    pub(crate) offset: [f32; BLOCK],
+}
+
+/// Blocks of one colour.
+#[derive(Clone, Debug)]
+pub(crate) struct Coat {
+    pub(crate) paint: Paint,
+    pub(crate) blocks: Vec<Block>,
+}
+
+impl Coat {
+    /// A part's triangles, those that face the same way together: then whole blocks face away at once.
+    pub(crate) fn new(part: &Part) -> Self {
+        let mut order: Vec<usize> = (0..part.mesh.triangles.len()).collect();
+        order.sort_by_key(|&triangle| facing(part.normals[triangle]));
+        let blocks = order
+            .chunks(BLOCK)
+            .map(|triangles| block(&part.mesh, &part.normals, triangles))
+            .collect();
+        Self {
+            paint: part.paint,
+            blocks,
+        }
+    }
+}
+
+/// Which of 24 directions a normal is nearest to, as a number whose neighbours are near each other: down, around, up.
+fn facing([x, y, z]: [f32; 3]) -> u32 {
+    if z.abs() > 0.7 {
+        return if z < 0.0 { 0 } else { 100 };
+    }
+    let around = (libm::atan2f(y, x) / std::f32::consts::TAU + 0.5) * 24.0;
+    1 + around as u32
+}
+
+fn block(mesh: &Mesh, normals: &[[f32; 3]], triangles: &[usize]) -> Block {
+    let mut block = Block {
+        corners: [[0.0; BLOCK]; 9],
+        normal: [[0.0; BLOCK]; 3],
+        // With no normal, a plane far ahead: whoever looks sees its back.
+        offset: [1.0; BLOCK],
+    };
+    for (lane, &triangle) in triangles.iter().enumerate() {
+        let corners = mesh.triangles[triangle].map(|corner| mesh.corners[corner as usize]);
+        let normal = normals[triangle];
+        for (k, row) in block.corners.iter_mut().enumerate() {
+            row[lane] = corners[k / 3][k % 3];
+        }
+        for (row, part) in block.normal.iter_mut().zip(normal) {
+            row[lane] = part;
+        }
+        block.offset[lane] = (0..3).map(|axis| normal[axis] * corners[0][axis]).sum();
+    }
+    block
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_triangle_is_in_one_block_and_the_rest_faces_away() {
+        let part = Part::new(Mesh::ball(1.0, 1.0, 9, 5), Paint::Fixed([1.0; 3]));
+        let coat = Coat::new(&part);
+        assert_eq!(coat.blocks.len(), part.mesh.triangles.len().div_ceil(BLOCK));
+        let lanes = |block: &Block| -> Vec<[f32; 3]> {
+            (0..BLOCK)
+                .map(|lane| [0, 1, 2].map(|axis| block.normal[axis][lane]))
+                .collect()
+        };
+        let real = coat
+            .blocks
+            .iter()
+            .flat_map(lanes)
+            .filter(|normal| *normal != [0.0; 3])
+            .count();
+        assert_eq!(real, part.mesh.triangles.len());
+        let last = &coat.blocks[coat.blocks.len() - 1];
+        assert!(last.offset[BLOCK - 1] > 0.0 || last.normal.map(|row| row[BLOCK - 1]) != [0.0; 3]);
+    }
+}

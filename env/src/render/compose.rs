@@ -1,0 +1,321 @@
+//! From ink to images: what was drawn is laid over ground, sky and the arena's walls, and written out in each modality.
+//! What was drawn is in `canvas.rs`, what the rows behind it look like in `backdrop.rs`.
+
+use std::ops::Range;
+
+use super::backdrop::{Backdrop, SQUARE};
+use super::canvas::Canvas;
+use super::frame::{CATEGORY_MAP, FAR_DEPTH};
+use super::lanes::{Lanes, MOST_LANES};
+use super::shade::Shader;
+use super::target::Target;
+use super::view::View;
+use crate::scene::{ARENA_WALLS, Scene};
+
+/// Bits of a label that hold the reward category; the rest hold the class.
+pub(super) const CATEGORY_BITS: u32 = 3;
+
+/// Ground further than this many squares from the origin shows none: their numbers would not fit.
+const MOST_SQUARES: f32 = 8000.0;
+
+/// Added to the numbers of squares so that none is negative; a multiple of 16, so that their pattern stays.
+const SHIFT: f32 = 8192.0;
+
+/// The four walls around the camera, as far as the formulas need them. For each: 1 / distance of the wall along the view
+/// axis is `base + right · x + up · y` for a pixel x to the right and y up at 1 m.
+pub(super) struct Walls {
+    base: [f32; 4],
+    right: [f32; 4],
+    up: [f32; 4],
+    inks: [u32; 4],
+    /// Metres from the camera up to the walls' upper edge.
+    above: f32,
+}
+
+/// One row's part of [`Walls`], and what stands behind them.
+struct Row {
+    walls: [[f32; 2]; 4],
+    /// 1 / distance at which a wall's upper edge is seen in this row; walls that are further away are not seen.
+    edge: f32,
+    ground: f32,
+    inks: [u32; 4],
+    /// Squares along x and y: at the row's middle, and how they change to the right.
+    squares: [[f32; 2]; 2],
+    has_squares: bool,
+    has_walls: bool,
+}
+
+impl Walls {
+    /// The arena's walls as seen from inside; none if the camera is elsewhere: then they are drawn as panels.
+    pub(super) fn around(scene: &Scene, view: &View, shader: &Shader) -> Option<Self> {
+        let [half_x, half_y] = scene.arena_size().map(|side| side / 2.0);
+        let height = scene.walls.first()?.height;
+        let [x, y, z] = view.position;
+        // A camera so near to a wall that the near plane cuts it would see through it.
+        let inside = half_x - x.abs() > 0.1 && half_y - y.abs() > 0.1 && z > 0.0 && z < height;
+        if !inside {
+            return None;
+        }
+        // West, north, east, south: the order in which the scene puts them up.
+        let inward = [[1.0, 0.0], [0.0, -1.0], [-1.0, 0.0], [0.0, 1.0]];
+        let mut walls = Self {
+            base: [0.0; 4],
+            right: [0.0; 4],
+            up: [0.0; 4],
+            inks: [0; 4],
+            above: height - z,
+        };
+        for (k, normal) in inward.into_iter().enumerate() {
+            let distance = [half_x, half_y, half_x, half_y][k] + normal[0] * x + normal[1] * y;
+            let towards = |axis: [f32; 3]| -(axis[0] * normal[0] + axis[1] * normal[1]) / distance;
+            walls.base[k] = towards(view.axes.forward);
+            walls.right[k] = towards(view.axes.right);
+            walls.up[k] = towards(view.axes.up);
+            let color = scene.walls[..ARENA_WALLS][k].color;
+            walls.inks[k] = shader.ink(color, [normal[0], normal[1], 0.0]) | u32::from(CATEGORY_MAP) << 24;
+        }
+        Some(walls)
+    }
+}
+
+/// One row's inks and items, kept from picture to picture.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    words: Vec<u32>,
+    items: Vec<u32>,
+}
+
+/// Everything that one picture is composed of.
+pub(super) struct Composition<'a> {
+    pub(super) canvas: &'a Canvas,
+    pub(super) backdrop: &'a Backdrop,
+    pub(super) walls: Option<Walls>,
+    pub(super) view: View,
+    /// How far each column is from the picture's middle, to the right, at 1 m.
+    pub(super) offsets: &'a [f32],
+    /// Distance at which half of what is seen is fog, in metres.
+    pub(super) fog_distance: Option<f32>,
+    /// Class of each item; empty where the label holds it.
+    pub(super) classes: &'a [u16],
+}
+
+impl Composition<'_> {
+    /// Writes all images that the target asks for.
+    #[inline(always)]
+    pub(super) fn write<L: Lanes, const ITEMS: bool>(&self, l: L, scratch: &mut Scratch, target: &mut Target<'_>) {
+        let width = self.canvas.width;
+        scratch.words.resize(self.canvas.stride, 0);
+        scratch.items.resize(self.canvas.stride, 0);
+        let labelled = target.has_labels();
+        for y in 0..self.canvas.height {
+            let row = self.row(y);
+            let out = y * width;
+            let mut x = 0;
+            while x < width {
+                // The last vector of a row goes back over pixels that are done, where there are enough.
+                let start = if x + L::N > width {
+                    width.saturating_sub(L::N)
+                } else {
+                    x
+                };
+                let pixel = y * self.canvas.stride + start;
+                let (word, inverse) = self.behind(l, &row, start);
+                let drawn = l.load(&self.canvas.inverse_depth[pixel..]);
+                let in_front = l.above(drawn, inverse);
+                let mut word = l.select_words(in_front, l.load_words(&self.canvas.ink[pixel..]), word);
+                let inverse = l.max(drawn, inverse);
+                if let Some(distance) = self.fog_distance {
+                    word = self.in_fog(l, word, inverse, distance);
+                }
+                if width < L::N {
+                    narrow(l, word, inverse, target, out..out + width);
+                } else {
+                    if let Some(rgb) = &mut target.rgb {
+                        l.store_rgb(word, &mut rgb[3 * (out + start)..]);
+                    }
+                    if let Some(depth) = &mut target.depth {
+                        l.store(metres(l, inverse), &mut depth[out + start..]);
+                    }
+                }
+                if labelled {
+                    l.store_words(word, &mut scratch.words[start..]);
+                    if ITEMS {
+                        let item = l.load_words(&self.canvas.items[pixel..]);
+                        l.store_words(
+                            l.select_words(in_front, item, l.splat_word(0)),
+                            &mut scratch.items[start..],
+                        );
+                    }
+                }
+                x = start + L::N;
+            }
+            if labelled {
+                self.label::<ITEMS>(scratch, out..out + width, target);
+            }
+        }
+    }
+
+    /// Writes a row's categories, classes and instances.
+    #[inline(always)]
+    fn label<const ITEMS: bool>(&self, scratch: &Scratch, row: Range<usize>, target: &mut Target<'_>) {
+        if let Some(category) = &mut target.category {
+            for (out, word) in category[row.clone()].iter_mut().zip(&scratch.words) {
+                *out = (word >> 24) as u8 & ((1 << CATEGORY_BITS) - 1);
+            }
+        }
+        if let Some(class) = &mut target.class {
+            let class = &mut class[row.clone()];
+            if ITEMS {
+                for (out, item) in class.iter_mut().zip(&scratch.items) {
+                    *out = if *item == 0 {
+                        0
+                    } else {
+                        self.classes[*item as usize - 1]
+                    };
+                }
+            } else {
+                for (out, word) in class.iter_mut().zip(&scratch.words) {
+                    *out = (word >> (24 + CATEGORY_BITS)) as u16;
+                }
+            }
+        }
+        if let Some(instance) = &mut target.instance {
+            let count = row.len();
+            instance[row].copy_from_slice(&scratch.items[..count]);
+        }
+    }
+
+    #[inline(always)]
+    fn row(&self, y: usize) -> Row {
+        let backdrop = self.backdrop;
+        let ground = backdrop.ground[y];
+        let inks = [0, 1, 2, 3].map(|k| backdrop.inks[k][y]);
+        let offset = -self.view.offset(1, y as f32);
+        let mut row = Row {
+            walls: [[0.0; 2]; 4],
+            edge: 0.0,
+            ground,
+            inks,
+            squares: [[0.0; 2]; 2],
+            has_squares: false,
+            has_walls: false,
+        };
+        if ground > 0.0 && inks != [inks[0]; 4] {
+            let metres = 1.0 / ground;
+            let axes = &self.view.axes;
+            let mut furthest = 0.0_f32;
+            let half_width = self.offsets[0].abs();
+            for axis in 0..2 {
+                let ahead = axes.forward[axis] + offset * axes.up[axis];
+                let place = (self.view.position[axis] + ahead * metres) / SQUARE;
+                let across = axes.right[axis] * metres / SQUARE;
+                furthest = furthest.max(place.abs() + across.abs() * half_width);
+                row.squares[axis] = [place + SHIFT, across];
+            }
+            row.has_squares = furthest < MOST_SQUARES;
+        }
+        if let Some(walls) = &self.walls {
+            let rise = backdrop.rise[y];
+            row.edge = rise.max(0.0) / walls.above;
+            let (first, last) = (self.offsets[0], self.offsets[self.canvas.width - 1]);
+            let mut nearest = 0.0_f32;
+            for k in 0..4 {
+                let base = walls.base[k] + offset * walls.up[k];
+                row.walls[k] = [base, walls.right[k]];
+                nearest = nearest
+                    .max(base + walls.right[k] * first)
+                    .max(base + walls.right[k] * last);
+            }
+            row.has_walls = nearest >= row.edge && nearest > ground;
+        }
+        row
+    }
+
+    /// Ink and 1 / depth of what lies behind everything that was drawn, from a column on.
+    #[inline(always)]
+    fn behind<L: Lanes>(&self, l: L, row: &Row, start: usize) -> (L::Word, L::Float) {
+        let ground = l.splat(row.ground);
+        let mut ink = l.splat_word(row.inks[0]);
+        if !(row.has_squares || row.has_walls) {
+            return (ink, ground);
+        }
+        let offset = l.load(&self.offsets[start..]);
+        if row.has_squares {
+            let both = l.xor(square(l, row.squares[0], offset), square(l, row.squares[1], offset));
+            let fine = l.has_bit(both, 0);
+            let light = l.select_words(fine, l.splat_word(row.inks[1]), ink);
+            let dark = l.select_words(fine, l.splat_word(row.inks[3]), l.splat_word(row.inks[2]));
+            ink = l.select_words(l.has_bit(both, 3), dark, light);
+        }
+        if !row.has_walls {
+            return (ink, ground);
+        }
+        let Some(walls) = &self.walls else { return (ink, ground) };
+        let (mut inverse, mut wall_ink) = (along(l, row.walls[0], offset), l.splat_word(walls.inks[0]));
+        for k in 1..4 {
+            let other = along(l, row.walls[k], offset);
+            wall_ink = l.select_words(l.above(other, inverse), l.splat_word(walls.inks[k]), wall_ink);
+            inverse = l.max(other, inverse);
+        }
+        let seen = l.both(l.at_least(inverse, l.splat(row.edge)), l.above(inverse, ground));
+        (l.select_words(seen, wall_ink, ink), l.select(seen, inverse, ground))
+    }
+
+    /// Colours turned into the fog's with distance; the sky stays.
+    #[inline(always)]
+    fn in_fog<L: Lanes>(&self, l: L, word: L::Word, inverse: L::Float, distance: f32) -> L::Word {
+        let one = l.splat(1.0);
+        let reach = l.mul(inverse, l.splat(distance));
+        let fog = l.div(one, l.mul_add(reach, reach, one));
+        let is_sky = l.at_least(l.splat(0.0), inverse);
+        let mut words = [0; MOST_LANES];
+        let mut shares = [0.0; MOST_LANES];
+        l.store_words(word, &mut words);
+        l.store(l.select(is_sky, l.splat(0.0), fog), &mut shares);
+        for (word, share) in words.iter_mut().zip(shares).take(L::N) {
+            let mut bytes = word.to_le_bytes();
+            for (byte, full) in bytes.iter_mut().zip(self.backdrop.fog_color) {
+                let level = f32::from(*byte);
+                *byte = (level + (full - level) * share + 0.5) as u8;
+            }
+            *word = u32::from_le_bytes(bytes);
+        }
+        l.load_words(&words)
+    }
+}
+
+/// `base + slope · offset`.
+#[inline(always)]
+fn along<L: Lanes>(l: L, [base, slope]: [f32; 2], offset: L::Float) -> L::Float {
+    l.mul_add(l.splat(slope), offset, l.splat(base))
+}
+
+/// Numbers of the squares that a row's pixels show, along one axis.
+#[inline(always)]
+fn square<L: Lanes>(l: L, row: [f32; 2], offset: L::Float) -> L::Word {
+    l.truncate(along(l, row, offset))
+}
+
+/// Metres for 1 / depth.
+#[inline(always)]
+fn metres<L: Lanes>(l: L, inverse: L::Float) -> L::Float {
+    // What divides by 0 is not taken.
+    let near = l.above(inverse, l.splat(1.0 / FAR_DEPTH));
+    l.select(near, l.div(l.splat(1.0), inverse), l.splat(FAR_DEPTH))
+}
+
+/// Colour and depth of a row that is shorter than a vector.
+#[inline(never)]
+fn narrow<L: Lanes>(l: L, word: L::Word, inverse: L::Float, target: &mut Target<'_>, row: Range<usize>) {
+    let count = row.len();
+    if let Some(rgb) = &mut target.rgb {
+        let mut bytes = [0; 3 * MOST_LANES];
+        l.store_rgb(word, &mut bytes);
+        rgb[3 * row.start..3 * row.end].copy_from_slice(&bytes[..3 * count]);
+    }
+    if let Some(depth) = &mut target.depth {
+        let mut all = [0.0; MOST_LANES];
+        l.store(metres(l, inverse), &mut all);
+        depth[row].copy_from_slice(&all[..count]);
+    }
+}

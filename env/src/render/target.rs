@@ -1,0 +1,58 @@
+//! Where images go: slices that the caller owns, one for each modality that is wanted. What their numbers mean is in `frame.rs`.
+
+use super::frame::Frame;
+
+/// The images that a render is to fill; what is `None` is not computed. Row 0 is on top.
+#[derive(Debug, Default)]
+pub struct Target<'a> {
+    /// Width in pixels, 1 to 4096.
+    pub width: u32,
+    /// Height in pixels, 1 to 4096.
+    pub height: u32,
+    /// Colour, `(height, width, 3)` bytes, sRGB.
+    pub rgb: Option<&'a mut [u8]>,
+    /// Distance along the view axis in metres, `(height, width)`; [`FAR_DEPTH`](super::FAR_DEPTH) for the sky.
+    pub depth: Option<&'a mut [f32]>,
+    /// Reward category, `(height, width)`.
+    pub category: Option<&'a mut [u8]>,
+    /// Object class, `(height, width)`: the scene's class number, 0 where there is no object.
+    pub class: Option<&'a mut [u16]>,
+    /// Object, `(height, width)`: the item's index plus 1, 0 where there is no object.
+    pub instance: Option<&'a mut [u32]>,
+}
+
+impl Target<'_> {
+    /// Whether sizes are in their range and every slice has one element for each pixel (three bytes for colour).
+    pub(super) fn is_sound(&self) -> bool {
+        let pixels = self.width as usize * self.height as usize;
+        let fits = |length: Option<usize>, each: usize| length.is_none_or(|length| length == pixels * each);
+        (1..=4096).contains(&self.width)
+            && (1..=4096).contains(&self.height)
+            && fits(self.rgb.as_ref().map(|rgb| rgb.len()), 3)
+            && fits(self.depth.as_ref().map(|depth| depth.len()), 1)
+            && fits(self.category.as_ref().map(|category| category.len()), 1)
+            && fits(self.class.as_ref().map(|class| class.len()), 1)
+            && fits(self.instance.as_ref().map(|instance| instance.len()), 1)
+    }
+
+    /// Whether any segmentation is wanted.
+    #[inline(always)]
+    pub(super) fn has_labels(&self) -> bool {
+        self.category.is_some() || self.class.is_some() || self.instance.is_some()
+    }
+}
+
+impl Frame {
+    /// All images of this frame.
+    pub fn target(&mut self) -> Target<'_> {
+        Target {
+            width: self.width,
+            height: self.height,
+            rgb: Some(&mut self.rgb),
+            depth: Some(&mut self.depth),
+            category: Some(&mut self.category),
+            class: Some(&mut self.class),
+            instance: Some(&mut self.instance),
+        }
+    }
+}
