@@ -4,8 +4,14 @@
     reason = "intrinsics of an instruction set: every call rests on the token, every pointer on a slice of checked length"
 )]
 
-#[expect(clippy::wildcard_imports, reason = "forty names that begin with _mm")]
-use std::arch::x86_64::*;
+use std::arch::x86_64::{
+    __m512, __m512i, __mmask16, _CMP_GE_OQ, _CMP_GT_OQ, _mm_setr_epi8, _mm512_add_ps, _mm512_broadcast_i32x4,
+    _mm512_cmp_ps_mask, _mm512_cvtepi32_ps, _mm512_cvttps_epi32, _mm512_div_ps, _mm512_loadu_ps, _mm512_loadu_si512,
+    _mm512_mask_blend_epi32, _mm512_mask_blend_ps, _mm512_mask_storeu_epi32, _mm512_mask_storeu_ps, _mm512_max_ps,
+    _mm512_min_ps, _mm512_mul_ps, _mm512_or_si512, _mm512_permutexvar_epi32, _mm512_set1_epi32, _mm512_set1_ps,
+    _mm512_setr_epi32, _mm512_setr_ps, _mm512_shuffle_epi8, _mm512_slli_epi32, _mm512_sqrt_ps, _mm512_storeu_ps,
+    _mm512_storeu_si512, _mm512_sub_ps, _mm512_test_epi32_mask, _mm512_xor_si512,
+};
 
 use super::Lanes;
 
