@@ -6,6 +6,7 @@
 
 mod agents;
 mod assets;
+mod batch;
 mod camera;
 mod error;
 mod render;
@@ -15,6 +16,7 @@ mod vector;
 
 pub use agents::{Agent, OnRailsAgent, RandomAgent};
 pub use assets::{Asset, ColliderShape, Mesh, Paint, Part, asset, classes};
+pub use batch::{Autoreset, Batch, BatchOptions, Episode, ImageLayout, Images, MAX_ENVS, Outputs, WorldSource};
 pub use camera::Camera;
 pub use error::EnvError;
 pub use render::{

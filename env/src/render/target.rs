@@ -35,6 +35,11 @@ impl Target<'_> {
             && fits(self.instance.as_ref().map(|instance| instance.len()), 1)
     }
 
+    /// Whether nothing is wanted.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.rgb.is_none() && self.depth.is_none() && !self.has_labels()
+    }
+
     /// Whether any segmentation is wanted.
     #[inline(always)]
     pub(super) fn has_labels(&self) -> bool {

@@ -7,6 +7,7 @@ mod event;
 mod motion;
 mod moving_body;
 mod objects;
+mod reuse;
 
 pub use action::Action;
 pub use environment::{AgentState, Environment, ObjectState};

@@ -37,7 +37,7 @@ pub struct AgentParams {
     #[schemars(range(min = 1.0, max = 170.0))]
     pub field_of_view: f64,
     /// Which images an observation holds.
-    #[schemars(length(max = 3))]
+    #[schemars(length(max = 5))]
     pub modalities: Vec<Modality>,
     /// How actions are given.
     pub actions: ActionSpace,
@@ -86,6 +86,10 @@ pub enum Modality {
     Depth,
     /// Reward category per pixel, `(size, size)` bytes.
     Segmentation,
+    /// Object class per pixel, `(size, size)` numbers from 1 in order of first appearance in the world; 0 where there is no object.
+    Class,
+    /// Object per pixel, `(size, size)` numbers: its index in the world plus 1; 0 where there is no object.
+    Instance,
 }
 
 /// How a learner hands in actions.

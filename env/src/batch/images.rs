@@ -1,0 +1,172 @@
+//! Images of many environments in one buffer for each modality. Who fills them is in `mod.rs`.
+
+use driftworld_spec::{Modality, World};
+
+use crate::EnvError;
+use crate::render::{FAR_DEPTH, Target};
+
+/// What images the environments of a batch make: all alike.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ImageLayout {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Which images there are.
+    pub modalities: Vec<Modality>,
+}
+
+impl ImageLayout {
+    /// The images that a world asks for.
+    pub fn of(world: &World) -> Self {
+        let agent = &world.agent_params;
+        Self {
+            width: agent.observation_size,
+            height: agent.observation_size,
+            modalities: agent.modalities.clone(),
+        }
+    }
+
+    /// Whether a world asks for these images.
+    pub(super) fn check(&self, env: usize, world: &World) -> Result<(), EnvError> {
+        let agent = &world.agent_params;
+        let size = agent.observation_size;
+        if (self.width, self.height) == (size, size) && self.modalities == agent.modalities {
+            return Ok(());
+        }
+        Err(EnvError::BatchImages {
+            env,
+            found: Self::of(world).to_string(),
+            expected: self.to_string(),
+        })
+    }
+
+    /// Pixels of one image.
+    pub fn num_pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}
+
+impl std::fmt::Display for ImageLayout {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "{} × {} pixels of", self.width, self.height)?;
+        for (k, modality) in self.modalities.iter().enumerate() {
+            let comma = if k == 0 { "" } else { "," };
+            write!(f, "{comma} {modality:?}")?;
+        }
+        f.write_str(if self.modalities.is_empty() { " nothing" } else { "" })
+    }
+}
+
+/// The images of all environments of a batch, environment after environment; row 0 on top. Buffers of modalities that are
+/// not asked for are empty.
+#[derive(Clone, Debug)]
+pub struct Images {
+    /// What there is.
+    pub layout: ImageLayout,
+    /// Colour, `(num_envs, height, width, 3)` bytes, sRGB.
+    pub rgb: Vec<u8>,
+    /// Distance along the view axis in metres, `(num_envs, height, width)`.
+    pub depth: Vec<f32>,
+    /// Reward category, `(num_envs, height, width)`.
+    pub category: Vec<u8>,
+    /// Object class, `(num_envs, height, width)`.
+    pub class: Vec<u16>,
+    /// Object, `(num_envs, height, width)`: its index plus 1, 0 where there is none.
+    pub instance: Vec<u32>,
+}
+
+impl Images {
+    pub(super) fn new(layout: ImageLayout, num_envs: usize) -> Self {
+        let pixels = |modality: Modality| match layout.modalities.contains(&modality) {
+            true => num_envs * layout.num_pixels(),
+            false => 0,
+        };
+        Self {
+            rgb: vec![0; 3 * pixels(Modality::Rgb)],
+            depth: vec![FAR_DEPTH; pixels(Modality::Depth)],
+            category: vec![0; pixels(Modality::Segmentation)],
+            class: vec![0; pixels(Modality::Class)],
+            instance: vec![0; pixels(Modality::Instance)],
+            layout,
+        }
+    }
+
+    /// All of them, for writing.
+    pub(super) fn view(&mut self) -> ImagesMut<'_> {
+        ImagesMut {
+            size: [self.layout.width, self.layout.height],
+            rgb: &mut self.rgb,
+            depth: &mut self.depth,
+            category: &mut self.category,
+            class: &mut self.class,
+            instance: &mut self.instance,
+        }
+    }
+}
+
+/// Images of some of a batch's environments, for writing.
+pub(super) struct ImagesMut<'a> {
+    size: [u32; 2],
+    rgb: &'a mut [u8],
+    depth: &'a mut [f32],
+    category: &'a mut [u8],
+    class: &'a mut [u16],
+    instance: &'a mut [u32],
+}
+
+impl<'a> ImagesMut<'a> {
+    /// Those of the first environments, and the rest.
+    pub(super) fn split(self, num_envs: usize) -> (Self, Self) {
+        let pixels = num_envs * self.size[0] as usize * self.size[1] as usize;
+        let (rgb, more_rgb) = halves(self.rgb, 3 * pixels);
+        let (depth, more_depth) = halves(self.depth, pixels);
+        let (category, more_category) = halves(self.category, pixels);
+        let (class, more_class) = halves(self.class, pixels);
+        let (instance, more_instance) = halves(self.instance, pixels);
+        let size = self.size;
+        (
+            Self {
+                size,
+                rgb,
+                depth,
+                category,
+                class,
+                instance,
+            },
+            Self {
+                size,
+                rgb: more_rgb,
+                depth: more_depth,
+                category: more_category,
+                class: more_class,
+                instance: more_instance,
+            },
+        )
+    }
+
+    /// The images of the environment of this number among these.
+    pub(super) fn target(&mut self, env: usize) -> Target<'_> {
+        let pixels = self.size[0] as usize * self.size[1] as usize;
+        Target {
+            width: self.size[0],
+            height: self.size[1],
+            rgb: one(self.rgb, env, 3 * pixels),
+            depth: one(self.depth, env, pixels),
+            category: one(self.category, env, pixels),
+            class: one(self.class, env, pixels),
+            instance: one(self.instance, env, pixels),
+        }
+    }
+}
+
+/// A buffer in two; an empty one in two empty ones.
+pub(super) fn halves<T>(all: &mut [T], at: usize) -> (&mut [T], &mut [T]) {
+    let at = at.min(all.len());
+    all.split_at_mut(at)
+}
+
+/// One environment's share of a buffer; none of an empty one.
+fn one<T>(all: &mut [T], env: usize, length: usize) -> Option<&mut [T]> {
+    (!all.is_empty()).then(|| &mut all[env * length..(env + 1) * length])
+}

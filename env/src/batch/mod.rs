@@ -1,0 +1,326 @@
+//! [`Batch`]: many environments that step together, in one contiguous buffer per output. One environment's part of it is in
+//! `slot.rs`, the buffers of images in `images.rs`; what happens inside an environment is in `sim`.
+
+mod images;
+mod outputs;
+mod slot;
+
+use std::sync::Arc;
+
+use driftworld_spec::World;
+
+pub use images::{ImageLayout, Images};
+pub use outputs::Outputs;
+
+use self::outputs::OutputsMut;
+use self::slot::Slot;
+use crate::EnvError;
+use crate::render::CpuRenderer;
+use crate::sim::{Action, Environment, Event};
+
+/// The most environments of one batch.
+pub const MAX_ENVS: usize = 65_536;
+
+/// When an environment whose episode has ended starts the next one. Corresponds to Gymnasium's `AutoresetMode`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Autoreset {
+    /// In the next step: its action is ignored, it pays 0, and hands out the first observation.
+    #[default]
+    NextStep,
+    /// In the same step: it hands out the first observation of the next episode, and keeps the last of the old one in
+    /// [`Batch::final_outputs`].
+    SameStep,
+    /// When [`Batch::reset_where`] says so; stepping before is an error.
+    Disabled,
+}
+
+/// Which episode of which environment a world is wanted for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Episode {
+    /// Number of the environment in its batch.
+    pub env: usize,
+    /// Number of the episode in this environment, from 0.
+    pub index: u64,
+}
+
+/// Where worlds come from: one for each episode, or the reason why there is none.
+///
+/// It is called from several threads, in no particular order; worlds should depend on the episode alone.
+pub type WorldSource = Arc<dyn Fn(Episode) -> Result<World, String> + Send + Sync>;
+
+/// How a batch runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct BatchOptions {
+    /// When episodes that have ended are followed by the next.
+    pub autoreset: Autoreset,
+    /// Threads that step and draw; 0 is one for each processor.
+    pub num_threads: usize,
+}
+
+/// `num_envs` environments that step together.
+///
+/// Each behaves exactly as an [`Environment`] alone would, whatever the number of threads. A step in which no episode begins
+/// allocates nothing, but that the pool's queue takes a block of memory once in about sixty steps if there are several threads.
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+/// use driftworld_env::{Action, Batch, BatchOptions};
+/// use driftworld_spec::World;
+/// let world = World { max_steps: 3, ..World::default() };
+/// let mut batch = Batch::new(4, Arc::new(move |_| Ok(world.clone())), BatchOptions::default())?;
+/// batch.step(&[Action::Continuous([10.0, 0.0, 0.0]); 4])?;
+/// assert_eq!(batch.outputs().images.rgb.len(), 4 * 84 * 84 * 3);
+/// assert_eq!(batch.outputs().truncated, [false; 4]);
+/// # Ok::<(), driftworld_env::EnvError>(())
+/// ```
+pub struct Batch {
+    slots: Vec<Slot>,
+    outputs: Outputs,
+    /// Last outputs of episodes that ended in the last step; only with [`Autoreset::SameStep`].
+    finals: Option<Outputs>,
+    autoreset: Autoreset,
+    renderers: Vec<CpuRenderer>,
+    pool: Option<rayon::ThreadPool>,
+}
+
+/// What a step or a reset does to a part of a batch.
+struct Part<'a> {
+    slots: &'a mut [Slot],
+    outputs: OutputsMut<'a>,
+    finals: Option<OutputsMut<'a>>,
+    renderers: &'a mut [CpuRenderer],
+}
+
+/// What all parts are to do.
+#[derive(Clone, Copy)]
+enum Work<'a> {
+    Step {
+        actions: &'a [Action],
+        autoreset: Autoreset,
+    },
+    Reset {
+        chosen: &'a [bool],
+    },
+}
+
+impl Batch {
+    /// Environments at the start of their episodes 0, their first observations drawn.
+    ///
+    /// # Errors
+    /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchWorld`] where the source has no world;
+    /// [`EnvError::BatchImages`] where worlds ask for different images; [`EnvError::BatchThreads`] if threads cannot be had.
+    pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
+        if !(1..=MAX_ENVS).contains(&num_envs) {
+            return Err(EnvError::BatchSize {
+                found: num_envs,
+                most: MAX_ENVS,
+            });
+        }
+        let pool = match options.num_threads {
+            1 => None,
+            wanted => {
+                let pool = rayon::ThreadPoolBuilder::new()
+                    .num_threads(wanted)
+                    .thread_name(|index| format!("driftworld-{index}"))
+                    .build();
+                Some(pool.map_err(|error| EnvError::BatchThreads {
+                    wanted,
+                    reason: error.to_string(),
+                })?)
+            }
+        };
+        let threads = pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
+        let mut slots = Vec::with_capacity(num_envs);
+        for env in 0..num_envs {
+            let layout = slots.first().map(|first: &Slot| &first.layout);
+            slots.push(Slot::new(env, Arc::clone(&source), layout)?);
+        }
+        let layout = ImageLayout::clone(&slots[0].layout);
+        let state = slots[0].environment.state_vector().len();
+        let outputs = Outputs::new(layout, state, num_envs);
+        // Several parts for each thread: environments that are near many things take longer.
+        let parts = if threads == 1 { 1 } else { (4 * threads).min(num_envs) };
+        let mut batch = Self {
+            finals: (options.autoreset == Autoreset::SameStep).then(|| outputs.clone()),
+            slots,
+            outputs,
+            autoreset: options.autoreset,
+            renderers: vec![CpuRenderer::new(); parts],
+            pool,
+        };
+        batch.work(Work::Reset { chosen: &[] })?;
+        Ok(batch)
+    }
+
+    /// How many environments there are.
+    pub fn num_envs(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// What the last step or reset led to.
+    pub fn outputs(&self) -> &Outputs {
+        &self.outputs
+    }
+
+    /// With [`Autoreset::SameStep`], the last observation, reward and flags of each environment whose episode ended in the last
+    /// step: those where the outputs say terminated or truncated. Other environments' parts hold old values.
+    pub fn final_outputs(&self) -> Option<&Outputs> {
+        self.finals.as_ref()
+    }
+
+    /// One of the environments.
+    pub fn environment(&self, env: usize) -> Option<&Environment> {
+        self.slots.get(env).map(|slot| &slot.environment)
+    }
+
+    /// What happened in an environment in the last step.
+    pub fn events(&self, env: usize) -> Option<&[Event]> {
+        self.slots.get(env).map(|slot| slot.step.events.as_slice())
+    }
+
+    /// Which episode an environment is in.
+    pub fn episode(&self, env: usize) -> Option<Episode> {
+        self.slots.get(env).map(Slot::episode)
+    }
+
+    /// Gives one environment another source of worlds: another task, say. It holds from its next episode on; with `restart`
+    /// given, that is the episode of this number.
+    ///
+    /// # Errors
+    /// [`EnvError::NoSuchEnv`].
+    pub fn set_source(&mut self, env: usize, source: WorldSource, restart: Option<u64>) -> Result<(), EnvError> {
+        let num_envs = self.slots.len();
+        let slot = self
+            .slots
+            .get_mut(env)
+            .ok_or(EnvError::NoSuchEnv { found: env, num_envs })?;
+        slot.set_source(source, restart);
+        Ok(())
+    }
+
+    /// Begins the next episode in every environment, ended or not.
+    ///
+    /// # Errors
+    /// As [`Batch::reset_where`].
+    pub fn reset(&mut self) -> Result<(), EnvError> {
+        self.begin_next(|_| true);
+        self.work(Work::Reset { chosen: &[] })
+    }
+
+    /// Begins the next episode in the environments that `chosen` says true for; the others' outputs stay.
+    ///
+    /// # Errors
+    /// [`EnvError::BatchLength`] unless there is one answer for each environment; [`EnvError::BatchWorld`] and
+    /// [`EnvError::BatchImages`] for the first environment whose world cannot be had: all others have begun.
+    pub fn reset_where(&mut self, chosen: &[bool]) -> Result<(), EnvError> {
+        self.expect_one_each(chosen.len())?;
+        self.begin_next(|env| chosen[env]);
+        self.work(Work::Reset { chosen })
+    }
+
+    fn begin_next(&mut self, chosen: impl Fn(usize) -> bool) {
+        for (env, slot) in self.slots.iter_mut().enumerate() {
+            if chosen(env) {
+                slot.is_over = true;
+            }
+        }
+    }
+
+    /// Lets every environment act once: one action for each, in order. What comes of it is in [`Batch::outputs`].
+    ///
+    /// # Errors
+    /// [`EnvError::BatchLength`] and [`EnvError::BatchAction`] before anything has changed. [`EnvError::BatchWorld`] and
+    /// [`EnvError::BatchImages`] when the next episode of an environment cannot begin: the others have stepped, and the next
+    /// step asks for that world again.
+    pub fn step(&mut self, actions: &[Action]) -> Result<(), EnvError> {
+        self.expect_one_each(actions.len())?;
+        for (env, (slot, action)) in self.slots.iter().zip(actions).enumerate() {
+            let checked = slot.check(*action, self.autoreset);
+            checked.map_err(|error| EnvError::BatchAction {
+                env,
+                error: Box::new(error),
+            })?;
+        }
+        let autoreset = self.autoreset;
+        self.work(Work::Step { actions, autoreset })
+    }
+
+    fn expect_one_each(&self, found: usize) -> Result<(), EnvError> {
+        let num_envs = self.slots.len();
+        if found == num_envs {
+            Ok(())
+        } else {
+            Err(EnvError::BatchLength { found, num_envs })
+        }
+    }
+
+    fn work(&mut self, work: Work<'_>) -> Result<(), EnvError> {
+        let part = Part {
+            slots: &mut self.slots,
+            outputs: self.outputs.view(),
+            finals: self.finals.as_mut().map(Outputs::view),
+            renderers: &mut self.renderers,
+        };
+        match &self.pool {
+            Some(pool) => pool.install(|| part.run(0, work)),
+            None => part.run(0, work),
+        }
+    }
+}
+
+impl Part<'_> {
+    /// Does the work on environments from `first` on, in halves until each has one renderer.
+    fn run(self, first: usize, work: Work<'_>) -> Result<(), EnvError> {
+        if self.renderers.len() <= 1 {
+            return self.run_here(first, work);
+        }
+        let share = self.renderers.len() / 2;
+        let middle = self.slots.len() * share / self.renderers.len();
+        let (slots, more_slots) = self.slots.split_at_mut(middle);
+        let (outputs, more_outputs) = self.outputs.split(middle);
+        let (finals, more_finals) = match self.finals.map(|finals| finals.split(middle)) {
+            Some((finals, more)) => (Some(finals), Some(more)),
+            None => (None, None),
+        };
+        let (renderers, more_renderers) = self.renderers.split_at_mut(share);
+        let low = Part {
+            slots,
+            outputs,
+            finals,
+            renderers,
+        };
+        let high = Part {
+            slots: more_slots,
+            outputs: more_outputs,
+            finals: more_finals,
+            renderers: more_renderers,
+        };
+        let (low, high) = rayon::join(|| low.run(first, work), || high.run(first + middle, work));
+        low.and(high)
+    }
+
+    fn run_here(mut self, first: usize, work: Work<'_>) -> Result<(), EnvError> {
+        let mut outcome = Ok(());
+        let Some(renderer) = self.renderers.first_mut() else {
+            return outcome;
+        };
+        for (index, slot) in self.slots.iter_mut().enumerate() {
+            let env = first + index;
+            let done = match work {
+                Work::Reset { chosen } if chosen.get(env) == Some(&false) => Ok(()),
+                Work::Reset { .. } => slot.reset(index, &mut self.outputs, renderer),
+                Work::Step { actions, autoreset } => slot.step(
+                    actions[env],
+                    autoreset,
+                    index,
+                    &mut self.outputs,
+                    self.finals.as_mut(),
+                    renderer,
+                ),
+            };
+            outcome = outcome.and(done);
+        }
+        outcome
+    }
+}

@@ -1,0 +1,105 @@
+//! What comes out of a batch: observations, rewards and flags, one buffer each. Images are in `images.rs`.
+
+use super::images::{ImageLayout, Images, ImagesMut, halves};
+
+/// Observations, rewards and flags of all environments, environment after environment.
+#[derive(Clone, Debug)]
+pub struct Outputs {
+    /// What the agents see.
+    pub images: Images,
+    /// The state vectors, `(num_envs, state_len)`.
+    pub states: Vec<f32>,
+    /// Numbers in one state vector.
+    pub state_len: usize,
+    /// What the last step paid, `(num_envs,)`; 0 in a reset.
+    pub rewards: Vec<f64>,
+    /// Whether the last step ended the episode by itself, `(num_envs,)`.
+    pub terminated: Vec<bool>,
+    /// Whether the last step was the last that the limit allows, `(num_envs,)`.
+    pub truncated: Vec<bool>,
+    /// Whether the last step ended the episode as a success, `(num_envs,)`.
+    pub success: Vec<bool>,
+}
+
+/// Some environments' part of [`Outputs`].
+pub(super) struct OutputsMut<'a> {
+    pub(super) images: ImagesMut<'a>,
+    states: &'a mut [f32],
+    state_len: usize,
+    rewards: &'a mut [f64],
+    terminated: &'a mut [bool],
+    truncated: &'a mut [bool],
+    success: &'a mut [bool],
+}
+
+impl Outputs {
+    pub(super) fn new(layout: ImageLayout, state_len: usize, num_envs: usize) -> Self {
+        Self {
+            images: Images::new(layout, num_envs),
+            states: vec![0.0; num_envs * state_len],
+            state_len,
+            rewards: vec![0.0; num_envs],
+            terminated: vec![false; num_envs],
+            truncated: vec![false; num_envs],
+            success: vec![false; num_envs],
+        }
+    }
+
+    pub(super) fn view(&mut self) -> OutputsMut<'_> {
+        OutputsMut {
+            images: self.images.view(),
+            states: &mut self.states,
+            state_len: self.state_len,
+            rewards: &mut self.rewards,
+            terminated: &mut self.terminated,
+            truncated: &mut self.truncated,
+            success: &mut self.success,
+        }
+    }
+}
+
+impl OutputsMut<'_> {
+    /// Those of the first environments, and the rest.
+    pub(super) fn split(self, num_envs: usize) -> (Self, Self) {
+        let state_len = self.state_len;
+        let (images, more_images) = self.images.split(num_envs);
+        let (states, more_states) = halves(self.states, num_envs * state_len);
+        let (rewards, more_rewards) = halves(self.rewards, num_envs);
+        let (terminated, more_terminated) = halves(self.terminated, num_envs);
+        let (truncated, more_truncated) = halves(self.truncated, num_envs);
+        let (success, more_success) = halves(self.success, num_envs);
+        (
+            Self {
+                images,
+                states,
+                state_len,
+                rewards,
+                terminated,
+                truncated,
+                success,
+            },
+            Self {
+                images: more_images,
+                states: more_states,
+                state_len,
+                rewards: more_rewards,
+                terminated: more_terminated,
+                truncated: more_truncated,
+                success: more_success,
+            },
+        )
+    }
+
+    /// The state vector of the environment of this number among these.
+    pub(super) fn state(&mut self, env: usize) -> &mut [f32] {
+        &mut self.states[env * self.state_len..(env + 1) * self.state_len]
+    }
+
+    /// Notes what a step paid and whether it was the last.
+    pub(super) fn note(&mut self, env: usize, step: &crate::sim::Step) {
+        self.rewards[env] = step.reward;
+        self.terminated[env] = step.terminated;
+        self.truncated[env] = step.truncated;
+        self.success[env] = step.success;
+    }
+}

@@ -1,0 +1,137 @@
+//! One environment of a batch: where its worlds come from, and what a step does when an episode has ended.
+
+use std::sync::Arc;
+
+use super::images::ImageLayout;
+use super::outputs::OutputsMut;
+use super::{Autoreset, Episode, WorldSource};
+use crate::EnvError;
+use crate::render::CpuRenderer;
+use crate::sim::{Action, Environment, Step};
+
+pub(super) struct Slot {
+    env: usize,
+    pub(super) environment: Environment,
+    pub(super) step: Step,
+    source: WorldSource,
+    pub(super) layout: Arc<ImageLayout>,
+    /// Number of the episode that comes next.
+    next: u64,
+    /// Whether the next episode must begin before anything else happens.
+    pub(super) is_over: bool,
+}
+
+impl Slot {
+    /// An environment at the start of its episode 0. Images are as `layout` says; without it, as the world says.
+    pub(super) fn new(env: usize, source: WorldSource, layout: Option<&Arc<ImageLayout>>) -> Result<Self, EnvError> {
+        let episode = Episode { env, index: 0 };
+        let world = source(episode).map_err(|reason| EnvError::BatchWorld {
+            env,
+            episode: 0,
+            reason,
+        })?;
+        let layout = layout.map_or_else(|| Arc::new(ImageLayout::of(&world)), Arc::clone);
+        layout.check(env, &world)?;
+        Ok(Self {
+            env,
+            environment: Environment::new(world)?,
+            layout,
+            step: Step::default(),
+            source,
+            next: 1,
+            is_over: false,
+        })
+    }
+
+    pub(super) fn episode(&self) -> Episode {
+        Episode {
+            env: self.env,
+            index: self.next - 1,
+        }
+    }
+
+    pub(super) fn set_source(&mut self, source: WorldSource, restart: Option<u64>) {
+        self.source = source;
+        if let Some(index) = restart {
+            self.next = index;
+        }
+    }
+
+    /// Whether the action can be carried out as things are.
+    pub(super) fn check(&self, action: Action, autoreset: Autoreset) -> Result<(), EnvError> {
+        if !self.is_over {
+            return self.environment.check(action);
+        }
+        match autoreset {
+            Autoreset::Disabled => Err(EnvError::Ended),
+            Autoreset::NextStep | Autoreset::SameStep => Ok(()),
+        }
+    }
+
+    /// Begins the next episode if that is due, and hands out the observation.
+    pub(super) fn reset(
+        &mut self,
+        index: usize,
+        outputs: &mut OutputsMut<'_>,
+        renderer: &mut CpuRenderer,
+    ) -> Result<(), EnvError> {
+        if self.is_over {
+            self.begin()?;
+        }
+        self.step.clear();
+        outputs.note(index, &self.step);
+        self.observe(index, outputs, renderer)
+    }
+
+    pub(super) fn step(
+        &mut self,
+        action: Action,
+        autoreset: Autoreset,
+        index: usize,
+        outputs: &mut OutputsMut<'_>,
+        finals: Option<&mut OutputsMut<'_>>,
+        renderer: &mut CpuRenderer,
+    ) -> Result<(), EnvError> {
+        if self.is_over {
+            // Next-step autoreset; or an episode that could not begin in its own time.
+            return self.reset(index, outputs, renderer);
+        }
+        self.environment.step_into(action, &mut self.step)?;
+        outputs.note(index, &self.step);
+        self.is_over = self.step.ended();
+        if let (true, Autoreset::SameStep, Some(finals)) = (self.is_over, autoreset, finals) {
+            finals.note(index, &self.step);
+            self.observe(index, finals, renderer)?;
+            self.begin()?;
+        }
+        self.observe(index, outputs, renderer)
+    }
+
+    /// Asks for the next world and enters it; on error the slot stays as it is.
+    fn begin(&mut self) -> Result<(), EnvError> {
+        let episode = Episode {
+            env: self.env,
+            index: self.next,
+        };
+        let world = (self.source)(episode).map_err(|reason| EnvError::BatchWorld {
+            env: self.env,
+            episode: self.next,
+            reason,
+        })?;
+        self.layout.check(self.env, &world)?;
+        self.environment.reset(world)?;
+        self.next += 1;
+        self.is_over = false;
+        Ok(())
+    }
+
+    fn observe(&self, index: usize, outputs: &mut OutputsMut<'_>, renderer: &mut CpuRenderer) -> Result<(), EnvError> {
+        self.environment.write_state(outputs.state(index));
+        let camera = self.environment.camera();
+        let mut target = outputs.images.target(index);
+        if target.is_empty() {
+            return Ok(());
+        }
+        renderer.draw(self.environment.scene(), &camera, &mut target)
+    }
+}

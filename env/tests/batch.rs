@@ -1,0 +1,240 @@
+//! A batch is so many environments: the same numbers and pixels as each alone, whatever the threads and the way of resetting.
+
+use std::sync::Arc;
+
+use driftworld_env::{
+    Action, Autoreset, Batch, BatchOptions, CpuRenderer, EnvError, Environment, Episode, Frame, WorldSource,
+};
+use driftworld_spec::{Modality, MotionModel, Object, Stimulus, World};
+
+const NUM_ENVS: usize = 5;
+
+/// A small world that depends on the episode: things to bump into, one that hunts, an end by limit or by touch.
+fn world(episode: Episode) -> World {
+    let shift = (episode.env * 3 + episode.index as usize * 7) as f64;
+    let mut target = Object::new("cube", [0.0, 2.0 + shift % 5.0]);
+    target.reward = 1.0 + shift;
+    target.reward_stimulus = vec![Stimulus::AgentCollide];
+    target.destroy_stimulus = vec![Stimulus::AgentCollide];
+    let mut hunter = Object::new("barrel", [6.0, shift % 4.0 - 2.0]);
+    hunter.motion_model = MotionModel::Predator;
+    hunter.speed = 2.0;
+    let mut world = World {
+        max_steps: 9 + episode.env as u32,
+        objects: vec![target, hunter, Object::new("tree", [-4.0, 9.0])],
+        ..World::default()
+    };
+    world.environment_params.map_size = [30.0, 30.0];
+    world.agent_params.observation_size = 24;
+    world.agent_params.modalities = vec![
+        Modality::Rgb,
+        Modality::Depth,
+        Modality::Segmentation,
+        Modality::Instance,
+    ];
+    world.rules.success = vec![driftworld_spec::EndCondition::AllCollected];
+    world
+}
+
+fn source() -> WorldSource {
+    Arc::new(|episode| Ok(world(episode)))
+}
+
+fn action(step: usize, env: usize) -> Action {
+    let turn = ((step * 31 + env * 17) % 60) as f64 - 30.0;
+    Action::Continuous([8.0, turn, 0.0])
+}
+
+fn batch(autoreset: Autoreset, num_threads: usize) -> Batch {
+    Batch::new(NUM_ENVS, source(), BatchOptions { autoreset, num_threads }).expect("the worlds are sound")
+}
+
+/// What an environment shows, drawn by itself.
+fn picture(environment: &Environment) -> Frame {
+    let mut frame = Frame::new(24, 24);
+    CpuRenderer::new().render(environment.scene(), &environment.camera(), &mut frame);
+    frame
+}
+
+/// Holds one environment's images and state in `outputs` against the environment alone.
+fn same(outputs: &driftworld_env::Outputs, env: usize, alone: &Environment) {
+    let frame = picture(alone);
+    let pixels = 24 * 24;
+    let images = &outputs.images;
+    assert!(
+        images.rgb[env * 3 * pixels..][..3 * pixels] == frame.rgb,
+        "colour of {env}"
+    );
+    assert!(images.depth[env * pixels..][..pixels] == frame.depth, "depth of {env}");
+    assert!(
+        images.category[env * pixels..][..pixels] == frame.category,
+        "categories of {env}"
+    );
+    assert!(
+        images.instance[env * pixels..][..pixels] == frame.instance,
+        "instances of {env}"
+    );
+    assert!(images.class.is_empty(), "nobody asked for classes");
+    assert_eq!(
+        outputs.states[env * outputs.state_len..][..outputs.state_len],
+        alone.state_vector()[..]
+    );
+}
+
+#[test]
+fn a_batch_is_so_many_environments() {
+    for autoreset in [Autoreset::NextStep, Autoreset::SameStep] {
+        for num_threads in [1, 2, 3] {
+            let mut batch = batch(autoreset, num_threads);
+            let mut alone: Vec<Environment> = (0..NUM_ENVS)
+                .map(|env| Environment::new(world(Episode { env, index: 0 })).expect("the world is sound"))
+                .collect();
+            let mut episodes = [0; NUM_ENVS];
+            for step in 0..60 {
+                let actions: Vec<Action> = (0..NUM_ENVS).map(|env| action(step, env)).collect();
+                batch.step(&actions).expect("the actions are sound");
+                for env in 0..NUM_ENVS {
+                    let next = |episodes: &mut [u64; NUM_ENVS]| {
+                        episodes[env] += 1;
+                        Environment::new(world(Episode {
+                            env,
+                            index: episodes[env],
+                        }))
+                        .expect("the world is sound")
+                    };
+                    let outputs = batch.outputs();
+                    if alone[env].ended() {
+                        // Next-step autoreset: this step only begins the next episode.
+                        alone[env] = next(&mut episodes);
+                        assert_eq!((outputs.rewards[env], outputs.terminated[env]), (0.0, false));
+                        assert!(!outputs.truncated[env]);
+                    } else {
+                        let found = alone[env].step(actions[env]).expect("the action is sound");
+                        assert_eq!(outputs.rewards[env], found.reward, "step {step} of {env}");
+                        assert_eq!(outputs.terminated[env], found.terminated);
+                        assert_eq!(outputs.truncated[env], found.truncated);
+                        assert_eq!(outputs.success[env], found.success);
+                        if found.ended() && autoreset == Autoreset::SameStep {
+                            let last = batch.final_outputs().expect("same-step autoreset keeps them");
+                            same(last, env, &alone[env]);
+                            assert_eq!(last.rewards[env], found.reward);
+                            alone[env] = next(&mut episodes);
+                        }
+                    }
+                    same(outputs, env, &alone[env]);
+                    assert_eq!(batch.episode(env).map(|episode| episode.index), Some(episodes[env]));
+                }
+            }
+            assert!(
+                episodes.iter().all(|episodes| *episodes > 2),
+                "episodes ended: {episodes:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn without_autoreset_an_ended_episode_waits_for_its_reset() {
+    let mut batch = batch(Autoreset::Disabled, 1);
+    let still = [Action::Continuous([0.0; 3]); NUM_ENVS];
+    for _ in 0..9 {
+        batch.step(&still).expect("no episode has ended");
+    }
+    assert_eq!(batch.outputs().truncated, [true, false, false, false, false]);
+    let before = batch.outputs().clone();
+    let error = batch.step(&still).expect_err("environment 0 has ended");
+    assert!(matches!(error, EnvError::BatchAction { env: 0, .. }), "{error}");
+    assert_eq!(batch.outputs().states, before.states, "nothing was changed");
+    assert_eq!(batch.environment(1).map(Environment::num_steps), Some(9));
+
+    batch
+        .reset_where(&[true, false, false, false, false])
+        .expect("the source has a next world");
+    assert_eq!(batch.episode(0), Some(Episode { env: 0, index: 1 }));
+    assert_eq!(
+        batch.environment(1).map(Environment::num_steps),
+        Some(9),
+        "the others go on"
+    );
+    batch.step(&still).expect("environment 0 has begun again");
+    assert!(batch.reset_where(&[true]).is_err(), "one answer for five environments");
+    batch.reset().expect("the source has worlds");
+    assert!((0..NUM_ENVS).all(|env| batch.environment(env).map(Environment::num_steps) == Some(0)));
+}
+
+#[test]
+fn one_bad_action_changes_no_environment() {
+    let mut batch = batch(Autoreset::NextStep, 2);
+    let mut actions = [Action::Continuous([5.0, 0.0, 0.0]); NUM_ENVS];
+    actions[3] = Action::Continuous([f64::NAN, 0.0, 0.0]);
+    let error = batch.step(&actions).expect_err("not a number");
+    assert!(
+        error
+            .to_string()
+            .starts_with("environment 3 of the batch: action: found"),
+        "{error}"
+    );
+    assert!((0..NUM_ENVS).all(|env| batch.environment(env).map(Environment::num_steps) == Some(0)));
+    let error = batch.step(&actions[..2]).expect_err("two actions for five");
+    assert!(matches!(error, EnvError::BatchLength { found: 2, num_envs: 5 }));
+}
+
+#[test]
+fn each_environment_may_have_a_task_of_its_own() {
+    let mut batch = batch(Autoreset::NextStep, 1);
+    let other: WorldSource = Arc::new(|episode| {
+        let mut world = world(episode);
+        world.rules.step_reward = -5.0;
+        Ok(world)
+    });
+    batch
+        .set_source(2, Arc::clone(&other), Some(100))
+        .expect("there is an environment 2");
+    assert!(batch.set_source(5, other, None).is_err());
+    batch.reset().expect("all sources have worlds");
+    assert_eq!(batch.episode(2), Some(Episode { env: 2, index: 100 }));
+    batch
+        .step(&[Action::Continuous([0.0; 3]); NUM_ENVS])
+        .expect("the actions are sound");
+    assert_eq!(batch.outputs().rewards, [0.0, 0.0, -5.0, 0.0, 0.0]);
+}
+
+#[test]
+fn a_world_that_cannot_be_had_stops_its_environment_alone() {
+    let source: WorldSource = Arc::new(|episode| match episode {
+        Episode { env: 1, index: 1 } => Err("the well is dry".to_owned()),
+        _ => Ok(World {
+            max_steps: 1,
+            ..world(episode)
+        }),
+    });
+    let options = BatchOptions {
+        autoreset: Autoreset::NextStep,
+        num_threads: 1,
+    };
+    let mut batch = Batch::new(3, source, options).expect("first episodes are there");
+    let still = [Action::Continuous([0.0; 3]); 3];
+    batch.step(&still).expect("all step");
+    for _ in 0..2 {
+        let error = batch.step(&still).expect_err("environment 1 has no second world");
+        assert_eq!(
+            error.to_string(),
+            "environment 1 of the batch: no world for episode 1: the well is dry"
+        );
+    }
+    assert_eq!(batch.episode(0), Some(Episode { env: 0, index: 1 }));
+}
+
+#[test]
+fn worlds_of_a_batch_make_the_same_images() {
+    let source: WorldSource = Arc::new(|episode| {
+        let mut world = world(episode);
+        world.agent_params.observation_size = 24 + episode.env as u32;
+        Ok(world)
+    });
+    let Err(error) = Batch::new(2, source, BatchOptions::default()) else {
+        panic!("the images differ");
+    };
+    assert!(error.to_string().contains("25 × 25"), "{error}");
+    assert!(Batch::new(0, self::source(), BatchOptions::default()).is_err());
+}
