@@ -78,9 +78,9 @@ pub struct Images {
 
 impl Images {
     pub(super) fn new(layout: ImageLayout, num_envs: usize) -> Self {
-        let pixels = |modality: Modality| match layout.modalities.contains(&modality) {
-            true => num_envs * layout.num_pixels(),
-            false => 0,
+        let pixels = |modality: Modality| {
+            let wanted = usize::from(layout.modalities.contains(&modality));
+            wanted * num_envs * layout.num_pixels()
         };
         Self {
             rgb: vec![0; 3 * pixels(Modality::Rgb)],
@@ -115,7 +115,7 @@ pub(super) struct ImagesMut<'a> {
     instance: &'a mut [u32],
 }
 
-impl<'a> ImagesMut<'a> {
+impl ImagesMut<'_> {
     /// Those of the first environments, and the rest.
     pub(super) fn split(self, num_envs: usize) -> (Self, Self) {
         let pixels = num_envs * self.size[0] as usize * self.size[1] as usize;

@@ -110,6 +110,10 @@ impl Batch {
     /// # Errors
     /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchWorld`] where the source has no world;
     /// [`EnvError::BatchImages`] where worlds ask for different images; [`EnvError::BatchThreads`] if threads cannot be had.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a source is made for its batch; callers keep a clone if they want one"
+    )]
     pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
         if !(1..=MAX_ENVS).contains(&num_envs) {
             return Err(EnvError::BatchSize {
