@@ -232,6 +232,6 @@ fn light(world: &World) -> Light {
         exposure: 1.72 * intensity / (intensity + 1.65),
         ambient: environment.ambient_light as f32,
         sky_color: environment.sky_color.to_f32(),
-        fog_distance: None,
+        fog_distance: environment.fog_distance.map(|metres| metres as f32),
     }
 }

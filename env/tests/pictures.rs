@@ -368,3 +368,29 @@ fn fog_turns_what_is_far_into_the_colour_of_the_horizon() {
         "{clear}, {half}, {thick}: the wall is 50 m away"
     );
 }
+
+#[test]
+fn supersampled_colours_are_means_and_the_rest_stays() {
+    let scene = crowded();
+    let camera = Camera::first_person([3.0, -20.0], 30.0, 1.0, 60.0);
+    let draw = |width: u32, height: u32, supersampling: u32| {
+        let mut frame = Frame::new(width, height);
+        let mut target = Target {
+            supersampling,
+            ..frame.target()
+        };
+        CpuRenderer::new()
+            .draw(&scene, &camera, &mut target)
+            .expect("the sizes are sound");
+        frame
+    };
+    let (plain, smooth, large) = (draw(60, 40, 1), draw(60, 40, 2), draw(120, 80, 1));
+    assert!(plain.depth == smooth.depth && plain.class == smooth.class && plain.rgb != smooth.rgb);
+    let mean = |x: usize, y: usize, channel: usize| {
+        let at = |dx: usize, dy: usize| u32::from(large.rgb[((2 * y + dy) * 120 + 2 * x + dx) * 3 + channel]);
+        ((at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1) + 2) / 4) as u8
+    };
+    for (x, y) in [(0, 0), (59, 39), (31, 22), (12, 25)] {
+        assert_eq!(smooth.rgb[(y * 60 + x) * 3 + 1], mean(x, y, 1), "pixel {x}, {y}");
+    }
+}

@@ -174,7 +174,9 @@ fn observation(a: &World, b: &World, pairs: &[(&Object, &Object)], add: &mut Add
         (
             agent.agent_height,
             agent.field_of_view,
-            agent.observation_size,
+            agent.picture_size(),
+            agent.supersampling,
+            world.environment_params.fog_distance,
             agent.modalities.clone(),
         )
     };

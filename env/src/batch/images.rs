@@ -12,6 +12,8 @@ pub struct ImageLayout {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
+    /// Points per pixel along each side that colours are the mean of.
+    pub supersampling: u32,
     /// Which images there are.
     pub modalities: Vec<Modality>,
 }
@@ -21,8 +23,9 @@ impl ImageLayout {
     pub fn of(world: &World) -> Self {
         let agent = &world.agent_params;
         Self {
-            width: agent.observation_size,
-            height: agent.observation_size,
+            width: agent.picture_size()[0],
+            height: agent.picture_size()[1],
+            supersampling: agent.supersampling,
             modalities: agent.modalities.clone(),
         }
     }
@@ -30,8 +33,10 @@ impl ImageLayout {
     /// Whether a world asks for these images.
     pub(super) fn check(&self, env: usize, world: &World) -> Result<(), EnvError> {
         let agent = &world.agent_params;
-        let size = agent.observation_size;
-        if (self.width, self.height) == (size, size) && self.modalities == agent.modalities {
+        if [self.width, self.height] == agent.picture_size()
+            && self.supersampling == agent.supersampling
+            && self.modalities == agent.modalities
+        {
             return Ok(());
         }
         Err(EnvError::BatchImages {
@@ -96,6 +101,7 @@ impl Images {
     pub(super) fn view(&mut self) -> ImagesMut<'_> {
         ImagesMut {
             size: [self.layout.width, self.layout.height],
+            supersampling: self.layout.supersampling,
             rgb: &mut self.rgb,
             depth: &mut self.depth,
             category: &mut self.category,
@@ -108,6 +114,7 @@ impl Images {
 /// Images of some of a batch's environments, for writing.
 pub(super) struct ImagesMut<'a> {
     size: [u32; 2],
+    supersampling: u32,
     rgb: &'a mut [u8],
     depth: &'a mut [f32],
     category: &'a mut [u8],
@@ -124,10 +131,11 @@ impl ImagesMut<'_> {
         let (category, more_category) = halves(self.category, pixels);
         let (class, more_class) = halves(self.class, pixels);
         let (instance, more_instance) = halves(self.instance, pixels);
-        let size = self.size;
+        let (size, supersampling) = (self.size, self.supersampling);
         (
             Self {
                 size,
+                supersampling,
                 rgb,
                 depth,
                 category,
@@ -136,6 +144,7 @@ impl ImagesMut<'_> {
             },
             Self {
                 size,
+                supersampling,
                 rgb: more_rgb,
                 depth: more_depth,
                 category: more_category,
@@ -151,6 +160,7 @@ impl ImagesMut<'_> {
         Target {
             width: self.size[0],
             height: self.size[1],
+            supersampling: self.supersampling,
             rgb: one(self.rgb, env, 3 * pixels),
             depth: one(self.depth, env, pixels),
             category: one(self.category, env, pixels),

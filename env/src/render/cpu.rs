@@ -32,6 +32,8 @@ pub struct CpuRenderer {
     offsets: Vec<f32>,
     classes: Vec<u16>,
     scratch: Scratch,
+    /// Colours of all points, where there are several in a pixel.
+    points: Vec<u8>,
 }
 
 /// An instruction set that this processor has.
@@ -92,6 +94,7 @@ impl CpuRenderer {
             offsets: Vec::new(),
             classes: Vec::new(),
             scratch: Scratch::default(),
+            points: Vec::new(),
         }
     }
 
@@ -110,14 +113,42 @@ impl CpuRenderer {
     /// Draws the images that the target asks for.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels and every image has room for exactly as many.
+    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels, there are at most 2²⁶ points of supersampling, and every
+    /// image has room for exactly its pixels.
     pub fn draw(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) -> Result<(), EnvError> {
         if !target.is_sound() {
             let (width, height) = (target.width, target.height);
             return Err(EnvError::PictureSize { width, height });
         }
-        self.run(scene, camera, target);
+        match target.supersampling {
+            0 | 1 => self.run(scene, camera, target),
+            samples => self.run_sampled(scene, camera, target, samples),
+        }
         Ok(())
+    }
+
+    /// Draws all but colours as they are, and colours as the mean of many points.
+    fn run_sampled(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>, samples: u32) {
+        if let Some(rgb) = target.rgb.take() {
+            let mut points = std::mem::take(&mut self.points);
+            let (width, height) = (target.width * samples, target.height * samples);
+            points.resize(3 * width as usize * height as usize, 0);
+            let mut fine = Target {
+                width,
+                height,
+                rgb: Some(&mut points),
+                ..Target::default()
+            };
+            self.run(scene, camera, &mut fine);
+            average(&points, rgb, target.width as usize, samples as usize);
+            self.points = points;
+            if !target.is_empty() {
+                self.run(scene, camera, target);
+            }
+            target.rgb = Some(rgb);
+        } else {
+            self.run(scene, camera, target);
+        }
     }
 
     fn run(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) {
@@ -344,6 +375,23 @@ impl Set {
             Self::Avx2(_) => "avx2",
             #[cfg(target_arch = "x86_64")]
             Self::Avx512(_) => "avx512",
+        }
+    }
+}
+
+/// Each pixel as the mean, rounded, of its `samples` × `samples` points.
+fn average(points: &[u8], rgb: &mut [u8], width: usize, samples: usize) {
+    let row_length = 3 * width * samples;
+    let count = (samples * samples) as u32;
+    for (rows, out) in points
+        .chunks_exact(row_length * samples)
+        .zip(rgb.chunks_exact_mut(3 * width))
+    {
+        for (index, byte) in out.iter_mut().enumerate() {
+            let first = index / 3 * 3 * samples + index % 3;
+            let starts = (0..samples).flat_map(|row| (0..samples).map(move |k| row * row_length + first + 3 * k));
+            let sum: u32 = starts.map(|at| u32::from(rows[at])).sum();
+            *byte = ((sum + count / 2) / count) as u8;
         }
     }
 }

@@ -2,6 +2,9 @@
 
 use super::frame::Frame;
 
+/// The most points of a picture: 4096 × 4096 pixels of 2 × 2.
+const MOST_POINTS: usize = 1 << 26;
+
 /// The images that a render is to fill; what is `None` is not computed. Row 0 is on top.
 #[derive(Debug, Default)]
 pub struct Target<'a> {
@@ -9,6 +12,8 @@ pub struct Target<'a> {
     pub width: u32,
     /// Height in pixels, 1 to 4096.
     pub height: u32,
+    /// Points per pixel along each side that colours are the mean of, 1 to 4; 0 is as 1.
+    pub supersampling: u32,
     /// Colour, `(height, width, 3)` bytes, sRGB.
     pub rgb: Option<&'a mut [u8]>,
     /// Distance along the view axis in metres, `(height, width)`; [`FAR_DEPTH`](super::FAR_DEPTH) for the sky.
@@ -28,6 +33,8 @@ impl Target<'_> {
         let fits = |length: Option<usize>, each: usize| length.is_none_or(|length| length == pixels * each);
         (1..=4096).contains(&self.width)
             && (1..=4096).contains(&self.height)
+            && self.supersampling <= 4
+            && pixels * self.supersampling.pow(2) as usize <= MOST_POINTS
             && fits(self.rgb.as_ref().map(|rgb| rgb.len()), 3)
             && fits(self.depth.as_ref().map(|depth| depth.len()), 1)
             && fits(self.category.as_ref().map(|category| category.len()), 1)
@@ -53,6 +60,7 @@ impl Frame {
         Target {
             width: self.width,
             height: self.height,
+            supersampling: 1,
             rgb: Some(&mut self.rgb),
             depth: Some(&mut self.depth),
             category: Some(&mut self.category),

@@ -76,6 +76,7 @@ const ENVIRONMENT: Keys = Keys {
         "ambient_light",
         "sky_color",
         "ground_color",
+        "fog_distance",
     ],
     old: &[],
 };
@@ -91,7 +92,14 @@ const AGENT: Keys = Keys {
         "coordinates",
         "heading",
     ],
-    ours: &["time_step", "field_of_view", "modalities", "actions"],
+    ours: &[
+        "observation_width",
+        "supersampling",
+        "time_step",
+        "field_of_view",
+        "modalities",
+        "actions",
+    ],
     old: &["pickup_range"],
 };
 

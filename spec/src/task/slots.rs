@@ -115,6 +115,10 @@ pub(crate) const WORLD: &[Slot<World>] = &[
         environment_params.ground_color,
         color
     ),
+    slot("/environment_params/fog_distance", Number, |world, _, value| {
+        world.environment_params.fog_distance = Some(number(value)?);
+        Some(())
+    }),
     row!(
         "/agent_params/action_model",
         String,
@@ -139,6 +143,16 @@ pub(crate) const WORLD: &[Slot<World>] = &[
         "/agent_params/observation_size",
         Integer,
         agent_params.observation_size,
+        whole
+    ),
+    slot("/agent_params/observation_width", Integer, |world, _, value| {
+        world.agent_params.observation_width = Some(whole(value)?);
+        Some(())
+    }),
+    row!(
+        "/agent_params/supersampling",
+        Integer,
+        agent_params.supersampling,
         whole
     ),
     row!("/agent_params/coordinates", Point, agent_params.coordinates, point),

@@ -21,9 +21,17 @@ pub struct AgentParams {
     /// Largest turn rate in degrees per second.
     #[schemars(range(min = 0.0, max = 3600.0))]
     pub max_angular_speed: f64,
-    /// Side length of the square observations in pixels.
+    /// Height of the observations in pixels, and their width unless `observation_width` says otherwise.
     #[schemars(range(min = 1, max = 4096))]
     pub observation_size: u32,
+    /// Width of the observations in pixels; as high as wide if absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 4096))]
+    pub observation_width: Option<u32>,
+    /// Points per pixel along each side that colours are the mean of: 1 is fast, 2 and more are smooth.
+    #[serde(skip_serializing_if = "is_one")]
+    #[schemars(range(min = 1, max = 4))]
+    pub supersampling: u32,
     /// Start position in metres.
     #[schemars(inner(range(min = -300.0, max = 300.0)))]
     pub coordinates: [f64; 2],
@@ -52,6 +60,8 @@ impl Default for AgentParams {
             max_linear_speed: 10.0,
             max_angular_speed: 90.0,
             observation_size: 84,
+            observation_width: None,
+            supersampling: 1,
             coordinates: [0.0, 0.0],
             heading: 0.0,
             time_step: 0.1,
@@ -60,6 +70,21 @@ impl Default for AgentParams {
             actions: ActionSpace::Continuous,
         }
     }
+}
+
+impl AgentParams {
+    /// Width and height of the observations in pixels.
+    pub fn picture_size(&self) -> [u32; 2] {
+        [
+            self.observation_width.unwrap_or(self.observation_size),
+            self.observation_size,
+        ]
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_one(value: &u32) -> bool {
+    *value == 1
 }
 
 /// What the three numbers of an action mean.

@@ -44,6 +44,10 @@ pub struct EnvironmentParams {
     pub sky_color: Color,
     /// Colour of the ground.
     pub ground_color: Color,
+    /// Distance in metres at which half of what is seen is fog, in the colour of the horizon; no fog if absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.1, max = 10_000.0))]
+    pub fog_distance: Option<f64>,
 }
 
 impl Default for EnvironmentParams {
@@ -61,6 +65,7 @@ impl Default for EnvironmentParams {
             ambient_light: 0.35,
             sky_color: Color([0.36, 0.62, 0.9]),
             ground_color: Color([0.45, 0.56, 0.34]),
+            fog_distance: None,
         }
     }
 }
