@@ -1,5 +1,9 @@
 //! What can go wrong while a world runs.
 
+use driftworld_spec::SpecError;
+
+use crate::sim::Obstacle;
+
 /// Everything that can go wrong in this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -90,6 +94,60 @@ pub enum EnvError {
         /// What the batch makes.
         expected: String,
     },
+    /// A new object is not sound.
+    #[error("spawn: {problem}; nothing was changed")]
+    BadObject {
+        /// What is wrong with it.
+        problem: SpecError,
+    },
+    /// A new object has the name of another.
+    #[error(
+        "spawn: found unique_name {name:?}, which object {object} has too, expected a name of its own; nothing was changed"
+    )]
+    NameTaken {
+        /// The name.
+        name: String,
+        /// The object that has it.
+        object: usize,
+    },
+    /// The world is full.
+    #[error("spawn: found a world of {limit} objects, expected fewer; destroyed objects count, so start another world")]
+    TooManyObjects {
+        /// The most objects that a world may hold.
+        limit: usize,
+    },
+    /// An object that the world does not have.
+    #[error("object: found number {found}, expected less than {count}, the number of objects of this world")]
+    NoSuchObject {
+        /// The number asked for.
+        found: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// An object that was destroyed before, and does not come back.
+    #[error("destroy: found object {object} gone already, expected one that is there or comes back")]
+    AlreadyGone {
+        /// The object.
+        object: usize,
+    },
+    /// A place where the agent cannot stand.
+    #[error(
+        "teleport: found {found} at {position:?}, expected free ground inside the arena for an agent {width} m wide; it stays where it is"
+    )]
+    NoRoom {
+        /// The place asked for, in metres.
+        position: [f64; 2],
+        /// What is in the way.
+        found: Obstacle,
+        /// The agent's width in metres.
+        width: f64,
+    },
+    /// A heading that is no number.
+    #[error("teleport: found a heading of {found}, expected a finite number of degrees; it stays where it is")]
+    NoHeading {
+        /// The heading asked for, in degrees.
+        found: f64,
+    },
     /// A picture of a size that cannot be.
     #[error("picture: found {width} × {height} pixels, expected 1 to 4096 each way")]
     PictureSize {
@@ -108,6 +166,13 @@ impl EnvError {
             Self::NoSuchAction { .. } => "env/no-such-action",
             Self::NotDiscrete { .. } => "env/not-discrete",
             Self::Ended => "env/ended",
+            Self::BadObject { .. } => "env/bad-object",
+            Self::NameTaken { .. } => "env/name-taken",
+            Self::TooManyObjects { .. } => "env/too-many-objects",
+            Self::NoSuchObject { .. } => "env/no-such-object",
+            Self::AlreadyGone { .. } => "env/already-gone",
+            Self::NoRoom { .. } => "env/no-room",
+            Self::NoHeading { .. } => "env/no-heading",
             Self::PictureSize { .. } => "env/picture-size",
             Self::BatchSize { .. } => "env/batch-size",
             Self::BatchThreads { .. } => "env/batch-threads",
@@ -134,6 +199,24 @@ mod tests {
             EnvError::NoSuchAction { found: 7, last: 6 },
             EnvError::NotDiscrete { found: 2 },
             EnvError::Ended,
+            EnvError::BadObject {
+                problem: driftworld_spec::Object::new("tree", [0.0, 400.0])
+                    .check()
+                    .expect_err("no arena is that large"),
+            },
+            EnvError::NameTaken {
+                name: "gate".to_owned(),
+                object: 3,
+            },
+            EnvError::TooManyObjects { limit: 100_000 },
+            EnvError::NoSuchObject { found: 9, count: 4 },
+            EnvError::AlreadyGone { object: 2 },
+            EnvError::NoRoom {
+                position: [1.0, 2.5],
+                found: Obstacle::Object { index: 3 },
+                width: 1.0,
+            },
+            EnvError::NoHeading { found: f64::NAN },
             EnvError::PictureSize { width: 0, height: 5000 },
             EnvError::BatchSize { found: 0, most: 65_536 },
             EnvError::BatchThreads {

@@ -24,4 +24,4 @@ pub use render::{
     FAR_DEPTH, Frame, Image, Target, category_color, depth_to_gray, top_down,
 };
 pub use scene::{Item, Light, Scene, WallPanel};
-pub use sim::{Action, AgentState, Environment, Event, ObjectState, Step, Warning};
+pub use sim::{Action, AgentState, Environment, Event, ObjectState, Obstacle, Snapshot, Step, Warning};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use driftworld_spec::World;
+use driftworld_spec::{Object, World};
 
 use crate::assets::{Asset, Block, Coat, Mesh, Paint, Part, asset};
 
@@ -19,7 +19,8 @@ pub struct Scene {
     pub walls: Vec<WallPanel>,
     arena_size: [f32; 2],
     panels: Vec<PanelGroup>,
-    num_classes: usize,
+    /// Classes in order of first appearance: the place in this list, from 1, is the class's number.
+    classes: Vec<String>,
 }
 
 /// How many of a scene's walls, the first ones, are the arena's own: west, north, east, south.
@@ -101,31 +102,34 @@ impl Scene {
             walls: Vec::new(),
             arena_size: environment.arena_size().map(|side| side as f32),
             panels: Vec::new(),
-            num_classes: 0,
+            classes: Vec::new(),
         };
         scene.add_walls(world);
-        let mut classes: Vec<String> = Vec::new();
         for object in &world.objects {
-            let class = object.class.to_lowercase();
-            let known = classes.iter().position(|other| *other == class);
-            let class_id = known.unwrap_or_else(|| {
-                classes.push(class.clone());
-                classes.len() - 1
-            });
-            scene.items.push(Item {
-                asset: asset(&class, &object.model),
-                position: object.coordinates.map(|metres| metres as f32),
-                heading_deg: object.heading as f32,
-                scale: object.scale as f32,
-                color: object.color.map(driftworld_spec::Color::to_f32),
-                building: class == "building",
-                reward: object.reward as f32,
-                class_id: u16::try_from(class_id + 1).unwrap_or(u16::MAX),
-                visible: true,
-            });
+            scene.add(object);
         }
-        scene.num_classes = classes.len();
         scene
+    }
+
+    /// Puts one more object into the scene, as it is at its start.
+    pub(crate) fn add(&mut self, object: &Object) {
+        let class = object.class.to_lowercase();
+        let known = self.classes.iter().position(|other| *other == class);
+        let class_index = known.unwrap_or(self.classes.len());
+        self.items.push(Item {
+            asset: asset(&class, &object.model),
+            position: object.coordinates.map(|metres| metres as f32),
+            heading_deg: object.heading as f32,
+            scale: object.scale as f32,
+            color: object.color.map(driftworld_spec::Color::to_f32),
+            building: class == "building",
+            reward: object.reward as f32,
+            class_id: u16::try_from(class_index + 1).unwrap_or(u16::MAX),
+            visible: true,
+        });
+        if known.is_none() {
+            self.classes.push(class);
+        }
     }
 
     /// Side lengths of the arena along x and y in metres.
@@ -140,7 +144,7 @@ impl Scene {
 
     /// How many classes the scene's items are of.
     pub(crate) fn num_classes(&self) -> usize {
-        self.num_classes
+        self.classes.len()
     }
 
     fn add_walls(&mut self, world: &World) {

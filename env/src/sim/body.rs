@@ -166,6 +166,9 @@ impl Ground {
             .position(Pose::new(at, turn))
             .user_data(u128::from(index));
         let handle = self.insert(collider, if solid { SOLID } else { GHOST });
+        if self.handles.len() <= index as usize {
+            self.handles.resize(index as usize + 1, None);
+        }
         self.handles[index as usize] = Some(handle);
     }
 
@@ -358,6 +361,16 @@ impl Ground {
                 .map(|(_, collider)| collider.user_data as u32),
         );
         touched.sort_unstable();
+    }
+
+    /// The solid objects that the agent's body would be inside of at a place, by index in rising order.
+    pub(crate) fn blocking(&self, at: [f32; 2], found: &mut Vec<u32>) {
+        found.clear();
+        let pose = Pose::from_translation(Vector::new(at[0], at[1], 0.0));
+        let query = self.query(SOLID);
+        let inside = query.intersect_shape(pose, &*self.agent);
+        found.extend(inside.map(|(_, collider)| collider.user_data as u32));
+        found.sort_unstable();
     }
 
     /// The objects in the 1 m cube right in front of the agent, by index in rising order.

@@ -1,8 +1,10 @@
 //! How objects move by themselves: where each wants to go. How far it comes is found in `moving_body.rs`.
 
 use driftworld_spec::{MotionModel, Object, World};
-use rand::{RngExt, SeedableRng};
+use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
+
+use super::chance::{self, Seed};
 
 /// Distance at which a waypoint counts as reached, in metres.
 const REACHED: f32 = 0.3;
@@ -12,7 +14,7 @@ const STUCK: f32 = 0.2;
 
 /// An object that moves: what it is about to do.
 #[derive(Clone, Debug)]
-pub(crate) struct Mover {
+pub(super) struct Mover {
     /// The object's number in the world.
     pub(crate) object: usize,
     /// Number of the next point of a patrol.
@@ -25,7 +27,7 @@ pub(crate) struct Mover {
 
 /// What a mover sees before it decides.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct View {
+pub(super) struct View {
     /// Where it is, in metres.
     pub(crate) position: [f32; 2],
     /// Where it faces, in degrees.
@@ -40,7 +42,7 @@ pub(crate) struct View {
 
 /// What a mover means to do in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Stride {
+pub(super) struct Stride {
     /// Its new heading in degrees.
     pub(crate) heading_deg: f32,
     /// The way it means to go, in metres.
@@ -49,33 +51,25 @@ pub(crate) struct Stride {
 
 impl Mover {
     /// The movers of a world: all objects with a motion model and a speed.
-    pub(crate) fn all(world: &World) -> Vec<Self> {
-        let moves = |object: &Object| object.motion_model != MotionModel::Stationary && object.speed > 0.0;
-        if !world.objects.iter().any(moves) {
-            return Vec::new();
-        }
-        let mut seed = [0; 32];
-        seed.iter_mut()
-            .zip(world.hash().bytes())
-            .for_each(|(byte, letter)| *byte = letter);
-        let movers = world.objects.iter().enumerate().filter(|(_, object)| moves(object));
-        movers
-            .map(|(object, _)| {
-                let mut chance = ChaCha8Rng::from_seed(seed);
-                // Stream 0 is the bandit arms'.
-                chance.set_stream(object as u64 + 1);
-                Self {
-                    object,
-                    next: 0,
-                    goal: None,
-                    chance,
-                }
-            })
+    pub(super) fn all(world: &World, seed: &Seed) -> Vec<Self> {
+        let objects = world.objects.iter().enumerate();
+        objects
+            .filter_map(|(index, object)| Self::new(index, object, seed))
             .collect()
     }
 
+    /// The mover of an object, if it moves.
+    pub(super) fn new(index: usize, object: &Object, seed: &Seed) -> Option<Self> {
+        chance::moves(object).then(|| Self {
+            object: index,
+            next: 0,
+            goal: None,
+            chance: seed.mover(index),
+        })
+    }
+
     /// What the object means to do; `None` if it stands still.
-    pub(crate) fn decide(&mut self, object: &Object, view: View) -> Option<Stride> {
+    pub(super) fn decide(&mut self, object: &Object, view: View) -> Option<Stride> {
         let wanted = self.direction(object, view)?;
         let bearing = libm::atan2f(wanted[0], wanted[1]).to_degrees();
         let turn = (bearing - view.heading_deg + 180.0).rem_euclid(360.0) - 180.0;
@@ -125,7 +119,7 @@ impl Mover {
     }
 
     /// Hears how far it came: a wanderer that hardly moved looks for another goal.
-    pub(crate) fn moved(&mut self, meant: [f32; 2], came: [f32; 2]) {
+    pub(super) fn moved(&mut self, meant: [f32; 2], came: [f32; 2]) {
         if length(came) < STUCK * length(meant) {
             self.goal = None;
         }

@@ -8,22 +8,22 @@ use super::motion::View;
 impl Environment {
     /// Lets every object that moves by itself go its way.
     pub(super) fn move_objects(&mut self) {
-        if self.movers.is_empty() {
+        if self.episode.movers.is_empty() {
             return;
         }
-        self.ground.place_agent(self.agent.position);
+        self.ground.place_agent(self.episode.agent.position);
         let half = self.scene.arena_size().map(|side| side / 2.0);
         let seconds = self.world.agent_params.time_step as f32;
-        for mover in &mut self.movers {
+        for mover in &mut self.episode.movers {
             let index = mover.object;
-            if !self.objects[index].present {
+            if !self.episode.objects[index].present {
                 continue;
             }
             let item = &mut self.scene.items[index];
             let view = View {
                 position: item.position,
                 heading_deg: item.heading_deg,
-                agent: self.agent.position,
+                agent: self.episode.agent.position,
                 half,
                 seconds,
             };
@@ -39,14 +39,14 @@ impl Environment {
 
     /// Puts back the destroyed objects whose time has come: near their first place, where nothing stands.
     pub(super) fn bring_back(&mut self) {
-        let now = u64::from(self.steps) + 1;
+        let now = u64::from(self.episode.steps) + 1;
         let mut waiting = Vec::new();
-        for (index, due) in std::mem::take(&mut self.returning) {
+        for (index, due) in std::mem::take(&mut self.episode.returning) {
             if due > now || !self.put_back(index) {
                 waiting.push((index, due));
             }
         }
-        self.returning = waiting;
+        self.episode.returning = waiting;
     }
 
     /// Puts an object back at a free place; false if none is found in this step.
@@ -55,12 +55,12 @@ impl Environment {
         const TRIES: u32 = 16;
         let object = &self.world.objects[index];
         let Some(respawn) = &object.respawn else { return true };
-        self.ground.place_agent(self.agent.position);
+        self.ground.place_agent(self.episode.agent.position);
         let radius = self.scene.items[index].asset.collider.radius() * self.scene.items[index].scale;
         let first = object.coordinates.map(|metres| metres as f32);
         for _ in 0..TRIES {
-            let distance = respawn.radius as f32 * self.chance.random::<f32>().sqrt();
-            let angle = std::f32::consts::TAU * self.chance.random::<f32>();
+            let distance = respawn.radius as f32 * self.episode.chance.random::<f32>().sqrt();
+            let angle = std::f32::consts::TAU * self.episode.chance.random::<f32>();
             let place = [
                 first[0] + distance * libm::cosf(angle),
                 first[1] + distance * libm::sinf(angle),
@@ -72,7 +72,7 @@ impl Environment {
                 item.reward = object.reward as f32;
                 item.visible = true;
                 self.ground.add_object(index as u32, item, object.solid);
-                let state = &mut self.objects[index];
+                let state = &mut self.episode.objects[index];
                 (state.present, state.reward, state.in_range) = (true, object.reward, false);
                 return true;
             }

@@ -19,7 +19,7 @@ use crate::error::Problem;
 use crate::maps::MapsDocument;
 use crate::scenario::Scenario;
 use crate::task::TaskDocument;
-use crate::world::World;
+use crate::world::{Object, World};
 
 /// One document type's schema, ready to check values.
 pub struct DocumentSchema {
@@ -125,6 +125,13 @@ fn describe_forms(part: &mut Value) {
 pub fn world() -> &'static DocumentSchema {
     static SCHEMA: LazyLock<DocumentSchema> =
         LazyLock::new(|| DocumentSchema::new(of_type::<World>("world", "Driftworld world")));
+    &SCHEMA
+}
+
+/// The schema of one [`Object`], which a world may be given while it runs.
+pub(crate) fn object() -> &'static DocumentSchema {
+    static SCHEMA: LazyLock<DocumentSchema> =
+        LazyLock::new(|| DocumentSchema::new(of_type::<Object>("object", "Driftworld object")));
     &SCHEMA
 }
 

@@ -1,6 +1,7 @@
 //! [`World`]: the reset JSON, one fully concrete world. Its L2Explorer dialect is read and written in `l2explorer/`.
 
 mod agent;
+mod check;
 mod environment;
 mod object;
 mod rules;

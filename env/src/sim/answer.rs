@@ -1,0 +1,109 @@
+//! What the agent's motion sets off: stimuli, what they pay, what they destroy. Endings are in `judge.rs`.
+
+use std::sync::Arc;
+
+use driftworld_spec::{Object, Stimulus};
+use rand::RngExt;
+
+use super::action::Intent;
+use super::environment::Environment;
+use super::event::{Event, Step};
+
+impl Environment {
+    /// Finds what the step set off, and pays for it.
+    pub(super) fn answer(&mut self, intent: Intent, met: Vec<u32>, step: &mut Step) {
+        let mut touching = Vec::new();
+        self.ground.touching(self.episode.agent.position, &mut touching);
+        let mut triggered: Vec<(u32, Stimulus)> = Vec::new();
+        let new_contacts = met.into_iter().chain(touching.iter().copied());
+        triggered.extend(
+            new_contacts
+                .filter(|index| !self.episode.contacts.contains(index))
+                .map(|index| (index, Stimulus::AgentCollide)),
+        );
+        self.episode.contacts = touching;
+        if intent.interact {
+            let reached = self
+                .ground
+                .in_reach(self.episode.agent.position, self.episode.agent.forward());
+            triggered.extend(reached.into_iter().map(|index| (index, Stimulus::AgentInteract)));
+        }
+        for index in 0..self.episode.objects.len() {
+            let now = self.is_in_range(index);
+            if now && !self.episode.objects[index].in_range {
+                triggered.push((index as u32, Stimulus::AgentInRange));
+            }
+            self.episode.objects[index].in_range = now;
+        }
+        triggered.sort_unstable();
+        triggered.dedup();
+        for (index, stimulus) in triggered {
+            self.trigger(index as usize, stimulus, step);
+        }
+    }
+
+    /// One stimulus on one object: what it pays, whether it destroys.
+    fn trigger(&mut self, index: usize, stimulus: Stimulus, step: &mut Step) {
+        if !self.episode.objects[index].present {
+            return;
+        }
+        let world = Arc::clone(&self.world);
+        let object = &world.objects[index];
+        let once = object.reward_once_stimulus.contains(&stimulus);
+        let pays = (once || object.reward_stimulus.contains(&stimulus)) && self.is_due(object.order);
+        let destroyed = object.destroy_stimulus.contains(&stimulus);
+        let lucky = object.reward_probability >= 1.0
+            || (pays && self.episode.chance.random::<f64>() < object.reward_probability);
+        let reward = if pays && lucky {
+            self.episode.objects[index].reward
+        } else {
+            0.0
+        };
+        step.reward += reward;
+        let state = &mut self.episode.objects[index];
+        state.collected |= pays || (destroyed && object.order.is_none());
+        if pays && once {
+            state.reward = 0.0;
+            self.scene.items[index].reward = 0.0;
+        }
+        if destroyed {
+            self.take_away(index);
+            if let Some(respawn) = &object.respawn {
+                let steps = (respawn.delay / self.world.agent_params.time_step).ceil() as u64;
+                self.episode
+                    .returning
+                    .push((index, u64::from(self.episode.steps) + 1 + steps.max(1)));
+            }
+        }
+        step.events.push(Event {
+            object: index,
+            tag: object.tag.clone(),
+            stimulus,
+            reward,
+            destroyed,
+        });
+    }
+
+    /// Whether all objects with a lower place in the sequence have been collected.
+    fn is_due(&self, order: Option<u32>) -> bool {
+        let Some(order) = order else { return true };
+        let lower = |object: &Object| object.order.is_some_and(|other| other < order);
+        self.world
+            .objects
+            .iter()
+            .zip(&self.episode.objects)
+            .all(|(object, state)| !lower(object) || state.collected)
+    }
+
+    /// Centre to centre in 3D: the agent's at half its height, the object's at half of its own.
+    pub(super) fn is_in_range(&self, index: usize) -> bool {
+        let reach = self.world.objects[index].range_stimulus_distance as f32;
+        if reach <= 0.0 || !self.episode.objects[index].present {
+            return false;
+        }
+        let item = &self.scene.items[index];
+        let [dx, dy] = [0, 1].map(|axis| item.position[axis] - self.episode.agent.position[axis]);
+        let dz = (item.asset.height * item.scale - self.world.agent_params.agent_height as f32) / 2.0;
+        dx * dx + dy * dy + dz * dz < reach * reach
+    }
+}

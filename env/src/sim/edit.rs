@@ -1,0 +1,142 @@
+//! Changing a world while it runs, from outside: new objects, fewer objects, another place for the agent. What the agent
+//! itself changes is in `answer.rs`.
+
+use std::fmt;
+use std::sync::Arc;
+
+use driftworld_spec::{MAX_OBJECTS, Object};
+
+use super::environment::Environment;
+use super::episode::ObjectState;
+use super::motion::Mover;
+use super::walls;
+use crate::EnvError;
+
+/// What stands where the agent should stand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Obstacle {
+    /// Nothing: the place is outside the arena, or not a place at all.
+    Outside,
+    /// A wall, or a region that cannot be entered.
+    Wall,
+    /// A solid object.
+    Object {
+        /// Its index in the world.
+        index: usize,
+    },
+}
+
+impl fmt::Display for Obstacle {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Outside => f.write_str("no ground of the arena"),
+            Self::Wall => f.write_str("a wall"),
+            Self::Object { index } => write!(f, "object {index}"),
+        }
+    }
+}
+
+impl Environment {
+    /// The index of the object of this `unique_name`, whether it is there now or not.
+    pub fn find(&self, unique_name: &str) -> Option<usize> {
+        let named = |object: &Object| object.unique_name.as_deref() == Some(unique_name);
+        self.world.objects.iter().position(named)
+    }
+
+    /// Puts a new object into the running world and hands back its index: the next number, for indices stay as they are.
+    ///
+    /// It stands wherever it is put, even in a wall. If it stands where the agent is, the next step is its first contact.
+    ///
+    /// # Errors
+    /// [`EnvError::BadObject`] where a document with this object would be refused, [`EnvError::NameTaken`], and
+    /// [`EnvError::TooManyObjects`] beyond [`MAX_OBJECTS`], the destroyed ones among them. On error nothing is changed.
+    pub fn spawn(&mut self, object: Object) -> Result<usize, EnvError> {
+        let index = self.world.objects.len();
+        if index >= MAX_OBJECTS {
+            return Err(EnvError::TooManyObjects { limit: MAX_OBJECTS });
+        }
+        object.check().map_err(|problem| EnvError::BadObject { problem })?;
+        if let Some(name) = &object.unique_name
+            && let Some(first) = self.find(name)
+        {
+            let name = name.clone();
+            return Err(EnvError::NameTaken { name, object: first });
+        }
+        // Chance depends on the world without what was spawned, so the seed is taken before the first spawning. Where it
+        // was not known, nothing has drawn from it.
+        if self.seed.learn(&self.world) {
+            self.episode.chance = self.seed.arms();
+        }
+        self.scene.add(&object);
+        self.ground
+            .add_object(index as u32, &self.scene.items[index], object.solid);
+        self.episode.objects.push(ObjectState::new(&object));
+        self.episode.movers.extend(Mover::new(index, &object, &self.seed));
+        self.had_targets |= object.is_target();
+        Arc::make_mut(&mut self.world).objects.push(object);
+        Ok(index)
+    }
+
+    /// Takes an object out of the running world for good: it pays nothing, and does not come back.
+    ///
+    /// It counts as collected, so that a sequence of which it was a part can go on. Its index stays taken.
+    ///
+    /// # Errors
+    /// [`EnvError::NoSuchObject`], and [`EnvError::AlreadyGone`] where there is nothing to take away; nothing is changed then.
+    pub fn destroy(&mut self, object: usize) -> Result<(), EnvError> {
+        let count = self.episode.objects.len();
+        if object >= count {
+            return Err(EnvError::NoSuchObject { found: object, count });
+        }
+        let comes_back = |(index, _): &(usize, u64)| *index == object;
+        if !self.episode.objects[object].present && !self.episode.returning.iter().any(comes_back) {
+            return Err(EnvError::AlreadyGone { object });
+        }
+        self.episode.returning.retain(|pending| !comes_back(pending));
+        self.episode.objects[object].collected = true;
+        self.take_away(object);
+        Ok(())
+    }
+
+    /// An object's body and look go; whether they come back is for the caller to say.
+    pub(super) fn take_away(&mut self, object: usize) {
+        self.episode.objects[object].present = false;
+        self.scene.items[object].visible = false;
+        self.ground.remove(object as u32);
+        self.episode.contacts.retain(|contact| *contact as usize != object);
+    }
+
+    /// Puts the agent somewhere else, looking along a heading in degrees clockwise from +y; any number of turns.
+    ///
+    /// It arrives at rest. What it touches there, or is near to, is no news: only what it meets by its own motion pays.
+    ///
+    /// # Errors
+    /// [`EnvError::NoRoom`] for places outside the arena, in walls, in regions that cannot be entered and in solid objects;
+    /// [`EnvError::NoHeading`] for one that is not finite. On error it stays where it is.
+    pub fn teleport(&mut self, position: [f64; 2], heading_deg: f64) -> Result<(), EnvError> {
+        if !heading_deg.is_finite() {
+            return Err(EnvError::NoHeading { found: heading_deg });
+        }
+        if let Some(found) = self.obstacle(position) {
+            let width = self.world.agent_params.agent_width;
+            return Err(EnvError::NoRoom { position, found, width });
+        }
+        let agent = &mut self.episode.agent;
+        agent.position = position.map(|metres| metres as f32);
+        agent.heading_deg = super::episode::wrapped(heading_deg.rem_euclid(360.0) as f32);
+        agent.velocity = [0.0; 2];
+        self.take_stock();
+        Ok(())
+    }
+
+    /// What is in the way of the agent's body at a place.
+    pub(super) fn obstacle(&self, position: [f64; 2]) -> Option<Obstacle> {
+        let radius = self.world.agent_params.agent_width / 2.0;
+        walls::obstacle(&self.world, position, radius).or_else(|| {
+            let mut blocked = Vec::new();
+            self.ground.blocking(position.map(|metres| metres as f32), &mut blocked);
+            blocked.first().map(|index| Obstacle::Object { index: *index as usize })
+        })
+    }
+}

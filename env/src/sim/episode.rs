@@ -1,0 +1,100 @@
+//! All that changes while a world runs, in one value: what a snapshot copies. What changes it is in the files beside this one.
+
+use driftworld_spec::{ActionModel, Object, World};
+use rand_chacha::ChaCha8Rng;
+
+use super::chance::Seed;
+use super::motion::Mover;
+use crate::agents::OnRailsAgent;
+
+/// Where the agent is and how it moves.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct AgentState {
+    /// Position in metres.
+    pub position: [f32; 2],
+    /// Heading in degrees, 0..360, clockwise from +y.
+    pub heading_deg: f32,
+    /// Velocity over the last step in metres per second.
+    pub velocity: [f32; 2],
+}
+
+impl AgentState {
+    /// The direction in which the agent looks: length 1.
+    pub fn forward(&self) -> [f32; 2] {
+        let heading = self.heading_deg.to_radians();
+        [libm::sinf(heading), libm::cosf(heading)]
+    }
+}
+
+/// One object while its world runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjectState {
+    /// What a triggering pays now; 0 once it has paid what pays once.
+    pub reward: f64,
+    /// Whether it is still there.
+    pub present: bool,
+    /// Whether it has paid, or was destroyed: places in a sequence count on it.
+    pub collected: bool,
+    pub(super) in_range: bool,
+}
+
+impl ObjectState {
+    /// An object at its start.
+    pub(super) fn new(object: &Object) -> Self {
+        Self {
+            reward: object.reward,
+            present: true,
+            collected: false,
+            in_range: false,
+        }
+    }
+}
+
+/// A heading brought to 0..360 degrees, 360 excluded, which rounding can lead to.
+pub(super) fn wrapped(heading_deg: f32) -> f32 {
+    let heading_deg = heading_deg.rem_euclid(360.0);
+    if heading_deg < 360.0 { heading_deg } else { 0.0 }
+}
+
+/// Where a world stands in its course.
+#[derive(Clone)]
+pub(crate) struct Episode {
+    pub(super) agent: AgentState,
+    pub(super) objects: Vec<ObjectState>,
+    pub(super) steps: u32,
+    /// The sum of rewards since the start.
+    pub(super) earned: f64,
+    pub(super) ended: bool,
+    /// What bandit arms and returning objects draw from.
+    pub(super) chance: ChaCha8Rng,
+    /// Objects in contact at the end of the last step, in rising order.
+    pub(super) contacts: Vec<u32>,
+    /// The objects that move by themselves.
+    pub(super) movers: Vec<Mover>,
+    /// Destroyed objects that come back, with the number of steps after which they do.
+    pub(super) returning: Vec<(usize, u64)>,
+    pub(super) rails: Option<OnRailsAgent>,
+}
+
+impl Episode {
+    /// The start of a world. What is touched or near is found later, when there are bodies.
+    pub(super) fn new(world: &World, seed: &Seed) -> Self {
+        let start = &world.agent_params;
+        Self {
+            agent: AgentState {
+                position: start.coordinates.map(|metres| metres as f32),
+                heading_deg: wrapped(start.heading as f32),
+                velocity: [0.0; 2],
+            },
+            objects: world.objects.iter().map(ObjectState::new).collect(),
+            steps: 0,
+            earned: 0.0,
+            ended: false,
+            chance: seed.arms(),
+            contacts: Vec::new(),
+            movers: Mover::all(world, seed),
+            returning: Vec::new(),
+            rails: (start.action_model == ActionModel::OnRails).then(OnRailsAgent::new),
+        }
+    }
+}

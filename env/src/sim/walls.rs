@@ -1,0 +1,74 @@
+//! Where walls leave no room: geometry of polygons on the ground. How walls stop a body is in `body.rs`.
+
+use driftworld_spec::World;
+
+use super::edit::Obstacle;
+
+/// What of the arena and its walls is in the way of a round body of this radius in metres.
+pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option<Obstacle> {
+    let environment = &world.environment_params;
+    if !position.iter().all(|metres| metres.is_finite()) || !environment.contains(position) {
+        return Some(Obstacle::Outside);
+    }
+    let arena = environment.arena_size();
+    let beyond = (0..2).any(|axis| position[axis].abs() > arena[axis] / 2.0 - radius);
+    let regions = environment.regions().into_iter();
+    let own = environment.walls.iter().map(|wall| wall.polygon.as_slice());
+    let inside = |corners: &[[f64; 2]]| is_near_or_inside(corners, position, radius);
+    (beyond || regions.chain(own).any(inside)).then_some(Obstacle::Wall)
+}
+
+/// Whether a point is inside a polygon, by the even-odd rule, or nearer to one of its edges than `margin` in metres.
+fn is_near_or_inside(corners: &[[f64; 2]], [x, y]: [f64; 2], margin: f64) -> bool {
+    let mut inside = false;
+    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+    for (&[ax, ay], &[bx, by]) in edges {
+        let (dx, dy) = (bx - ax, by - ay);
+        let squared = dx * dx + dy * dy;
+        let along = if squared > 0.0 {
+            (((x - ax) * dx + (y - ay) * dy) / squared).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let (ex, ey) = (x - ax - along * dx, y - ay - along * dy);
+        if ex * ex + ey * ey < margin * margin {
+            return true;
+        }
+        if (ay > y) != (by > y) && x < dx * (y - ay) / dy + ax {
+            inside = !inside;
+        }
+    }
+    inside
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use driftworld_spec::Wall;
+
+    fn check(position: [f64; 2], expected: Option<Obstacle>) {
+        let mut world = World::default();
+        world.environment_params.map_size = [20.0, 20.0];
+        let polygon = vec![[2.0, 2.0], [6.0, 2.0], [6.0, 6.0], [4.0, 4.0], [2.0, 6.0]];
+        world.environment_params.walls = vec![Wall {
+            polygon,
+            height: None,
+            color: None,
+        }];
+        assert_eq!(obstacle(&world, position, 0.5), expected, "{position:?}");
+    }
+
+    #[test]
+    fn a_body_has_room_where_no_wall_is_nearer_than_its_radius() {
+        check([0.0, 0.0], None);
+        check([9.6, 0.0], Some(Obstacle::Wall));
+        check([10.1, 0.0], Some(Obstacle::Outside));
+        check([f64::NAN, 0.0], Some(Obstacle::Outside));
+        check([3.0, 3.0], Some(Obstacle::Wall));
+        check([1.6, 3.0], Some(Obstacle::Wall));
+        check([1.4, 3.0], None);
+        // The notch from above is free ground once it is wide enough.
+        check([4.0, 5.8], None);
+        check([4.0, 4.2], Some(Obstacle::Wall));
+    }
+}

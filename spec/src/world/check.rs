@@ -1,0 +1,49 @@
+//! Checking what was built in code by the rules that documents are read by. Reading documents is in `mod.rs`.
+
+use super::Object;
+use crate::document::Document;
+use crate::error::SpecError;
+use crate::schema;
+
+impl Object {
+    /// Checks an object that was built in code by the rules that objects of a document obey.
+    ///
+    /// # Errors
+    /// [`SpecError::Document`] under the name `object`, with every problem; places are those in its JSON.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::Object;
+    /// let mut tree = Object::new("tree", [3.0, 4.0]);
+    /// assert!(tree.check().is_ok());
+    /// tree.scale = 0.0;
+    /// let error = tree.check().expect_err("nothing is of no size");
+    /// assert_eq!(error.problems()[0].pointer, "/scale");
+    /// ```
+    pub fn check(&self) -> Result<(), SpecError> {
+        let text = serde_json::to_string(self).expect("an object has string keys only, which always serialise");
+        Document::parse("object", &text)?.check_schema(schema::object())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(change: impl FnOnce(&mut Object), expected: &str) {
+        let mut object = Object::new("tree", [3.0, 4.0]);
+        change(&mut object);
+        let said = object.check().expect_err("the object is not sound").to_string();
+        assert!(said.contains(expected), "{said}");
+    }
+
+    #[test]
+    fn an_object_built_in_code_obeys_the_rules_of_documents() {
+        check(|object| object.coordinates[0] = 301.0, "(/coordinates/0): found 301");
+        check(|object| object.class.clear(), "(/class): found \"\"");
+        check(|object| object.reward = f64::NAN, "(/reward): found null");
+        Object::new("dragon", [0.0, 0.0])
+            .check()
+            .expect("a class that is not known is a placeholder");
+    }
+}
