@@ -28,5 +28,5 @@ pub use task::{
 pub use version::{SCENARIO_VERSION, TASK_VERSION, WORLD_VERSION};
 pub use world::{
     ActionModel, ActionSpace, AgentParams, EndCondition, EnvironmentParams, GameMode, ImageParams, MAX_OBJECTS,
-    Modality, Model, MotionModel, Object, Region, Respawn, Rules, Shaping, Stimulus, Wall, World,
+    MAX_POINTS, Modality, Model, MotionModel, Object, Region, Respawn, Rules, Shaping, Stimulus, Wall, World,
 };

@@ -38,6 +38,7 @@ fn cases() -> Vec<SpecError> {
         world(r#"{ "agent_params": { "observation_size": 84.0 } }"#),
         world(r#"{ "environment_params": { "sun_direction": [0, 0, 0] } }"#),
         world(r#"{ "environment_params": { "map_size": [0, 10] } }"#),
+        world(r#"{ "agent_params": { "observation_size": 4096, "supersampling": 3 } }"#),
         world(
             r#"{ "objects": [{ "class": "tree", "coordinates": [1, 1], "unique_name": "a" },
                              { "class": "tree", "coordinates": [2, 2], "unique_name": "a" }] }"#,

@@ -9,15 +9,17 @@ use crate::workspace::Workspace;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Suite {
     Generator,
+    Env,
 }
 
 impl Suite {
-    pub(crate) const ALL: [Self; 1] = [Self::Generator];
+    pub(crate) const ALL: [Self; 2] = [Self::Generator, Self::Env];
 
     /// The word after `bench`.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Generator => "generator",
+            Self::Env => "env",
         }
     }
 
@@ -30,6 +32,7 @@ impl Suite {
     fn packages(self) -> &'static [&'static str] {
         match self {
             Self::Generator => &["driftworld-spec", "driftworld-generator"],
+            Self::Env => &["driftworld-env"],
         }
     }
 }

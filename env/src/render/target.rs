@@ -1,9 +1,8 @@
 //! Where images go: slices that the caller owns, one for each modality that is wanted. What their numbers mean is in `frame.rs`.
 
-use super::frame::Frame;
+use driftworld_spec::MAX_POINTS;
 
-/// The most points of a picture: 4096 × 4096 pixels of 2 × 2.
-const MOST_POINTS: usize = 1 << 26;
+use super::frame::Frame;
 
 /// The images that a render is to fill; what is `None` is not computed. Row 0 is on top.
 #[derive(Debug, Default)]
@@ -34,7 +33,7 @@ impl Target<'_> {
         (1..=4096).contains(&self.width)
             && (1..=4096).contains(&self.height)
             && self.supersampling <= 4
-            && pixels * self.supersampling.pow(2) as usize <= MOST_POINTS
+            && pixels as u64 * u64::from(self.supersampling).pow(2) <= MAX_POINTS
             && fits(self.rgb.as_ref().map(|rgb| rgb.len()), 3)
             && fits(self.depth.as_ref().map(|depth| depth.len()), 1)
             && fits(self.category.as_ref().map(|category| category.len()), 1)

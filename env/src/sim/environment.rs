@@ -12,7 +12,7 @@ use super::event::{Step, Warning};
 use crate::EnvError;
 use crate::agents::Agent;
 use crate::camera::Camera;
-use crate::render::{CpuRenderer, Frame};
+use crate::render::{CpuRenderer, Frame, Target};
 use crate::scene::Scene;
 
 /// A world that runs: reset, step, look.
@@ -47,8 +47,7 @@ impl Environment {
     /// # Errors
     /// None today: a checked world can always start. The signature leaves room for worlds that name libraries of assets.
     pub fn new(world: World) -> Result<Self, EnvError> {
-        let size = world.agent_params.observation_size;
-        Ok(Self::build(Arc::new(world), CpuRenderer::new(), Frame::new(size, size)))
+        Ok(Self::build(Arc::new(world), CpuRenderer::new(), Frame::new(0, 0)))
     }
 
     /// Leaves this world for another, or for the same from its start; buffers for pictures are kept.
@@ -61,11 +60,7 @@ impl Environment {
     }
 
     pub(super) fn start(&mut self, world: Arc<World>) {
-        let size = world.agent_params.observation_size;
-        let mut frame = std::mem::replace(&mut self.frame, Frame::new(0, 0));
-        if (frame.width, frame.height) != (size, size) {
-            frame = Frame::new(size, size);
-        }
+        let frame = std::mem::replace(&mut self.frame, Frame::new(0, 0));
         *self = Self::build(world, std::mem::take(&mut self.renderer), frame);
     }
 
@@ -224,10 +219,22 @@ impl Environment {
         motion.met
     }
 
-    /// What the agent sees now, at the world's observation size. Drawn when asked for, never before.
+    /// What the agent sees now, at the world's observation size, in all modalities. Drawn when asked for, never before.
     pub fn observe(&mut self) -> &Frame {
+        let agent = &self.world.agent_params;
+        let ([width, height], supersampling) = (agent.picture_size(), agent.supersampling);
+        if (self.frame.width, self.frame.height) != (width, height) {
+            self.frame = Frame::new(width, height);
+        }
         let camera = self.camera();
-        self.renderer.render(&self.scene, &camera, &mut self.frame);
+        let mut target = Target {
+            supersampling,
+            ..self.frame.target()
+        };
+        if self.renderer.draw(&self.scene, &camera, &mut target).is_err() {
+            // Only for so many points that no buffer holds them: then one a pixel.
+            self.renderer.render(&self.scene, &camera, &mut self.frame);
+        }
         &self.frame
     }
 

@@ -25,6 +25,9 @@ use crate::{schema, version};
 /// The most objects that one world may hold.
 pub const MAX_OBJECTS: usize = 100_000;
 
+/// The most points of one picture: 4096 × 4096 pixels with 2 × 2 points each.
+pub const MAX_POINTS: u64 = 1 << 26;
+
 /// One fully concrete world: what a reset takes.
 ///
 /// A superset of L2Explorer's reset payload. Reading is strict: [`World::from_json`] names every unknown key, wrong type
@@ -174,6 +177,19 @@ impl World {
                     "sides above 0 m",
                 )
                 .advise("or choose a predefined_map from 1 to 4"),
+            );
+        }
+        let [width, height] = self.agent_params.picture_size();
+        let points = u64::from(width) * u64::from(height) * u64::from(self.agent_params.supersampling).pow(2);
+        if points > MAX_POINTS {
+            problems.push(
+                Problem::new(
+                    "spec/too-many-points",
+                    "/agent_params/supersampling",
+                    format!("{points} points for {width} × {height} pixels"),
+                    format!("at most {MAX_POINTS} points"),
+                )
+                .advise("use smaller observations or less supersampling"),
             );
         }
         problems.extend(duplicate_names(&self.objects));

@@ -1,0 +1,109 @@
+//! How fast environments step, draw and reset, and how much memory one takes.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use driftworld::env::{Action, Autoreset, Batch, BatchOptions, Environment};
+use driftworld::spec::{Modality, World};
+use serde_json::json;
+
+use super::super::Failure;
+use super::{Figures, rate, rates};
+
+/// 20 objects of 2,652 triangles spread over a walled arena of 100 × 100 m; rewards for touching and for coming near.
+const ARENA_20: &str = include_str!("../../../env/benches/scenes/arena_20.json");
+
+/// The same with 8 objects.
+const ARENA_8: &str = include_str!("../../../env/benches/scenes/arena_8.json");
+
+/// Environments that step together.
+const NUM_ENVS: usize = 64;
+
+/// A circle of 19 m radius, which passes between the objects.
+const CURVE: Action = Action::Continuous([5.0, 15.0, 0.0]);
+
+/// Environments whose memory is measured.
+const NUM_MEASURED: usize = 512;
+
+/// Steps, with physics, rewards and pictures, and resets, each second.
+pub(super) fn measure(round: Duration) -> Result<Figures, Failure> {
+    let square = arena(ARENA_20, [84, 84])?;
+    let wide = arena(ARENA_20, [160, 120])?;
+    let mut small = arena(ARENA_8, [64, 64])?;
+    small.agent_params.modalities = vec![Modality::Rgb];
+    let one = steps(&square, 1, round)?;
+    let mut environment = Environment::new(square.clone())?;
+    let mut figures = rates([
+        ("steps_per_second_per_core_84", one),
+        ("steps_per_second_per_core_160x120", steps(&wide, 1, round)?),
+        ("steps_per_second_per_core_64_rgb", steps(&small, 1, round)?),
+        (
+            "resets_per_second_per_core",
+            rate(round, |_| environment.reset(square.clone()))?,
+        ),
+    ]);
+    // One core again, so that both are measured in the same state of the machine.
+    let (two, again) = (steps(&square, 2, round)?, steps(&square, 1, round)?);
+    let speedup = (two / again * 100.0).round() / 100.0;
+    figures.insert("two_core_speedup".to_owned(), json!(speedup));
+    if let Some(kilobytes) = kilobytes_per_environment(&square)? {
+        figures.insert("kilobytes_per_environment".to_owned(), json!(kilobytes));
+    }
+    Ok(figures)
+}
+
+/// A scene with colour, depth and class segmentation at this width and height.
+fn arena(text: &str, [width, height]: [u32; 2]) -> Result<World, Failure> {
+    let mut world = World::from_json("arena.json", text)?;
+    world.agent_params.observation_size = height;
+    world.agent_params.observation_width = (width != height).then_some(width);
+    world.agent_params.modalities = vec![Modality::Rgb, Modality::Depth, Modality::Class];
+    Ok(world)
+}
+
+fn batch(world: &World, num_envs: usize, num_threads: usize) -> Result<Batch, Failure> {
+    let world = world.clone();
+    let options = BatchOptions {
+        autoreset: Autoreset::NextStep,
+        num_threads,
+    };
+    Ok(Batch::new(num_envs, Arc::new(move |_| Ok(world.clone())), options)?)
+}
+
+/// Steps of single environments each second, in a batch on so many threads.
+fn steps(world: &World, num_threads: usize, round: Duration) -> Result<f64, Failure> {
+    let mut batch = batch(world, NUM_ENVS, num_threads)?;
+    // Not all at the same place of the circle: the first ones set out, one after the other.
+    for first in 0..NUM_ENVS {
+        let actions: Vec<Action> = (0..NUM_ENVS)
+            .map(|env| {
+                if env <= first {
+                    CURVE
+                } else {
+                    Action::Continuous([0.0; 3])
+                }
+            })
+            .collect();
+        for _ in 0..4 {
+            batch.step(&actions)?;
+        }
+    }
+    Ok(rate(round, |_| batch.step(&[CURVE; NUM_ENVS]))? * NUM_ENVS as f64)
+}
+
+/// Memory that each of many environments adds to the process, images in all modalities of the bench included; where the system
+/// tells.
+fn kilobytes_per_environment(world: &World) -> Result<Option<u64>, Failure> {
+    let Some(before) = resident() else { return Ok(None) };
+    let batch = batch(world, NUM_MEASURED, 1)?;
+    let after = resident().unwrap_or(before);
+    drop(batch);
+    Ok(Some(after.saturating_sub(before) / NUM_MEASURED as u64))
+}
+
+/// Kilobytes of this process in memory, on Linux.
+fn resident() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
+    line.split_whitespace().nth(1)?.parse().ok()
+}

@@ -1,0 +1,103 @@
+//! `driftworld bench`: how fast this build is on this machine, one core at a time. What is measured is in the files of this
+//! folder; the benches of single functions are criterion's, beside each crate.
+
+mod environment;
+mod generator;
+
+use std::time::{Duration, Instant};
+
+use clap::{Args, Subcommand};
+use serde_json::{Map, Value, json};
+
+use super::{Failure, output};
+
+/// Figures under their names.
+type Figures = Map<String, Value>;
+
+/// Measures in rounds of this length.
+type Measure = fn(Duration) -> Result<Figures, Failure>;
+
+/// How many rounds the median is taken of.
+const ROUNDS: usize = 5;
+
+/// Measure how fast this build is on this machine, on one core.
+#[derive(Args)]
+#[command(after_help = "Example:\n  driftworld bench generator --json")]
+pub(crate) struct Bench {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Subcommand)]
+enum What {
+    /// Worlds drawn and documents checked, each second on one core.
+    #[command(after_help = "Example:\n  driftworld bench generator --json")]
+    Generator(Options),
+    /// Steps with pictures, and resets, each second on one core; what a second core adds; memory.
+    #[command(after_help = "Example:\n  driftworld bench env --json")]
+    Env(Options),
+}
+
+#[derive(Args)]
+struct Options {
+    /// Print the figures as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Seconds for each of five rounds of each figure; the median is reported.
+    #[arg(long, default_value_t = 0.4, value_parser = seconds)]
+    seconds: f64,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.001..=60.0).contains(&seconds) => Ok(seconds),
+        _ => Err("expected seconds in 0.001..60".to_owned()),
+    }
+}
+
+impl Bench {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let (options, measure) = match self.what {
+            What::Generator(options) => (options, generator::measure as Measure),
+            What::Env(options) => (options, environment::measure as Measure),
+        };
+        let figures = measure(Duration::from_secs_f64(options.seconds))?;
+        if options.json {
+            return output::json(&figures);
+        }
+        for (name, value) in &figures {
+            output::line(format!("{name:<42} {value:>10}"))?;
+        }
+        Ok(())
+    }
+}
+
+/// How often a job is done each second: the median of several rounds, after one to warm up.
+fn rate<E>(round: Duration, mut job: impl FnMut(u64) -> Result<(), E>) -> Result<f64, E> {
+    let mut rates = Vec::with_capacity(ROUNDS);
+    let mut index = 0;
+    for number in 0..=ROUNDS {
+        let start = Instant::now();
+        let first = index;
+        while start.elapsed() < round {
+            // The clock is read once for several jobs, which may be short.
+            for _ in 0..16 {
+                job(index)?;
+                index += 1;
+            }
+        }
+        if number > 0 {
+            rates.push((index - first) as f64 / start.elapsed().as_secs_f64());
+        }
+    }
+    rates.sort_by(f64::total_cmp);
+    Ok(rates[rates.len() / 2])
+}
+
+/// Figures that are rates, whole.
+fn rates<const N: usize>(figures: [(&str, f64); N]) -> Figures {
+    let named = figures.into_iter();
+    named
+        .map(|(name, rate)| (name.to_owned(), json!(rate.round())))
+        .collect()
+}
