@@ -31,6 +31,14 @@ pub enum EnvError {
     /// A step after the episode has ended.
     #[error("step: the episode has ended, expected a reset first")]
     Ended,
+    /// Room for another number of values than the state vector has.
+    #[error("state vector: found room for {found} numbers, expected {expected} (agent_params.state_features)")]
+    StateLength {
+        /// Numbers there is room for.
+        found: usize,
+        /// Numbers there are.
+        expected: usize,
+    },
     /// A batch of no environments, or of too many.
     #[error("batch: found {found} environments, expected 1 to {most}")]
     BatchSize {
@@ -176,6 +184,7 @@ impl EnvError {
             Self::PictureSize { .. } => "env/picture-size",
             Self::BatchSize { .. } => "env/batch-size",
             Self::BatchThreads { .. } => "env/batch-threads",
+            Self::StateLength { .. } => "env/state-length",
             Self::BatchLength { .. } => "env/batch-length",
             Self::NoSuchEnv { .. } => "env/no-such-env",
             Self::BatchAction { .. } => "env/batch-action",
@@ -223,6 +232,7 @@ mod tests {
                 wanted: 100_000,
                 reason: "out of memory".to_owned(),
             },
+            EnvError::StateLength { found: 3, expected: 5 },
             EnvError::BatchLength { found: 3, num_envs: 4 },
             EnvError::NoSuchEnv { found: 4, num_envs: 4 },
             EnvError::BatchAction {

@@ -169,8 +169,9 @@ fn shaping_pays_the_way_that_was_won_and_nothing_over_a_round_trip() {
         ..World::default()
     };
     world.rules.shaping = Some(Shaping {
-        toward: "cube".to_owned(),
+        toward: Some("cube".to_owned()),
         scale: 2.0,
+        discount: 1.0,
     });
     let mut environment = start(world);
     let paid = rewards(&mut environment, &[AHEAD, BACK]);
@@ -381,12 +382,16 @@ proptest! {
             for _ in 0..60 {
                 let action = agent.act(&environment);
                 let step = step(&mut environment, action);
-                trace.push((step.reward.to_bits(), environment.state_vector().map(f32::to_bits)));
+                trace.push((step.reward.to_bits(), bits(&environment)));
             }
             (trace, environment.observe().rgb.clone())
         };
         prop_assert_eq!(run(), run());
     }
+}
+
+fn bits(environment: &Environment) -> Vec<u32> {
+    environment.state_vector().into_iter().map(f32::to_bits).collect()
 }
 
 /// A small world with something of everything.
@@ -437,7 +442,11 @@ fn the_golden_episode_is_lived_as_it_was() {
             Action::Continuous([8.0, 40.0, 0.0])
         };
         let step = step(&mut environment, action);
-        let [x, y, heading, ..] = environment.state_vector();
+        let driftworld_env::AgentState {
+            position: [x, y],
+            heading_deg: heading,
+            ..
+        } = environment.agent();
         lines.push(format!("{action:?}; {}; {x} {y} {heading}", step.reward));
     }
     let found = lines.join("\n") + "\n";

@@ -88,7 +88,7 @@ fn action(a: &World, b: &World, add: &mut Add) {
     let (a, b) = (&a.agent_params, &b.agent_params);
     let model = differs(a.action_model != b.action_model);
     add("action model", Element::A, "same or not", model, model);
-    let space = differs(a.actions != b.actions);
+    let space = differs((&a.actions, a.interact) != (&b.actions, b.interact));
     add("action space", Element::A, "same or not", space, space);
     let (raw, part) = relative(a.max_linear_speed, b.max_linear_speed);
     add("largest speed", Element::A, "difference / larger", raw, part);
@@ -102,10 +102,12 @@ fn transition(a: &World, b: &World, pairs: &[(&Object, &Object)], add: &mut Add)
     });
     add("motion of objects", Element::T, "share that differs", moves, moves);
     let solid = mean(pairs, |a, b| {
-        differs((a.solid, &a.destroy_stimulus, &a.respawn) != (b.solid, &b.destroy_stimulus, &b.respawn))
+        let body = |object: &Object| (object.solid, object.pushable, object.respawn.clone());
+        differs(body(a) != body(b) || a.destroy_stimulus != b.destroy_stimulus)
     });
     add("bodies of objects", Element::T, "share that differs", solid, solid);
-    let (raw, part) = relative(a.agent_params.time_step, b.agent_params.time_step);
+    let seconds = |world: &World| world.agent_params.time_step * f64::from(world.agent_params.frame_skip);
+    let (raw, part) = relative(seconds(a), seconds(b));
     add("time step", Element::T, "difference / larger", raw, part);
     let (raw, part) = relative(a.agent_params.agent_width, b.agent_params.agent_width);
     add("agent's width", Element::T, "difference / larger", raw, part);
@@ -143,7 +145,9 @@ fn reward(a: &World, b: &World, pairs: &[(&Object, &Object)], add: &mut Add) {
     let (from, to) = (&a.rules, &b.rules);
     let (raw, part) = relative(from.step_reward, to.step_reward);
     add("step reward", Element::R, "difference / larger", raw, part);
-    let rules = differs((&from.shaping, &from.success, &from.failure) != (&to.shaping, &to.success, &to.failure));
+    let ends = differs((&from.success, &from.failure) != (&to.success, &to.failure));
+    let pays = differs((from.order_penalty, &from.shaping) != (to.order_penalty, &to.shaping));
+    let rules = ends.max(pays);
     add("shaping and endings", Element::R, "same or not", rules, rules);
     let limit = differs(a.max_steps != b.max_steps);
     add("limit of steps", Element::R, "same or not", limit, limit);
@@ -178,6 +182,7 @@ fn observation(a: &World, b: &World, pairs: &[(&Object, &Object)], add: &mut Add
             agent.supersampling,
             world.environment_params.fog_distance,
             agent.modalities.clone(),
+            agent.state_features.clone(),
         )
     };
     let camera = differs(view(a) != view(b));

@@ -39,6 +39,8 @@ fn cases() -> Vec<SpecError> {
         world(r#"{ "environment_params": { "sun_direction": [0, 0, 0] } }"#),
         world(r#"{ "environment_params": { "map_size": [0, 10] } }"#),
         world(r#"{ "agent_params": { "observation_size": 4096, "supersampling": 3 } }"#),
+        world(r#"{ "agent_params": { "action_model": "bywaypoint", "actions": "default_discrete" } }"#),
+        world(r#"{ "progress": { "objects": [{}] } }"#),
         world(
             r#"{ "objects": [{ "class": "tree", "coordinates": [1, 1], "unique_name": "a" },
                              { "class": "tree", "coordinates": [2, 2], "unique_name": "a" }] }"#,

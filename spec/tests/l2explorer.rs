@@ -5,7 +5,7 @@
 
 use driftworld_spec::{
     ActionModel, ActionSpace, AgentParams, Color, EndCondition, EnvironmentParams, GameMode, ImageParams, Modality,
-    Model, MotionModel, Object, Respawn, Rules, Shaping, Stimulus, WORLD_VERSION, Wall, World,
+    Model, MotionModel, Object, Pushable, Respawn, Rules, Shaping, Stimulus, WORLD_VERSION, Wall, World,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -174,6 +174,7 @@ fn sayable() -> impl Strategy<Value = World> {
                     image_params,
                     rules: Rules::default(),
                     objects: objects.into_iter().enumerate().map(place).collect(),
+                    progress: None,
                 }
             },
         )
@@ -190,11 +191,11 @@ fn with_extras(object: Object) -> impl Strategy<Value = Object> {
         proptest::option::of("\\PC{1,100}"),
         proptest::option::of(prop_oneof![Just(BLACK), color()]),
         proptest::option::of("\\PC{1,100}"),
-        any::<bool>(),
+        (any::<bool>(), proptest::option::of((0.01..=1e6, 0.0..=10.0))),
         [-300.0..=300.0, -300.0..=300.0],
     )
         .prop_map(
-            move |(numbers, waypoints, order, respawn, tag, color, class, patrol, place)| {
+            move |(numbers, waypoints, order, respawn, tag, color, class, (patrol, pushable), place)| {
                 let mut object = object.clone();
                 (
                     object.heading,
@@ -207,6 +208,7 @@ fn with_extras(object: Object) -> impl Strategy<Value = Object> {
                 object.order = order;
                 object.respawn = respawn.map(|(delay, radius)| Respawn { delay, radius });
                 object.tag = tag;
+                object.pushable = pushable.map(|(mass, friction)| Pushable { mass, friction });
                 object.color = color;
                 object.class = class.unwrap_or_else(|| object.class.to_uppercase());
                 if patrol {
@@ -226,15 +228,22 @@ fn rules() -> impl Strategy<Value = Rules> {
         (-1e6..=1e6).prop_map(EndCondition::ReturnAtMost),
     ];
     let conditions = vec(condition, 0..3);
-    let shaping = ("\\PC{1,9}", -1e6..=1e6).prop_map(|(toward, scale)| Shaping { toward, scale });
+    let toward = proptest::option::of("\\PC{1,9}");
+    let shaping = (toward, -1e6..=1e6, 0.0..=1.0).prop_map(|(toward, scale, discount)| Shaping {
+        toward,
+        scale,
+        discount,
+    });
     (
         -1e9..=1e9,
+        -1e9..=0.0,
         proptest::option::of(shaping),
         conditions.clone(),
         conditions,
     )
-        .prop_map(|(step_reward, shaping, success, failure)| Rules {
+        .prop_map(|(step_reward, order_penalty, shaping, success, failure)| Rules {
             step_reward,
+            order_penalty,
             shaping,
             success,
             failure,
@@ -254,6 +263,7 @@ fn any_world() -> impl Strategy<Value = World> {
     );
     let actions = prop_oneof![
         Just(ActionSpace::Continuous),
+        Just(ActionSpace::Normalized),
         vec([-10.0..=10.0, -90.0..=90.0, 0.0..=1.0], 1..4).prop_map(ActionSpace::Discrete),
     ];
     let modalities = proptest::sample::subsequence(vec![Modality::Rgb, Modality::Depth, Modality::Segmentation], 0..=3);

@@ -34,11 +34,13 @@ impl Agent for RandomAgent {
     fn act(&mut self, environment: &Environment) -> Action {
         if self.held == 0 {
             let agent = &environment.world().agent_params;
-            self.action = match &agent.actions {
-                ActionSpace::Discrete(table) => {
-                    Action::Discrete(self.chance.random_range(0..table.len() as u64) as usize)
+            self.action = match agent.num_actions() {
+                Some(rows) => Action::Discrete(self.chance.random_range(0..rows as u64) as usize),
+                None if agent.actions == ActionSpace::Normalized => {
+                    let mut share = || self.chance.random::<f64>() * 2.0 - 1.0;
+                    Action::Continuous([share().abs(), share(), share()])
                 }
-                ActionSpace::Continuous => {
+                None => {
                     let speed = self.chance.random::<f64>() * agent.max_linear_speed;
                     let turn = (self.chance.random::<f64>() * 2.0 - 1.0) * agent.max_angular_speed;
                     Action::Continuous([speed, turn, self.chance.random::<f64>()])

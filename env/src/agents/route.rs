@@ -3,8 +3,9 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use driftworld_spec::World;
+
 use crate::scene::Scene;
-use crate::sim::Environment;
 
 /// Most cells along one side of the grid.
 const MOST_CELLS: usize = 256;
@@ -23,9 +24,8 @@ pub(crate) struct Route {
 }
 
 impl Route {
-    /// Ways to an object that keep clear of all other solid things.
-    pub(crate) fn to(environment: &Environment, goal: usize) -> Self {
-        let scene = environment.scene();
+    /// Ways to a place that keep clear of walls and of these objects where they stand at the start.
+    pub(crate) fn to(world: &World, scene: &Scene, goal: [f32; 2], avoided: &[u32]) -> Self {
         let [width, depth] = scene.arena_size();
         let side = (width.max(depth) / MOST_CELLS as f32).max(0.5);
         let cells = [width, depth].map(|metres| ((metres / side).ceil() as usize).max(1));
@@ -35,13 +35,12 @@ impl Route {
             side,
             distance: vec![u32::MAX; cells[0] * cells[1]],
         };
-        let blocked = route.blocked(environment, scene, goal);
-        route.flood(scene.items[goal].position, &blocked);
+        let blocked = route.blocked(world, scene, avoided);
+        route.flood(goal, &blocked);
         route
     }
 
-    fn blocked(&self, environment: &Environment, scene: &Scene, goal: usize) -> Vec<bool> {
-        let world = environment.world();
+    fn blocked(&self, world: &World, scene: &Scene, avoided: &[u32]) -> Vec<bool> {
         let body = world.agent_params.agent_width as f32 / 2.0;
         let margin = body + 0.15;
         let regions: Vec<Vec<[f64; 2]>> = world
@@ -51,17 +50,11 @@ impl Route {
             .map(<[[f64; 2]]>::to_vec)
             .chain(world.environment_params.walls.iter().map(|wall| wall.polygon.clone()))
             .collect();
-        let avoid = |index: usize| {
-            let object = &world.objects[index];
-            index != goal && environment.objects()[index].present && (object.solid || object.reward < 0.0)
-        };
-        let discs: Vec<([f32; 2], f32)> = (0..scene.items.len())
-            .filter(|&index| avoid(index))
-            .map(|index| {
-                let item = &scene.items[index];
-                (item.position, item.asset.collider.radius() * item.scale + margin)
-            })
-            .collect();
+        let discs = avoided.iter().map(|&index| {
+            let (object, item) = (&world.objects[index as usize], &scene.items[index as usize]);
+            let position = object.coordinates.map(|metres| metres as f32);
+            (position, item.asset.collider.radius() * item.scale + margin)
+        });
         let mut blocked = vec![false; self.distance.len()];
         for (cell, taken) in blocked.iter_mut().enumerate() {
             let at = self.centre(cell);

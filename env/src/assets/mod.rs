@@ -76,7 +76,7 @@ pub enum Paint {
 }
 
 /// The shape of a body, in metres at scale 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ColliderShape {
     /// A box of these half sides.
     Box {
@@ -95,6 +95,18 @@ pub enum ColliderShape {
         /// Half of the height.
         half_height: f32,
     },
+    /// An upright cylinder with a half ball at each end; it stands on the lower one.
+    Capsule {
+        /// Radius.
+        radius: f32,
+        /// Half of the height between the middles of the half balls.
+        half_height: f32,
+    },
+    /// What these points enclose, in the asset's frame.
+    Hull {
+        /// x, y, z of each point.
+        points: Vec<[f32; 3]>,
+    },
 }
 
 impl ColliderShape {
@@ -102,7 +114,8 @@ impl ColliderShape {
     pub fn radius(&self) -> f32 {
         match self {
             Self::Box { half: [x, y, _] } => (x * x + y * y).sqrt(),
-            Self::Ball { radius } | Self::Cylinder { radius, .. } => *radius,
+            Self::Ball { radius } | Self::Cylinder { radius, .. } | Self::Capsule { radius, .. } => *radius,
+            Self::Hull { points } => points.iter().map(|[x, y, _]| x * x + y * y).fold(0.0, f32::max).sqrt(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Images of many environments in one buffer for each modality. Who fills them is in `mod.rs`.
 
-use driftworld_spec::{Modality, World};
+use driftworld_spec::{Modality, StateFeature, World};
 
 use crate::EnvError;
 use crate::render::{FAR_DEPTH, Target};
@@ -16,6 +16,8 @@ pub struct ImageLayout {
     pub supersampling: u32,
     /// Which images there are.
     pub modalities: Vec<Modality>,
+    /// What the state vectors beside them hold.
+    pub state_features: Vec<StateFeature>,
 }
 
 impl ImageLayout {
@@ -27,6 +29,7 @@ impl ImageLayout {
             height: agent.picture_size()[1],
             supersampling: agent.supersampling,
             modalities: agent.modalities.clone(),
+            state_features: agent.state_features.clone(),
         }
     }
 
@@ -36,6 +39,7 @@ impl ImageLayout {
         if [self.width, self.height] == agent.picture_size()
             && self.supersampling == agent.supersampling
             && self.modalities == agent.modalities
+            && self.state_features == agent.state_features
         {
             return Ok(());
         }
@@ -59,7 +63,15 @@ impl std::fmt::Display for ImageLayout {
             let comma = if k == 0 { "" } else { "," };
             write!(f, "{comma} {modality:?}")?;
         }
-        f.write_str(if self.modalities.is_empty() { " nothing" } else { "" })
+        f.write_str(if self.modalities.is_empty() { " nothing" } else { "" })?;
+        if self.state_features == StateFeature::CLASSIC {
+            return Ok(());
+        }
+        f.write_str(", states of")?;
+        for (k, feature) in self.state_features.iter().enumerate() {
+            write!(f, "{} {feature:?}", if k == 0 { "" } else { "," })?;
+        }
+        Ok(())
     }
 }
 

@@ -141,7 +141,7 @@ impl Batch {
             slots.push(Slot::new(env, Arc::clone(&source), layout)?);
         }
         let layout = ImageLayout::clone(&slots[0].layout);
-        let state = slots[0].environment.state_vector().len();
+        let state = slots[0].environment.world().agent_params.state_len();
         let outputs = Outputs::new(layout, state, num_envs);
         // Several parts for each thread: environments that are near many things take longer.
         let parts = if threads == 1 { 1 } else { (4 * threads).min(num_envs) };

@@ -126,7 +126,7 @@ impl Slot {
     }
 
     fn observe(&self, index: usize, outputs: &mut OutputsMut<'_>, renderer: &mut CpuRenderer) -> Result<(), EnvError> {
-        self.environment.write_state(outputs.state(index));
+        self.environment.write_state(outputs.state(index))?;
         let camera = self.environment.camera();
         let mut target = outputs.images.target(index);
         if target.is_empty() {

@@ -1,15 +1,15 @@
 //! What an agent can do, and what comes of it as motion. What the motion runs into is in `body.rs`.
 
-use driftworld_spec::{ActionModel, ActionSpace, AgentParams};
+use driftworld_spec::{ActionModel, ActionSpace, AgentParams, World};
 
 use crate::EnvError;
 
-/// What an agent does in a step.
+/// What an agent does in a step. The action is held for all time steps of it; who interacts does so in the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
-    /// Three numbers in the units of the world's action model.
+    /// Three numbers: in the units of the world's action model, or in −1..1 where its actions are normalised.
     Continuous([f64; 3]),
-    /// A row of the world's action table.
+    /// A row of the world's action table, from 0.
     Discrete(usize),
 }
 
@@ -27,25 +27,47 @@ pub(crate) struct Intent {
 }
 
 impl Action {
-    /// The three numbers of the action.
+    /// The three numbers of the action, in the units of the world's action model.
     ///
     /// # Errors
     /// [`EnvError`] for a row that is not there and for numbers that are not finite.
-    pub(crate) fn numbers(self, space: &ActionSpace) -> Result<[f64; 3], EnvError> {
-        let numbers = match (self, space) {
-            (Self::Continuous(numbers), _) => numbers,
-            (Self::Discrete(found), ActionSpace::Continuous) => return Err(EnvError::NotDiscrete { found }),
-            (Self::Discrete(found), ActionSpace::Discrete(table)) => {
-                *table.get(found).ok_or(EnvError::NoSuchAction {
-                    found,
-                    last: table.len().saturating_sub(1),
-                })?
+    pub(crate) fn numbers(self, world: &World) -> Result<[f64; 3], EnvError> {
+        let agent = &world.agent_params;
+        match self {
+            Self::Continuous(found) if !found.iter().all(|number| number.is_finite()) => {
+                Err(EnvError::NotFinite { found })
             }
-        };
-        if numbers.iter().all(|number| number.is_finite()) {
-            Ok(numbers)
-        } else {
-            Err(EnvError::NotFinite { found: numbers })
+            Self::Continuous(shares) if agent.actions == ActionSpace::Normalized => Ok(in_units(shares, world)),
+            Self::Continuous(numbers) => Ok(numbers),
+            Self::Discrete(found) => {
+                let rows = agent.num_actions().ok_or(EnvError::NotDiscrete { found })?;
+                let row = agent.action_row(found).ok_or(EnvError::NoSuchAction {
+                    found,
+                    last: rows.saturating_sub(1),
+                })?;
+                // A table that was built in code may hold anything.
+                if row.iter().all(|number| number.is_finite()) {
+                    Ok(row)
+                } else {
+                    Err(EnvError::NotFinite { found: row })
+                }
+            }
+        }
+    }
+}
+
+/// Numbers in −1..1 as numbers in the units of the action model.
+fn in_units(shares: [f64; 3], world: &World) -> [f64; 3] {
+    let agent = &world.agent_params;
+    let [a, b, c] = shares.map(|share| share.clamp(-1.0, 1.0));
+    match agent.action_model {
+        ActionModel::ByWaypoint => {
+            let [x, y] = world.environment_params.arena_size();
+            [a * x / 2.0, b * y / 2.0, c * agent.max_angular_speed]
+        }
+        ActionModel::ByVelocity | ActionModel::OnRails | ActionModel::None => {
+            let interact = if c > 0.0 { 1.0 } else { 0.0 };
+            [a * agent.max_linear_speed, b * agent.max_angular_speed, interact]
         }
     }
 }
@@ -60,7 +82,7 @@ impl Intent {
                 turn_deg: turn(b),
                 ahead: (a.clamp(-agent.max_linear_speed, agent.max_linear_speed) * seconds) as f32,
                 towards: None,
-                interact: c > 0.5,
+                interact: agent.interact && c > 0.5,
             },
             ActionModel::ByWaypoint => Self {
                 turn_deg: turn(c),

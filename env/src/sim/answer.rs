@@ -10,36 +10,40 @@ use super::environment::Environment;
 use super::event::{Event, Step};
 
 impl Environment {
-    /// Finds what the step set off, and pays for it.
-    pub(super) fn answer(&mut self, intent: Intent, met: Vec<u32>, step: &mut Step) {
-        let mut touching = Vec::new();
-        self.ground.touching(self.episode.agent.position, &mut touching);
-        let mut triggered: Vec<(u32, Stimulus)> = Vec::new();
-        let new_contacts = met.into_iter().chain(touching.iter().copied());
-        triggered.extend(
-            new_contacts
+    /// Finds what the time step set off, and pays for it. `scratch.met` holds what the agent met on its way.
+    pub(super) fn answer(&mut self, intent: Intent, step: &mut Step) {
+        let mut scratch = std::mem::take(&mut self.scratch);
+        self.ground.touching(self.episode.agent.position, &mut scratch.touching);
+        scratch.triggered.clear();
+        let contacts = scratch.met.iter().chain(&scratch.touching);
+        scratch.triggered.extend(
+            contacts
                 .filter(|index| !self.episode.contacts.contains(index))
-                .map(|index| (index, Stimulus::AgentCollide)),
+                .map(|index| (*index, Stimulus::AgentCollide)),
         );
-        self.episode.contacts = touching;
+        std::mem::swap(&mut self.episode.contacts, &mut scratch.touching);
         if intent.interact {
-            let reached = self
-                .ground
-                .in_reach(self.episode.agent.position, self.episode.agent.forward());
-            triggered.extend(reached.into_iter().map(|index| (index, Stimulus::AgentInteract)));
+            let agent = &self.episode.agent;
+            self.ground
+                .in_reach(agent.position, agent.forward(), &mut scratch.reached);
+            let reached = scratch.reached.iter();
+            scratch
+                .triggered
+                .extend(reached.map(|index| (*index, Stimulus::AgentInteract)));
         }
         for index in 0..self.episode.objects.len() {
             let now = self.is_in_range(index);
             if now && !self.episode.objects[index].in_range {
-                triggered.push((index as u32, Stimulus::AgentInRange));
+                scratch.triggered.push((index as u32, Stimulus::AgentInRange));
             }
             self.episode.objects[index].in_range = now;
         }
-        triggered.sort_unstable();
-        triggered.dedup();
-        for (index, stimulus) in triggered {
+        scratch.triggered.sort_unstable();
+        scratch.triggered.dedup();
+        for &(index, stimulus) in &scratch.triggered {
             self.trigger(index as usize, stimulus, step);
         }
+        self.scratch = scratch;
     }
 
     /// One stimulus on one object: what it pays, whether it destroys.
@@ -50,12 +54,15 @@ impl Environment {
         let world = Arc::clone(&self.world);
         let object = &world.objects[index];
         let once = object.reward_once_stimulus.contains(&stimulus);
-        let pays = (once || object.reward_stimulus.contains(&stimulus)) && self.is_due(object.order);
+        let would_pay = once || object.reward_stimulus.contains(&stimulus);
+        let pays = would_pay && self.is_due(object.order);
         let destroyed = object.destroy_stimulus.contains(&stimulus);
         let lucky = object.reward_probability >= 1.0
             || (pays && self.episode.chance.random::<f64>() < object.reward_probability);
         let reward = if pays && lucky {
             self.episode.objects[index].reward
+        } else if would_pay && !pays {
+            world.rules.order_penalty
         } else {
             0.0
         };
@@ -69,15 +76,15 @@ impl Environment {
         if destroyed {
             self.take_away(index);
             if let Some(respawn) = &object.respawn {
-                let steps = (respawn.delay / self.world.agent_params.time_step).ceil() as u64;
-                self.episode
-                    .returning
-                    .push((index, u64::from(self.episode.steps) + 1 + steps.max(1)));
+                let ticks = (respawn.delay / world.agent_params.time_step).ceil() as u64;
+                let back = (index, self.episode.ticks + ticks.max(1));
+                let place = self.episode.returning.partition_point(|(other, _)| *other < index);
+                self.episode.returning.insert(place, back);
             }
         }
         step.events.push(Event {
             object: index,
-            tag: object.tag.clone(),
+            tag: self.tags[index].clone(),
             stimulus,
             reward,
             destroyed,

@@ -1,9 +1,11 @@
 //! Bodies on the ground: what the agent bumps into, slides along and touches. What a touch is worth is in `environment.rs`.
 
 use driftworld_spec::World;
-use rapier3d::parry::query::{ShapeCastOptions, contact};
+use rapier3d::parry::partitioning::Bvh;
+use rapier3d::parry::query::contact;
 use rapier3d::prelude::*;
 
+use super::casting::{Hit, rank};
 use crate::assets::ColliderShape;
 use crate::scene::{Item, Scene};
 
@@ -33,8 +35,10 @@ pub(super) const AGENT: Group = Group::GROUP_4;
 pub(crate) struct Ground {
     bodies: RigidBodySet,
     pub(super) colliders: ColliderSet,
-    pub(super) broad_phase: BroadPhaseBvh,
-    narrow_phase: NarrowPhase,
+    /// Where colliders are, by the numbers of their handles. The engine's own broad phase, made for its step, lost bodies that
+    /// were taken away and put back many times without one.
+    tree: Bvh,
+    pub(super) narrow_phase: NarrowPhase,
     islands: IslandManager,
     soft_bodies: SoftBodySet,
     /// For each object, its collider while it is there.
@@ -49,12 +53,12 @@ pub(crate) struct Ground {
     pub(super) half: [f32; 2],
 }
 
-/// Where a motion led.
-pub(crate) struct Motion {
-    /// The new position.
-    pub(crate) position: [f32; 2],
+/// A motion on its way.
+struct Motion<'a> {
+    /// Where it has come to.
+    position: [f32; 2],
     /// Objects that were met on the way, each once, by index.
-    pub(crate) met: Vec<u32>,
+    met: &'a mut Vec<u32>,
 }
 
 impl Ground {
@@ -66,7 +70,7 @@ impl Ground {
         let mut ground = Self {
             bodies: RigidBodySet::new(),
             colliders: ColliderSet::new(),
-            broad_phase: BroadPhaseBvh::new(),
+            tree: Bvh::new(),
             narrow_phase: NarrowPhase::new(),
             islands: IslandManager::new(),
             soft_bodies: SoftBodySet::new(),
@@ -93,12 +97,22 @@ impl Ground {
     }
 
     pub(super) fn insert(&mut self, collider: ColliderBuilder, group: Group) -> ColliderHandle {
+        let collider = if group == WALL {
+            let number = self.colliders.len() as u128;
+            collider.user_data(number)
+        } else {
+            collider
+        };
         let groups = InteractionGroups::new(group, Group::ALL, InteractionTestMode::And);
         let handle = self.colliders.insert(collider.collision_groups(groups));
-        let aabb = self.colliders[handle].compute_aabb();
-        self.broad_phase
-            .set_aabb(&IntegrationParameters::default(), handle, aabb);
+        self.note_place(handle);
         handle
+    }
+
+    /// Notes where a collider is now.
+    pub(super) fn note_place(&mut self, handle: ColliderHandle) {
+        let area = self.colliders[handle].compute_aabb();
+        self.tree.insert(area, handle.into_raw_parts().0);
     }
 
     /// Four thick walls around the arena.
@@ -140,31 +154,59 @@ impl Ground {
         }
     }
 
-    /// Puts an object's body where its item stands.
-    pub(crate) fn add_object(&mut self, index: u32, item: &Item, solid: bool) {
+    /// The shape of an object's body, and where it is in the object's frame: on the ground, facing +y.
+    pub(super) fn shape(item: &Item) -> (SharedShape, Pose) {
         let scale = item.scale;
-        let (shape, height, tilt) = match item.asset.collider {
+        let least = |metres: f32| (metres * scale).max(0.005);
+        let (shape, height, tilt) = match &item.asset.collider {
             ColliderShape::Box { half } => {
-                let [x, y, z] = half.map(|metres| (metres * scale).max(0.005));
+                let [x, y, z] = half.map(least);
                 (SharedShape::cuboid(x, y, z), z, 0.0)
             }
-            ColliderShape::Ball { radius } => (SharedShape::ball(radius * scale), radius * scale, 0.0),
+            ColliderShape::Ball { radius } => (SharedShape::ball(least(*radius)), least(*radius), 0.0),
             ColliderShape::Cylinder { radius, half_height } => {
                 // The engine's cylinders lie along y.
-                let (radius, half) = ((radius * scale).max(0.005), (half_height * scale).max(0.005));
+                let (radius, half) = (least(*radius), least(*half_height));
                 (SharedShape::cylinder(half, radius), half, std::f32::consts::FRAC_PI_2)
             }
+            ColliderShape::Capsule { radius, half_height } => {
+                let (radius, half) = (least(*radius), (half_height * scale).max(0.0));
+                (SharedShape::capsule_z(half, radius), half + radius, 0.0)
+            }
+            ColliderShape::Hull { points } => {
+                let corners: Vec<Vector> = points
+                    .iter()
+                    .map(|point| Vector::new(point[0], point[1], point[2]) * scale)
+                    .collect();
+                match SharedShape::convex_hull(&corners) {
+                    Some(shape) => (shape, 0.0, 0.0),
+                    // Points in one plane hold nothing: the cylinder around them.
+                    None => {
+                        let (radius, half) = (least(item.asset.collider.radius()), least(item.asset.height / 2.0));
+                        (SharedShape::cylinder(half, radius), half, std::f32::consts::FRAC_PI_2)
+                    }
+                }
+            }
         };
-        let at = Vector::new(item.position[0], item.position[1], height);
-        // Headings turn clockwise; only boxes show it.
-        let turn = if tilt == 0.0 {
-            Vector::new(0.0, 0.0, -item.heading_deg.to_radians())
+        let from_ground = Pose::new(Vector::new(0.0, 0.0, height), Vector::new(tilt, 0.0, 0.0));
+        (shape, from_ground)
+    }
+
+    /// Puts an object's body where its item stands.
+    pub(crate) fn add_object(&mut self, index: u32, item: &Item, solid: bool) {
+        let (shape, from_ground) = Self::shape(item);
+        // Put together by hand: a product of poses would round the height in a way that depends on the heading.
+        let at = from_ground.translation + Vector::new(item.position[0], item.position[1], 0.0);
+        let pose = if shows_heading(&shape) {
+            // Headings turn clockwise.
+            Pose::new(at, Vector::new(0.0, 0.0, -item.heading_deg.to_radians()))
         } else {
-            Vector::new(tilt, 0.0, 0.0)
+            Pose {
+                translation: at,
+                ..from_ground
+            }
         };
-        let collider = ColliderBuilder::new(shape)
-            .position(Pose::new(at, turn))
-            .user_data(u128::from(index));
+        let collider = ColliderBuilder::new(shape).position(pose).user_data(u128::from(index));
         let handle = self.insert(collider, if solid { SOLID } else { GHOST });
         if self.handles.len() <= index as usize {
             self.handles.resize(index as usize + 1, None);
@@ -182,17 +224,16 @@ impl Ground {
                 &mut self.soft_bodies,
                 false,
             );
-            let removed = [handle];
-            let mut events = Vec::new();
-            self.broad_phase.update(
-                &IntegrationParameters::default(),
-                &self.colliders,
-                &self.bodies,
-                &[],
-                &removed,
-                &mut events,
-            );
+            self.tree.remove(handle.into_raw_parts().0);
         }
+    }
+
+    /// Whether the straight way of an object's body between two places leads through something solid.
+    pub(super) fn leads_through(&self, from: [f32; 2], to: [f32; 2], object: u32) -> bool {
+        let way = Vector::new(to[0] - from[0], to[1] - from[1], 0.0);
+        let ray = Ray::new(Vector::new(from[0], from[1], 0.05), way);
+        let own = self.handles.get(object as usize).copied().flatten();
+        self.query_but(WALL, own).cast_ray(&ray, 1.0, false).is_some()
     }
 
     fn query(&self, groups: Group) -> QueryPipeline<'_> {
@@ -204,23 +245,23 @@ impl Ground {
         let groups = InteractionGroups::new(Group::ALL, groups, InteractionTestMode::And);
         let mut filter = QueryFilter::default().groups(groups);
         filter.exclude_collider = but;
-        self.broad_phase.as_query_pipeline(
-            self.narrow_phase.query_dispatcher(),
-            &self.bodies,
-            &self.colliders,
+        QueryPipeline {
+            dispatcher: self.narrow_phase.query_dispatcher(),
+            bvh: &self.tree,
+            bodies: &self.bodies,
+            colliders: &self.colliders,
             filter,
-        )
+        }
     }
 
     /// Moves the agent's body as far as solid things let it, sliding along them.
     ///
+    /// Hands back where it comes to, and notes the objects that it met on the way, each once.
+    ///
     /// The motion is a cast of the whole shape, so nothing is passed through at any speed; long ways are walked in
     /// stretches, because the engine's casts lose precision with length.
-    pub(crate) fn slide(&self, from: [f32; 2], by: [f32; 2]) -> Motion {
-        let mut motion = Motion {
-            position: from,
-            met: Vec::new(),
-        };
+    pub(crate) fn slide(&self, from: [f32; 2], by: [f32; 2], met: &mut Vec<u32>) -> [f32; 2] {
+        let mut motion = Motion { position: from, met };
         let way = Vector::new(by[0], by[1], 0.0);
         let stretches = (way.length() / STRETCH).ceil().max(1.0);
         for _ in 0..stretches as u32 {
@@ -230,10 +271,10 @@ impl Ground {
                 break;
             }
         }
-        motion
+        motion.position
     }
 
-    fn slide_stretch(&self, mut left: Vector, motion: &mut Motion) {
+    fn slide_stretch(&self, mut left: Vector, motion: &mut Motion<'_>) {
         let mut last_normal: Option<Vector> = None;
         for _ in 0..SLIDES {
             if left.length() < 1e-5 {
@@ -241,16 +282,16 @@ impl Ground {
             }
             let start = motion.position;
             let hit = self.first_hit(start, left);
-            let share = hit.as_ref().map_or(1.0, |(_, share, _)| *share);
+            let share = hit.as_ref().map_or(1.0, |hit| hit.share);
             let end = self.kept_clear(start, [start[0] + left.x * share, start[1] + left.y * share]);
             if self.is_crossed(start, end) {
                 break;
             }
             motion.position = end;
-            self.pass_ghosts(start, motion.position, &mut motion.met);
-            let Some((handle, _, normal)) = hit else { break };
-            if let Some(index) = self.object_of(handle) {
-                note(&mut motion.met, index);
+            self.pass_ghosts(start, motion.position, motion.met);
+            let Some(Hit { collider, normal, .. }) = hit else { break };
+            if let Some(index) = self.object_of(collider) {
+                note(motion.met, index);
             }
             left *= 1.0 - share;
             left -= normal * left.dot(normal).min(0.0);
@@ -294,40 +335,28 @@ impl Ground {
     /// The way out of the solid thing that is nearest, if one is nearer than the skin.
     fn deepest_push(&self, at: [f32; 2]) -> Option<Vector> {
         let pose = Pose::from_translation(Vector::new(at[0], at[1], 0.0));
-        let reach = SharedShape::ball(self.radius + SKIN);
+        let reach = Ball::new(self.radius + SKIN);
         let solid = self.query(SOLID | WALL);
-        let mut worst: Option<(f32, Vector)> = None;
+        let mut worst: Option<(f32, u128, Vector)> = None;
         // The slice at the height of the body's middle decides: all shapes stand upright.
         let middle = Pose::from_translation(Vector::new(at[0], at[1], self.height / 2.0));
-        for (_, collider) in solid.intersect_shape(middle, &*reach) {
+        for (_, collider) in solid.intersect_shape(middle, &reach) {
             let found = contact(&pose, &*self.agent, collider.position(), collider.shape(), SKIN);
             let Ok(Some(found)) = found else { continue };
             let normal = Vector::new(found.normal2.x, found.normal2.y, 0.0).normalize_or_zero();
-            if found.dist < SKIN * 0.9 && worst.is_none_or(|(least, _)| found.dist < least) {
-                worst = Some((found.dist, normal * (SKIN - found.dist).min(0.5)));
+            let key = rank(collider);
+            let deeper = |least: f32, other: u128| found.dist < least || (found.dist == least && key < other);
+            if found.dist < SKIN * 0.9 && worst.is_none_or(|(least, other, _)| deeper(least, other)) {
+                worst = Some((found.dist, key, normal * (SKIN - found.dist).min(0.5)));
             }
         }
-        worst.map(|(_, push)| push)
+        worst.map(|(_, _, push)| push)
     }
 
-    /// The first solid thing on the way: its collider, the share of the way to it, and its normal in the plane.
-    fn first_hit(&self, from: [f32; 2], by: Vector) -> Option<(ColliderHandle, f32, Vector)> {
-        let options = ShapeCastOptions {
-            max_time_of_impact: 1.0,
-            target_distance: SKIN,
-            stop_at_penetration: false,
-            compute_impact_geometry_on_penetration: true,
-        };
+    /// The first solid thing on the agent's way.
+    fn first_hit(&self, from: [f32; 2], by: Vector) -> Option<Hit> {
         let pose = Pose::from_translation(Vector::new(from[0], from[1], 0.0));
-        let (handle, hit) = self.query(SOLID | WALL).cast_shape(&pose, by, &*self.agent, options)?;
-        let normal = Vector::new(hit.normal1.x, hit.normal1.y, 0.0).normalize_or_zero();
-        // Against the motion, whatever the engine makes of a start in contact.
-        let normal = if normal == Vector::ZERO {
-            -by.normalize_or_zero()
-        } else {
-            normal
-        };
-        Some((handle, hit.time_of_impact.clamp(0.0, 1.0), normal))
+        self.first_met(SOLID | WALL, None, &*self.agent, &pose, by)
     }
 
     /// Notes the objects without substance that a stretch of the way leads through.
@@ -373,20 +402,26 @@ impl Ground {
         found.sort_unstable();
     }
 
-    /// The objects in the 1 m cube right in front of the agent, by index in rising order.
-    pub(crate) fn in_reach(&self, at: [f32; 2], forward: [f32; 2]) -> Vec<u32> {
-        let cube = SharedShape::cuboid(0.5, 0.5, 0.5);
+    /// Finds the objects in the 1 m cube right in front of the agent, by index in rising order.
+    pub(crate) fn in_reach(&self, at: [f32; 2], forward: [f32; 2], found: &mut Vec<u32>) {
+        found.clear();
+        let cube = Cuboid::new(Vector::new(0.5, 0.5, 0.5));
         let ahead = self.radius + 0.5;
         let centre = Vector::new(at[0] + forward[0] * ahead, at[1] + forward[1] * ahead, 0.5);
         let pose = Pose::new(centre, Vector::new(0.0, 0.0, libm::atan2f(forward[1], forward[0])));
         let query = self.query(SOLID | GHOST);
-        let mut found: Vec<u32> = query
-            .intersect_shape(pose, &*cube)
-            .map(|(_, c)| c.user_data as u32)
-            .collect();
+        found.extend(
+            query
+                .intersect_shape(pose, &cube)
+                .map(|(_, collider)| collider.user_data as u32),
+        );
         found.sort_unstable();
-        found
     }
+}
+
+/// Whether a body shows where it faces: round ones do not.
+pub(super) fn shows_heading(shape: &SharedShape) -> bool {
+    matches!(shape.shape_type(), ShapeType::Cuboid | ShapeType::ConvexPolyhedron)
 }
 
 fn note(met: &mut Vec<u32>, index: u32) {

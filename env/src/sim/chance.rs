@@ -21,6 +21,16 @@ impl Seed {
         Self(needed.then(|| world.hash()))
     }
 
+    /// A seed that was written down.
+    pub(super) fn known(hash: Option<String>) -> Self {
+        Self(hash)
+    }
+
+    /// The hash, if it is known.
+    pub(super) fn hash(&self) -> Option<&str> {
+        self.0.as_deref()
+    }
+
     /// Finds the seed if it is not known yet, and says whether it was not; `start` is the world before anything was spawned.
     pub(super) fn learn(&mut self, start: &World) -> bool {
         let unknown = self.0.is_none();

@@ -9,11 +9,12 @@ use driftworld_spec::{MAX_OBJECTS, Object};
 use super::environment::Environment;
 use super::episode::ObjectState;
 use super::motion::Mover;
+use super::pushing::Pushed;
 use super::walls;
 use crate::EnvError;
 
 /// What stands where the agent should stand.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Obstacle {
     /// Nothing: the place is outside the arena, or not a place at all.
@@ -73,6 +74,8 @@ impl Environment {
             .add_object(index as u32, &self.scene.items[index], object.solid);
         self.episode.objects.push(ObjectState::new(&object));
         self.episode.movers.extend(Mover::new(index, &object, &self.seed));
+        self.episode.pushed.extend(Pushed::new(index, &object));
+        self.tags.push(object.tag.as_deref().map(Arc::from));
         self.had_targets |= object.is_target();
         Arc::make_mut(&mut self.world).objects.push(object);
         Ok(index)

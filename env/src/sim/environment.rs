@@ -1,18 +1,18 @@
-//! [`Environment`]: a world that runs. Bodies are in `body.rs`, pictures in `render`, who acts in `agents`.
+//! [`Environment`]: a world that runs. Steps are in `step.rs`, bodies in `body.rs`, pictures in `look.rs`, who acts
+//! in `agents`.
 
 use std::sync::Arc;
 
-use driftworld_spec::{ActionModel, GameMode, MotionModel, Object, World};
+use driftworld_spec::{GameMode, MotionModel, Object, Stimulus, World};
 
-use super::action::{Action, Intent};
 use super::body::Ground;
 use super::chance::Seed;
-use super::episode::{AgentState, Episode, ObjectState, wrapped};
-use super::event::{Step, Warning};
+use super::episode::{AgentState, Episode, ObjectState};
+use super::event::Warning;
+use super::pushing::is_pushed;
+use super::state::Came;
 use crate::EnvError;
-use crate::agents::Agent;
-use crate::camera::Camera;
-use crate::render::{CpuRenderer, Frame, Target};
+use crate::render::{CpuRenderer, Frame};
 use crate::scene::Scene;
 
 /// A world that runs: reset, step, look.
@@ -37,8 +37,21 @@ pub struct Environment {
     pub(super) ground: Ground,
     pub(super) episode: Episode,
     pub(super) had_targets: bool,
-    renderer: CpuRenderer,
-    frame: Frame,
+    /// The objects' tags, for events.
+    pub(super) tags: Vec<Option<Arc<str>>>,
+    pub(super) scratch: Scratch,
+    pub(super) renderer: CpuRenderer,
+    pub(super) frame: Frame,
+}
+
+/// Lists that each time step uses again.
+#[derive(Default)]
+pub(super) struct Scratch {
+    /// Objects that the agent met on its way.
+    pub(super) met: Vec<u32>,
+    pub(super) touching: Vec<u32>,
+    pub(super) reached: Vec<u32>,
+    pub(super) triggered: Vec<(u32, Stimulus)>,
 }
 
 impl Environment {
@@ -64,13 +77,19 @@ impl Environment {
         *self = Self::build(world, std::mem::take(&mut self.renderer), frame);
     }
 
-    fn build(world: Arc<World>, renderer: CpuRenderer, frame: Frame) -> Self {
+    fn build(mut world: Arc<World>, renderer: CpuRenderer, frame: Frame) -> Self {
+        // A world that was written down while it ran is taken back to its start, and then told how far it had come.
+        let came = world.progress.is_some().then(|| Came::out_of(&mut world));
         let scene = Scene::from_world(&world);
         let ground = Ground::new(&world, &scene);
-        let seed = Seed::of(&world);
+        let seed = came
+            .as_ref()
+            .map_or_else(|| Seed::of(&world), |came| Seed::known(came.seed()));
         let mut environment = Self {
             episode: Episode::new(&world, &seed),
             had_targets: world.objects.iter().any(Object::is_target),
+            tags: tags(&world),
+            scratch: Scratch::default(),
             world,
             seed,
             scene,
@@ -78,7 +97,10 @@ impl Environment {
             renderer,
             frame,
         };
-        environment.take_stock();
+        match came {
+            Some(came) => environment.resume(&came),
+            None => environment.take_stock(),
+        }
         environment
     }
 
@@ -126,18 +148,14 @@ impl Environment {
         self.episode.ended
     }
 
-    /// The agent's position in metres, heading in degrees and velocity in metres per second, as one list.
-    pub fn state_vector(&self) -> [f32; 5] {
-        let [x, y] = self.episode.agent.position;
-        let [vx, vy] = self.episode.agent.velocity;
-        [x, y, self.episode.agent.heading_deg, vx, vy]
-    }
-
     /// What this world asks for that is not as its author may think.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if self.world.game_mode == GameMode::CollectImages {
             warnings.push(Warning::NoImageCollection);
+        }
+        if let Some(obstacle) = self.obstacle(self.world.agent_params.coordinates) {
+            warnings.push(Warning::StartsInside { obstacle });
         }
         for (index, (object, item)) in self.world.objects.iter().zip(&self.scene.items).enumerate() {
             if !item.asset.known {
@@ -152,113 +170,21 @@ impl Environment {
             if object.motion_model != MotionModel::Stationary && (object.speed == 0.0 || patrols_nowhere) {
                 warnings.push(Warning::StandsStill { object: index });
             }
+            if object.pushable.is_some() && !is_pushed(object) {
+                warnings.push(Warning::IsNotPushed { object: index });
+            }
         }
         warnings
     }
+}
 
-    /// Lets the agent act for one time step: it turns, moves, and what it meets answers.
-    ///
-    /// # Errors
-    /// [`EnvError`] for an action that cannot be carried out, or after the end; nothing is changed then.
-    pub fn step(&mut self, action: Action) -> Result<Step, EnvError> {
-        if self.episode.ended {
-            return Err(EnvError::Ended);
-        }
-        let numbers = action.numbers(&self.world.agent_params.actions)?;
-        let intent = self.intent(numbers);
-        let distance_before = self.shaping_distance();
-        let met = self.carry_out(intent);
-        self.bring_back();
-        self.move_objects();
-        let mut step = Step {
-            reward: self.world.rules.step_reward,
-            ..Step::default()
-        };
-        self.answer(intent, met, &mut step);
-        if let (Some(shaping), Some(before), Some(after)) =
-            (&self.world.rules.shaping, distance_before, self.shaping_distance())
-        {
-            step.reward += shaping.scale * (before - after);
-        }
-        self.episode.steps += 1;
-        self.episode.earned += step.reward;
-        self.judge(&mut step);
-        self.episode.ended = step.ended();
-        Ok(step)
+/// The tags of a world's objects; neighbours of one group share theirs.
+fn tags(world: &World) -> Vec<Option<Arc<str>>> {
+    let mut tags: Vec<Option<Arc<str>>> = Vec::with_capacity(world.objects.len());
+    for object in &world.objects {
+        let last = tags.last().and_then(Option::as_ref);
+        let shared = last.filter(|last| object.tag.as_deref() == Some(&***last)).cloned();
+        tags.push(shared.or_else(|| object.tag.as_deref().map(Arc::from)));
     }
-
-    fn intent(&mut self, numbers: [f64; 3]) -> Intent {
-        let Some(mut rails) = self.episode.rails.take() else {
-            return Intent::new(self.world.agent_params.action_model, numbers, &self.world.agent_params);
-        };
-        let numbers = match rails.act(self) {
-            Action::Continuous(numbers) => numbers,
-            Action::Discrete(_) => [0.0; 3],
-        };
-        self.episode.rails = Some(rails);
-        Intent::new(ActionModel::ByVelocity, numbers, &self.world.agent_params)
-    }
-
-    /// Turns and moves the agent; hands back the objects it met on the way.
-    fn carry_out(&mut self, intent: Intent) -> Vec<u32> {
-        let start = self.episode.agent.position;
-        self.episode.agent.heading_deg = wrapped(self.episode.agent.heading_deg + intent.turn_deg);
-        let by = match intent.towards {
-            Some((point, reach)) => {
-                let way = [point[0] - start[0], point[1] - start[1]];
-                let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
-                let share = if length > reach { reach / length } else { 1.0 };
-                way.map(|metres| metres * share)
-            }
-            None => self.episode.agent.forward().map(|part| part * intent.ahead),
-        };
-        let motion = self.ground.slide(start, by);
-        self.episode.agent.position = motion.position;
-        let seconds = self.world.agent_params.time_step as f32;
-        self.episode.agent.velocity = [0, 1].map(|axis| (self.episode.agent.position[axis] - start[axis]) / seconds);
-        motion.met
-    }
-
-    /// What the agent sees now, at the world's observation size, in all modalities. Drawn when asked for, never before.
-    pub fn observe(&mut self) -> &Frame {
-        let agent = &self.world.agent_params;
-        let ([width, height], supersampling) = (agent.picture_size(), agent.supersampling);
-        if (self.frame.width, self.frame.height) != (width, height) {
-            self.frame = Frame::new(width, height);
-        }
-        let camera = self.camera();
-        let mut target = Target {
-            supersampling,
-            ..self.frame.target()
-        };
-        if self.renderer.draw(&self.scene, &camera, &mut target).is_err() {
-            // Only for so many points that no buffer holds them: then one a pixel.
-            self.renderer.render(&self.scene, &camera, &mut self.frame);
-        }
-        &self.frame
-    }
-
-    /// The agent's camera.
-    pub fn camera(&self) -> Camera {
-        let agent = &self.world.agent_params;
-        Camera::first_person(
-            self.episode.agent.position,
-            self.episode.agent.heading_deg,
-            agent.agent_height as f32,
-            agent.field_of_view as f32,
-        )
-    }
-
-    /// A picture of any size from any camera.
-    ///
-    /// # Errors
-    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels.
-    pub fn render(&mut self, camera: &Camera, width: u32, height: u32) -> Result<Frame, EnvError> {
-        if !(1..=4096).contains(&width) || !(1..=4096).contains(&height) {
-            return Err(EnvError::PictureSize { width, height });
-        }
-        let mut frame = Frame::new(width, height);
-        self.renderer.render(&self.scene, camera, &mut frame);
-        Ok(frame)
-    }
+    tags
 }

@@ -1,10 +1,11 @@
 //! All that changes while a world runs, in one value: what a snapshot copies. What changes it is in the files beside this one.
 
-use driftworld_spec::{ActionModel, Object, World};
+use driftworld_spec::{ActionModel, LastEvent, Object, World};
 use rand_chacha::ChaCha8Rng;
 
 use super::chance::Seed;
 use super::motion::Mover;
+use super::pushing::Pushed;
 use crate::agents::OnRailsAgent;
 
 /// Where the agent is and how it moves.
@@ -62,8 +63,15 @@ pub(crate) struct Episode {
     pub(super) agent: AgentState,
     pub(super) objects: Vec<ObjectState>,
     pub(super) steps: u32,
+    /// Time steps since the start.
+    pub(super) ticks: u64,
     /// The sum of rewards since the start.
     pub(super) earned: f64,
+    /// The same without what shaping paid: what conditions on the return count.
+    pub(super) unshaped: f64,
+    /// What the last step paid.
+    pub(super) last_reward: f64,
+    pub(super) last_event: Option<LastEvent>,
     pub(super) ended: bool,
     /// What bandit arms and returning objects draw from.
     pub(super) chance: ChaCha8Rng,
@@ -71,7 +79,9 @@ pub(crate) struct Episode {
     pub(super) contacts: Vec<u32>,
     /// The objects that move by themselves.
     pub(super) movers: Vec<Mover>,
-    /// Destroyed objects that come back, with the number of steps after which they do.
+    /// The objects that are pushed, in rising order.
+    pub(super) pushed: Vec<Pushed>,
+    /// Destroyed objects that come back, in rising order, with the time step in which they do.
     pub(super) returning: Vec<(usize, u64)>,
     pub(super) rails: Option<OnRailsAgent>,
 }
@@ -88,11 +98,16 @@ impl Episode {
             },
             objects: world.objects.iter().map(ObjectState::new).collect(),
             steps: 0,
+            ticks: 0,
             earned: 0.0,
+            unshaped: 0.0,
+            last_reward: 0.0,
+            last_event: None,
             ended: false,
             chance: seed.arms(),
             contacts: Vec::new(),
             movers: Mover::all(world, seed),
+            pushed: Pushed::all(world),
             returning: Vec::new(),
             rails: (start.action_model == ActionModel::OnRails).then(OnRailsAgent::new),
         }

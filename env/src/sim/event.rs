@@ -1,6 +1,10 @@
 //! What happened in a step, and what it was worth. Why it happened is in `environment.rs`.
 
+use std::sync::Arc;
+
 use driftworld_spec::Stimulus;
+
+use super::edit::Obstacle;
 
 /// One thing that happened to one object.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -8,7 +12,7 @@ pub struct Event {
     /// Index of the object in the world.
     pub object: usize,
     /// Its tag, if it has one.
-    pub tag: Option<String>,
+    pub tag: Option<Arc<str>>,
     /// What set it off.
     pub stimulus: Stimulus,
     /// What was paid for it.
@@ -37,10 +41,17 @@ impl Step {
     pub fn ended(&self) -> bool {
         self.terminated || self.truncated
     }
+
+    /// Forgets what happened, and keeps the memory.
+    pub(crate) fn clear(&mut self) {
+        self.events.clear();
+        (self.reward, self.terminated, self.truncated, self.success) = (0.0, false, false, false);
+    }
 }
 
 /// Something that the world asks for and that is not as its author may think.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Warning {
     /// Class and model are not known: a placeholder stands there.
     UnknownAsset {
@@ -53,6 +64,16 @@ pub enum Warning {
     },
     /// The object asks to move, and stands still: it has no speed, or a patrol no waypoints.
     StandsStill {
+        /// Index of the object.
+        object: usize,
+    },
+    /// The agent starts inside something; it cannot move until it is put elsewhere.
+    StartsInside {
+        /// What it starts in.
+        obstacle: Obstacle,
+    },
+    /// The object asks to be pushed, and is not: it is not solid, or moves by itself.
+    IsNotPushed {
         /// Index of the object.
         object: usize,
     },
@@ -73,6 +94,18 @@ impl std::fmt::Display for Warning {
                 write!(
                     f,
                     "/objects/{object}/motion_model: found no speed, or a patrol without waypoints; it stands still"
+                )
+            }
+            Self::StartsInside { obstacle } => {
+                write!(
+                    f,
+                    "/agent_params/coordinates: found {obstacle}, expected free ground; the agent is stuck there"
+                )
+            }
+            Self::IsNotPushed { object } => {
+                write!(
+                    f,
+                    "/objects/{object}/pushable: found an object that moves by itself or is not solid; it is not pushed"
                 )
             }
             Self::NoImageCollection => {

@@ -3,18 +3,22 @@
 mod action;
 mod answer;
 mod body;
+mod casting;
 mod chance;
 mod edit;
 mod environment;
 mod episode;
 mod event;
+mod features;
 mod judge;
+mod look;
 mod motion;
 mod moving_body;
 mod objects;
-mod reuse;
+mod pushing;
 mod snapshot;
 mod state;
+mod step;
 mod walls;
 
 pub use action::Action;

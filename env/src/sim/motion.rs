@@ -5,6 +5,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use super::chance::{self, Seed};
+use super::state::words;
 
 /// Distance at which a waypoint counts as reached, in metres.
 const REACHED: f32 = 0.3;
@@ -66,6 +67,19 @@ impl Mover {
             goal: None,
             chance: seed.mover(index),
         })
+    }
+
+    /// The number of its next point, where it is going, and the words that it has drawn.
+    pub(super) fn progress(&self) -> (u32, Option<[f64; 2]>, u64) {
+        let goal = self.goal.map(|goal| goal.map(f64::from));
+        (self.next as u32, goal, words(&self.chance))
+    }
+
+    /// Goes on from what [`Mover::progress`] said.
+    pub(super) fn resume(&mut self, next: u32, goal: Option<[f64; 2]>, words: u64) {
+        self.next = next as usize;
+        self.goal = goal.map(|goal| goal.map(|metres| metres as f32));
+        self.chance.set_word_pos(u128::from(words));
     }
 
     /// What the object means to do; `None` if it stands still.

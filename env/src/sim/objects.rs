@@ -30,23 +30,27 @@ impl Environment {
             let Some(stride) = mover.decide(&self.world.objects[index], view) else {
                 continue;
             };
-            let came = self.ground.push(index as u32, stride.by, stride.heading_deg);
-            item.position = [item.position[0] + came[0], item.position[1] + came[1]];
-            item.heading_deg = stride.heading_deg;
+            // Where the body is, the item is, to the last bit: a world that was written down has nothing else to go on from.
+            let Some(place) = self.ground.push(index as u32, stride.by, stride.heading_deg) else {
+                continue;
+            };
+            let came = [place[0] - item.position[0], place[1] - item.position[1]];
+            (item.position, item.heading_deg) = (place, stride.heading_deg);
             mover.moved(stride.by, came);
         }
     }
 
     /// Puts back the destroyed objects whose time has come: near their first place, where nothing stands.
     pub(super) fn bring_back(&mut self) {
-        let now = u64::from(self.episode.steps) + 1;
-        let mut waiting = Vec::new();
-        for (index, due) in std::mem::take(&mut self.episode.returning) {
-            if due > now || !self.put_back(index) {
-                waiting.push((index, due));
+        let now = self.episode.ticks;
+        let mut next = 0;
+        while let Some(&(index, due)) = self.episode.returning.get(next) {
+            if due <= now && self.put_back(index) {
+                self.episode.returning.remove(next);
+            } else {
+                next += 1;
             }
         }
-        self.episode.returning = waiting;
     }
 
     /// Puts an object back at a free place; false if none is found in this step.
@@ -74,6 +78,9 @@ impl Environment {
                 self.ground.add_object(index as u32, item, object.solid);
                 let state = &mut self.episode.objects[index];
                 (state.present, state.reward, state.in_range) = (true, object.reward, false);
+                if let Some(body) = self.episode.pushed.iter_mut().find(|body| body.object == index) {
+                    (body.velocity, body.spin_deg) = ([0.0; 2], 0.0);
+                }
                 return true;
             }
         }

@@ -1,22 +1,208 @@
-//! Writing a running world down as a world. The form that stays in memory is in `snapshot.rs`.
+//! Writing a running world down as a world, and going on from it. The form that stays in memory is in `snapshot.rs`.
 
-use driftworld_spec::World;
+use std::sync::Arc;
+
+use driftworld_spec::{Object, ObjectProgress, Origin, Progress, World};
 
 use super::environment::Environment;
+use super::episode::wrapped;
+use crate::agents::OnRailsAgent;
+
+/// What a world that was written down says of its course, when the world itself has been taken back to its start.
+pub(super) struct Came {
+    progress: Progress,
+    agent: ([f32; 2], f32),
+    /// Where each object stands and faces, and what it is worth.
+    objects: Vec<([f32; 2], f32, f64)>,
+}
 
 impl Environment {
-    /// The world as it is now: agent and objects where they stand, rewards that are left.
+    /// The world as it is now, as a document: objects where they stand with the rewards that are left, and in `progress` all
+    /// else that a reset to it needs to go on as if nothing had been.
+    ///
+    /// Destroyed objects are among the objects, so that numbers stay; their progress says that they are not there.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_env::{Action, Environment};
+    /// use driftworld_spec::World;
+    /// let mut environment = Environment::new(World::default())?;
+    /// environment.step(Action::Continuous([10.0, 90.0, 0.0]))?;
+    /// let written = environment.state().to_json();
+    /// let read = World::from_json("state", &written).expect("a state is a sound world");
+    /// assert_eq!(Environment::new(read)?.agent(), environment.agent());
+    /// # Ok::<(), driftworld_env::EnvError>(())
+    /// ```
     pub fn state(&self) -> World {
         let mut world = (*self.world).clone();
         let agent = self.episode.agent;
-        world.agent_params.coordinates = agent.position.map(f64::from);
-        world.agent_params.heading = f64::from(agent.heading_deg);
-        let states = self.episode.objects.iter().zip(&self.scene.items);
-        for (object, (state, item)) in world.objects.iter_mut().zip(states) {
+        let start = &mut world.agent_params;
+        let stands = start.coordinates.map(|metres| metres as f32) == agent.position
+            && wrapped(start.heading as f32) == agent.heading_deg;
+        let origin = (!stands).then_some(Origin {
+            coordinates: start.coordinates,
+            heading: start.heading,
+            reward: 0.0,
+        });
+        if !stands {
+            start.coordinates = agent.position.map(f64::from);
+            start.heading = f64::from(agent.heading_deg);
+        }
+        let objects = world
+            .objects
+            .iter_mut()
+            .enumerate()
+            .map(|(index, object)| self.note_object(index, object))
+            .collect();
+        let episode = &self.episode;
+        world.progress = Some(Progress {
+            seed: self.seed.hash().map(str::to_owned),
+            steps: episode.steps,
+            ticks: episode.ticks,
+            episode_return: episode.earned,
+            unshaped_return: episode.unshaped,
+            last_reward: episode.last_reward,
+            last_event: episode.last_event,
+            ended: episode.ended,
+            velocity: agent.velocity.map(f64::from),
+            origin,
+            chance: words(&episode.chance),
+            rails: episode.rails.as_ref().map(OnRailsAgent::progress),
+            objects,
+        });
+        world
+    }
+
+    /// How far an object has come; the object is put where it is now.
+    fn note_object(&self, index: usize, object: &mut Object) -> ObjectProgress {
+        let state = &self.episode.objects[index];
+        let item = &self.scene.items[index];
+        let stands = object.coordinates.map(|metres| metres as f32) == item.position
+            && object.heading as f32 == item.heading_deg
+            && object.reward == state.reward;
+        let origin = (!stands).then_some(Origin {
+            coordinates: object.coordinates,
+            heading: object.heading,
+            reward: object.reward,
+        });
+        if !stands {
             object.coordinates = item.position.map(f64::from);
             object.heading = f64::from(item.heading_deg);
             object.reward = state.reward;
         }
-        world
+        let mover = self.episode.movers.iter().find(|mover| mover.object == index);
+        let pushed = self.episode.pushed.iter().find(|body| body.object == index);
+        let returns = self.episode.returning.iter().find(|(other, _)| *other == index);
+        let (waypoint, goal, chance) = mover.map_or((0, None, 0), |mover| mover.progress());
+        ObjectProgress {
+            present: state.present,
+            collected: state.collected,
+            touched: self.episode.contacts.contains(&(index as u32)),
+            in_range: state.in_range,
+            origin,
+            returns_at: returns.map(|(_, tick)| *tick),
+            goal,
+            waypoint,
+            chance,
+            velocity: pushed
+                .filter(|body| body.velocity != [0.0; 2])
+                .map(|body| body.velocity.map(f64::from)),
+            spin: pushed.map_or(0.0, |body| f64::from(body.spin_deg)),
+        }
     }
+
+    /// Goes on from where a world had come when it was written down. This environment is at the start of that world.
+    pub(super) fn resume(&mut self, came: &Came) {
+        let progress = &came.progress;
+        let episode = &mut self.episode;
+        (episode.agent.position, episode.agent.heading_deg) = came.agent;
+        episode.agent.velocity = progress.velocity.map(|speed| speed as f32);
+        (episode.steps, episode.ticks) = (progress.steps, progress.ticks);
+        (episode.earned, episode.unshaped) = (progress.episode_return, progress.unshaped_return);
+        (episode.last_reward, episode.last_event) = (progress.last_reward, progress.last_event);
+        episode.ended = progress.ended;
+        episode.chance.set_word_pos(u128::from(progress.chance));
+        if episode.rails.is_some()
+            && let Some(rails) = &progress.rails
+        {
+            let resumed = OnRailsAgent::resumed(rails, &self.world, &self.scene);
+            self.episode.rails = Some(resumed);
+        }
+        self.episode.contacts.clear();
+        for (index, own) in progress.objects.iter().enumerate().take(self.world.objects.len()) {
+            self.resume_object(index, own, came.objects[index]);
+        }
+    }
+
+    fn resume_object(&mut self, index: usize, own: &ObjectProgress, now: ([f32; 2], f32, f64)) {
+        let (position, heading_deg, reward) = now;
+        let state = &mut self.episode.objects[index];
+        (state.present, state.collected, state.in_range) = (own.present, own.collected, own.in_range);
+        state.reward = reward;
+        let item = &mut self.scene.items[index];
+        (item.position, item.heading_deg) = (position, heading_deg);
+        (item.reward, item.visible) = (reward as f32, own.present);
+        if own.touched {
+            self.episode.contacts.push(index as u32);
+        }
+        self.episode.returning.extend(own.returns_at.map(|tick| (index, tick)));
+        if let Some(mover) = self.episode.movers.iter_mut().find(|mover| mover.object == index) {
+            mover.resume(own.waypoint, own.goal, own.chance);
+        }
+        if let Some(body) = self.episode.pushed.iter_mut().find(|body| body.object == index) {
+            body.velocity = own
+                .velocity
+                .map_or([0.0; 2], |velocity| velocity.map(|speed| speed as f32));
+            body.spin_deg = own.spin as f32;
+        }
+        self.ground.remove(index as u32);
+        if own.present {
+            self.ground
+                .add_object(index as u32, item, self.world.objects[index].solid);
+        }
+    }
+}
+
+impl Came {
+    /// Takes a world's progress out of it, and the world back to its start.
+    pub(super) fn out_of(world: &mut Arc<World>) -> Self {
+        let world = Arc::make_mut(world);
+        let progress = world.progress.take().unwrap_or_default();
+        let agent = &mut world.agent_params;
+        let place = (
+            agent.coordinates.map(|metres| metres as f32),
+            wrapped(agent.heading as f32),
+        );
+        if let Some(origin) = &progress.origin {
+            (agent.coordinates, agent.heading) = (origin.coordinates, origin.heading);
+        }
+        let mut objects = Vec::with_capacity(world.objects.len());
+        let own = progress.objects.iter().map(Some).chain(std::iter::repeat(None));
+        for (object, own) in world.objects.iter_mut().zip(own) {
+            objects.push((
+                object.coordinates.map(|metres| metres as f32),
+                object.heading as f32,
+                object.reward,
+            ));
+            if let Some(origin) = own.and_then(|own| own.origin) {
+                (object.coordinates, object.heading) = (origin.coordinates, origin.heading);
+                object.reward = origin.reward;
+            }
+        }
+        Self {
+            progress,
+            agent: place,
+            objects,
+        }
+    }
+
+    /// The hash of the world at its start, if its chance has been asked for.
+    pub(super) fn seed(&self) -> Option<String> {
+        self.progress.seed.clone()
+    }
+}
+
+/// Words drawn from a stream; as many as a document can hold, which no world draws.
+pub(super) fn words(stream: &rand_chacha::ChaCha8Rng) -> u64 {
+    u64::try_from(stream.get_word_pos()).unwrap_or(u64::MAX)
 }

@@ -61,7 +61,7 @@ const WORLD: Keys = Keys {
         "image_params",
         "objects",
     ],
-    ours: &["version", "rules"],
+    ours: &["version", "rules", "progress"],
     old: &[],
 };
 
@@ -97,8 +97,11 @@ const AGENT: Keys = Keys {
         "supersampling",
         "time_step",
         "field_of_view",
+        "frame_skip",
         "modalities",
+        "state_features",
         "actions",
+        "interact",
     ],
     old: &["pickup_range"],
 };
@@ -112,7 +115,7 @@ const IMAGE: Keys = Keys {
 /// Nothing of the rules is known to the original.
 const RULES: Keys = Keys {
     original: &[],
-    ours: &["step_reward", "shaping", "success", "failure"],
+    ours: &["step_reward", "order_penalty", "shaping", "success", "failure"],
     old: &[],
 };
 
@@ -134,6 +137,7 @@ const OBJECT: Keys = Keys {
         "heading",
         "scale",
         "solid",
+        "pushable",
         "reward_probability",
         "speed",
         "turn_rate",

@@ -80,6 +80,10 @@ impl Writer {
             payload.extend(value.map(|value| ((*key).to_owned(), value)));
         }
         self.part("/rules", &RULES, &world.rules);
+        if world.progress.is_some() {
+            let text = format!("progress: {LEFT_OUT}; the file is a start from where things are now");
+            self.warnings.push(warning("/progress".to_owned(), text));
+        }
         Json::Object(payload)
     }
 

@@ -54,7 +54,33 @@ const EXAMPLES: &[(&str, &[&str])] = &[
             r#"{ "step_reward": -0.1, "shaping": { "toward": "goal", "scale": 1 }, "success": ["all_collected"], "failure": [{ "return_at_most": -50 }] }"#,
         ],
     ),
-    ("Shaping", &[r#"{ "toward": "goal", "scale": 1 }"#]),
+    (
+        "Shaping",
+        &[
+            r#"{ "toward": "goal", "scale": 1 }"#,
+            r#"{ "scale": 0.1, "discount": 0.99 }"#,
+        ],
+    ),
+    (
+        "Progress",
+        &[
+            r#"{ "steps": 2, "ticks": 2, "episode_return": 1, "unshaped_return": 1, "velocity": [0, 1], "objects": [{ "collected": true }] }"#,
+        ],
+    ),
+    (
+        "LastEvent",
+        &[r#"{ "stimulus": "AgentCollide", "reward": 1, "destroyed": false }"#],
+    ),
+    ("Origin", &[r#"{ "coordinates": [3, 4], "heading": 90, "reward": 1 }"#]),
+    (
+        "ObjectProgress",
+        &[r#"{ "present": false, "collected": true, "returns_at": 99 }"#],
+    ),
+    (
+        "RailsProgress",
+        &[r#"{ "target": 0, "goal": [3, 4], "avoided": [1], "patience": 7 }"#],
+    ),
+    ("Pushable", &[r#"{ "mass": 20, "friction": 0.5 }"#]),
     (
         "EndCondition",
         &[
@@ -72,6 +98,7 @@ const EXAMPLES: &[(&str, &[&str])] = &[
         "ActionSpace",
         &[
             r#""continuous""#,
+            r#""default_discrete""#,
             r#"{ "discrete": [[5, 0, 0], [0, -90, 0], [0, 90, 0]] }"#,
         ],
     ),

@@ -159,6 +159,8 @@ pub(crate) const WORLD: &[Slot<World>] = &[
     row!("/agent_params/coordinates/*", Number, agent_params.coordinates[], number),
     row!("/agent_params/heading", Heading, agent_params.heading, number),
     row!("/agent_params/time_step", Number, agent_params.time_step, number),
+    row!("/agent_params/frame_skip", Integer, agent_params.frame_skip, whole),
+    row!("/agent_params/interact", Boolean, agent_params.interact, truth),
     row!(
         "/agent_params/field_of_view",
         Number,
@@ -167,8 +169,13 @@ pub(crate) const WORLD: &[Slot<World>] = &[
     ),
     row!("/agent_params/modalities/*", String, agent_params.modalities[], word::<Modality>),
     row!("/rules/step_reward", Number, rules.step_reward, number),
+    row!("/rules/order_penalty", Number, rules.order_penalty, number),
     slot("/rules/shaping/scale", Number, |world, _, value| {
         world.rules.shaping.as_mut()?.scale = number(value)?;
+        Some(())
+    }),
+    slot("/rules/shaping/discount", Number, |world, _, value| {
+        world.rules.shaping.as_mut()?.discount = number(value)?;
         Some(())
     }),
 ];
@@ -189,6 +196,14 @@ pub(crate) const OBJECT: &[Slot<Object>] = &[
         Some(())
     }),
     row!("/solid", Boolean, solid, truth),
+    slot("/pushable/mass", Number, |object, _, value| {
+        object.pushable.as_mut()?.mass = number(value)?;
+        Some(())
+    }),
+    slot("/pushable/friction", Number, |object, _, value| {
+        object.pushable.as_mut()?.friction = number(value)?;
+        Some(())
+    }),
     row!("/reward", Number, reward, number),
     row!("/reward_probability", Number, reward_probability, number),
     row!("/reward_stimulus/*", String, reward_stimulus[], word::<Stimulus>),
@@ -306,14 +321,19 @@ mod tests {
     fn every_slot_sets_the_place_that_its_pointer_names_and_no_other() {
         let mut world = World::default();
         world.rules.shaping = Some(crate::Shaping {
-            toward: "goal".into(),
+            toward: Some("goal".into()),
             scale: 1.0,
+            discount: 1.0,
         });
         check(WORLD, &world);
         let mut object = Object::new("cube", [1.0, 2.0]);
         object.reward_stimulus = vec![Stimulus::AgentCollide; 2];
         object.reward_once_stimulus = vec![Stimulus::AgentCollide; 2];
         object.destroy_stimulus = vec![Stimulus::AgentCollide; 2];
+        object.pushable = Some(crate::Pushable {
+            mass: 1.0,
+            friction: 1.0,
+        });
         object.reward_probability = 0.5;
         object.range_stimulus_distance = 1.0;
         object.speed = 1.0;

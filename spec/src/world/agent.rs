@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::StateFeature;
+
 /// The agent: where it starts, how it moves, what it observes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -38,17 +40,29 @@ pub struct AgentParams {
     /// Start heading in degrees: 0 looks along +y, growing clockwise.
     #[schemars(range(min = 0.0, max = 360.0))]
     pub heading: f64,
-    /// Simulated seconds per step.
+    /// Simulated seconds per time step.
     #[schemars(range(min = 0.001, max = 10.0))]
     pub time_step: f64,
+    /// Time steps for which each action is held: a step of the environment lasts this many.
+    #[serde(skip_serializing_if = "is_one")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub frame_skip: u32,
     /// Vertical field of view in degrees.
     #[schemars(range(min = 1.0, max = 170.0))]
     pub field_of_view: f64,
     /// Which images an observation holds.
     #[schemars(length(max = 5))]
     pub modalities: Vec<Modality>,
+    /// What the state vector holds, in this order.
+    #[serde(skip_serializing_if = "is_classic")]
+    #[schemars(length(max = 20))]
+    pub state_features: Vec<StateFeature>,
     /// How actions are given.
     pub actions: ActionSpace,
+    /// Whether the agent can interact: without, the third number of an action by velocity is ignored, and the default table of
+    /// actions has no row for it.
+    #[serde(skip_serializing_if = "is_true")]
+    pub interact: bool,
 }
 
 impl Default for AgentParams {
@@ -65,9 +79,12 @@ impl Default for AgentParams {
             coordinates: [0.0, 0.0],
             heading: 0.0,
             time_step: 0.1,
+            frame_skip: 1,
             field_of_view: 60.0,
             modalities: vec![Modality::Rgb, Modality::Depth, Modality::Segmentation],
+            state_features: StateFeature::CLASSIC.to_vec(),
             actions: ActionSpace::Continuous,
+            interact: true,
         }
     }
 }
@@ -80,6 +97,51 @@ impl AgentParams {
             self.observation_size,
         ]
     }
+
+    /// How many rows the table of actions has; `None` for continuous actions.
+    pub fn num_actions(&self) -> Option<usize> {
+        match &self.actions {
+            ActionSpace::Continuous | ActionSpace::Normalized => None,
+            ActionSpace::Discrete(table) => Some(table.len()),
+            ActionSpace::DefaultDiscrete => Some(6 + usize::from(self.interact)),
+        }
+    }
+
+    /// A row of the table of actions: three numbers in the units of the action model; `None` if there is no such row.
+    ///
+    /// The default table is: ahead; ahead and left; ahead and right; left; right; back; and, if the agent can interact,
+    /// interact. It goes and turns as fast as the agent can, and back at half that speed.
+    pub fn action_row(&self, number: usize) -> Option<[f64; 3]> {
+        let (speed, turn) = (self.max_linear_speed, self.max_angular_speed);
+        match &self.actions {
+            ActionSpace::Continuous | ActionSpace::Normalized => None,
+            ActionSpace::Discrete(table) => table.get(number).copied(),
+            ActionSpace::DefaultDiscrete => match number {
+                0 => Some([speed, 0.0, 0.0]),
+                1 => Some([speed, -turn, 0.0]),
+                2 => Some([speed, turn, 0.0]),
+                3 => Some([0.0, -turn, 0.0]),
+                4 => Some([0.0, turn, 0.0]),
+                5 => Some([-speed / 2.0, 0.0, 0.0]),
+                6 if self.interact => Some([0.0, 0.0, 1.0]),
+                _ => None,
+            },
+        }
+    }
+
+    /// How many numbers the state vector holds.
+    pub fn state_len(&self) -> usize {
+        self.state_features.iter().map(|feature| feature.num_values()).sum()
+    }
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_true(value: &bool) -> bool {
+    *value
+}
+
+fn is_classic(features: &[StateFeature]) -> bool {
+    features == StateFeature::CLASSIC
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
@@ -119,10 +181,16 @@ pub enum Modality {
 
 /// How a learner hands in actions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "snake_case")]
 pub enum ActionSpace {
     /// Three numbers, in the units of the action model.
     Continuous,
+    /// Three numbers in −1..1, cut off there: shares of the largest speed and turn rate, under `bywaypoint` of half the arena's
+    /// sides; above 0 is to interact.
+    Normalized,
+    /// The number of a row of a table that comes with the agent: ahead, ahead and left, ahead and right, left,
+    /// right, back, and interact if it can; not under `bywaypoint`, which knows no ahead.
+    DefaultDiscrete,
     /// The number of a row of this table; each row holds three numbers in the units of the action model.
     Discrete(#[schemars(length(min = 1, max = 1000))] Vec<[f64; 3]>),
 }

@@ -3,7 +3,9 @@
 mod agent;
 mod check;
 mod environment;
+mod features;
 mod object;
+mod progress;
 mod rules;
 
 use std::fmt::Write;
@@ -14,7 +16,9 @@ use sha2::{Digest, Sha256};
 
 pub use agent::{ActionModel, ActionSpace, AgentParams, Modality};
 pub use environment::{EnvironmentParams, Region, Wall};
-pub use object::{Model, MotionModel, Object, Respawn, Stimulus};
+pub use features::StateFeature;
+pub use object::{Model, MotionModel, Object, Pushable, Respawn, Stimulus};
+pub use progress::{LastEvent, ObjectProgress, Origin, Progress, RailsProgress};
 pub use rules::{EndCondition, Rules, Shaping};
 
 use crate::document::Document;
@@ -66,6 +70,9 @@ pub struct World {
     /// What stands in the world.
     #[schemars(length(max = 100_000))]
     pub objects: Vec<Object>,
+    /// How far it has come, for a world that was written down while it ran.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub progress: Option<Progress>,
 }
 
 impl Default for World {
@@ -80,6 +87,7 @@ impl Default for World {
             image_params: None,
             rules: Rules::default(),
             objects: Vec::new(),
+            progress: None,
         }
     }
 }
@@ -192,6 +200,16 @@ impl World {
                 .advise("use smaller observations or less supersampling"),
             );
         }
+        let agent = &self.agent_params;
+        if (agent.action_model, &agent.actions) == (ActionModel::ByWaypoint, &ActionSpace::DefaultDiscrete) {
+            problems.push(Problem::new(
+                "spec/no-default-actions",
+                "/agent_params/actions",
+                "default_discrete under bywaypoint, whose rows are places",
+                "a table, such as {\"discrete\": [[3, 4, 0], [-3, 4, 0]]}",
+            ));
+        }
+        problems.extend(progress::problems(self));
         problems.extend(duplicate_names(&self.objects));
         problems
     }

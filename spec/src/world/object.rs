@@ -36,6 +36,10 @@ pub struct Object {
     /// Whether the agent is stopped by it.
     #[serde(default = "yes")]
     pub solid: bool,
+    /// Makes it a body that the agent pushes along the ground; absent for one that stands fast. Only solid objects that do not
+    /// move by themselves are pushed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pushable: Option<Pushable>,
     /// What one triggering is worth.
     #[serde(default)]
     #[schemars(range(min = -1e9, max = 1e9))]
@@ -107,6 +111,7 @@ impl Object {
             scale: 1.0,
             color: None,
             solid: true,
+            pushable: None,
             reward: 0.0,
             reward_probability: 1.0,
             reward_stimulus: Vec::new(),
@@ -236,4 +241,21 @@ pub struct Respawn {
     #[serde(default)]
     #[schemars(range(min = 0.0, max = 300.0))]
     pub radius: f64,
+}
+
+/// A body that slides and turns on the ground when it is pushed. It never topples.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pushable {
+    /// Mass in kilograms; the agent weighs 80.
+    #[schemars(range(min = 0.01, max = 1e6))]
+    pub mass: f64,
+    /// Friction with the ground and with other bodies: 0 is ice, 0.5 wood on stone.
+    #[serde(default = "half")]
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub friction: f64,
+}
+
+fn half() -> f64 {
+    0.5
 }

@@ -10,6 +10,10 @@ pub struct Rules {
     /// Paid at every step; a small negative number makes haste worth while.
     #[schemars(range(min = -1e9, max = 1e9))]
     pub step_reward: f64,
+    /// Paid, in place of its reward, for setting off an object before its turn in a sequence; at most 0 makes it a penalty.
+    #[serde(skip_serializing_if = "is_zero")]
+    #[schemars(range(min = -1e9, max = 1e9))]
+    pub order_penalty: f64,
     /// A soft reward for coming closer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shaping: Option<Shaping>,
@@ -23,19 +27,41 @@ pub struct Rules {
     pub failure: Vec<EndCondition>,
 }
 
-/// Potential-based shaping: each step pays `scale × (distance before − distance after)`.
+/// Potential-based shaping: each step pays `discount × potential after − potential before`.
 ///
-/// The distance is that to the nearest object of the tag, so the sum over an episode depends on its first and last
-/// step only, and the best policy stays the best (Ng, Harada and Russell 1999, with discount 1).
+/// The potential is `−scale ×` the distance in metres to the nearest object that draws the agent; it is 0 where there is none,
+/// and at the end of an episode that ends by itself. So the best policy of a learner with this discount stays the best (Ng, Harada
+/// and Russell 1999): with discount 1, all episodes that end by themselves are paid the same in all, `scale ×` the first
+/// distance. When the nearest object is taken away the potential falls to that of the next: the step that collects pays less by
+/// that. Conditions on the return do not count what shaping pays.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Shaping {
-    /// Tag of the objects that draw the agent.
+    /// Tag of the objects that draw the agent; if absent, all objects that pay a positive reward now.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 100))]
-    pub toward: String,
+    pub toward: Option<String>,
     /// Reward per metre.
     #[schemars(range(min = -1e6, max = 1e6))]
     pub scale: f64,
+    /// The learner's discount, 0..1.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub discount: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_one(value: &f64) -> bool {
+    *value == 1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// What ends an episode.
@@ -46,8 +72,8 @@ pub enum EndCondition {
     AllCollected,
     /// The agent touches, or interacts with, an object of this tag.
     Touch(#[schemars(length(min = 1, max = 100))] String),
-    /// The return of the episode reaches this.
+    /// The return of the episode, without shaping, reaches this.
     ReturnAtLeast(f64),
-    /// The return of the episode falls to this.
+    /// The return of the episode, without shaping, falls to this.
     ReturnAtMost(f64),
 }

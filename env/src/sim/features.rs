@@ -1,0 +1,106 @@
+//! The state vector: the features that a world asks for, as numbers. What each means is said in `StateFeature`.
+
+use driftworld_spec::{EndCondition, Object, StateFeature, Stimulus};
+
+use super::environment::Environment;
+use super::episode::ObjectState;
+use super::judge::pays_now;
+
+impl Environment {
+    /// The numbers of the features that the world asks for, in its order: by default position, heading, velocity.
+    pub fn state_vector(&self) -> Vec<f32> {
+        let mut state = vec![0.0; self.world.agent_params.state_len()];
+        self.fill_state(&mut state);
+        state
+    }
+
+    /// Writes the state vector into memory of the caller's.
+    ///
+    /// # Errors
+    /// [`EnvError::StateLength`](crate::EnvError::StateLength) unless there is room for exactly its numbers.
+    pub fn write_state(&self, state: &mut [f32]) -> Result<(), crate::EnvError> {
+        let expected = self.world.agent_params.state_len();
+        if state.len() != expected {
+            let found = state.len();
+            return Err(crate::EnvError::StateLength { found, expected });
+        }
+        self.fill_state(state);
+        Ok(())
+    }
+
+    fn fill_state(&self, state: &mut [f32]) {
+        let mut rest = state;
+        for feature in &self.world.agent_params.state_features {
+            let (numbers, length) = self.feature(*feature);
+            let (own, others) = rest.split_at_mut(length);
+            own.copy_from_slice(&numbers[..length]);
+            rest = others;
+        }
+    }
+
+    /// The numbers of one feature, and how many of the three are in use.
+    fn feature(&self, feature: StateFeature) -> ([f32; 3], usize) {
+        let agent = &self.episode.agent;
+        let [x, y] = agent.position;
+        let [vx, vy] = agent.velocity;
+        let numbers = match feature {
+            StateFeature::Position => [x, y, 0.0],
+            StateFeature::Heading => [agent.heading_deg, 0.0, 0.0],
+            StateFeature::Velocity => [vx, vy, 0.0],
+            StateFeature::Direction => {
+                let [east, north] = agent.forward();
+                [east, north, 0.0]
+            }
+            StateFeature::OwnVelocity => {
+                let [ahead, right] = self.own_axes(agent.velocity);
+                [ahead, right, 0.0]
+            }
+            StateFeature::Goal => self.way_in_own_axes(self.nearest(|object, state| self.is_goal(object, state))),
+            StateFeature::NearestTarget => self.way_in_own_axes(self.nearest(pays_now)),
+            StateFeature::Counts => {
+                let objects = || self.world.objects.iter().zip(&self.episode.objects);
+                let left = objects().filter(|(object, state)| pays_now(object, state)).count();
+                let collected = objects().filter(|(_, state)| state.collected).count();
+                [left as f32, collected as f32, 0.0]
+            }
+            StateFeature::LastReward => [self.episode.last_reward as f32, 0.0, 0.0],
+            StateFeature::LastEvent => self.episode.last_event.map_or([0.0; 3], |event| {
+                let number = match event.stimulus {
+                    Stimulus::AgentCollide => 1.0,
+                    Stimulus::AgentInteract => 2.0,
+                    Stimulus::AgentInRange => 3.0,
+                };
+                [number, event.reward as f32, f32::from(u8::from(event.destroyed))]
+            }),
+            StateFeature::StepsLeft => {
+                let most = self.world.max_steps;
+                let left = f64::from(most.saturating_sub(self.episode.steps)) / f64::from(most.max(1));
+                [if most == 0 { 1.0 } else { left as f32 }, 0.0, 0.0]
+            }
+        };
+        (numbers, feature.num_values())
+    }
+
+    /// What the goal feature points to: the tag of the shaping, else those whose touch is a success.
+    fn is_goal(&self, object: &Object, state: &ObjectState) -> bool {
+        let Some(tag) = &object.tag else { return false };
+        let rules = &self.world.rules;
+        let wanted = rules.shaping.as_ref().and_then(|shaping| shaping.toward.as_ref());
+        let touch = |condition: &EndCondition| matches!(condition, EndCondition::Touch(wanted) if wanted == tag);
+        state.present && wanted.map_or_else(|| rules.success.iter().any(touch), |wanted| wanted == tag)
+    }
+
+    /// The way to an object ahead and to the right in metres, and 1; all 0 without an object.
+    fn way_in_own_axes(&self, index: Option<usize>) -> [f32; 3] {
+        index.map_or([0.0; 3], |index| {
+            let [ahead, right] = self.own_axes(self.way_to(index));
+            [ahead, right, 1.0]
+        })
+    }
+
+    /// A vector of the world as the agent has it: ahead and to the right.
+    fn own_axes(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+        let [east, north] = self.episode.agent.forward();
+        [x * east + y * north, x * north - y * east]
+    }
+}

@@ -1,0 +1,310 @@
+//! Bodies that are pushed: rigid bodies on the ground, stepped by rapier. What else the agent bumps into is in `body.rs`.
+//!
+//! Each time step starts a physics world of its own, made of the pushed bodies that may move, what stands around them and the
+//! agent; nothing but places and velocities goes from one time step to the next. So a world that was written down goes on to
+//! the last bit, and a world at rest costs nothing.
+
+use driftworld_spec::{MotionModel, Object, World};
+use rapier3d::prelude::*;
+
+use super::body::{Ground, SOLID, WALL};
+use super::casting::rank;
+use super::environment::Environment;
+use super::episode::wrapped;
+
+/// What the agent weighs, in kilograms. In each time step it meets what it pushes with this mass at its own speed.
+const AGENT_MASS: f32 = 80.0;
+
+/// Longest step of the physics, in seconds.
+const LONGEST: f32 = 1.0 / 60.0;
+
+/// Most steps of the physics in a time step: longer ones are taken in larger parts.
+const MOST_PARTS: u32 = 60;
+
+/// Standard gravity in metres per second squared: what friction with the ground grows with.
+const GRAVITY: f32 = 9.806_65;
+
+/// Distance in metres within which bodies are taken to be able to meet, on top of their ways.
+const MARGIN: f32 = 0.2;
+
+/// The motion of one body that is pushed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pushed {
+    /// The object's number in the world.
+    pub(super) object: usize,
+    /// In metres per second.
+    pub(super) velocity: [f32; 2],
+    /// In degrees per second, clockwise.
+    pub(super) spin_deg: f32,
+}
+
+/// A body in the physics world of a time step.
+struct Active {
+    /// Its number among the pushed bodies.
+    index: usize,
+    handle: RigidBodyHandle,
+    collider: ColliderHandle,
+    radius: f32,
+    friction: f32,
+}
+
+impl Pushed {
+    /// All that can be pushed in a world, at rest.
+    pub(super) fn all(world: &World) -> Vec<Self> {
+        let objects = world.objects.iter().enumerate();
+        objects.filter_map(|(index, object)| Self::new(index, object)).collect()
+    }
+
+    /// An object's motion, at rest, if it can be pushed.
+    pub(super) fn new(object_index: usize, object: &Object) -> Option<Self> {
+        is_pushed(object).then_some(Self {
+            object: object_index,
+            velocity: [0.0; 2],
+            spin_deg: 0.0,
+        })
+    }
+
+    fn moves(&self) -> bool {
+        self.velocity != [0.0; 2] || self.spin_deg != 0.0
+    }
+}
+
+/// Whether an object can be pushed: it says so, is solid, and does not move by itself.
+pub(super) fn is_pushed(object: &Object) -> bool {
+    object.pushable.is_some() && object.solid && object.motion_model == MotionModel::Stationary
+}
+
+impl Environment {
+    /// Lets the agent push what is in its way, and what was pushed slide on. Hands back how far the agent's own way leads when
+    /// what it pushes holds it up; notes in `scratch.met` what it pushed.
+    pub(super) fn push_bodies(&mut self, by: [f32; 2]) -> [f32; 2] {
+        if self.episode.pushed.is_empty() {
+            return by;
+        }
+        let seconds = self.world.agent_params.time_step as f32;
+        let near_agent = self.may_meet_agent(by);
+        let chosen = self.choose(&near_agent, seconds);
+        if chosen.is_empty() {
+            return by;
+        }
+        let agent_pushes = near_agent.iter().any(|near| *near);
+        let mut physics = PhysicsWorld {
+            gravity: Vector::ZERO,
+            ..PhysicsWorld::default()
+        };
+        let active: Vec<Active> = chosen
+            .into_iter()
+            .map(|index| self.add_active(&mut physics, index))
+            .collect();
+        self.add_surroundings(&mut physics, &active, seconds);
+        let agent = agent_pushes.then(|| self.add_agent(&mut physics, by, seconds));
+        let parts = ((seconds / LONGEST).ceil() as u32).clamp(1, MOST_PARTS);
+        physics.integration_parameters.dt = seconds / parts as f32;
+        for _ in 0..parts {
+            physics.step();
+            if let Some((_, collider)) = agent {
+                self.note_contacts(&physics, collider, &active);
+            }
+            rub(&mut physics, &active);
+        }
+        self.take_over(&physics, &active);
+        let Some((body, _)) = agent else { return by };
+        let end = physics.bodies[body].translation();
+        let start = self.episode.agent.position;
+        [end.x - start[0], end.y - start[1]]
+    }
+
+    /// Which pushed bodies the agent's way may lead to.
+    fn may_meet_agent(&self, by: [f32; 2]) -> Vec<bool> {
+        let reach = (by[0] * by[0] + by[1] * by[1]).sqrt() + self.world.agent_params.agent_width as f32 / 2.0;
+        let near = |index: usize| {
+            let [x, y] = self.way_to(index);
+            reach > 0.0 && (x * x + y * y).sqrt() < reach + self.body_radius(index) + MARGIN
+        };
+        let pushed = self.episode.pushed.iter();
+        pushed
+            .map(|body| self.episode.objects[body.object].present && near(body.object))
+            .collect()
+    }
+
+    /// The pushed bodies that may move in this time step: those that do, those that the agent may meet, and what these may meet.
+    fn choose(&self, near_agent: &[bool], seconds: f32) -> Vec<usize> {
+        let pushed = &self.episode.pushed;
+        let present = |index: usize| self.episode.objects[pushed[index].object].present;
+        let agent_speed = self.world.agent_params.max_linear_speed as f32;
+        let mut chosen: Vec<usize> = (0..pushed.len())
+            .filter(|&index| present(index) && (near_agent[index] || pushed[index].moves()))
+            .collect();
+        let mut next = 0;
+        while let Some(&index) = chosen.get(next) {
+            next += 1;
+            for other in (0..pushed.len()).filter(|&other| present(other)) {
+                let [a, b] = [index, other].map(|index| pushed[index].object);
+                let (at, to) = (self.scene.items[a].position, self.scene.items[b].position);
+                let distance = ((to[0] - at[0]).powi(2) + (to[1] - at[1]).powi(2)).sqrt();
+                let [vx, vy] = pushed[index].velocity;
+                let way = (vx * vx + vy * vy).sqrt().max(agent_speed) * seconds;
+                if distance < self.body_radius(a) + self.body_radius(b) + way + MARGIN && !chosen.contains(&other) {
+                    chosen.push(other);
+                }
+            }
+        }
+        chosen.sort_unstable();
+        chosen
+    }
+
+    fn body_radius(&self, object: usize) -> f32 {
+        let item = &self.scene.items[object];
+        item.asset.collider.radius() * item.scale
+    }
+
+    fn add_active(&self, physics: &mut PhysicsWorld, index: usize) -> Active {
+        let body = self.episode.pushed[index];
+        let item = &self.scene.items[body.object];
+        let (mass, friction) = self.world.objects[body.object]
+            .pushable
+            .map_or((1.0, 0.5), |pushable| (pushable.mass as f32, pushable.friction as f32));
+        let (shape, from_ground) = Ground::shape(item);
+        let turn = Vector::new(0.0, 0.0, -item.heading_deg.to_radians());
+        let place = Pose::new(Vector::new(item.position[0], item.position[1], 0.0), turn);
+        let handle = physics.bodies.insert(
+            RigidBodyBuilder::dynamic()
+                .pose(place)
+                .linvel(Vector::new(body.velocity[0], body.velocity[1], 0.0))
+                .angvel(Vector::new(0.0, 0.0, -body.spin_deg.to_radians()))
+                .enabled_translations(true, true, false)
+                .enabled_rotations(false, false, true)
+                .ccd_enabled(true)
+                .can_sleep(false),
+        );
+        let collider = ColliderBuilder::new(shape)
+            .position(from_ground)
+            .mass(mass)
+            .friction(friction)
+            .restitution(0.0)
+            .user_data(u128::from(index as u64));
+        Active {
+            index,
+            handle,
+            collider: physics
+                .colliders
+                .insert_with_parent(collider, handle, &mut physics.bodies),
+            radius: self.body_radius(body.object).max(0.05),
+            friction,
+        }
+    }
+
+    /// Walls and objects that stand fast around the bodies, in an order that does not depend on how the world came to be.
+    fn add_surroundings(&self, physics: &mut PhysicsWorld, active: &[Active], seconds: f32) {
+        let speed = self.world.agent_params.max_linear_speed as f32;
+        let mut around: Vec<(ColliderHandle, u128)> = Vec::new();
+        for body in active {
+            let pushed = &self.episode.pushed[body.index];
+            let [x, y] = self.scene.items[pushed.object].position;
+            let [vx, vy] = pushed.velocity;
+            let reach = body.radius + (vx * vx + vy * vy).sqrt().max(speed) * seconds + MARGIN;
+            let half = Vector::new(reach, reach, 1e3);
+            let area = Aabb::from_half_extents(Vector::new(x, y, 0.0), half);
+            let own = |object: usize| {
+                active
+                    .iter()
+                    .any(|other| self.episode.pushed[other.index].object == object)
+            };
+            for (handle, collider) in self
+                .ground
+                .query_but(SOLID | WALL, None)
+                .intersect_aabb_conservative(area)
+            {
+                let groups = collider.collision_groups().memberships;
+                let standing = (groups & (SOLID | WALL)) != Group::NONE;
+                let fast = groups == WALL || !own(collider.user_data as usize);
+                if standing && fast && !around.iter().any(|(known, _)| *known == handle) {
+                    around.push((handle, rank(collider)));
+                }
+            }
+        }
+        around.sort_unstable_by_key(|(_, key)| *key);
+        for (handle, _) in around {
+            let standing = &self.ground.colliders[handle];
+            let collider = ColliderBuilder::new(standing.shared_shape().clone()).position(*standing.position());
+            physics.colliders.insert(collider);
+        }
+    }
+
+    /// The agent as a body with its own mass, on the way that it means to go.
+    fn add_agent(&self, physics: &mut PhysicsWorld, by: [f32; 2], seconds: f32) -> (RigidBodyHandle, ColliderHandle) {
+        let [x, y] = self.episode.agent.position;
+        let body = RigidBodyBuilder::dynamic()
+            .translation(Vector::new(x, y, 0.0))
+            .linvel(Vector::new(by[0] / seconds, by[1] / seconds, 0.0))
+            .enabled_translations(true, true, false)
+            .lock_rotations()
+            .ccd_enabled(true)
+            .can_sleep(false);
+        let body = physics.bodies.insert(body);
+        // What it pushes is not held back by its sides, nor is it by walls.
+        let collider = ColliderBuilder::new(self.ground.agent.clone())
+            .mass(AGENT_MASS)
+            .friction(0.0)
+            .friction_combine_rule(CoefficientCombineRule::Min)
+            .restitution(0.0);
+        let collider = physics
+            .colliders
+            .insert_with_parent(collider, body, &mut physics.bodies);
+        (body, collider)
+    }
+
+    fn note_contacts(&mut self, physics: &PhysicsWorld, agent: ColliderHandle, active: &[Active]) {
+        for body in active {
+            let pair = physics.narrow_phase.contact_pair(agent, body.collider);
+            let object = self.episode.pushed[body.index].object as u32;
+            if pair.is_some_and(ContactPair::has_any_active_contact) && !self.scratch.met.contains(&object) {
+                self.scratch.met.push(object);
+            }
+        }
+    }
+
+    /// Puts the bodies where the physics has brought them; one that it brought through a wall stays, at rest.
+    fn take_over(&mut self, physics: &PhysicsWorld, active: &[Active]) {
+        for body in active {
+            let pushed = &mut self.episode.pushed[body.index];
+            let object = pushed.object;
+            let item = &mut self.scene.items[object];
+            let moved = &physics.bodies[body.handle];
+            let (at, turn) = (moved.translation(), moved.rotation());
+            let position = [at.x, at.y];
+            let speeds = [moved.linvel().x, moved.linvel().y, moved.angvel().z];
+            let sound = position.iter().chain(&speeds).all(|number| number.is_finite());
+            if !sound || self.ground.leads_through(item.position, position, object as u32) {
+                (pushed.velocity, pushed.spin_deg) = ([0.0; 2], 0.0);
+                continue;
+            }
+            pushed.velocity = [speeds[0], speeds[1]];
+            pushed.spin_deg = -speeds[2].to_degrees();
+            let yaw = 2.0 * libm::atan2f(turn.z, turn.w);
+            let heading_deg = wrapped(-yaw.to_degrees());
+            // A body at rest keeps its very place, whatever solvers make of it.
+            if position != item.position || pushed.moves() {
+                (item.position, item.heading_deg) = (position, heading_deg);
+                self.ground.remove(object as u32);
+                self.ground
+                    .add_object(object as u32, item, self.world.objects[object].solid);
+            }
+        }
+    }
+}
+
+/// Friction with the ground: it slows what slides and what turns, down to rest.
+fn rub(physics: &mut PhysicsWorld, active: &[Active]) {
+    let seconds = physics.integration_parameters.dt;
+    for body in active {
+        let moved = &mut physics.bodies[body.handle];
+        let loss = body.friction * GRAVITY * seconds;
+        let slower = |speed: f32, loss: f32| if speed > loss { (speed - loss) / speed } else { 0.0 };
+        let along = moved.linvel();
+        moved.set_linvel(along * slower(along.length(), loss), true);
+        // A disc that turns in place loses speed at its rim 4/3 as fast as it would sliding.
+        let around = moved.angvel();
+        moved.set_angvel(around * slower(around.length(), loss * 4.0 / 3.0 / body.radius), true);
+    }
+}

@@ -1,0 +1,110 @@
+//! One step of a world: the action, its time steps, what the rules make of them. What touching things does is in `answer.rs`,
+//! endings are in `judge.rs`.
+
+use driftworld_spec::{ActionModel, LastEvent};
+
+use super::action::{Action, Intent};
+use super::environment::Environment;
+use super::episode::wrapped;
+use super::event::Step;
+use crate::EnvError;
+use crate::agents::Agent;
+
+impl Environment {
+    /// Lets the agent act for one step: in each of its time steps it turns, moves, and what it meets answers.
+    ///
+    /// # Errors
+    /// [`EnvError`] for an action that cannot be carried out, or after the end; nothing is changed then.
+    pub fn step(&mut self, action: Action) -> Result<Step, EnvError> {
+        let mut step = Step::default();
+        self.step_into(action, &mut step)?;
+        Ok(step)
+    }
+
+    /// As [`Environment::step`], into a step whose memory is used again.
+    ///
+    /// # Errors
+    /// Those of [`Environment::step`]; `step` is as it was then.
+    pub fn step_into(&mut self, action: Action, step: &mut Step) -> Result<(), EnvError> {
+        self.check(action)?;
+        step.clear();
+        let mut intent = self.intent(action)?;
+        let potential_before = self.potential();
+        step.reward = self.world.rules.step_reward;
+        for _ in 0..self.world.agent_params.frame_skip.max(1) {
+            self.tick(intent, step);
+            self.judge(step);
+            if step.terminated {
+                break;
+            }
+            intent.interact = false;
+        }
+        self.episode.steps += 1;
+        self.episode.unshaped += step.reward;
+        step.truncated = !step.terminated && self.world.max_steps > 0 && self.episode.steps >= self.world.max_steps;
+        if let Some(shaping) = &self.world.rules.shaping {
+            let after = if step.terminated { 0.0 } else { self.potential() };
+            step.reward += shaping.discount * after - potential_before;
+        }
+        self.episode.earned += step.reward;
+        self.episode.last_reward = step.reward;
+        self.episode.last_event = step.events.last().map(|event| LastEvent {
+            stimulus: event.stimulus,
+            reward: event.reward,
+            destroyed: event.destroyed,
+        });
+        self.episode.ended = step.ended();
+        Ok(())
+    }
+
+    /// Whether the action could be carried out now.
+    ///
+    /// # Errors
+    /// Those of [`Environment::step`].
+    pub fn check(&self, action: Action) -> Result<(), EnvError> {
+        if self.episode.ended {
+            return Err(EnvError::Ended);
+        }
+        action.numbers(&self.world).map(drop)
+    }
+
+    fn intent(&mut self, action: Action) -> Result<Intent, EnvError> {
+        let agent = &self.world.agent_params;
+        let Some(mut rails) = self.episode.rails.take() else {
+            return Ok(Intent::new(agent.action_model, action.numbers(&self.world)?, agent));
+        };
+        let numbers = rails.act(self).numbers(&self.world);
+        self.episode.rails = Some(rails);
+        Ok(Intent::new(ActionModel::ByVelocity, numbers?, &self.world.agent_params))
+    }
+
+    /// One time step.
+    fn tick(&mut self, intent: Intent, step: &mut Step) {
+        self.episode.ticks += 1;
+        self.carry_out(intent);
+        self.bring_back();
+        self.move_objects();
+        self.answer(intent, step);
+    }
+
+    /// Turns and moves the agent, and notes the objects it meets on the way.
+    fn carry_out(&mut self, intent: Intent) {
+        let start = self.episode.agent.position;
+        self.episode.agent.heading_deg = wrapped(self.episode.agent.heading_deg + intent.turn_deg);
+        let by = match intent.towards {
+            Some((point, reach)) => {
+                let way = [point[0] - start[0], point[1] - start[1]];
+                let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
+                let share = if length > reach { reach / length } else { 1.0 };
+                way.map(|metres| metres * share)
+            }
+            None => self.episode.agent.forward().map(|part| part * intent.ahead),
+        };
+        self.scratch.met.clear();
+        let by = self.push_bodies(by);
+        let position = self.ground.slide(start, by, &mut self.scratch.met);
+        self.episode.agent.position = position;
+        let seconds = self.world.agent_params.time_step as f32;
+        self.episode.agent.velocity = [0, 1].map(|axis| (position[axis] - start[axis]) / seconds);
+    }
+}

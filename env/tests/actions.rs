@@ -1,0 +1,283 @@
+//! Actions in all their forms, and what the rules make of a step: frame skip, penalties out of order, shaping.
+
+use driftworld_env::{Action, EnvError, Environment, Obstacle, Warning};
+use driftworld_spec::{ActionModel, ActionSpace, EndCondition, Object, Shaping, StateFeature, Stimulus, World};
+
+fn start(world: World) -> Environment {
+    Environment::new(world).expect("every checked world starts")
+}
+
+fn coin(at: [f64; 2], reward: f64) -> Object {
+    let mut coin = Object::new("barrel", at);
+    coin.reward = reward;
+    coin.reward_once_stimulus = vec![Stimulus::AgentCollide];
+    coin
+}
+
+fn with_actions(actions: ActionSpace) -> World {
+    let mut world = World::default();
+    world.agent_params.actions = actions;
+    world
+}
+
+#[test]
+fn normalised_actions_are_shares_of_the_limits() {
+    let mut environment = start(with_actions(ActionSpace::Normalized));
+    environment
+        .step(Action::Continuous([0.5, 1.0, -1.0]))
+        .expect("the action is sound");
+    let agent = environment.agent();
+    assert_eq!(agent.heading_deg, 9.0);
+    let speed = (agent.velocity[0].powi(2) + agent.velocity[1].powi(2)).sqrt();
+    assert!((speed - 5.0).abs() < 1e-4, "{speed}");
+    environment
+        .step(Action::Continuous([0.0, 7.0, 0.0]))
+        .expect("beyond 1 is cut off");
+    assert_eq!(environment.agent().heading_deg, 18.0);
+}
+
+#[test]
+fn normalised_waypoints_are_shares_of_the_arena() {
+    let mut world = with_actions(ActionSpace::Normalized);
+    world.agent_params.action_model = ActionModel::ByWaypoint;
+    world.environment_params.map_size = [4.0, 20.0];
+    world.agent_params.max_linear_speed = 100.0;
+    let mut environment = start(world);
+    environment
+        .step(Action::Continuous([0.5, -0.25, 0.0]))
+        .expect("the action is sound");
+    assert_eq!(environment.agent().position, [1.0, -2.5]);
+}
+
+#[test]
+fn the_default_table_has_six_moves_and_interact() {
+    let mut environment = start(with_actions(ActionSpace::DefaultDiscrete));
+    for (row, turn) in [(1, -9.0), (2, 9.0), (3, -9.0), (4, 9.0)] {
+        let before = environment.agent().heading_deg;
+        environment.step(Action::Discrete(row)).expect("the row is there");
+        let turned = (environment.agent().heading_deg - before + 540.0).rem_euclid(360.0) - 180.0;
+        assert!((turned - turn).abs() < 1e-3, "row {row} turns {turned}");
+    }
+    let place = environment.agent().position;
+    environment.step(Action::Discrete(0)).expect("the row is there");
+    assert!((environment.agent().position[1] - place[1] - 1.0).abs() < 1e-4);
+    environment.step(Action::Discrete(6)).expect("interact is the seventh");
+    assert_eq!(
+        environment.step(Action::Discrete(7)),
+        Err(EnvError::NoSuchAction { found: 7, last: 6 })
+    );
+    let mut world = with_actions(ActionSpace::DefaultDiscrete);
+    world.agent_params.interact = false;
+    assert_eq!(
+        start(world).step(Action::Discrete(6)),
+        Err(EnvError::NoSuchAction { found: 6, last: 5 })
+    );
+}
+
+#[test]
+fn without_interact_the_third_number_does_nothing() {
+    let paid = |interact: bool| {
+        let mut world = World {
+            objects: vec![Object {
+                reward: 1.0,
+                reward_stimulus: vec![Stimulus::AgentInteract],
+                ..Object::new("barrel", [0.0, 1.2])
+            }],
+            ..World::default()
+        };
+        world.agent_params.interact = interact;
+        start(world)
+            .step(Action::Continuous([0.0, 0.0, 1.0]))
+            .expect("the action is sound")
+            .reward
+    };
+    assert_eq!((paid(true), paid(false)), (1.0, 0.0));
+}
+
+#[test]
+fn a_held_action_lasts_several_time_steps_and_is_one_step() {
+    let run = |frame_skip: u32, steps: usize| {
+        let mut world = World {
+            max_steps: 20,
+            objects: vec![coin([0.0, 3.4], 2.0)],
+            ..World::default()
+        };
+        world.agent_params.frame_skip = frame_skip;
+        world.rules.step_reward = -0.5;
+        let mut environment = start(world);
+        for _ in 0..steps {
+            environment
+                .step(Action::Continuous([5.0, 10.0, 0.0]))
+                .expect("the episode goes on");
+        }
+        (
+            environment.agent().position,
+            environment.num_steps(),
+            environment.episode_return(),
+        )
+    };
+    let (single, held) = (run(1, 8), run(4, 2));
+    assert_eq!(single.0, held.0, "the same way");
+    assert_eq!((single.1, held.1), (8, 2));
+    assert_eq!(
+        (single.2 + 4.0, held.2 + 1.0),
+        (2.0, 2.0),
+        "the step's own reward is paid once a step"
+    );
+}
+
+#[test]
+fn who_interacts_while_an_action_is_held_interacts_once() {
+    let mut world = World {
+        objects: vec![Object {
+            reward: 1.0,
+            reward_stimulus: vec![Stimulus::AgentInteract],
+            ..Object::new("barrel", [0.0, 1.2])
+        }],
+        ..World::default()
+    };
+    world.agent_params.frame_skip = 5;
+    let step = start(world)
+        .step(Action::Continuous([0.0, 0.0, 1.0]))
+        .expect("the action is sound");
+    assert_eq!(step.reward, 1.0);
+}
+
+#[test]
+fn what_is_touched_before_its_turn_costs_the_penalty() {
+    let mut second = coin([0.0, 2.0], 5.0);
+    second.order = Some(2);
+    let mut first = coin([0.0, -2.0], 5.0);
+    first.order = Some(1);
+    let mut world = World {
+        objects: vec![first, second],
+        ..World::default()
+    };
+    world.rules.order_penalty = -3.0;
+    let mut environment = start(world);
+    let mut drive = |speed: f64, steps: usize| -> f64 {
+        (0..steps)
+            .map(|_| {
+                let step = environment.step(Action::Continuous([speed, 0.0, 0.0]));
+                step.expect("the episode goes on").reward
+            })
+            .sum()
+    };
+    assert_eq!(drive(10.0, 3), -3.0, "the second before the first");
+    assert_eq!(drive(-10.0, 6), 5.0);
+    assert_eq!(drive(10.0, 6), 5.0);
+}
+
+#[test]
+fn shaping_pays_the_same_in_all_whatever_way_an_episode_ends_by_itself() {
+    let total = |turn: f64, conditions: Vec<EndCondition>| {
+        let mut world = World {
+            objects: vec![coin([0.0, 4.0], 1.0)],
+            ..World::default()
+        };
+        world.objects[0].tag = Some("goal".to_owned());
+        world.rules.shaping = Some(Shaping {
+            toward: None,
+            scale: 0.5,
+            discount: 1.0,
+        });
+        world.rules.success = conditions;
+        let mut environment = start(world);
+        let mut steps = 0;
+        while !environment.ended() && steps < 200 {
+            let turn = if steps < 10 { turn } else { 0.0 };
+            let [x, y] = environment.agent().position;
+            let home = if steps < 10 {
+                turn
+            } else {
+                let bearing = libm::atan2(f64::from(-x), f64::from(4.0 - y)).to_degrees();
+                (bearing - f64::from(environment.agent().heading_deg) + 540.0).rem_euclid(360.0) - 180.0
+            };
+            environment
+                .step(Action::Continuous([1.0, home * 10.0, 0.0]))
+                .expect("the episode goes on");
+            steps += 1;
+        }
+        assert!(environment.ended(), "the goal is reached");
+        environment.episode_return()
+    };
+    let touch = || vec![EndCondition::Touch("goal".to_owned())];
+    let (straight, around) = (total(0.0, touch()), total(40.0, touch()));
+    assert!((straight - 3.0).abs() < 1e-5, "1 for the coin, 0.5 × 4 m: {straight}");
+    assert!((around - straight).abs() < 1e-5, "{around} {straight}");
+    let counted = total(0.0, vec![EndCondition::ReturnAtLeast(1.0)]);
+    assert!(
+        (counted - 3.0).abs() < 1e-5,
+        "shaping is no part of what is counted: {counted}"
+    );
+}
+
+#[test]
+fn the_state_vector_holds_what_was_asked_for() {
+    let mut world = World {
+        max_steps: 10,
+        objects: vec![coin([3.0, 0.0], 2.0), coin([-20.0, 0.0], 2.0)],
+        ..World::default()
+    };
+    world.objects[1].tag = Some("home".to_owned());
+    world.rules.success = vec![EndCondition::Touch("home".to_owned())];
+    world.agent_params.heading = 90.0;
+    world.agent_params.state_features = vec![
+        StateFeature::Direction,
+        StateFeature::OwnVelocity,
+        StateFeature::Goal,
+        StateFeature::NearestTarget,
+        StateFeature::Counts,
+        StateFeature::LastReward,
+        StateFeature::LastEvent,
+        StateFeature::StepsLeft,
+        StateFeature::Heading,
+    ];
+    let mut environment = start(world);
+    let close = |found: Vec<f32>, expected: [f32; 18]| {
+        assert!(
+            found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-3) && found.len() == 18,
+            "{found:?}\n{expected:?}"
+        );
+    };
+    close(
+        environment.state_vector(),
+        [
+            1.0, 0.0, 0.0, 0.0, -20.0, 0.0, 1.0, 3.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 90.0,
+        ],
+    );
+    for _ in 0..3 {
+        environment
+            .step(Action::Continuous([10.0, 0.0, 0.0]))
+            .expect("the episode goes on");
+        if environment.episode_return() > 0.0 {
+            break;
+        }
+    }
+    let state = environment.state_vector();
+    assert_eq!(state[10..12], [1.0, 1.0], "one left, one collected");
+    assert_eq!(state[12..16], [2.0, 1.0, 2.0, 0.0], "paid 2 for a contact");
+    assert!(state[7] < -20.0, "the nearest target is the other one, behind");
+    let mut short = [0.0; 3];
+    assert_eq!(
+        environment.write_state(&mut short),
+        Err(EnvError::StateLength { found: 3, expected: 18 })
+    );
+}
+
+#[test]
+fn who_starts_in_a_wall_is_told() {
+    let mut world = World::default();
+    world.agent_params.coordinates = [49.9, 0.0];
+    let warnings = start(world).warnings();
+    assert_eq!(
+        warnings,
+        [Warning::StartsInside {
+            obstacle: Obstacle::Wall
+        }]
+    );
+    assert_eq!(
+        warnings[0].to_string(),
+        "/agent_params/coordinates: found a wall, expected free ground; the agent is stuck there"
+    );
+}

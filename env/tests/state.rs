@@ -1,0 +1,210 @@
+//! A running world that is written down, or kept in memory, goes on as if nothing had been: to the last bit, pictures included.
+
+use driftworld_env::{Action, Agent, EnvError, Environment, RandomAgent};
+use driftworld_spec::{
+    ActionModel, ActionSpace, EndCondition, MotionModel, Object, Pushable, Respawn, Shaping, StateFeature, Stimulus,
+    Wall, World,
+};
+use proptest::prelude::*;
+
+/// A small world with something of everything that has a course.
+fn world(action_model: ActionModel, frame_skip: u32) -> World {
+    let object = |class: &str, at: [f64; 2]| Object::new(class, at);
+    let mut coin = object("geometric", [2.0, 2.5]);
+    coin.reward = 1.0;
+    coin.reward_once_stimulus = vec![Stimulus::AgentCollide];
+    coin.destroy_stimulus = vec![Stimulus::AgentCollide];
+    coin.respawn = Some(Respawn {
+        delay: 0.7,
+        radius: 3.0,
+    });
+    let mut arm = object("pot", [-2.0, 1.0]);
+    arm.reward = 2.0;
+    arm.reward_probability = 0.5;
+    arm.reward_stimulus = vec![Stimulus::AgentCollide, Stimulus::AgentInRange, Stimulus::AgentInteract];
+    arm.range_stimulus_distance = 2.0;
+    let mut first = object("barrel", [4.0, -3.0]);
+    (first.order, first.reward) = (Some(1), 3.0);
+    first.reward_once_stimulus = vec![Stimulus::AgentCollide];
+    let mut second = object("barrel", [-4.0, -3.0]);
+    (second.order, second.reward) = (Some(2), 4.0);
+    second.reward_once_stimulus = vec![Stimulus::AgentCollide];
+    let mut wanderer = object("bag", [5.0, 5.0]);
+    (wanderer.motion_model, wanderer.speed) = (MotionModel::RandomWaypoint, 2.0);
+    let mut patrol = object("chair", [-5.0, 5.0]);
+    (patrol.motion_model, patrol.speed, patrol.turn_rate) = (MotionModel::Patrol, 1.5, Some(90.0));
+    patrol.waypoints = vec![[-5.0, 5.0], [-5.0, -5.0], [0.0, 4.0]];
+    let mut hunter = object("rock", [6.0, -6.0]);
+    (hunter.motion_model, hunter.speed) = (MotionModel::Predator, 1.0);
+    let mut box_ = object("cube", [0.5, 1.9]);
+    box_.pushable = Some(Pushable {
+        mass: 15.0,
+        friction: 0.2,
+    });
+    let mut drum = object("geometric", [-1.0, 3.1]);
+    (drum.model.0, drum.pushable) = ("3".to_owned(), box_.pushable);
+    let mut world = World {
+        max_steps: 200,
+        objects: vec![coin, arm, first, second, wanderer, patrol, hunter, box_, drum],
+        ..World::default()
+    };
+    world.environment_params.map_size = [16.0, 16.0];
+    world.environment_params.walls = vec![Wall {
+        polygon: vec![[-6.0, 0.0], [-3.0, 0.0], [-3.0, 0.3], [-6.0, 0.3]],
+        height: None,
+        color: None,
+    }];
+    let agent = &mut world.agent_params;
+    (agent.action_model, agent.frame_skip, agent.observation_size) = (action_model, frame_skip, 24);
+    agent.actions = ActionSpace::Continuous;
+    agent.max_linear_speed = 6.0;
+    agent.state_features = vec![
+        StateFeature::Position,
+        StateFeature::OwnVelocity,
+        StateFeature::NearestTarget,
+        StateFeature::Counts,
+        StateFeature::LastReward,
+        StateFeature::LastEvent,
+        StateFeature::StepsLeft,
+    ];
+    world.rules.order_penalty = -1.0;
+    world.rules.shaping = Some(Shaping {
+        toward: None,
+        scale: 0.1,
+        discount: 0.95,
+    });
+    world.rules.success = vec![EndCondition::ReturnAtLeast(60.0)];
+    world
+}
+
+fn start(world: World) -> Environment {
+    Environment::new(world).expect("every checked world starts")
+}
+
+/// All that can be told of a step and of the moment after it; numbers as they are written, which is exact.
+type Trace = Vec<Vec<String>>;
+
+/// The first step in which two courses differ, and how.
+fn difference(a: &Trace, b: &Trace) -> Option<String> {
+    if a.len() != b.len() {
+        return Some(format!("{} and {} steps", a.len(), b.len()));
+    }
+    let (number, (a, b)) = a.iter().zip(b).enumerate().find(|(_, (a, b))| a != b)?;
+    let apart: Vec<_> = a.iter().zip(b).filter(|(a, b)| a != b).collect();
+    Some(format!("step {number}: {apart:?}"))
+}
+
+fn go_on(environment: &mut Environment, actions: &[Action]) -> Trace {
+    let mut trace = Vec::new();
+    for action in actions {
+        let step = match environment.step(*action) {
+            Ok(step) => step,
+            Err(EnvError::Ended) => break,
+            Err(error) => panic!("{error}"),
+        };
+        let mut told = vec![
+            format!("reward {}", step.reward),
+            format!("state {:?}", environment.state_vector()),
+            format!("events {:?}", step.events),
+        ];
+        let items = environment.scene().items.iter().enumerate();
+        told.extend(items.map(|(index, item)| format!("item {index} {:?} {}", item.position, item.heading_deg)));
+        trace.push(told);
+    }
+    trace
+}
+
+fn actions(seed: u64, environment: &Environment, count: usize) -> Vec<Action> {
+    let mut agent = RandomAgent::new(seed);
+    let mut actions = Vec::new();
+    for number in 0..count {
+        let Action::Continuous([a, b, c]) = agent.act(environment) else {
+            panic!("the space is continuous");
+        };
+        // Now and then to a place, for agents that walk to places.
+        actions.push(Action::Continuous([a, b, if number % 3 == 0 { 1.0 } else { c }]));
+    }
+    actions
+}
+
+fn model() -> impl Strategy<Value = ActionModel> {
+    prop_oneof![
+        4 => Just(ActionModel::ByVelocity),
+        1 => Just(ActionModel::ByWaypoint),
+        2 => Just(ActionModel::OnRails),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn a_world_goes_on_from_its_state_and_from_a_snapshot(
+        seed in any::<u64>(),
+        before in 0usize..70,
+        after in 1usize..60,
+        frame_skip in 1u32..4,
+        model in model(),
+    ) {
+        let mut environment = start(world(model, frame_skip));
+        let actions = actions(seed, &environment, before + after);
+        go_on(&mut environment, &actions[..before]);
+        if before % 2 == 1 && !environment.ended() {
+            let mut spawned = Object::new("mushroom", [-0.8, -1.2]);
+            spawned.reward = 1.0;
+            spawned.reward_stimulus = vec![Stimulus::AgentCollide];
+            environment.spawn(spawned).expect("the mushroom is sound");
+            environment.destroy(3).expect("the second barrel is there");
+        }
+        let snapshot = environment.snapshot();
+        let text = environment.state().to_json();
+        let picture = environment.observe().rgb.clone();
+        let uninterrupted = go_on(&mut environment, &actions[before..]);
+
+        let read = World::from_json("state", &text).map_err(|error| TestCaseError::fail(error.to_string()))?;
+        let mut resumed = start(read);
+        prop_assert_eq!(resumed.state().to_json(), text, "the state of a state is that state");
+        prop_assert_eq!(&resumed.observe().rgb, &picture);
+        let resumed = go_on(&mut resumed, &actions[before..]);
+        prop_assert_eq!(difference(&resumed, &uninterrupted), None, "from the state");
+
+        environment.restore(&snapshot).expect("every moment comes back");
+        prop_assert_eq!(&environment.observe().rgb, &picture);
+        let restored = go_on(&mut environment, &actions[before..]);
+        prop_assert_eq!(difference(&restored, &uninterrupted), None, "from the snapshot");
+    }
+}
+
+#[test]
+fn a_state_says_what_is_now_and_keeps_what_was_at_the_start() {
+    let mut environment = start(world(ActionModel::ByVelocity, 1));
+    let begun = environment.world().clone();
+    for action in actions(7, &environment, 60) {
+        environment.step(action).expect("the episode goes on");
+    }
+    let state = environment.state();
+    assert_eq!(
+        state.objects[5].coordinates,
+        environment.scene().items[5].position.map(f64::from)
+    );
+    assert_eq!(
+        state.agent_params.coordinates,
+        environment.agent().position.map(f64::from)
+    );
+    let progress = state.progress.as_ref().expect("a state has progress");
+    assert_eq!((progress.steps, progress.objects.len()), (60, begun.objects.len()));
+    assert_eq!(progress.episode_return, environment.episode_return());
+    assert_eq!(*start(state).world(), begun, "a resumed world knows its start");
+}
+
+#[test]
+fn an_ended_episode_stays_ended() {
+    let mut short = world(ActionModel::ByVelocity, 1);
+    short.max_steps = 1;
+    let mut environment = start(short);
+    environment
+        .step(Action::Continuous([0.0; 3]))
+        .expect("the first step is allowed");
+    let mut resumed = start(environment.state());
+    assert_eq!(resumed.step(Action::Continuous([0.0; 3])), Err(EnvError::Ended));
+}

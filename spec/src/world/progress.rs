@@ -1,0 +1,234 @@
+//! How far a running world has come: what a world needs beside its objects' places to go on as if it had never been written
+//! down. Writing and reading it is `env`'s.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::World;
+use crate::error::Problem;
+
+/// The course of a running world; absent at its start.
+///
+/// The objects of a world with progress are those of its start and those that were spawned since, where they are now; the
+/// destroyed ones are among them. `Environment::state` writes it, a reset to such a world goes on from there.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Progress {
+    /// Hash of the world at its start, which its chance grows from: 64 hexadecimal letters; absent if nothing depends on chance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
+    pub seed: Option<String>,
+    /// Steps since the start.
+    #[schemars(range(min = 0, max = 4_294_967_295_u32))]
+    pub steps: u32,
+    /// Time steps since the start.
+    #[schemars(range(min = 0, max = MOST))]
+    pub ticks: u64,
+    /// The sum of rewards since the start.
+    pub episode_return: f64,
+    /// The same without what shaping paid.
+    pub unshaped_return: f64,
+    /// What the last step paid.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub last_reward: f64,
+    /// The last event of the last step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub last_event: Option<LastEvent>,
+    /// Whether the episode is over.
+    #[serde(skip_serializing_if = "is_false")]
+    pub ended: bool,
+    /// The agent's velocity over the last time step in metres per second.
+    pub velocity: [f64; 2],
+    /// Where the agent set out; absent if it is there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub origin: Option<Origin>,
+    /// Words drawn from the stream of bandit arms and returning objects.
+    #[serde(skip_serializing_if = "is_none_drawn")]
+    #[schemars(range(min = 0, max = MOST))]
+    pub chance: u64,
+    /// What an agent on rails is about to do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rails: Option<RailsProgress>,
+    /// One for each object, in order.
+    #[schemars(length(max = 100_000))]
+    pub objects: Vec<ObjectProgress>,
+}
+
+/// The largest whole number that every reader of JSON keeps: 2⁵³ − 1.
+const MOST: u64 = (1 << 53) - 1;
+
+/// An event, as the state vector tells it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LastEvent {
+    /// What set it off.
+    pub stimulus: super::Stimulus,
+    /// What was paid for it.
+    pub reward: f64,
+    /// Whether it destroyed the object.
+    pub destroyed: bool,
+}
+
+/// How something stood at the start.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Origin {
+    /// Its place in metres.
+    #[schemars(inner(range(min = -300.0, max = 300.0)))]
+    pub coordinates: [f64; 2],
+    /// Its heading in degrees.
+    #[schemars(range(min = 0.0, max = 360.0))]
+    pub heading: f64,
+    /// What one triggering was worth.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    #[schemars(range(min = -1e9, max = 1e9))]
+    pub reward: f64,
+}
+
+/// How far an object has come.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct ObjectProgress {
+    /// Whether it is there.
+    #[serde(skip_serializing_if = "is_true")]
+    pub present: bool,
+    /// Whether it has paid, or was destroyed: places in a sequence count on it.
+    #[serde(skip_serializing_if = "is_false")]
+    pub collected: bool,
+    /// Whether the agent touches it, so that it is no new contact.
+    #[serde(skip_serializing_if = "is_false")]
+    pub touched: bool,
+    /// Whether the agent was in its range at the end of the last step.
+    #[serde(skip_serializing_if = "is_false")]
+    pub in_range: bool,
+    /// How it stood at the start; absent if it still stands so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub origin: Option<Origin>,
+    /// The time step in which it comes back.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = MOST))]
+    pub returns_at: Option<u64>,
+    /// Where a wanderer is going, in metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(inner(range(min = -300.0, max = 300.0))))]
+    pub goal: Option<[f64; 2]>,
+    /// Number of the next point of a patrol, from 0.
+    #[serde(skip_serializing_if = "is_first")]
+    #[schemars(range(min = 0, max = 999))]
+    pub waypoint: u32,
+    /// Words drawn from its own stream of chance.
+    #[serde(skip_serializing_if = "is_none_drawn")]
+    #[schemars(range(min = 0, max = MOST))]
+    pub chance: u64,
+    /// Velocity of what was pushed, in metres per second.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(inner(inner(range(min = -1e6, max = 1e6))))]
+    pub velocity: Option<[f64; 2]>,
+    /// How fast what was pushed turns, in degrees per second clockwise.
+    #[serde(skip_serializing_if = "is_zero")]
+    #[schemars(range(min = -1e9, max = 1e9))]
+    pub spin: f64,
+}
+
+impl Default for ObjectProgress {
+    fn default() -> Self {
+        Self {
+            present: true,
+            collected: false,
+            touched: false,
+            in_range: false,
+            origin: None,
+            returns_at: None,
+            goal: None,
+            waypoint: 0,
+            chance: 0,
+            velocity: None,
+            spin: 0.0,
+        }
+    }
+}
+
+/// What an agent on rails is about to do.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct RailsProgress {
+    /// Index of the object that it goes to.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 99_999))]
+    pub target: Option<u32>,
+    /// Where that object stood when it was chosen, in metres.
+    #[schemars(inner(range(min = -300.0, max = 300.0)))]
+    pub goal: [f64; 2],
+    /// Indices of the objects that the way leads around.
+    #[schemars(length(max = 100_000), inner(range(min = 0, max = 99_999)))]
+    pub avoided: Vec<u32>,
+    /// Steps on this target.
+    #[schemars(range(min = 0, max = 4_294_967_295_u32))]
+    pub patience: u32,
+    /// Indices of the targets that were left for later.
+    #[schemars(length(max = 100_000), inner(range(min = 0, max = 99_999)))]
+    pub given_up: Vec<u32>,
+}
+
+/// What of a world's progress does not fit the world.
+pub(super) fn problems(world: &World) -> Vec<Problem> {
+    let Some(progress) = &world.progress else {
+        return Vec::new();
+    };
+    let (found, expected) = (progress.objects.len(), world.objects.len());
+    let mut problems = Vec::new();
+    if found != expected {
+        problems.push(Problem::new(
+            "spec/progress",
+            "/progress/objects",
+            format!("the progress of {found} objects"),
+            format!("one for each of {expected} objects"),
+        ));
+    }
+    for (index, (object, progress)) in world.objects.iter().zip(&progress.objects).enumerate() {
+        if progress.waypoint as usize >= object.waypoints.len().max(1) {
+            problems.push(Problem::new(
+                "spec/progress",
+                format!("/progress/objects/{index}/waypoint"),
+                format!("waypoint {}", progress.waypoint),
+                format!("one of {} waypoints, counted from 0", object.waypoints.len()),
+            ));
+        }
+    }
+    let rails = progress.rails.iter();
+    let named = rails.flat_map(|rails| rails.target.iter().chain(&rails.avoided).chain(&rails.given_up));
+    if let Some(index) = named.copied().find(|index| *index as usize >= expected) {
+        problems.push(Problem::new(
+            "spec/progress",
+            "/progress/rails",
+            format!("object {index}"),
+            format!("one of {expected} objects, counted from 0"),
+        ));
+    }
+    problems
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_true(value: &bool) -> bool {
+    *value
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_false(value: &bool) -> bool {
+    !*value
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_first(value: &u32) -> bool {
+    *value == 0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_none_drawn(value: &u64) -> bool {
+    *value == 0
+}
