@@ -15,7 +15,10 @@ mod sim;
 mod vector;
 
 pub use agents::{Agent, OnRailsAgent, RandomAgent};
-pub use assets::{Asset, ColliderShape, Mesh, Paint, Part, asset, classes};
+pub use assets::{
+    Asset, Catalogue, ColliderShape, Library, LibraryModel, MAX_LIBRARY_MODELS, MAX_MODEL_LEVELS, MAX_MODEL_PARTS,
+    MAX_MODEL_REACH, MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES, MAX_NAME_BYTES, Mesh, Paint, Part, asset, classes,
+};
 pub use batch::{Autoreset, Batch, BatchOptions, Episode, ImageLayout, Images, MAX_ENVS, Outputs, WorldSource};
 pub use camera::Camera;
 pub use error::EnvError;

@@ -1,8 +1,11 @@
-//! What objects look like: meshes made by code from class and model number, and their colliders. Where they stand is the scene's.
+//! What objects look like: meshes made by code from class and model number or read from libraries, and their colliders. Where
+//! they stand is the scene's.
 
 mod blocks;
+mod builtin;
 mod catalogue;
 mod furniture;
+mod library;
 mod mesh;
 mod nature;
 mod structures;
@@ -14,6 +17,11 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use driftworld_spec::Model;
 
 pub(crate) use blocks::{BLOCK, Block, Coat};
+pub use catalogue::Catalogue;
+pub use library::{
+    Library, LibraryModel, MAX_LIBRARY_MODELS, MAX_MODEL_LEVELS, MAX_MODEL_PARTS, MAX_MODEL_REACH, MAX_MODEL_TRIANGLES,
+    MAX_MODEL_VERTICES, MAX_NAME_BYTES,
+};
 pub use mesh::Mesh;
 
 /// The look and the body of one model of one class, at scale 1.
@@ -38,6 +46,7 @@ pub struct Asset {
 struct Level {
     /// How far the surface may be from where it should be, in metres at scale 1.
     error: f32,
+    num_triangles: usize,
     coats: Vec<Coat>,
 }
 
@@ -46,6 +55,31 @@ impl Asset {
     pub(crate) fn level(&self, error: f32) -> &[Coat] {
         let good = self.levels.iter().rev().find(|level| level.error <= error);
         good.or(self.levels.first()).map_or(&[], |level| &level.coats)
+    }
+
+    /// An asset of these levels of detail, each with its error in metres; the first is the whole of it.
+    pub(crate) fn of_levels(levels: Vec<(f32, Vec<Part>)>, collider: ColliderShape) -> Self {
+        let coated = levels.iter().map(|(error, parts)| Level {
+            error: *error,
+            num_triangles: parts.iter().map(|part| part.mesh.triangles.len()).sum(),
+            coats: parts.iter().map(Coat::new).collect(),
+        });
+        let coated = coated.collect();
+        let parts = levels.into_iter().next().map_or_else(Vec::new, |(_, parts)| parts);
+        let corners = || parts.iter().flat_map(|part| &part.mesh.corners);
+        Self {
+            collider,
+            height: corners().fold(0.01_f32, |most, corner| most.max(corner[2])),
+            radius: reach(corners()).max(0.01),
+            known: true,
+            levels: coated,
+            parts,
+        }
+    }
+
+    /// Triangles of each level of detail, and its largest error in metres at scale 1: from all of it to the coarsest.
+    pub fn levels(&self) -> impl Iterator<Item = (usize, f32)> {
+        self.levels.iter().map(|level| (level.num_triangles, level.error))
     }
 
     /// Radius of the ball around the middle of the asset's height that holds all of it, in metres at scale 1.
@@ -76,7 +110,7 @@ pub enum Paint {
 }
 
 /// The shape of a body, in metres at scale 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ColliderShape {
     /// A box of these half sides.
     Box {
@@ -95,6 +129,18 @@ pub enum ColliderShape {
         /// Half of the height.
         half_height: f32,
     },
+    /// An upright cylinder with round ends, which stands on the ground.
+    Capsule {
+        /// Radius of the cylinder and of its ends.
+        radius: f32,
+        /// Half of the height of the straight part between the ends.
+        half_height: f32,
+    },
+    /// The least convex shape around these points, upright as the asset.
+    Hull {
+        /// Points in metres in the object's frame.
+        points: Vec<[f32; 3]>,
+    },
 }
 
 impl ColliderShape {
@@ -102,12 +148,18 @@ impl ColliderShape {
     pub fn radius(&self) -> f32 {
         match self {
             Self::Box { half: [x, y, _] } => (x * x + y * y).sqrt(),
-            Self::Ball { radius } | Self::Cylinder { radius, .. } => *radius,
+            Self::Ball { radius } | Self::Cylinder { radius, .. } | Self::Capsule { radius, .. } => *radius,
+            Self::Hull { points } => reach(points.iter()),
         }
     }
 }
 
-/// The asset of a class and model; made once, then shared. What is not known is a placeholder.
+/// Largest distance of points from the upright axis.
+fn reach<'a>(points: impl Iterator<Item = &'a [f32; 3]>) -> f32 {
+    points.fold(0.0, |most, [x, y, _]| most.max((x * x + y * y).sqrt()))
+}
+
+/// The built-in asset of a class and model; made once, then shared. What is not known is a placeholder.
 pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
     type Made = HashMap<(String, u32), Arc<Asset>>;
     static MADE: LazyLock<Mutex<Made>> = LazyLock::new(Mutex::default);
@@ -118,7 +170,7 @@ pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
     if let Some(asset) = made.get(&(class.clone(), number)) {
         return Arc::clone(asset);
     }
-    let known = catalogue::models(&class).is_some_and(|models| (1..=models).contains(&number));
+    let known = builtin::models(&class).is_some_and(|models| (1..=models).contains(&number));
     // Names that nobody knows share one placeholder, so that strangers cannot fill the memory.
     let key = if known {
         (class.clone(), number)
@@ -126,14 +178,14 @@ pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
         (String::new(), 0)
     };
     let made_before = made.get(&key).cloned();
-    let asset = made_before.unwrap_or_else(|| Arc::new(catalogue::make(&key.0, key.1)));
+    let asset = made_before.unwrap_or_else(|| Arc::new(builtin::make(&key.0, key.1)));
     made.insert(key, Arc::clone(&asset));
     asset
 }
 
 /// The classes that are known, and how many models each has, in alphabetical order.
 pub fn classes() -> impl Iterator<Item = (&'static str, u32)> {
-    catalogue::CLASSES.iter().copied()
+    builtin::CLASSES.iter().copied()
 }
 
 /// Parts on their way to an asset.
@@ -179,24 +231,11 @@ impl Builder {
     }
 
     fn asset(self) -> Asset {
-        let corners = || self.0.iter().flat_map(|part| &part.mesh.corners);
-        let height = corners().fold(0.01_f32, |most, corner| most.max(corner[2]));
-        let radius = corners().fold(0.01_f32, |most, [x, y, _]| most.max((x * x + y * y).sqrt()));
-        let collider = ColliderShape::Cylinder {
-            radius,
-            half_height: height / 2.0,
+        let cylinder = ColliderShape::Cylinder {
+            radius: 0.01,
+            half_height: 0.01,
         };
-        Asset {
-            collider,
-            height,
-            radius,
-            known: true,
-            levels: vec![Level {
-                error: 0.0,
-                coats: self.0.iter().map(Coat::new).collect(),
-            }],
-            parts: self.0,
-        }
+        Asset::of_levels(vec![(0.0, self.0)], cylinder)
     }
 }
 

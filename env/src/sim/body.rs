@@ -143,7 +143,7 @@ impl Ground {
     /// Puts an object's body where its item stands.
     pub(crate) fn add_object(&mut self, index: u32, item: &Item, solid: bool) {
         let scale = item.scale;
-        let (shape, height, tilt) = match item.asset.collider {
+        let (shape, height, tilt) = match &item.asset.collider {
             ColliderShape::Box { half } => {
                 let [x, y, z] = half.map(|metres| (metres * scale).max(0.005));
                 (SharedShape::cuboid(x, y, z), z, 0.0)
@@ -153,6 +153,19 @@ impl Ground {
                 // The engine's cylinders lie along y.
                 let (radius, half) = ((radius * scale).max(0.005), (half_height * scale).max(0.005));
                 (SharedShape::cylinder(half, radius), half, std::f32::consts::FRAC_PI_2)
+            }
+            ColliderShape::Capsule { radius, half_height } => {
+                let (radius, half) = ((radius * scale).max(0.005), half_height * scale);
+                let end = Vector::new(0.0, 0.0, half);
+                (SharedShape::capsule(-end, end, radius), half + radius, 0.0)
+            }
+            ColliderShape::Hull { points } => {
+                let points: Vec<Vector> = points
+                    .iter()
+                    .map(|[x, y, z]| Vector::new(x * scale, y * scale, z * scale))
+                    .collect();
+                let hull = SharedShape::convex_hull(&points);
+                (hull.unwrap_or_else(|| SharedShape::ball(0.005)), 0.0, 0.0)
             }
         };
         let at = Vector::new(item.position[0], item.position[1], height);
