@@ -5,6 +5,8 @@ mod blocks;
 mod builtin;
 mod catalogue;
 mod furniture;
+#[cfg(feature = "import")]
+mod import;
 mod library;
 mod mesh;
 mod nature;
@@ -18,6 +20,11 @@ use driftworld_spec::Model;
 
 pub(crate) use blocks::{BLOCK, Block, Coat};
 pub use catalogue::Catalogue;
+#[cfg(feature = "import")]
+pub use import::{
+    ColliderKind, ImportOptions, ImportSize, ImportWarning, Imported, MAX_IMPORT_BYTES, MAX_IMPORT_DEPTH,
+    MAX_IMPORT_NODES, MAX_TEXTURE_SIDE, ReadBeside,
+};
 pub use library::{
     Library, LibraryModel, MAX_LIBRARY_MODELS, MAX_MODEL_LEVELS, MAX_MODEL_PARTS, MAX_MODEL_REACH, MAX_MODEL_TRIANGLES,
     MAX_MODEL_VERTICES, MAX_NAME_BYTES,

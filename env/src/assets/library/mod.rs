@@ -4,6 +4,8 @@
 mod bytes;
 mod model;
 
+#[cfg(feature = "import")]
+pub(crate) use model::Detail;
 pub use model::LibraryModel;
 pub(crate) use model::MAX_HULL_POINTS;
 
