@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
-use driftworld_env::{Agent, Environment, Step};
+use driftworld_env::{Agent, Catalogue, Environment, Step};
 use driftworld_generator::Sampler;
 use driftworld_metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, ScenarioType, TaskParams, Timestamp};
 use driftworld_spec::{BlockKind, Regime, Scenario, Variant};
@@ -22,6 +22,8 @@ pub struct Surroundings<'a> {
     pub now: &'a mut dyn FnMut() -> Timestamp,
     /// Told after each experience; may end the run there. What was lived until then is in the log.
     pub watch: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    /// Where worlds take their assets from.
+    pub catalogue: Catalogue,
 }
 
 /// How far a run has come.
@@ -237,7 +239,10 @@ impl Life<'_, '_> {
                     environment.reset(world).map_err(failed)?;
                     environment
                 }
-                None => environment.insert(Environment::new(world).map_err(failed)?),
+                None => {
+                    let catalogue = self.around.catalogue.clone();
+                    environment.insert(Environment::with_catalogue(world, catalogue).map_err(failed)?)
+                }
             };
             let experience = self.episode(environment, place.kind).map_err(failed)?;
             self.record(place, &name, params(regime, variant, index), &experience)?;

@@ -150,11 +150,10 @@ mod tests {
             two_sided: false,
             color: [0.5; 3],
         });
-        Surface {
-            corners: mesh.corners.clone(),
-            faces: faces.collect(),
-            ..Surface::default()
-        }
+        let mut surface = Surface::default();
+        surface.corners.clone_from(&mesh.corners);
+        surface.faces.extend(faces);
+        surface
     }
 
     #[track_caller]

@@ -2,6 +2,7 @@
 //! colour.
 
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use gltf_json::{Index, Root};
 
@@ -13,6 +14,9 @@ use crate::EnvError;
 
 /// The most pixels of all textures of a model together: two of the largest.
 const MAX_PIXELS: usize = 2 * 4096 * 4096;
+
+/// The most images that are read.
+const MAX_IMAGES: usize = 256;
 
 /// The textures of a file, read when they are first asked for.
 pub(super) struct Textures<'a, 'b> {
@@ -67,6 +71,10 @@ impl<'a, 'b> Textures<'a, 'b> {
             let found = format!("image {index}");
             return Err(refuse("/textures", found, one_of(self.root.images.len())));
         };
+        if self.images.len() >= MAX_IMAGES {
+            let found = format!("more than {MAX_IMAGES} images in use");
+            return Err(refuse("/images", found, "at most that"));
+        }
         let place = format!("/images/{index}");
         let owned;
         let bytes = match (&image.uri, image.buffer_view) {
@@ -130,6 +138,9 @@ fn decoded(bytes: &[u8], place: &str) -> Result<Pixels, EnvError> {
     })
 }
 
+/// The light of each byte.
+static LIGHT: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|byte| linear(byte as f32 / 255.0)));
+
 impl Pixels {
     /// Light and opacity at a place in texture coordinates: the nearest pixel, the image repeated for ever.
     pub(super) fn at(&self, [u, v]: [f32; 2]) -> [f32; 4] {
@@ -137,7 +148,7 @@ impl Pixels {
             |place: f32, size: usize| ((place.rem_euclid(1.0) * size as f32) as usize).min(size.saturating_sub(1));
         let at = index(v, self.height) * self.width + index(u, self.width);
         let [r, g, b, alpha] = self.rgba.get(at).copied().unwrap_or([255; 4]);
-        let light = |byte: u8| linear(f32::from(byte) / 255.0);
+        let light = |byte: u8| LIGHT[usize::from(byte)];
         [light(r), light(g), light(b), f32::from(alpha) / 255.0]
     }
 }

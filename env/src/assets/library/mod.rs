@@ -9,6 +9,8 @@ pub(crate) use model::Detail;
 pub use model::LibraryModel;
 pub(crate) use model::MAX_HULL_POINTS;
 
+use std::collections::BTreeSet;
+
 use crate::EnvError;
 use crate::assets::catalogue::key;
 
@@ -37,6 +39,8 @@ pub const MAX_NAME_BYTES: usize = 200;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Library {
     models: Vec<LibraryModel>,
+    /// Class and name of each model, as they are looked up.
+    keys: BTreeSet<(String, String)>,
 }
 
 impl Library {
@@ -53,8 +57,7 @@ impl Library {
                 expected: "fewer; begin another library".into(),
             });
         }
-        let same = |other: &LibraryModel| key(&other.class, &other.name) == key(&model.class, &model.name);
-        if self.models.iter().any(same) {
+        if !self.keys.insert(key(&model.class, &model.name)) {
             return Err(EnvError::BadModel {
                 place: place(),
                 found: "it in the library already".into(),
