@@ -98,7 +98,7 @@ fn changed(changes: &[(&str, Value)]) -> Vec<u8> {
                     list.push(value.clone());
                 }
             }
-            parent => parent[*key] = value.clone(),
+            parent => parent[key] = value.clone(),
         }
     }
     text(&document)

@@ -79,12 +79,11 @@ impl Show {
                 .iter()
                 .map(|name| catalogue.asset(class, &Model(name.clone())))
                 .collect();
-            let words = assets
-                .iter()
-                .map(|asset| format!("{} △, {:.1} m", triangles(asset), asset.height));
+            let counts: Vec<String> = assets.iter().map(|asset| triangles(asset).to_string()).collect();
+            let heights: Vec<String> = assets.iter().map(|asset| format!("{:.1}", asset.height)).collect();
             SheetRow {
                 title: format!("{class} {}", names.join(", ")),
-                words: words.collect::<Vec<_>>().join("  ·  "),
+                words: format!("{} triangles; {} m high", counts.join(", "), heights.join(", ")),
                 pictures: assets.iter().map(|asset| self.picture(asset, 210.0)).collect(),
             }
         });

@@ -100,6 +100,7 @@ impl<'a> Buffers<'a> {
 pub(super) fn one_of(length: usize) -> String {
     match length {
         0 => "none, for there are none".to_owned(),
+        1 => "0, the only one".to_owned(),
         length => format!("0 to {}", length - 1),
     }
 }

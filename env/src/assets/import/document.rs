@@ -33,7 +33,7 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
         let said = error.to_string();
         let words = said.split(" at line ").next().unwrap_or(&said);
         let place = format!("line {}, column {}", error.line(), error.column());
-        refuse(place, words, "glTF 2.0 JSON")
+        refuse(place, format!("a fault: {words}"), "glTF 2.0 JSON")
     })?;
     if !root.asset.version.starts_with("2.") {
         let found = format!("{:?}", shortened(&root.asset.version));

@@ -8,7 +8,7 @@ use crate::assets::ColliderShape;
 /// The height in metres up to which a body is looked at: what an agent can bump into. A crown above it takes no room.
 const KNEE_TO_HEAD: f32 = 2.0;
 
-/// Least size of a body in metres, so that sheets have one.
+/// Least half size of a body in metres, so that sheets have one.
 const LEAST: f32 = 0.01;
 
 /// Which body a model gets.
@@ -58,7 +58,7 @@ impl ColliderKind {
             Self::Cylinder => ColliderShape::Cylinder { radius, half_height },
             Self::Capsule => {
                 let radius = radius.min(half_height);
-                let half_height = (half_height - radius).max(LEAST / 2.0);
+                let half_height = (half_height - radius).max(LEAST);
                 ColliderShape::Capsule { radius, half_height }
             }
             Self::Hull => hull(surface).unwrap_or_else(|| Self::Box.fit(surface)),
@@ -69,9 +69,9 @@ impl ColliderKind {
 impl Extent {
     fn of(surface: &Surface) -> Self {
         let mut extent = Self {
-            half: [LEAST / 2.0; 2],
-            radius: LEAST / 2.0,
-            height: LEAST,
+            half: [LEAST; 2],
+            radius: LEAST,
+            height: 2.0 * LEAST,
         };
         for face in &surface.faces {
             let corners = face.corners.map(|corner| surface.corners[corner as usize]);

@@ -17,8 +17,8 @@ const KEPT: usize = 4;
 /// The largest error of a level, as a share of the surface's size.
 const MOST_ERROR: f32 = 0.2;
 
-/// Up to three coarser levels of a surface, triangles in groups that stay apart; each with at most two thirds of the triangles
-/// of the one before.
+/// Up to three coarser levels of a surface, triangles in groups of one colour; each level with at most two thirds of the triangles
+/// of the one before. Groups share no corners.
 pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Detail> {
     let mut group_of = vec![0_usize; corners.len()];
     for (group, triangles) in groups.iter().enumerate() {
@@ -28,30 +28,26 @@ pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Deta
             .for_each(|corner| group_of[*corner as usize] = group);
     }
     let whole: Vec<u32> = groups.iter().flatten().flatten().copied().collect();
-    let most_error = MOST_ERROR * size(corners);
+    let most_error = MOST_ERROR * size(corners.iter());
     let mut levels: Vec<Detail> = Vec::new();
     let mut before = whole.len() / 3;
     for _ in 1..MAX_MODEL_LEVELS {
         if before < WORTH_IT {
             break;
         }
-        let wanted = before / KEPT * 3;
-        let indices = simplified(&whole, corners, wanted, most_error);
-        let triangles: Vec<[u32; 3]> = indices
-            .chunks_exact(3)
-            .map(|three| [three[0], three[1], three[2]])
-            .collect();
-        let Some(error) = largest_distance(corners, &whole, &triangles) else {
-            break;
-        };
-        if triangles.len() * 3 > before * 2 || error > most_error {
-            break;
-        }
-        before = triangles.len();
+        let indices = simplified(&whole, corners, before / KEPT * 3, most_error);
         let mut by_group = vec![Vec::new(); groups.len()];
-        for triangle in triangles {
-            by_group[majority(triangle.map(|corner| group_of[corner as usize]))].push(triangle);
+        for three in indices.chunks_exact(3) {
+            by_group[group_of[three[0] as usize]].push([three[0], three[1], three[2]]);
         }
+        let pairs = groups.iter().zip(&by_group);
+        let error = pairs
+            .map(|(fine, coarse)| distance(corners, fine, coarse))
+            .fold(0.0, f32::max);
+        if indices.len() > before * 2 || error > most_error {
+            break;
+        }
+        before = indices.len() / 3;
         let last = levels.last().map_or(0.0, |level: &Detail| level.error);
         levels.push(Detail {
             error: error.max(last),
@@ -61,46 +57,44 @@ pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Deta
     levels
 }
 
-/// What at least two of three say; the first if all differ.
-fn majority([a, b, c]: [usize; 3]) -> usize {
-    if b == c { b } else { a }
-}
-
 fn simplified(whole: &[u32], corners: &[[f32; 3]], wanted: usize, most_error: f32) -> Vec<u32> {
-    // Colours meet at corners of two groups in the same place: these may be moved together.
-    let options = SimplifyOptions::ErrorAbsolute | SimplifyOptions::Prune | SimplifyOptions::Permissive;
+    // Where two colours meet, each has its own corner in the same place: the simplifier takes that for a seam, and keeps it.
+    let options = SimplifyOptions::ErrorAbsolute | SimplifyOptions::Prune;
     meshopt::simplify_decoder(whole, corners, wanted, most_error, options, None)
 }
 
-/// The largest extent along an axis.
-fn size(corners: &[[f32; 3]]) -> f32 {
+/// The largest extent of points along an axis.
+fn size<'a>(points: impl Iterator<Item = &'a [f32; 3]> + Clone) -> f32 {
     let along = |axis: usize| {
-        let values = || corners.iter().map(|corner| corner[axis]);
+        let values = || points.clone().map(|point| point[axis]);
         values().fold(f32::NEG_INFINITY, f32::max) - values().fold(f32::INFINITY, f32::min)
     };
     along(0).max(along(1)).max(along(2)).max(0.0)
 }
 
-/// How far the corners of a surface lie from a coarser one at most; `None` if that one is empty.
-fn largest_distance(corners: &[[f32; 3]], whole: &[u32], coarse: &[[u32; 3]]) -> Option<f32> {
-    let point = |corner: u32| {
-        let [x, y, z] = corners[corner as usize];
+/// How far the corners of a group lie from its coarser form at most; its size if nothing is left of it.
+fn distance(corners: &[[f32; 3]], fine: &[[u32; 3]], coarse: &[[u32; 3]]) -> f32 {
+    let used = |triangles: &[[u32; 3]]| {
+        let mut used = triangles.as_flattened().to_vec();
+        used.sort_unstable();
+        used.dedup();
+        used
+    };
+    let at = |corner: &u32| &corners[*corner as usize];
+    let (all, left) = (used(fine), used(coarse));
+    let point = |corner: &u32| {
+        let [x, y, z] = *at(corner);
         Vector::new(x, y, z)
     };
-    let mut used: Vec<u32> = coarse.as_flattened().to_vec();
-    used.sort_unstable();
-    used.dedup();
-    let place = |corner: u32| used.binary_search(&corner).map_or(0, |place| place as u32);
+    let place = |corner: u32| left.binary_search(&corner).map_or(0, |place| place as u32);
     let triangles = coarse.iter().map(|triangle| triangle.map(place)).collect();
-    let mesh = TriMesh::new(used.iter().map(|corner| point(*corner)).collect(), triangles).ok()?;
-    let mut all: Vec<u32> = whole.to_vec();
-    all.sort_unstable();
-    all.dedup();
+    let Ok(mesh) = TriMesh::new(left.iter().map(point).collect(), triangles) else {
+        return size(all.iter().map(at));
+    };
     let far = all
         .iter()
-        .map(|corner| mesh.distance_to_local_point(point(*corner), false));
-    let most = far.fold(0.0, f32::max);
-    most.is_finite().then_some(most)
+        .map(|corner| mesh.distance_to_local_point(point(corner), false));
+    far.fold(0.0, f32::max)
 }
 
 #[cfg(test)]

@@ -113,12 +113,14 @@ fn decoded(bytes: &[u8], place: &str) -> Result<Pixels, EnvError> {
     let limits = png::Limits { bytes: 128 << 20 };
     let mut decoder = png::Decoder::new_with_limits(std::io::Cursor::new(bytes), limits);
     decoder.set_transformations(png::Transformations::normalize_to_color8());
-    let mut reader = decoder.read_info().map_err(unreadable)?;
-    let (width, height) = (reader.info().width, reader.info().height);
+    // The size is known before anything else is read.
+    let header = decoder.read_header_info().map_err(unreadable)?;
+    let (width, height) = (header.width, header.height);
     if width.max(height) > MAX_TEXTURE_SIDE {
         let found = format!("{width} × {height} pixels");
         return Err(refuse(place, found, format!("at most {MAX_TEXTURE_SIDE} each way")));
     }
+    let mut reader = decoder.read_info().map_err(unreadable)?;
     // At most 4096 × 4096 × 4 bytes after the check above.
     let size = reader.output_buffer_size().unwrap_or(0);
     let mut data = vec![0; size];
