@@ -202,6 +202,7 @@ fn documents() -> Vec<(&'static str, Vec<u8>)> {
         ("json_cut.gltf", text(&sound())[..300].to_vec()),
         ("json_nested.gltf", [b"[".repeat(2000), b"]".repeat(2000)].concat()),
         ("json_other.gltf", b"{\"task\": \"find_objects\"}\n".to_vec()),
+        ("version_1_names.gltf", with("/meshes", json!({"box": {"primitives": []}}))),
         ("version_1.gltf", with("/asset/version", json!("1.0"))),
         (
             "extension_unknown.gltf",
@@ -534,7 +535,7 @@ proptest! {
             let bytes = text.as_bytes();
             let is_digit = |k: usize| bytes.get(k).is_some_and(u8::is_ascii_digit);
             let starts = (1..bytes.len()).filter(|k| is_digit(*k) && matches!(bytes[k - 1], b':' | b',' | b'['));
-            starts.map(|start| (start, (start..).find(|k| !is_digit(*k)).unwrap_or(start))).collect()
+            starts.map(|start| (start, (start..bytes.len()).find(|k| !is_digit(*k)).unwrap_or(start))).collect()
         };
         let (start, end) = digits[at.index(digits.len())];
         let _ = import(format!("{}{number}{}", &text[..start], &text[end..]).as_bytes());

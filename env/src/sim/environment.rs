@@ -55,6 +55,10 @@ impl Environment {
     ///
     /// # Errors
     /// As [`Environment::new`]: what the catalogue does not know is drawn as a placeholder, with a warning.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a catalogue is cheap to clone, and the environment keeps it"
+    )]
     pub fn with_catalogue(world: World, catalogue: Catalogue) -> Result<Self, EnvError> {
         let frame = Frame::new(0, 0);
         Ok(Self::build(Arc::new(world), &catalogue, CpuRenderer::new(), frame))

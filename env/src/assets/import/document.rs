@@ -29,6 +29,9 @@ const HARMLESS: &[&str] = &[
 pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
     check_extent(json)?;
     let root: Root = gltf_json::deserialize::from_str(json).map_err(|error| {
+        if is_version_1(json) {
+            return refuse("file", "glTF 1.0", "glTF 2.0; export as that");
+        }
         // The position is said before, so the parser's own words at the end are cut off.
         let said = error.to_string();
         let words = said.split(" at line ").next().unwrap_or(&said);
@@ -55,6 +58,12 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
         return Err(refuse("/nodes", found, format!("at most {MAX_IMPORT_NODES}")));
     }
     Ok(root)
+}
+
+/// Whether JSON that is no glTF 2.0 is of the version before, where meshes had names in place of numbers.
+fn is_version_1(json: &str) -> bool {
+    let value: Result<gltf_json::Value, _> = gltf_json::deserialize::from_str(json);
+    value.is_ok_and(|value| value.get("meshes").is_some_and(gltf_json::Value::is_object))
 }
 
 fn is_compression(extension: &str) -> bool {

@@ -100,18 +100,18 @@ impl LibraryModel {
         })?;
         surface.stand(options.size)?;
         let groups = palette::groups(&surface, main);
-        finish(options, surface, groups, warnings)
+        finish(options, &surface, groups, warnings)
     }
 }
 
 /// Levels of detail, a collider and both sides for what is standing in its place.
 fn finish(
     options: &ImportOptions,
-    surface: surface::Surface,
+    surface: &surface::Surface,
     groups: Vec<Group>,
     warnings: warning::Warnings,
 ) -> Result<Imported, EnvError> {
-    let collider = options.collider.fit(&surface);
+    let collider = options.collider.fit(surface);
     let (corners, groups) = palette::welded(&surface.corners, groups);
     let mut levels = vec![Detail {
         error: 0.0,

@@ -28,7 +28,7 @@ pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Deta
             .for_each(|corner| group_of[*corner as usize] = group);
     }
     let whole: Vec<u32> = groups.iter().flatten().flatten().copied().collect();
-    let most_error = MOST_ERROR * size(corners.iter());
+    let most_error = MOST_ERROR * size(|| corners.iter());
     let mut levels: Vec<Detail> = Vec::new();
     let mut before = whole.len() / 3;
     for _ in 1..MAX_MODEL_LEVELS {
@@ -64,9 +64,9 @@ fn simplified(whole: &[u32], corners: &[[f32; 3]], wanted: usize, most_error: f3
 }
 
 /// The largest extent of points along an axis.
-fn size<'a>(points: impl Iterator<Item = &'a [f32; 3]> + Clone) -> f32 {
+fn size<'a, I: Iterator<Item = &'a [f32; 3]>>(points: impl Fn() -> I) -> f32 {
     let along = |axis: usize| {
-        let values = || points.clone().map(|point| point[axis]);
+        let values = || points().map(|point| point[axis]);
         values().fold(f32::NEG_INFINITY, f32::max) - values().fold(f32::INFINITY, f32::min)
     };
     along(0).max(along(1)).max(along(2)).max(0.0)
@@ -89,7 +89,7 @@ fn distance(corners: &[[f32; 3]], fine: &[[u32; 3]], coarse: &[[u32; 3]]) -> f32
     let place = |corner: u32| left.binary_search(&corner).map_or(0, |place| place as u32);
     let triangles = coarse.iter().map(|triangle| triangle.map(place)).collect();
     let Ok(mesh) = TriMesh::new(left.iter().map(point).collect(), triangles) else {
-        return size(all.iter().map(at));
+        return size(|| all.iter().map(at));
     };
     let far = all
         .iter()
@@ -129,6 +129,6 @@ mod tests {
             assert!(level.triangles[1].iter().flatten().all(is_high));
         }
         let cube = Mesh::cuboid([1.0; 3], 0.0);
-        assert!(levels(&cube.corners, &[cube.triangles.clone()]).is_empty());
+        assert!(levels(&cube.corners, std::slice::from_ref(&cube.triangles)).is_empty());
     }
 }

@@ -354,8 +354,7 @@ mod tests {
         let library = library();
         let bytes = library.to_bytes();
         assert_eq!(Library::from_bytes(&bytes), Ok(library));
-        let header: String = bytes[..12].iter().map(|byte| format!("{byte:02x}")).collect();
-        assert_eq!(header, "44524946544c494201000000", "DRIFTLIB, version 1");
+        assert_eq!(&bytes[..12], b"DRIFTLIB\x01\0\0\0", "the name, and version 1");
     }
 
     #[test]
