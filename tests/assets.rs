@@ -176,14 +176,14 @@ fn models_are_listed_and_drawn() {
 
 #[test]
 fn what_cannot_be_packed_says_why_and_leaves_no_library() {
-    let folder = scratch();
-    let library = folder.path().join("harbour.assets");
     #[track_caller]
     fn check(model: &Path, library: &Path, expected: &str) {
         let error = fail(&["assets", "pack", text(model), "-o", text(library)]);
         assert!(error.contains(expected), "{error}");
         assert!(!library.exists(), "nothing is half written");
     }
+    let folder = scratch();
+    let library = folder.path().join("harbour.assets");
     check(
         &folder.path().join("absent.glb"),
         &library,

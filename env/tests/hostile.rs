@@ -202,7 +202,10 @@ fn documents() -> Vec<(&'static str, Vec<u8>)> {
         ("json_cut.gltf", text(&sound())[..300].to_vec()),
         ("json_nested.gltf", [b"[".repeat(2000), b"]".repeat(2000)].concat()),
         ("json_other.gltf", b"{\"task\": \"find_objects\"}\n".to_vec()),
-        ("version_1_names.gltf", with("/meshes", json!({"box": {"primitives": []}}))),
+        (
+            "version_1_names.gltf",
+            with("/meshes", json!({"box": {"primitives": []}})),
+        ),
         ("version_1.gltf", with("/asset/version", json!("1.0"))),
         (
             "extension_unknown.gltf",
