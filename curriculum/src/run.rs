@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
-use driftworld_env::{Agent, Environment, Step};
+use driftworld_env::{Agent, Catalogue, EnvError, Environment, Step};
 use driftworld_generator::Sampler;
 use driftworld_metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, ScenarioType, TaskParams, Timestamp};
-use driftworld_spec::{BlockKind, Regime, Scenario, Variant};
+use driftworld_spec::{BlockKind, Regime, Scenario, Variant, World};
 use serde_json::{Map, Value, json};
 
 use crate::CurriculumError;
@@ -22,6 +22,8 @@ pub struct Surroundings<'a> {
     pub now: &'a mut dyn FnMut() -> Timestamp,
     /// Told after each experience; may end the run there. What was lived until then is in the log.
     pub watch: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    /// Where worlds take their assets from.
+    pub catalogue: Catalogue,
 }
 
 /// How far a run has come.
@@ -237,7 +239,7 @@ impl Life<'_, '_> {
                     environment.reset(world).map_err(failed)?;
                     environment
                 }
-                None => environment.insert(Environment::new(world).map_err(failed)?),
+                None => environment.insert(self.first_environment(world).map_err(failed)?),
             };
             let experience = self.episode(environment, place.kind).map_err(failed)?;
             self.record(place, &name, params(regime, variant, index), &experience)?;
@@ -248,11 +250,11 @@ impl Life<'_, '_> {
         Ok(ControlFlow::Continue(()))
     }
 
-    fn episode(
-        &mut self,
-        environment: &mut Environment,
-        kind: BlockKind,
-    ) -> Result<Experience, driftworld_env::EnvError> {
+    fn first_environment(&self, world: World) -> Result<Environment, EnvError> {
+        Environment::with_catalogue(world, self.around.catalogue.clone())
+    }
+
+    fn episode(&mut self, environment: &mut Environment, kind: BlockKind) -> Result<Experience, EnvError> {
         self.agent.begin(self.summary.experiences);
         // A world without a limit of steps and without an end would never be over.
         let limit = if environment.world().max_steps == 0 {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use driftworld_curriculum::{
     Choice, CurriculumError, Design, Progress, Summary, Surroundings, design, logger_info, run, scenario_info,
 };
-use driftworld_env::{Agent, OnRailsAgent, RandomAgent};
+use driftworld_env::{Agent, Catalogue, OnRailsAgent, RandomAgent};
 use driftworld_metrics::{LogWriter, MaintenanceMethod, Options, Timestamp, read_log, score};
 use driftworld_spec::{Scenario, TaskSpec, Variant};
 
@@ -57,6 +57,7 @@ fn live(scenario: &Scenario, agent: &mut dyn Agent, folder: &Path, most: u64) ->
                 ControlFlow::Break(())
             }
         },
+        catalogue: Catalogue::default(),
     };
     let summary = run(scenario, agent, &mut log, &mut around)?;
     log.finish()?;

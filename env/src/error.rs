@@ -164,6 +164,26 @@ pub enum EnvError {
         /// Height asked for.
         height: u32,
     },
+    /// Bytes that are not a library of assets, or not a whole one.
+    #[error("library, byte {byte}: found {found}, expected {expected}")]
+    BadLibrary {
+        /// Where in the file.
+        byte: usize,
+        /// What is there.
+        found: String,
+        /// What could be there.
+        expected: String,
+    },
+    /// A model that cannot be taken into a library.
+    #[error("{place}: found {found}, expected {expected}")]
+    BadModel {
+        /// Where in the model's file: a JSON pointer, or a few words.
+        place: String,
+        /// What is there.
+        found: String,
+        /// What could be there.
+        expected: String,
+    },
 }
 
 impl EnvError {
@@ -190,6 +210,8 @@ impl EnvError {
             Self::BatchAction { .. } => "env/batch-action",
             Self::BatchWorld { .. } => "env/batch-world",
             Self::BatchImages { .. } => "env/batch-images",
+            Self::BadLibrary { .. } => "env/bad-library",
+            Self::BadModel { .. } => "env/bad-model",
         }
     }
 }
@@ -248,6 +270,16 @@ mod tests {
                 env: 2,
                 found: "64 × 64 pixels of Rgb".to_owned(),
                 expected: "84 × 84 pixels of Rgb, Depth".to_owned(),
+            },
+            EnvError::BadLibrary {
+                byte: 56,
+                found: "9 models in 0 bytes".to_owned(),
+                expected: "at most 0".to_owned(),
+            },
+            EnvError::BadModel {
+                place: "/accessors/3/count".to_owned(),
+                found: "4000000000".to_owned(),
+                expected: "at most 1000000".to_owned(),
             },
         ];
         let said: Vec<String> = errors

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use driftworld_spec::{Object, World};
 
-use crate::assets::{Asset, Block, Coat, Mesh, Paint, Part, asset};
+use crate::assets::{Asset, Block, Catalogue, Coat, Mesh, Paint, Part};
 
 /// Everything that a picture of a world depends on, but for the camera.
 #[derive(Clone, Debug)]
@@ -21,6 +21,7 @@ pub struct Scene {
     panels: Vec<PanelGroup>,
     /// Classes in order of first appearance: the place in this list, from 1, is the class's number.
     classes: Vec<String>,
+    catalogue: Catalogue,
 }
 
 /// How many of a scene's walls, the first ones, are the arena's own: west, north, east, south.
@@ -92,8 +93,13 @@ pub struct WallPanel {
 }
 
 impl Scene {
-    /// The scene of a world at its start.
+    /// The scene of a world at its start, of built-in assets.
     pub fn from_world(world: &World) -> Self {
+        Self::from_world_with(world, &Catalogue::default())
+    }
+
+    /// The scene of a world at its start, of the assets of a catalogue.
+    pub fn from_world_with(world: &World, catalogue: &Catalogue) -> Self {
         let environment = &world.environment_params;
         let mut scene = Self {
             items: Vec::with_capacity(world.objects.len()),
@@ -103,6 +109,7 @@ impl Scene {
             arena_size: environment.arena_size().map(|side| side as f32),
             panels: Vec::new(),
             classes: Vec::new(),
+            catalogue: catalogue.clone(),
         };
         scene.add_walls(world);
         for object in &world.objects {
@@ -117,7 +124,7 @@ impl Scene {
         let known = self.classes.iter().position(|other| *other == class);
         let class_index = known.unwrap_or(self.classes.len());
         self.items.push(Item {
-            asset: asset(&class, &object.model),
+            asset: self.catalogue.asset(&class, &object.model),
             position: object.coordinates.map(|metres| metres as f32),
             heading_deg: object.heading as f32,
             scale: object.scale as f32,
@@ -130,6 +137,11 @@ impl Scene {
         if known.is_none() {
             self.classes.push(class);
         }
+    }
+
+    /// Where the assets of its objects come from.
+    pub fn catalogue(&self) -> &Catalogue {
+        &self.catalogue
     }
 
     /// Side lengths of the arena along x and y in metres.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use driftworld::curriculum::{Design, Summary, design};
+use driftworld::env::Catalogue;
 use driftworld::generator::Sampler;
 use driftworld::metrics::{Options, Settings};
 use driftworld::similarity::{DistanceMatrix, Method, Ordering, order};
@@ -75,7 +76,7 @@ impl Demo {
         heading("4", "A lifetime: an agent that knows the map lives it")?;
         let logs = folder.join("log");
         remove_old_log(&logs)?;
-        let lived = live(&scenario, Who::Onrails, &logs)?;
+        let lived = live(&scenario, Who::Onrails, &logs, Catalogue::default())?;
         output::line(block_table(&lived))?;
 
         heading("5", "What the lifetime is worth, by the metrics of lifelong learning")?;

@@ -1,5 +1,6 @@
 //! The subcommands, one file each, and what they share: how they fail. What is written and shown is in `output.rs`.
 
+mod assets;
 mod bench;
 mod convert;
 mod curriculum;
@@ -41,6 +42,8 @@ pub(crate) enum Command {
     Convert(convert::Convert),
     /// Draw what an agent sees of a world, and the world from above.
     Render(render::Render),
+    /// Turn glTF models into libraries that worlds can use, and look at what there is.
+    Assets(assets::Assets),
     /// Measure how far apart two variants or two worlds are.
     Distance(distance::Distance),
     /// Put variants into an order by their distances.
@@ -68,6 +71,7 @@ impl Command {
             Self::Vary(command) => command.run(),
             Self::Convert(command) => command.run(),
             Self::Render(command) => command.run(),
+            Self::Assets(command) => command.run(),
             Self::Distance(command) => command.run(),
             Self::Order(command) => command.run(),
             Self::Curriculum(command) => command.run(),

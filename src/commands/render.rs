@@ -3,9 +3,12 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use driftworld::env::{Camera, CpuRenderer, Environment, Frame, Scene, category_color, depth_to_gray, top_down};
+use driftworld::env::{
+    Camera, Catalogue, CpuRenderer, Environment, Frame, Scene, category_color, depth_to_gray, top_down,
+};
 use driftworld::spec::World;
 
+use super::assets::LibraryChoice;
 use super::input::WorldChoice;
 use super::pictures::{Picture, SheetRow, sheet};
 use super::{Failure, output};
@@ -18,6 +21,8 @@ use super::{Failure, output};
 pub(crate) struct Render {
     #[command(flatten)]
     choice: WorldChoice,
+    #[command(flatten)]
+    libraries: LibraryChoice,
     /// Which picture.
     #[arg(long, value_enum, default_value_t = View::Sheet)]
     view: View,
@@ -52,8 +57,9 @@ enum View {
 impl Render {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let world = self.choice.world()?;
-        warn(&world)?;
-        let picture = self.picture(&world)?;
+        let catalogue = self.libraries.catalogue()?;
+        warn(&world, &catalogue)?;
+        let picture = self.picture(&world, &catalogue)?;
         picture.write(&self.output)?;
         output::line(format!(
             "{}: {} × {} pixels",
@@ -63,20 +69,20 @@ impl Render {
         ))
     }
 
-    fn picture(&self, world: &World) -> Result<Picture, Failure> {
-        let views = Views::new(world, self.size, self.turn as f32);
+    fn picture(&self, world: &World, catalogue: &Catalogue) -> Result<Picture, Failure> {
+        let views = Views::with_catalogue(world, catalogue, self.size, self.turn as f32);
         Ok(match self.view {
             View::Overview => views.overview(self.size * 16 / 9),
             View::TopDown => views.top_down(),
             View::Rgb => views.first_person().rgb,
             View::Depth => views.first_person().depth,
             View::Segmentation => views.first_person().segmentation,
-            View::Sheet => self.sheet(world, &views)?,
+            View::Sheet => self.sheet(world, catalogue, &views)?,
         })
     }
 
-    fn sheet(&self, world: &World, views: &Views) -> Result<Picture, Failure> {
-        let small = Views::new(world, (self.size * 2 / 3).max(1), self.turn as f32);
+    fn sheet(&self, world: &World, catalogue: &Catalogue, views: &Views) -> Result<Picture, Failure> {
+        let small = Views::with_catalogue(world, catalogue, (self.size * 2 / 3).max(1), self.turn as f32);
         let seen = views.first_person();
         let row = |title: &str, words: String, pictures| SheetRow {
             title: title.into(),
@@ -112,8 +118,8 @@ impl Render {
 const MOST_WARNINGS: usize = 10;
 
 /// Says what the world asks for that is not as its author may think.
-fn warn(world: &World) -> Result<(), Failure> {
-    let warnings = Environment::new(world.clone())?.warnings();
+fn warn(world: &World, catalogue: &Catalogue) -> Result<(), Failure> {
+    let warnings = Environment::with_catalogue(world.clone(), catalogue.clone())?.warnings();
     for warning in warnings.iter().take(MOST_WARNINGS) {
         output::note(format!("warning: {warning}"));
     }
@@ -140,9 +146,14 @@ pub(crate) struct Seen {
 
 impl<'a> Views<'a> {
     pub(crate) fn new(world: &'a World, size: u32, turn: f32) -> Self {
+        Self::with_catalogue(world, &Catalogue::default(), size, turn)
+    }
+
+    /// The same with assets from a catalogue.
+    pub(crate) fn with_catalogue(world: &'a World, catalogue: &Catalogue, size: u32, turn: f32) -> Self {
         Self {
             world,
-            scene: Scene::from_world(world),
+            scene: Scene::from_world_with(world, catalogue),
             size,
             turn,
         }

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use driftworld::curriculum::{Progress, Summary, Surroundings, logger_info, run, scenario_info};
-use driftworld::env::{Agent, OnRailsAgent, RandomAgent};
+use driftworld::env::{Agent, Catalogue, OnRailsAgent, RandomAgent};
 use driftworld::metrics::{LogWriter, MetricsError, Timestamp};
 use driftworld::spec::{BlockKind, Scenario, Variant};
 use driftworld::tasks;
 
+use super::assets::LibraryChoice;
 use super::table::table;
 use super::{Failure, input, output};
 
@@ -27,6 +28,8 @@ pub(crate) struct Run {
     /// A folder for the log; it must not hold anything yet.
     #[arg(long, default_value = "logs/run", value_name = "DIR")]
     logs: PathBuf,
+    #[command(flatten)]
+    libraries: LibraryChoice,
     /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
@@ -45,7 +48,7 @@ impl Run {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let text = input::text(&self.scenario)?;
         let scenario = Scenario::from_json(&self.scenario.display().to_string(), &text)?;
-        let summary = live(&scenario, self.agent, &self.logs)?;
+        let summary = live(&scenario, self.agent, &self.logs, self.libraries.catalogue()?)?;
         if self.json {
             return output::json(&summary);
         }
@@ -60,7 +63,7 @@ impl Run {
 }
 
 /// Lives a scenario into a new log, with a bar on a terminal.
-pub(crate) fn live(scenario: &Scenario, who: Who, logs: &Path) -> Result<Summary, Failure> {
+pub(crate) fn live(scenario: &Scenario, who: Who, logs: &Path, catalogue: Catalogue) -> Result<Summary, Failure> {
     let name = if who == Who::Random { "random" } else { "onrails" };
     let mut agent: Box<dyn Agent> = match who {
         Who::Random => Box::new(RandomAgent::new(0)),
@@ -83,6 +86,7 @@ pub(crate) fn live(scenario: &Scenario, who: Who, logs: &Path) -> Result<Summary
             bar.set_message(progress.variant.clone());
             ControlFlow::Continue(())
         },
+        catalogue,
     };
     let summary = run(scenario, agent.as_mut(), &mut log, &mut around)?;
     log.finish()?;

@@ -1,91 +1,64 @@
-//! Which classes there are, how many models each has, and who makes them.
+//! [`Catalogue`]: which models a world can refer to, those of libraries in front of the built-in ones. How either is made is
+//! in `library` and `builtin.rs`.
 
-use super::{Asset, Builder, Mesh, furniture, nature, structures, trees};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
-/// Every class with its number of models, in alphabetical order.
-pub(crate) const CLASSES: &[(&str, u32)] = &[
-    ("bag", 6),
-    ("barrel", 5),
-    ("bed", 1),
-    ("bench", 3),
-    ("building", 3),
-    ("car", 1),
-    ("castleruin", 7),
-    ("chair", 4),
-    ("cube", 1),
-    ("fence", 31),
-    ("geometric", 3),
-    ("icosphere", 1),
-    ("mushroom", 6),
-    ("nature", 1),
-    ("pot", 4),
-    ("roadblock", 1),
-    ("rock", 44),
-    ("shelf", 1),
-    ("shrub", 11),
-    ("streetsign", 1),
-    ("table", 3),
-    ("tent", 3),
-    ("tree", 49),
-];
+use driftworld_spec::Model;
 
-/// How many models a class has, if it is known.
-pub(crate) fn models(class: &str) -> Option<u32> {
-    CLASSES
-        .iter()
-        .find(|(name, _)| *name == class)
-        .map(|(_, models)| *models)
+use super::library::Library;
+use super::{Asset, asset};
+
+/// The models that worlds may refer to by class and model: the built-in ones, and in front of them those of libraries.
+///
+/// Cloning one is cheap: clones share their assets.
+///
+/// # Example
+/// ```
+/// use driftworld_env::{Catalogue, Environment};
+/// use driftworld_spec::{Model, World};
+/// let catalogue = Catalogue::default();
+/// assert!(catalogue.asset("tree", &Model("7".into())).known);
+/// assert!(!catalogue.asset("dragon", &Model("1".into())).known, "a placeholder");
+/// let environment = Environment::with_catalogue(World::default(), catalogue)?;
+/// # Ok::<(), driftworld_env::EnvError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Catalogue {
+    /// By class and model as [`key`] writes them.
+    models: Arc<BTreeMap<(String, String), Arc<Asset>>>,
 }
 
-/// Makes an asset; what is not known is the placeholder.
-pub(crate) fn make(class: &str, model: u32) -> Asset {
-    match class {
-        "tree" => trees::tree(model),
-        "rock" => nature::rock(model),
-        "shrub" => nature::shrub(model),
-        "nature" => nature::stump(),
-        "mushroom" => nature::mushroom(model),
-        "geometric" | "cube" | "icosphere" => geometric(class, model),
-        "bag" => furniture::bag(model),
-        "barrel" => furniture::barrel(model),
-        "bed" => furniture::bed(),
-        "bench" => furniture::bench(model),
-        "chair" => furniture::chair(model),
-        "pot" => furniture::pot(model),
-        "shelf" => furniture::shelf(),
-        "table" => furniture::table(model),
-        "building" => structures::building(model),
-        "car" => structures::car(),
-        "castleruin" => structures::castle_ruin(model),
-        "fence" => structures::fence(model),
-        "roadblock" => structures::roadblock(),
-        "streetsign" => structures::street_sign(),
-        "tent" => structures::tent(model),
-        _ => placeholder(),
+impl Catalogue {
+    /// The catalogue with a library in front: where it has a class and model that were known before, its own holds.
+    #[must_use]
+    pub fn with_library(mut self, library: &Library) -> Self {
+        let models = Arc::make_mut(&mut self.models);
+        for model in library.models() {
+            models.insert(key(&model.class, &model.name), Arc::new(model.asset()));
+        }
+        self
+    }
+
+    /// The asset of a class and model; what nobody knows is a placeholder.
+    ///
+    /// Capitals do not matter, and a model that is a number may be written in any way that says the same number.
+    pub fn asset(&self, class: &str, model: &Model) -> Arc<Asset> {
+        // Most catalogues hold nothing but built-in models, and then no key is made.
+        if self.models.is_empty() {
+            return asset(class, model);
+        }
+        let found = self.models.get(&key(class, &model.0));
+        found.map_or_else(|| asset(class, model), Arc::clone)
     }
 }
 
-/// Cube, ball and cylinder of about 1 m: what a user puts where only colour matters.
-fn geometric(class: &str, model: u32) -> Asset {
-    let grey = [0.62, 0.62, 0.66];
-    match (class, model) {
-        ("icosphere", _) => Builder::default().main(grey, Mesh::ball(0.5, 0.5, 9, 5)).round(0.5),
-        ("geometric", 2) => Builder::default().main(grey, Mesh::ball(0.5, 0.5, 16, 10)).round(0.5),
-        ("geometric", 3) => Builder::default()
-            .main(grey, Mesh::cylinder(0.45, 0.0, 1.0, 16))
-            .round(0.45),
-        _ => Builder::default()
-            .main(grey, Mesh::cuboid([0.9, 0.9, 0.9], 0.0))
-            .boxed(),
-    }
-}
-
-/// Something to stumble over where the class is not known: a striped bollard.
-fn placeholder() -> Asset {
-    let stripe = |low: f32| Mesh::cylinder(0.25, low, low + 0.2, 8);
-    let asset = Builder::default()
-        .fixed([0.95, 0.2, 0.75], stripe(0.0).with(&stripe(0.4)).with(&stripe(0.8)))
-        .fixed([0.12, 0.1, 0.12], stripe(0.2).with(&stripe(0.6)))
-        .round(0.25);
-    Asset { known: false, ..asset }
+/// What class and model are found by.
+pub(super) fn key(class: &str, model: &str) -> (String, String) {
+    let model = model.trim();
+    let model = match model.parse::<u32>() {
+        Ok(number) => number.to_string(),
+        Err(_) => model.to_lowercase(),
+    };
+    (class.trim().to_lowercase(), model)
 }

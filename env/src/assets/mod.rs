@@ -1,8 +1,13 @@
-//! What objects look like: meshes made by code from class and model number, and their colliders. Where they stand is the scene's.
+//! What objects look like: meshes made by code from class and model number or read from libraries, and their colliders. Where
+//! they stand is the scene's.
 
 mod blocks;
+mod builtin;
 mod catalogue;
 mod furniture;
+#[cfg(feature = "import")]
+mod import;
+mod library;
 mod mesh;
 mod nature;
 mod structures;
@@ -14,6 +19,16 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use driftworld_spec::Model;
 
 pub(crate) use blocks::{BLOCK, Block, Coat};
+pub use catalogue::Catalogue;
+#[cfg(feature = "import")]
+pub use import::{
+    ColliderKind, ImportOptions, ImportSize, ImportWarning, Imported, MAX_IMPORT_BYTES, MAX_IMPORT_DEPTH,
+    MAX_IMPORT_NODES, MAX_TEXTURE_SIDE, ReadBeside,
+};
+pub use library::{
+    Library, LibraryModel, MAX_LIBRARY_MODELS, MAX_MODEL_LEVELS, MAX_MODEL_PARTS, MAX_MODEL_REACH, MAX_MODEL_TRIANGLES,
+    MAX_MODEL_VERTICES, MAX_NAME_BYTES,
+};
 pub use mesh::Mesh;
 
 /// The look and the body of one model of one class, at scale 1.
@@ -38,6 +53,7 @@ pub struct Asset {
 struct Level {
     /// How far the surface may be from where it should be, in metres at scale 1.
     error: f32,
+    num_triangles: usize,
     coats: Vec<Coat>,
 }
 
@@ -46,6 +62,31 @@ impl Asset {
     pub(crate) fn level(&self, error: f32) -> &[Coat] {
         let good = self.levels.iter().rev().find(|level| level.error <= error);
         good.or(self.levels.first()).map_or(&[], |level| &level.coats)
+    }
+
+    /// An asset of these levels of detail, each with its error in metres; the first is the whole of it.
+    pub(crate) fn of_levels(levels: Vec<(f32, Vec<Part>)>, collider: ColliderShape) -> Self {
+        let coated = levels.iter().map(|(error, parts)| Level {
+            error: *error,
+            num_triangles: parts.iter().map(|part| part.mesh.triangles.len()).sum(),
+            coats: parts.iter().map(Coat::new).collect(),
+        });
+        let coated = coated.collect();
+        let parts = levels.into_iter().next().map_or_else(Vec::new, |(_, parts)| parts);
+        let corners = || parts.iter().flat_map(|part| &part.mesh.corners);
+        Self {
+            collider,
+            height: corners().fold(0.01_f32, |most, corner| most.max(corner[2])),
+            radius: reach(corners()).max(0.01),
+            known: true,
+            levels: coated,
+            parts,
+        }
+    }
+
+    /// Triangles of each level of detail, and its largest error in metres at scale 1: from all of it to the coarsest.
+    pub fn levels(&self) -> impl Iterator<Item = (usize, f32)> {
+        self.levels.iter().map(|level| (level.num_triangles, level.error))
     }
 
     /// Radius of the ball around the middle of the asset's height that holds all of it, in metres at scale 1.
@@ -115,12 +156,17 @@ impl ColliderShape {
         match self {
             Self::Box { half: [x, y, _] } => (x * x + y * y).sqrt(),
             Self::Ball { radius } | Self::Cylinder { radius, .. } | Self::Capsule { radius, .. } => *radius,
-            Self::Hull { points } => points.iter().map(|[x, y, _]| x * x + y * y).fold(0.0, f32::max).sqrt(),
+            Self::Hull { points } => reach(points.iter()),
         }
     }
 }
 
-/// The asset of a class and model; made once, then shared. What is not known is a placeholder.
+/// Largest distance of points from the upright axis.
+fn reach<'a>(points: impl Iterator<Item = &'a [f32; 3]>) -> f32 {
+    points.fold(0.0, |most, [x, y, _]| most.max((x * x + y * y).sqrt()))
+}
+
+/// The built-in asset of a class and model; made once, then shared. What is not known is a placeholder.
 pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
     type Made = HashMap<(String, u32), Arc<Asset>>;
     static MADE: LazyLock<Mutex<Made>> = LazyLock::new(Mutex::default);
@@ -131,7 +177,7 @@ pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
     if let Some(asset) = made.get(&(class.clone(), number)) {
         return Arc::clone(asset);
     }
-    let known = catalogue::models(&class).is_some_and(|models| (1..=models).contains(&number));
+    let known = builtin::models(&class).is_some_and(|models| (1..=models).contains(&number));
     // Names that nobody knows share one placeholder, so that strangers cannot fill the memory.
     let key = if known {
         (class.clone(), number)
@@ -139,14 +185,14 @@ pub fn asset(class: &str, model: &Model) -> Arc<Asset> {
         (String::new(), 0)
     };
     let made_before = made.get(&key).cloned();
-    let asset = made_before.unwrap_or_else(|| Arc::new(catalogue::make(&key.0, key.1)));
+    let asset = made_before.unwrap_or_else(|| Arc::new(builtin::make(&key.0, key.1)));
     made.insert(key, Arc::clone(&asset));
     asset
 }
 
 /// The classes that are known, and how many models each has, in alphabetical order.
 pub fn classes() -> impl Iterator<Item = (&'static str, u32)> {
-    catalogue::CLASSES.iter().copied()
+    builtin::CLASSES.iter().copied()
 }
 
 /// Parts on their way to an asset.
@@ -192,24 +238,11 @@ impl Builder {
     }
 
     fn asset(self) -> Asset {
-        let corners = || self.0.iter().flat_map(|part| &part.mesh.corners);
-        let height = corners().fold(0.01_f32, |most, corner| most.max(corner[2]));
-        let radius = corners().fold(0.01_f32, |most, [x, y, _]| most.max((x * x + y * y).sqrt()));
-        let collider = ColliderShape::Cylinder {
-            radius,
-            half_height: height / 2.0,
+        let cylinder = ColliderShape::Cylinder {
+            radius: 0.01,
+            half_height: 0.01,
         };
-        Asset {
-            collider,
-            height,
-            radius,
-            known: true,
-            levels: vec![Level {
-                error: 0.0,
-                coats: self.0.iter().map(Coat::new).collect(),
-            }],
-            parts: self.0,
-        }
+        Asset::of_levels(vec![(0.0, self.0)], cylinder)
     }
 }
 

@@ -15,6 +15,7 @@ pub use outputs::Outputs;
 use self::outputs::OutputsMut;
 use self::slot::Slot;
 use crate::EnvError;
+use crate::assets::Catalogue;
 use crate::render::CpuRenderer;
 use crate::sim::{Action, Environment, Event};
 
@@ -110,11 +111,24 @@ impl Batch {
     /// # Errors
     /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchWorld`] where the source has no world;
     /// [`EnvError::BatchImages`] where worlds ask for different images; [`EnvError::BatchThreads`] if threads cannot be had.
+    pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
+        Self::with_catalogue(num_envs, source, options, &Catalogue::default())
+    }
+
+    /// The same with assets from a catalogue, for all environments and episodes.
+    ///
+    /// # Errors
+    /// As [`Batch::new`].
     #[expect(
         clippy::needless_pass_by_value,
         reason = "a source is made for its batch; callers keep a clone if they want one"
     )]
-    pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
+    pub fn with_catalogue(
+        num_envs: usize,
+        source: WorldSource,
+        options: BatchOptions,
+        catalogue: &Catalogue,
+    ) -> Result<Self, EnvError> {
         if !(1..=MAX_ENVS).contains(&num_envs) {
             return Err(EnvError::BatchSize {
                 found: num_envs,
@@ -138,7 +152,7 @@ impl Batch {
         let mut slots = Vec::with_capacity(num_envs);
         for env in 0..num_envs {
             let layout = slots.first().map(|first: &Slot| &first.layout);
-            slots.push(Slot::new(env, Arc::clone(&source), layout)?);
+            slots.push(Slot::new(env, Arc::clone(&source), layout, catalogue)?);
         }
         let layout = ImageLayout::clone(&slots[0].layout);
         let state = slots[0].environment.world().agent_params.state_len();

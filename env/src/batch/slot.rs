@@ -6,6 +6,7 @@ use super::images::ImageLayout;
 use super::outputs::OutputsMut;
 use super::{Autoreset, Episode, WorldSource};
 use crate::EnvError;
+use crate::assets::Catalogue;
 use crate::render::CpuRenderer;
 use crate::sim::{Action, Environment, Step};
 
@@ -23,7 +24,12 @@ pub(super) struct Slot {
 
 impl Slot {
     /// An environment at the start of its episode 0. Images are as `layout` says; without it, as the world says.
-    pub(super) fn new(env: usize, source: WorldSource, layout: Option<&Arc<ImageLayout>>) -> Result<Self, EnvError> {
+    pub(super) fn new(
+        env: usize,
+        source: WorldSource,
+        layout: Option<&Arc<ImageLayout>>,
+        catalogue: &Catalogue,
+    ) -> Result<Self, EnvError> {
         let episode = Episode { env, index: 0 };
         let world = source(episode).map_err(|reason| EnvError::BatchWorld {
             env,
@@ -34,7 +40,7 @@ impl Slot {
         layout.check(env, &world)?;
         Ok(Self {
             env,
-            environment: Environment::new(world)?,
+            environment: Environment::with_catalogue(world, catalogue.clone())?,
             layout,
             step: Step::default(),
             source,

@@ -12,6 +12,7 @@ use super::event::Warning;
 use super::pushing::is_pushed;
 use super::state::Came;
 use crate::EnvError;
+use crate::assets::Catalogue;
 use crate::render::{CpuRenderer, Frame};
 use crate::scene::Scene;
 
@@ -55,12 +56,25 @@ pub(super) struct Scratch {
 }
 
 impl Environment {
-    /// A world at its start.
+    /// A world of built-in assets at its start.
     ///
     /// # Errors
-    /// None today: a checked world can always start. The signature leaves room for worlds that name libraries of assets.
+    /// None today: a checked world can always start.
     pub fn new(world: World) -> Result<Self, EnvError> {
-        Ok(Self::build(Arc::new(world), CpuRenderer::new(), Frame::new(0, 0)))
+        Self::with_catalogue(world, Catalogue::default())
+    }
+
+    /// A world at its start, its assets from a catalogue; the worlds that follow it take theirs from there too.
+    ///
+    /// # Errors
+    /// As [`Environment::new`]: what the catalogue does not know is drawn as a placeholder, with a warning.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a catalogue is cheap to clone, and the environment keeps it"
+    )]
+    pub fn with_catalogue(world: World, catalogue: Catalogue) -> Result<Self, EnvError> {
+        let frame = Frame::new(0, 0);
+        Ok(Self::build(Arc::new(world), &catalogue, CpuRenderer::new(), frame))
     }
 
     /// Leaves this world for another, or for the same from its start; buffers for pictures are kept.
@@ -73,14 +87,19 @@ impl Environment {
     }
 
     pub(super) fn start(&mut self, world: Arc<World>) {
-        let frame = std::mem::replace(&mut self.frame, Frame::new(0, 0));
-        *self = Self::build(world, std::mem::take(&mut self.renderer), frame);
+        let catalogue = self.scene.catalogue().clone();
+        self.start_with(world, &catalogue);
     }
 
-    fn build(mut world: Arc<World>, renderer: CpuRenderer, frame: Frame) -> Self {
+    pub(super) fn start_with(&mut self, world: Arc<World>, catalogue: &Catalogue) {
+        let frame = std::mem::replace(&mut self.frame, Frame::new(0, 0));
+        *self = Self::build(world, catalogue, std::mem::take(&mut self.renderer), frame);
+    }
+
+    fn build(mut world: Arc<World>, catalogue: &Catalogue, renderer: CpuRenderer, frame: Frame) -> Self {
         // A world that was written down while it ran is taken back to its start, and then told how far it had come.
         let came = world.progress.is_some().then(|| Came::out_of(&mut world));
-        let scene = Scene::from_world(&world);
+        let scene = Scene::from_world_with(&world, catalogue);
         let ground = Ground::new(&world, &scene);
         let seed = came
             .as_ref()

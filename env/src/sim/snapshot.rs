@@ -9,6 +9,7 @@ use super::chance::Seed;
 use super::environment::Environment;
 use super::episode::Episode;
 use crate::EnvError;
+use crate::assets::Catalogue;
 
 /// A moment of a running world, in memory.
 ///
@@ -17,6 +18,7 @@ use crate::EnvError;
 #[derive(Clone)]
 pub struct Snapshot {
     world: Arc<World>,
+    catalogue: Catalogue,
     seed: Seed,
     episode: Episode,
     /// Where each object stands and faces.
@@ -51,6 +53,7 @@ impl Environment {
         let place = |item: &crate::Item| (item.position, item.heading_deg);
         Snapshot {
             world: Arc::clone(&self.world),
+            catalogue: self.scene.catalogue().clone(),
             seed: self.seed.clone(),
             episode: self.episode.clone(),
             places: self.scene.items.iter().map(place).collect(),
@@ -60,10 +63,10 @@ impl Environment {
     /// Goes back to a moment of this environment or of another one; what follows is the same to the last bit.
     ///
     /// # Errors
-    /// None today: every moment can be gone back to. The signature leaves room for worlds that name libraries of assets.
+    /// None today: every moment can be gone back to.
     pub fn restore(&mut self, moment: &Snapshot) -> Result<(), EnvError> {
         if !Arc::ptr_eq(&self.world, &moment.world) {
-            self.start(Arc::clone(&moment.world));
+            self.start_with(Arc::clone(&moment.world), &moment.catalogue);
         }
         self.seed.clone_from(&moment.seed);
         self.episode.clone_from(&moment.episode);

@@ -1,0 +1,91 @@
+//! Which classes are built in, how many models each has, and who makes them.
+
+use super::{Asset, Builder, Mesh, furniture, nature, structures, trees};
+
+/// Every class with its number of models, in alphabetical order.
+pub(crate) const CLASSES: &[(&str, u32)] = &[
+    ("bag", 6),
+    ("barrel", 5),
+    ("bed", 1),
+    ("bench", 3),
+    ("building", 3),
+    ("car", 1),
+    ("castleruin", 7),
+    ("chair", 4),
+    ("cube", 1),
+    ("fence", 31),
+    ("geometric", 3),
+    ("icosphere", 1),
+    ("mushroom", 6),
+    ("nature", 1),
+    ("pot", 4),
+    ("roadblock", 1),
+    ("rock", 44),
+    ("shelf", 1),
+    ("shrub", 11),
+    ("streetsign", 1),
+    ("table", 3),
+    ("tent", 3),
+    ("tree", 49),
+];
+
+/// How many models a class has, if it is known.
+pub(crate) fn models(class: &str) -> Option<u32> {
+    CLASSES
+        .iter()
+        .find(|(name, _)| *name == class)
+        .map(|(_, models)| *models)
+}
+
+/// Makes an asset; what is not known is the placeholder.
+pub(crate) fn make(class: &str, model: u32) -> Asset {
+    match class {
+        "tree" => trees::tree(model),
+        "rock" => nature::rock(model),
+        "shrub" => nature::shrub(model),
+        "nature" => nature::stump(),
+        "mushroom" => nature::mushroom(model),
+        "geometric" | "cube" | "icosphere" => geometric(class, model),
+        "bag" => furniture::bag(model),
+        "barrel" => furniture::barrel(model),
+        "bed" => furniture::bed(),
+        "bench" => furniture::bench(model),
+        "chair" => furniture::chair(model),
+        "pot" => furniture::pot(model),
+        "shelf" => furniture::shelf(),
+        "table" => furniture::table(model),
+        "building" => structures::building(model),
+        "car" => structures::car(),
+        "castleruin" => structures::castle_ruin(model),
+        "fence" => structures::fence(model),
+        "roadblock" => structures::roadblock(),
+        "streetsign" => structures::street_sign(),
+        "tent" => structures::tent(model),
+        _ => placeholder(),
+    }
+}
+
+/// Cube, ball and cylinder of about 1 m: what a user puts where only colour matters.
+fn geometric(class: &str, model: u32) -> Asset {
+    let grey = [0.62, 0.62, 0.66];
+    match (class, model) {
+        ("icosphere", _) => Builder::default().main(grey, Mesh::ball(0.5, 0.5, 9, 5)).round(0.5),
+        ("geometric", 2) => Builder::default().main(grey, Mesh::ball(0.5, 0.5, 16, 10)).round(0.5),
+        ("geometric", 3) => Builder::default()
+            .main(grey, Mesh::cylinder(0.45, 0.0, 1.0, 16))
+            .round(0.45),
+        _ => Builder::default()
+            .main(grey, Mesh::cuboid([0.9, 0.9, 0.9], 0.0))
+            .boxed(),
+    }
+}
+
+/// Something to stumble over where the class is not known: a striped bollard.
+fn placeholder() -> Asset {
+    let stripe = |low: f32| Mesh::cylinder(0.25, low, low + 0.2, 8);
+    let asset = Builder::default()
+        .fixed([0.95, 0.2, 0.75], stripe(0.0).with(&stripe(0.4)).with(&stripe(0.8)))
+        .fixed([0.12, 0.1, 0.12], stripe(0.2).with(&stripe(0.6)))
+        .round(0.25);
+    Asset { known: false, ..asset }
+}

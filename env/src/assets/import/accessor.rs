@@ -1,0 +1,194 @@
+//! Numbers out of buffers: positions, texture coordinates, colours, indices. Every count and range is checked before anything
+//! is read or memory is taken.
+
+use gltf_json::accessor::{Accessor, ComponentType, GenericComponentType, Type};
+use gltf_json::validation::Checked;
+use gltf_json::{Index, Root};
+
+use super::buffers::{Buffers, one_of};
+use super::refuse;
+use crate::EnvError;
+use crate::assets::library::{MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES};
+
+/// What a list of numbers is for; decides what it may be made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Use {
+    Positions,
+    TexturePlaces,
+    Colors,
+    Indices,
+}
+
+/// An accessor whose numbers can be read.
+struct Sound<'a> {
+    accessor: &'a Accessor,
+    place: String,
+    component: ComponentType,
+    width: usize,
+    count: usize,
+}
+
+/// How many elements an accessor says it has; at most a million vertices, or indices for a million triangles.
+pub(super) fn count(root: &Root, index: Index<Accessor>, for_use: Use, place: &str) -> Result<usize, EnvError> {
+    sound(root, index, for_use, place).map(|sound| sound.count)
+}
+
+/// The numbers of an accessor, element by element, the first three of each; what is missing is 0.
+pub(super) fn vectors(
+    root: &Root,
+    buffers: &Buffers,
+    index: Index<Accessor>,
+    for_use: Use,
+    place: &str,
+) -> Result<Vec<[f32; 3]>, EnvError> {
+    let sound = sound(root, index, for_use, place)?;
+    let (bytes, stride, size) = sound.bytes(buffers)?;
+    let mut vectors = Vec::with_capacity(sound.count);
+    for element in 0..sound.count {
+        let bytes = &bytes[element * stride..];
+        let mut vector = [0.0; 3];
+        for (k, number) in vector.iter_mut().enumerate().take(sound.width) {
+            *number = match (sound.component, &bytes[k * size..]) {
+                (ComponentType::F32, [a, b, c, d, ..]) => f32::from_le_bytes([*a, *b, *c, *d]),
+                (ComponentType::U16, [a, b, ..]) => f32::from(u16::from_le_bytes([*a, *b])) / 65_535.0,
+                (_, [byte, ..]) => f32::from(*byte) / 255.0,
+                (_, []) => 0.0,
+            };
+        }
+        if !vector.iter().all(|number| number.is_finite()) {
+            let place = format!("{}, element {element}", sound.place);
+            return Err(refuse(place, format!("{vector:?}"), "finite numbers"));
+        }
+        vectors.push(vector);
+    }
+    Ok(vectors)
+}
+
+/// Indices of corners, each below `num_corners`.
+pub(super) fn indices(
+    root: &Root,
+    buffers: &Buffers,
+    index: Index<Accessor>,
+    num_corners: usize,
+    place: &str,
+) -> Result<Vec<u32>, EnvError> {
+    let sound = sound(root, index, Use::Indices, place)?;
+    let (bytes, stride, _) = sound.bytes(buffers)?;
+    let mut indices = Vec::with_capacity(sound.count);
+    for element in 0..sound.count {
+        let corner = match (sound.component, &bytes[element * stride..]) {
+            (ComponentType::U32, [a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]),
+            (ComponentType::U16, [a, b, ..]) => u32::from(u16::from_le_bytes([*a, *b])),
+            (_, [byte, ..]) => u32::from(*byte),
+            (_, []) => 0,
+        };
+        if corner as usize >= num_corners {
+            let place = format!("{}, element {element}", sound.place);
+            return Err(refuse(place, format!("corner {corner}"), one_of(num_corners)));
+        }
+        indices.push(corner);
+    }
+    Ok(indices)
+}
+
+fn sound<'a>(root: &'a Root, index: Index<Accessor>, for_use: Use, from: &str) -> Result<Sound<'a>, EnvError> {
+    let Some(accessor) = root.accessors.get(index.value()) else {
+        let found = format!("accessor {}", index.value());
+        return Err(refuse(from, found, one_of(root.accessors.len())));
+    };
+    let place = format!("/accessors/{}", index.value());
+    if accessor.sparse.is_some() {
+        let found = "a sparse accessor";
+        return Err(refuse(place, found, "plain ones; export without sparse accessors"));
+    }
+    let (Checked::Valid(GenericComponentType(component)), Checked::Valid(shape)) =
+        (accessor.component_type, accessor.type_)
+    else {
+        return Err(refuse(place, "an unknown type or componentType", for_use.expected()));
+    };
+    let width = match shape {
+        Type::Scalar => 1,
+        Type::Vec2 => 2,
+        Type::Vec3 => 3,
+        _ => 4,
+    };
+    if !for_use.allows(component, shape, accessor.normalized) {
+        let normalized = if accessor.normalized { ", normalized" } else { "" };
+        let found = format!("{shape:?} of {component:?}{normalized}");
+        return Err(refuse(place, found, for_use.expected()));
+    }
+    let most = match for_use {
+        Use::Indices => 3 * MAX_MODEL_TRIANGLES,
+        _ => MAX_MODEL_VERTICES,
+    };
+    let count = accessor.count.0;
+    if count > most as u64 {
+        return Err(refuse(
+            format!("{place}/count"),
+            count.to_string(),
+            format!("at most {most}"),
+        ));
+    }
+    Ok(Sound {
+        accessor,
+        place,
+        component,
+        width,
+        count: count as usize,
+    })
+}
+
+impl Sound<'_> {
+    /// The bytes from the first element on, the distance of elements, and the size of a number. All elements lie within.
+    fn bytes<'b>(&self, buffers: &'b Buffers) -> Result<(&'b [u8], usize, usize), EnvError> {
+        let Some(view) = self.accessor.buffer_view else {
+            return Err(refuse(
+                self.place.as_str(),
+                "no bufferView",
+                "one: there is nothing to read",
+            ));
+        };
+        let view = buffers.view(view, &self.place)?;
+        let size = self.component.size();
+        let element = size * self.width;
+        let stride = view.stride.unwrap_or(element);
+        if stride < element {
+            let found = format!("elements of {element} bytes, {stride} apart");
+            return Err(refuse(self.place.as_str(), found, "a byteStride of their size or more"));
+        }
+        let offset = self.accessor.byte_offset.map_or(0, |offset| offset.0);
+        // Counts and strides are small by now; only the offset may be anything.
+        let span = self.count.checked_sub(1).map_or(0, |last| last * stride + element) as u64;
+        let fits = offset
+            .checked_add(span)
+            .is_some_and(|end| end <= view.bytes.len() as u64);
+        if !fits {
+            let found = format!("{} elements in {span} bytes from byte {offset} on", self.count);
+            let expected = format!("a range within the view's {}", view.bytes.len());
+            return Err(refuse(self.place.as_str(), found, expected));
+        }
+        Ok((&view.bytes[offset as usize..], stride, size))
+    }
+}
+
+impl Use {
+    fn allows(self, component: ComponentType, shape: Type, normalized: bool) -> bool {
+        use ComponentType::{F32, U8, U16, U32};
+        let share = component == F32 || (normalized && matches!(component, U8 | U16));
+        match self {
+            Self::Positions => component == F32 && shape == Type::Vec3,
+            Self::TexturePlaces => share && shape == Type::Vec2,
+            Self::Colors => share && matches!(shape, Type::Vec3 | Type::Vec4),
+            Self::Indices => matches!(component, U8 | U16 | U32) && shape == Type::Scalar,
+        }
+    }
+
+    fn expected(self) -> &'static str {
+        match self {
+            Self::Positions => "VEC3 of float for positions; export without quantization",
+            Self::TexturePlaces => "VEC2 of float, or of normalized unsigned bytes or shorts, for texture coordinates",
+            Self::Colors => "VEC3 or VEC4 of float, or of normalized unsigned bytes or shorts, for colours",
+            Self::Indices => "SCALAR of unsigned bytes, shorts or ints for indices",
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! The bytes behind a glTF file's buffers and views, every range checked. What the bytes mean is in `accessor.rs`.
+
+use std::borrow::Cow;
+
+use gltf_json::{Index, Root, buffer};
+
+use super::{ReadBeside, refuse, uri};
+use crate::EnvError;
+
+/// The most buffers, and the most bytes of all of them together.
+const MAX_BUFFERS: usize = 1000;
+const MAX_BYTES: usize = 256 << 20;
+
+/// All buffers of a file.
+pub(super) struct Buffers<'a> {
+    root: &'a Root,
+    data: Vec<Cow<'a, [u8]>>,
+}
+
+/// A view's bytes, and how far its elements are apart if it says so.
+pub(super) struct View<'a> {
+    pub(super) bytes: &'a [u8],
+    pub(super) stride: Option<usize>,
+}
+
+impl<'a> Buffers<'a> {
+    pub(super) fn load(root: &'a Root, binary: Option<&'a [u8]>, read: &mut ReadBeside) -> Result<Self, EnvError> {
+        if root.buffers.len() > MAX_BUFFERS {
+            let found = format!("{} buffers", root.buffers.len());
+            return Err(refuse("/buffers", found, format!("at most {MAX_BUFFERS}")));
+        }
+        let mut data: Vec<Cow<[u8]>> = Vec::new();
+        let mut total = 0;
+        for (index, buffer) in root.buffers.iter().enumerate() {
+            let place = format!("/buffers/{index}");
+            let bytes: Cow<[u8]> = match (&buffer.uri, binary) {
+                (Some(uri), _) => Cow::Owned(uri::bytes(uri, &format!("{place}/uri"), read)?),
+                (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
+                (None, _) => return Err(refuse(place, "no data", "a uri, or the binary chunk of a GLB file")),
+            };
+            let length = buffer.byte_length.0;
+            if length > bytes.len() as u64 {
+                let found = format!("{length} bytes");
+                let place = format!("{place}/byteLength");
+                return Err(refuse(
+                    place,
+                    found,
+                    format!("at most the {} that are there", bytes.len()),
+                ));
+            }
+            total += bytes.len();
+            if total > MAX_BYTES {
+                return Err(refuse(
+                    "/buffers",
+                    format!("{total} bytes"),
+                    format!("at most {MAX_BYTES}"),
+                ));
+            }
+            data.push(bytes);
+        }
+        Ok(Self { root, data })
+    }
+
+    /// The bytes of a view, which whoever is at `place` refers to.
+    pub(super) fn view(&self, index: Index<buffer::View>, place: &str) -> Result<View<'_>, EnvError> {
+        let views = &self.root.buffer_views;
+        let Some(view) = views.get(index.value()) else {
+            let found = format!("view {}", index.value());
+            return Err(refuse(format!("{place}/bufferView"), found, one_of(views.len())));
+        };
+        let place = format!("/bufferViews/{}", index.value());
+        let Some((buffer, data)) = self
+            .root
+            .buffers
+            .get(view.buffer.value())
+            .zip(self.data.get(view.buffer.value()))
+        else {
+            let found = format!("buffer {}", view.buffer.value());
+            return Err(refuse(format!("{place}/buffer"), found, one_of(self.data.len())));
+        };
+        let (offset, length) = (view.byte_offset.map_or(0, |offset| offset.0), view.byte_length.0);
+        let whole = buffer.byte_length.0;
+        let end = offset.checked_add(length).filter(|end| *end <= whole);
+        let Some(end) = end else {
+            let found = format!("{length} bytes from byte {offset} on");
+            return Err(refuse(place, found, format!("a range within the buffer's {whole}")));
+        };
+        let stride = view.byte_stride.as_ref().map(|stride| stride.0);
+        if let Some(stride) = stride.filter(|stride| !(4..=252).contains(stride) || stride % 4 != 0) {
+            let place = format!("{place}/byteStride");
+            return Err(refuse(place, stride.to_string(), "a multiple of 4 in 4..252"));
+        }
+        // The end is within the buffer, which is within the data.
+        let bytes = data.get(offset as usize..end as usize).unwrap_or_default();
+        Ok(View { bytes, stride })
+    }
+}
+
+/// The numbers that a list of this length has.
+pub(super) fn one_of(length: usize) -> String {
+    match length {
+        0 => "none, for there are none".to_owned(),
+        1 => "0, the only one".to_owned(),
+        length => format!("0 to {}", length - 1),
+    }
+}

@@ -1,0 +1,84 @@
+//! The outermost layer of a file: GLB with its chunks, or plain JSON. What the JSON says is read in `document.rs`.
+
+use super::refuse;
+use crate::EnvError;
+
+/// The parts of a file.
+pub(super) struct Container<'a> {
+    pub(super) json: &'a str,
+    /// The binary chunk of a GLB file.
+    pub(super) binary: Option<&'a [u8]>,
+}
+
+const JSON: u32 = 0x4E4F_534A;
+const BIN: u32 = 0x004E_4942;
+
+pub(super) fn open(bytes: &[u8]) -> Result<Container<'_>, EnvError> {
+    if !bytes.starts_with(b"glTF") {
+        return Ok(Container {
+            json: text(bytes)?,
+            binary: None,
+        });
+    }
+    let (Some(version), Some(length)) = (number(bytes, 4), number(bytes, 8)) else {
+        let found = format!("{} bytes", bytes.len());
+        return Err(refuse("GLB header", found, "12 or more"));
+    };
+    if version != 2 {
+        let found = format!("version {version}");
+        return Err(refuse("GLB header", found, "version 2; export as glTF 2.0"));
+    }
+    if length as usize != bytes.len() {
+        let found = format!("a file of {} bytes", bytes.len());
+        return Err(refuse("GLB header", found, format!("{length}, as the header says")));
+    }
+    let mut rest = &bytes[12..];
+    let mut chunks = Vec::new();
+    // Only the first two chunks mean something; more may follow.
+    while chunks.len() < 2 && !rest.is_empty() {
+        let (kind, data, behind) = chunk(rest, chunks.len())?;
+        chunks.push((kind, data));
+        rest = behind;
+    }
+    let Some(&(JSON, json)) = chunks.first() else {
+        return Err(refuse("GLB chunk 0", "no JSON", "the JSON chunk first"));
+    };
+    let binary = chunks.get(1).filter(|(kind, _)| *kind == BIN).map(|(_, data)| *data);
+    Ok(Container {
+        json: text(json)?,
+        binary,
+    })
+}
+
+/// A chunk's kind and data, and what follows it.
+fn chunk(bytes: &[u8], index: usize) -> Result<(u32, &[u8], &[u8]), EnvError> {
+    let place = || format!("GLB chunk {index}");
+    let (Some(length), Some(kind)) = (number(bytes, 0), number(bytes, 4)) else {
+        let found = format!("{} bytes", bytes.len());
+        return Err(refuse(place(), found, "a header of 8"));
+    };
+    let data = &bytes[8..];
+    if length as usize > data.len() {
+        let found = format!("a length of {length} bytes");
+        return Err(refuse(
+            place(),
+            found,
+            format!("at most the {} that are there", data.len()),
+        ));
+    }
+    let (data, behind) = data.split_at(length as usize);
+    Ok((kind, data, behind))
+}
+
+fn number(bytes: &[u8], at: usize) -> Option<u32> {
+    let four = bytes.get(at..at + 4)?;
+    Some(u32::from_le_bytes(four.try_into().ok()?))
+}
+
+fn text(bytes: &[u8]) -> Result<&str, EnvError> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    std::str::from_utf8(bytes).map_err(|error| {
+        let place = format!("byte {}", error.valid_up_to());
+        refuse(place, "neither GLB nor UTF-8 text", "a .glb or .gltf file")
+    })
+}

@@ -1,0 +1,151 @@
+//! The JSON of a glTF file: its size is checked before it is parsed, its version and extensions after. Numbers of things in it
+//! are trusted by nobody: whoever follows one looks whether it leads somewhere.
+
+use gltf_json::Root;
+
+use super::{MAX_IMPORT_DEPTH, MAX_IMPORT_NODES, refuse};
+use crate::EnvError;
+
+/// The most objects and lists: each may cost some hundred bytes of memory for two of text.
+const MAX_ITEMS: usize = 200_000;
+
+/// Extensions that a file may require and that can be left unread: they change no triangle.
+const HARMLESS: &[&str] = &[
+    "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_dispersion",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_materials_volume",
+];
+
+pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
+    check_extent(json)?;
+    let root: Root = gltf_json::deserialize::from_str(json).map_err(|error| {
+        if is_version_1(json) {
+            return refuse("file", "glTF 1.0", "glTF 2.0; export as that");
+        }
+        // The position is said before, so the parser's own words at the end are cut off.
+        let said = error.to_string();
+        let words = said.split(" at line ").next().unwrap_or(&said);
+        let place = format!("line {}, column {}", error.line(), error.column());
+        refuse(place, format!("a fault: {words}"), "glTF 2.0 JSON")
+    })?;
+    if !root.asset.version.starts_with("2.") {
+        let found = format!("{:?}", shortened(&root.asset.version));
+        return Err(refuse("/asset/version", found, "\"2.0\"; export as glTF 2.0"));
+    }
+    for (index, name) in root.extensions_required.iter().enumerate() {
+        if !HARMLESS.contains(&name.as_str()) {
+            let place = format!("/extensionsRequired/{index}");
+            let expected = if is_compression(name) {
+                "no compression; export without it"
+            } else {
+                "an extension that can be left out; export without it"
+            };
+            return Err(refuse(place, format!("{:?}", shortened(name)), expected));
+        }
+    }
+    if root.nodes.len() > MAX_IMPORT_NODES {
+        let found = format!("{} nodes", root.nodes.len());
+        return Err(refuse("/nodes", found, format!("at most {MAX_IMPORT_NODES}")));
+    }
+    Ok(root)
+}
+
+/// Whether JSON that is no glTF 2.0 is of the version before, where meshes had names in place of numbers.
+fn is_version_1(json: &str) -> bool {
+    let value: Result<gltf_json::Value, _> = gltf_json::deserialize::from_str(json);
+    value.is_ok_and(|value| value.get("meshes").is_some_and(gltf_json::Value::is_object))
+}
+
+fn is_compression(extension: &str) -> bool {
+    ["draco", "meshopt", "quantization", "basisu"]
+        .iter()
+        .any(|word| extension.to_lowercase().contains(word))
+}
+
+/// A text of a file as it is quoted in a message: never more than a line of it.
+pub(super) fn shortened(text: &str) -> String {
+    if text.chars().count() <= 60 {
+        return text.to_owned();
+    }
+    text.chars().take(60).chain("…".chars()).collect()
+}
+
+/// Refuses JSON that is nested too deep, or would take many times its length in memory.
+fn check_extent(json: &str) -> Result<(), EnvError> {
+    let (mut depth, mut items) = (0_usize, 0_usize);
+    let (mut quoted, mut escaped) = (false, false);
+    for (at, byte) in json.bytes().enumerate() {
+        match byte {
+            _ if escaped => escaped = false,
+            b'\\' if quoted => escaped = true,
+            b'"' => quoted = !quoted,
+            b'{' | b'[' if !quoted => (depth, items) = (depth + 1, items + 1),
+            b'}' | b']' if !quoted => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if depth > MAX_IMPORT_DEPTH {
+            let expected = format!("at most {MAX_IMPORT_DEPTH}");
+            return Err(refuse(
+                format!("byte {at}"),
+                format!("JSON nested {depth} deep"),
+                expected,
+            ));
+        }
+        if items > MAX_ITEMS {
+            let expected = format!("at most {MAX_ITEMS} objects and lists");
+            return Err(refuse(format!("byte {at}"), format!("the {items}th"), expected));
+        }
+    }
+    Ok(())
+}
+
+/// The number of the material whose colour is the object's: the one of this name, or that is called `main`.
+pub(super) fn main_material(root: &Root, wanted: Option<&str>) -> Result<Option<usize>, EnvError> {
+    let named = |name: &str| {
+        let is_it = |material: &gltf_json::Material| {
+            let own = material.name.as_deref();
+            own.is_some_and(|own| own.eq_ignore_ascii_case(name))
+        };
+        root.materials.iter().position(is_it)
+    };
+    let Some(name) = wanted else { return Ok(named("main")) };
+    let found = named(name);
+    if found.is_none() {
+        let names: Vec<String> = root
+            .materials
+            .iter()
+            .filter_map(|material| material.name.clone())
+            .collect();
+        let names = match names.len() {
+            0 => "a file with named materials".to_owned(),
+            count => format!("one of {}", shortened_list(&names, count)),
+        };
+        return Err(refuse("/materials", format!("none named {name:?}"), names));
+    }
+    Ok(found)
+}
+
+fn shortened_list(names: &[String], count: usize) -> String {
+    const SHOWN: usize = 10;
+    let shown: Vec<String> = names
+        .iter()
+        .take(SHOWN)
+        .map(|name| format!("{:?}", shortened(name)))
+        .collect();
+    let more = count.saturating_sub(SHOWN);
+    if more == 0 {
+        shown.join(", ")
+    } else {
+        format!("{} and {more} more", shown.join(", "))
+    }
+}

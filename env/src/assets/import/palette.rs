@@ -1,0 +1,124 @@
+//! Few colours for many triangles: those that look alike become one part of the model.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::color::srgb;
+use super::surface::Surface;
+use crate::assets::Paint;
+
+/// The most fixed colours that a model keeps.
+const MOST_COLORS: usize = 64;
+
+/// Steps of a channel within which colours are taken for one.
+const STEPS: f32 = 31.0;
+
+/// Triangles of one colour.
+#[derive(Clone, Debug)]
+pub(super) struct Group {
+    pub(super) paint: Paint,
+    pub(super) two_sided: bool,
+    pub(super) triangles: Vec<[u32; 3]>,
+}
+
+/// Triangles that may become a group: the sum of their light by area, and that area.
+#[derive(Default)]
+struct Heap {
+    light: [f64; 3],
+    area: f64,
+    triangles: Vec<[u32; 3]>,
+}
+
+/// What tells heaps apart: whether it is the main colour, whether it has two sides, and about which colour.
+type Kind = (bool, bool, [u8; 3]);
+
+/// The surface's triangles by colour; those of the material `main` take the object's colour.
+pub(super) fn groups(surface: &Surface, main: Option<usize>) -> Vec<Group> {
+    let mut heaps: BTreeMap<Kind, Heap> = BTreeMap::new();
+    for face in &surface.faces {
+        let is_main = main.is_some() && face.material == main;
+        let about = face.color.map(|light| (srgb(light) * STEPS + 0.5) as u8);
+        let kind = (is_main, face.two_sided, if is_main { [0; 3] } else { about });
+        let (heap, area) = (heaps.entry(kind).or_default(), surface.area(face.corners));
+        heap.area += area;
+        for (sum, light) in heap.light.iter_mut().zip(face.color) {
+            *sum += area * f64::from(light);
+        }
+        heap.triangles.push(face.corners);
+    }
+    reduce(&mut heaps);
+    let group = |((is_main, two_sided, _), heap): (Kind, Heap)| {
+        let color = heap.color();
+        Group {
+            paint: if is_main {
+                Paint::Main(color)
+            } else {
+                Paint::Fixed(color)
+            },
+            two_sided,
+            triangles: heap.triangles,
+        }
+    };
+    heaps.into_iter().map(group).collect()
+}
+
+/// Gives the smallest heaps to those whose colour is nearest, until few enough are left.
+fn reduce(heaps: &mut BTreeMap<Kind, Heap>) {
+    let fixed = heaps.iter().filter(|((is_main, ..), _)| !is_main);
+    let mut by_area: Vec<(f64, Kind)> = fixed.map(|(kind, heap)| (heap.area, *kind)).collect();
+    by_area.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    // Sides are kept apart: a sheet must not lose its back.
+    let (mut kept, mut given): (Vec<Kind>, Vec<Kind>) = (Vec::new(), Vec::new());
+    for (_, kind) in by_area {
+        let of_its_sides = kept.iter().filter(|other| other.1 == kind.1).count();
+        if of_its_sides < MOST_COLORS / 2 || kept.len() < MOST_COLORS && of_its_sides == kept.len() {
+            kept.push(kind);
+        } else {
+            given.push(kind);
+        }
+    }
+    for kind in given {
+        let far = |other: &Kind| -> i32 {
+            let apart = kind.2.iter().zip(other.2).map(|(a, b)| i32::from(*a) - i32::from(b));
+            apart.map(|step| step * step).sum()
+        };
+        let nearest = kept
+            .iter()
+            .filter(|other| other.1 == kind.1)
+            .min_by_key(|other| far(other));
+        let (Some(&nearest), Some(heap)) = (nearest, heaps.remove(&kind)) else {
+            continue;
+        };
+        let onto = heaps.entry(nearest).or_default();
+        onto.area += heap.area;
+        (0..3).for_each(|k| onto.light[k] += heap.light[k]);
+        onto.triangles.extend(heap.triangles);
+    }
+}
+
+impl Heap {
+    fn color(&self) -> [f32; 3] {
+        self.light
+            .map(|light| srgb((light / self.area.max(f64::MIN_POSITIVE)) as f32))
+    }
+}
+
+/// The corners that groups use, those at the same place in the same group as one, and the groups with their new numbers.
+pub(super) fn welded(corners: &[[f32; 3]], mut groups: Vec<Group>) -> (Vec<[f32; 3]>, Vec<Group>) {
+    let mut welded = Vec::new();
+    for group in &mut groups {
+        // Only looked up in, never walked through: the order of corners is that of the triangles.
+        let mut known: HashMap<[u32; 3], u32> = HashMap::new();
+        for corner in group.triangles.as_flattened_mut() {
+            // Adding 0 turns -0 into 0, which is the same place.
+            let at = corners[*corner as usize].map(|metres| metres + 0.0);
+            *corner = *known.entry(at.map(f32::to_bits)).or_insert_with(|| {
+                welded.push(at);
+                welded.len() as u32 - 1
+            });
+        }
+        // Corners that were apart by less than 32 bits can tell.
+        group.triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+    }
+    groups.retain(|group| !group.triangles.is_empty());
+    (welded, groups)
+}

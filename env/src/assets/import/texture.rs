@@ -1,0 +1,156 @@
+//! Textures as far as a model needs them: the colour at a place. PNG is read; of anything else the material keeps its plain
+//! colour.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use gltf_json::{Index, Root};
+
+use super::buffers::{Buffers, one_of};
+use super::color::linear;
+use super::warning::{ImportWarning, Warnings};
+use super::{MAX_TEXTURE_SIDE, ReadBeside, refuse, uri};
+use crate::EnvError;
+
+/// The most pixels of all textures of a model together: two of the largest.
+const MAX_PIXELS: usize = 2 * 4096 * 4096;
+
+/// The most images that are read.
+const MAX_IMAGES: usize = 256;
+
+/// The textures of a file, read when they are first asked for.
+pub(super) struct Textures<'a, 'b> {
+    root: &'a Root,
+    buffers: &'a Buffers<'a>,
+    read: &'a mut ReadBeside<'b>,
+    /// By the number of the image; none where it is not read.
+    images: BTreeMap<usize, Option<Pixels>>,
+    num_pixels: usize,
+}
+
+/// An image: 8-bit RGBA, row 0 on top.
+pub(super) struct Pixels {
+    width: usize,
+    height: usize,
+    rgba: Vec<[u8; 4]>,
+}
+
+impl<'a, 'b> Textures<'a, 'b> {
+    pub(super) fn new(root: &'a Root, buffers: &'a Buffers<'a>, read: &'a mut ReadBeside<'b>) -> Self {
+        Self {
+            root,
+            buffers,
+            read,
+            images: BTreeMap::new(),
+            num_pixels: 0,
+        }
+    }
+
+    /// The pixels of a texture that whoever is at `place` refers to; none where its format is not read.
+    pub(super) fn pixels(
+        &mut self,
+        texture: Index<gltf_json::Texture>,
+        place: &str,
+        warnings: &mut Warnings,
+    ) -> Result<Option<&Pixels>, EnvError> {
+        let textures = &self.root.textures;
+        let Some(texture) = textures.get(texture.value()) else {
+            let found = format!("texture {}", texture.value());
+            return Err(refuse(place, found, one_of(textures.len())));
+        };
+        let image = texture.source.value();
+        if !self.images.contains_key(&image) {
+            let pixels = self.load(image, warnings)?;
+            self.images.insert(image, pixels);
+        }
+        Ok(self.images.get(&image).and_then(Option::as_ref))
+    }
+
+    fn load(&mut self, index: usize, warnings: &mut Warnings) -> Result<Option<Pixels>, EnvError> {
+        let Some(image) = self.root.images.get(index) else {
+            let found = format!("image {index}");
+            return Err(refuse("/textures", found, one_of(self.root.images.len())));
+        };
+        if self.images.len() >= MAX_IMAGES {
+            let found = format!("more than {MAX_IMAGES} images in use");
+            return Err(refuse("/images", found, "at most that"));
+        }
+        let place = format!("/images/{index}");
+        let owned;
+        let bytes = match (&image.uri, image.buffer_view) {
+            (Some(uri), _) => {
+                owned = uri::bytes(uri, &format!("{place}/uri"), self.read)?;
+                &owned
+            }
+            (None, Some(view)) => self.buffers.view(view, &place)?.bytes,
+            (None, None) => return Err(refuse(place, "neither a uri nor a bufferView", "one of them")),
+        };
+        if !bytes.starts_with(b"\x89PNG") {
+            let found = match bytes {
+                [0xFF, 0xD8, ..] => "JPEG",
+                [b'R', b'I', b'F', b'F', ..] => "WebP",
+                _ => "a format other than PNG",
+            };
+            warnings.note(ImportWarning::TextureFormat {
+                image: index,
+                found: found.to_owned(),
+            });
+            return Ok(None);
+        }
+        let pixels = decoded(bytes, &place)?;
+        self.num_pixels += pixels.rgba.len();
+        if self.num_pixels > MAX_PIXELS {
+            let found = format!("textures of {} pixels together", self.num_pixels);
+            return Err(refuse("/images", found, format!("at most {MAX_PIXELS}")));
+        }
+        Ok(Some(pixels))
+    }
+}
+
+fn decoded(bytes: &[u8], place: &str) -> Result<Pixels, EnvError> {
+    let unreadable =
+        |error: png::DecodingError| refuse(place, format!("a PNG that cannot be read: {error}"), "a whole one");
+    let limits = png::Limits { bytes: 128 << 20 };
+    let mut decoder = png::Decoder::new_with_limits(std::io::Cursor::new(bytes), limits);
+    decoder.set_transformations(png::Transformations::normalize_to_color8());
+    // The size is known before anything else is read.
+    let header = decoder.read_header_info().map_err(unreadable)?;
+    let (width, height) = (header.width, header.height);
+    if width.max(height) > MAX_TEXTURE_SIDE {
+        let found = format!("{width} × {height} pixels");
+        return Err(refuse(place, found, format!("at most {MAX_TEXTURE_SIDE} each way")));
+    }
+    let mut reader = decoder.read_info().map_err(unreadable)?;
+    // At most 4096 × 4096 × 4 bytes after the check above.
+    let size = reader.output_buffer_size().unwrap_or(0);
+    let mut data = vec![0; size];
+    let info = reader.next_frame(&mut data).map_err(unreadable)?;
+    let channels = info.color_type.samples();
+    let pixel = |bytes: &[u8]| match *bytes {
+        [gray] => [gray, gray, gray, 255],
+        [gray, alpha] => [gray, gray, gray, alpha],
+        [r, g, b] => [r, g, b, 255],
+        [r, g, b, alpha, ..] => [r, g, b, alpha],
+        [] => [0; 4],
+    };
+    Ok(Pixels {
+        width: width as usize,
+        height: height as usize,
+        rgba: data.chunks_exact(channels).map(pixel).collect(),
+    })
+}
+
+/// The light of each byte.
+static LIGHT: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|byte| linear(byte as f32 / 255.0)));
+
+impl Pixels {
+    /// Light and opacity at a place in texture coordinates: the nearest pixel, the image repeated for ever.
+    pub(super) fn at(&self, [u, v]: [f32; 2]) -> [f32; 4] {
+        let index =
+            |place: f32, size: usize| ((place.rem_euclid(1.0) * size as f32) as usize).min(size.saturating_sub(1));
+        let at = index(v, self.height) * self.width + index(u, self.width);
+        let [r, g, b, alpha] = self.rgba.get(at).copied().unwrap_or([255; 4]);
+        let light = |byte: u8| LIGHT[usize::from(byte)];
+        [light(r), light(g), light(b), f32::from(alpha) / 255.0]
+    }
+}

@@ -1,0 +1,121 @@
+//! What a glTF file may name: data inside itself, and files in its own folder. Who reads those files decides about links.
+
+use base64::Engine;
+
+use super::document::shortened;
+use super::{MAX_IMPORT_BYTES, ReadBeside, refuse};
+use crate::EnvError;
+
+/// The bytes that a URI stands for.
+pub(super) fn bytes(uri: &str, place: &str, read: &mut ReadBeside) -> Result<Vec<u8>, EnvError> {
+    let bytes = if uri.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("data:")) {
+        embedded(uri, place)?
+    } else {
+        let path = path_inside(uri, place)?;
+        read(&path).map_err(|reason| {
+            let found = format!("{:?}, which cannot be read: {reason}", shortened(&path));
+            refuse(place, found, "a file beside this one")
+        })?
+    };
+    if bytes.len() > MAX_IMPORT_BYTES {
+        let found = format!("{} bytes", bytes.len());
+        return Err(refuse(place, found, format!("at most {MAX_IMPORT_BYTES}")));
+    }
+    Ok(bytes)
+}
+
+fn embedded(uri: &str, place: &str) -> Result<Vec<u8>, EnvError> {
+    let Some((_, text)) = uri.split_once(";base64,") else {
+        let found = format!("{:?}", shortened(uri));
+        return Err(refuse(place, found, "data:…;base64,…"));
+    };
+    let engine = base64::engine::GeneralPurpose::new(
+        &base64::alphabet::STANDARD,
+        base64::engine::general_purpose::PAD.with_decode_padding_mode(base64::engine::DecodePaddingMode::Indifferent),
+    );
+    let decoded = engine.decode(text);
+    decoded.map_err(|error| refuse(place, format!("data that is not base64: {error}"), "base64"))
+}
+
+/// A URI as a relative path that does not lead out of the folder.
+fn path_inside(uri: &str, place: &str) -> Result<String, EnvError> {
+    let outside = || {
+        let found = format!("{:?}", shortened(uri));
+        refuse(place, found, "the relative path of a file in the folder of this one")
+    };
+    let path = percent_decoded(uri).ok_or_else(outside)?;
+    let leads_out = |part: &str| part == ".." || part.is_empty();
+    let has_scheme = path.contains(':');
+    let strange = path.chars().any(|letter| letter == '\\' || letter.is_control());
+    if has_scheme || strange || path.len() > 1000 || path.split('/').any(leads_out) {
+        return Err(outside());
+    }
+    Ok(path)
+}
+
+fn percent_decoded(text: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
+    while let Some((&first, behind)) = rest.split_first() {
+        if first == b'%' {
+            let digits = std::str::from_utf8(behind.get(..2)?).ok()?;
+            if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+                return None;
+            }
+            bytes.push(u8::from_str_radix(digits, 16).ok()?);
+            rest = &behind[2..];
+        } else {
+            bytes.push(first);
+            rest = behind;
+        }
+    }
+    String::from_utf8(bytes).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_paths_into_the_folder_are_asked_for() {
+        #[track_caller]
+        fn check(uri: &str, expected: Option<&str>) {
+            assert_eq!(path_inside(uri, "here").ok().as_deref(), expected, "{uri}");
+        }
+        check("lamp.bin", Some("lamp.bin"));
+        check("parts/my%20lamp.bin", Some("parts/my lamp.bin"));
+        check("./lamp.bin", Some("./lamp.bin"));
+        for outside in [
+            "",
+            "..",
+            "../lamp.bin",
+            "parts/../../lamp.bin",
+            "%2e%2e/lamp.bin",
+            "..%2Flamp.bin",
+            "/etc/passwd",
+            "%2Fetc/passwd",
+            "//server/share",
+            "C:\\lamp.bin",
+            "C:lamp.bin",
+            "..\\lamp.bin",
+            "http://example.org/lamp.bin",
+            "file:///etc/passwd",
+            "lamp%00.bin",
+            "lamp%zz.bin",
+            "lamp%+1.bin",
+            "lamp%2",
+            "lamp%ff.bin",
+        ] {
+            check(outside, None);
+        }
+    }
+
+    #[test]
+    fn data_is_decoded_with_or_without_padding() {
+        let read = |uri: &str| bytes(uri, "here", &mut |_| Err("nothing is beside it".into()));
+        assert_eq!(read("data:application/octet-stream;base64,AQID"), Ok(vec![1, 2, 3]));
+        assert_eq!(read("data:;base64,AQ=="), Ok(vec![1]));
+        assert_eq!(read("DATA:;base64,AQ"), Ok(vec![1]));
+        assert!(read("data:text/plain,AQID").is_err() && read("data:;base64,A*").is_err());
+    }
+}

@@ -1,0 +1,432 @@
+//! How a library is written down: a header with a checksum, then the models. Reading trusts nothing and never panics; what a
+//! sound model is, is said in `model.rs`.
+//!
+//! All numbers are little-endian. Header: `DRIFTLIB`, version (u32), length of the rest after the checksum (u64), SHA-256 of
+//! that rest. Then the number of models (u32), and each model: class and name (length u16, UTF-8), collider (a tag and its
+//! numbers), corners (count u32, three f32 each), colours (count u16; a tag and three f32 each), levels (count u8; an error as
+//! f32, then for each colour a count u32 and corner numbers, u16 each where the model has at most 65,536 corners, else u32).
+
+use sha2::{Digest, Sha256};
+
+use super::model::{Detail, LibraryModel};
+use super::{Library, MAX_HULL_POINTS, MAX_LIBRARY_MODELS};
+use crate::EnvError;
+use crate::assets::{ColliderShape, Paint};
+
+const MAGIC: &[u8; 8] = b"DRIFTLIB";
+const VERSION: u32 = 1;
+/// Bytes before the models.
+const HEADER: usize = 8 + 4 + 8 + 32;
+/// Corners up to which triangles are written in 16 bits.
+const SMALL: usize = 1 << 16;
+/// The fewest bytes that a model takes.
+const LEAST_MODEL: usize = 32;
+
+impl Library {
+    /// The library as a file's bytes: the same library gives the same bytes on every machine.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut body = Vec::new();
+        body.extend((self.models.len() as u32).to_le_bytes());
+        for model in &self.models {
+            write_model(model, &mut body);
+        }
+        sealed(&body)
+    }
+
+    /// Reads what [`Library::to_bytes`] wrote.
+    ///
+    /// Any bytes may be handed in; memory stays below a fixed multiple of their number.
+    ///
+    /// # Errors
+    /// [`EnvError::BadLibrary`] with the byte at which the file is not a library, or not a whole one.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, EnvError> {
+        let mut reader = Reader { bytes, at: 0 };
+        if reader.take(8).ok() != Some(MAGIC) {
+            return Err(bad(0, "other bytes", "DRIFTLIB, the beginning of a library"));
+        }
+        let version = reader.u32()?;
+        if version != VERSION {
+            let found = format!("version {version}");
+            return Err(bad(8, &found, &format!("version {VERSION}; pack the library again")));
+        }
+        let length = reader.u64()?;
+        let digest = reader.take(32)?;
+        let body = &bytes[HEADER..];
+        if length != body.len() as u64 {
+            let found = format!("{} bytes of models", body.len());
+            return Err(bad(HEADER, &found, &format!("{length}, as the header says")));
+        }
+        if Sha256::digest(body).as_slice() != digest {
+            let found = "a checksum that does not fit";
+            return Err(bad(
+                20,
+                found,
+                "the models as they were written; pack the library again",
+            ));
+        }
+        let at = reader.at;
+        let count = reader.u32()? as usize;
+        if count > MAX_LIBRARY_MODELS {
+            let found = format!("{count} models");
+            return Err(bad(at, &found, &format!("at most {MAX_LIBRARY_MODELS}")));
+        }
+        reader.expect_room(count, LEAST_MODEL, "models")?;
+        let mut library = Self::default();
+        for _ in 0..count {
+            let at = reader.at;
+            let model = reader.model()?;
+            let added = library.insert(model);
+            added.map_err(|error| bad(at, &error.to_string(), "each model once"))?;
+        }
+        if reader.at != bytes.len() {
+            let found = format!("{} bytes behind the last model", bytes.len() - reader.at);
+            return Err(bad(reader.at, &found, "the end"));
+        }
+        Ok(library)
+    }
+}
+
+/// The models' bytes behind their header.
+fn sealed(body: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(HEADER + body.len());
+    bytes.extend(MAGIC);
+    bytes.extend(VERSION.to_le_bytes());
+    bytes.extend((body.len() as u64).to_le_bytes());
+    bytes.extend(Sha256::digest(body));
+    bytes.extend(body);
+    bytes
+}
+
+fn bad(byte: usize, found: &str, expected: &str) -> EnvError {
+    EnvError::BadLibrary {
+        byte,
+        found: found.to_owned(),
+        expected: expected.to_owned(),
+    }
+}
+
+fn write_model(model: &LibraryModel, out: &mut Vec<u8>) {
+    for text in [&model.class, &model.name] {
+        out.extend((text.len() as u16).to_le_bytes());
+        out.extend(text.as_bytes());
+    }
+    write_collider(&model.collider, out);
+    out.extend((model.corners.len() as u32).to_le_bytes());
+    write_numbers(model.corners.as_flattened(), out);
+    out.extend((model.paints.len() as u16).to_le_bytes());
+    for paint in &model.paints {
+        let (tag, color) = match paint {
+            Paint::Fixed(color) => (0, color),
+            Paint::Main(color) => (1, color),
+        };
+        out.push(tag);
+        write_numbers(color, out);
+    }
+    out.push(model.levels.len() as u8);
+    for level in &model.levels {
+        write_numbers(&[level.error], out);
+        for triangles in &level.triangles {
+            out.extend((triangles.len() as u32).to_le_bytes());
+            for corner in triangles.as_flattened() {
+                if model.corners.len() <= SMALL {
+                    out.extend((*corner as u16).to_le_bytes());
+                } else {
+                    out.extend(corner.to_le_bytes());
+                }
+            }
+        }
+    }
+}
+
+fn write_collider(collider: &ColliderShape, out: &mut Vec<u8>) {
+    match collider {
+        ColliderShape::Box { half } => {
+            out.push(0);
+            write_numbers(half, out);
+        }
+        ColliderShape::Ball { radius } => {
+            out.push(1);
+            write_numbers(&[*radius], out);
+        }
+        ColliderShape::Cylinder { radius, half_height } => {
+            out.push(2);
+            write_numbers(&[*radius, *half_height], out);
+        }
+        ColliderShape::Capsule { radius, half_height } => {
+            out.push(3);
+            write_numbers(&[*radius, *half_height], out);
+        }
+        ColliderShape::Hull { points } => {
+            out.push(4);
+            out.push(points.len() as u8);
+            write_numbers(points.as_flattened(), out);
+        }
+    }
+}
+
+fn write_numbers(numbers: &[f32], out: &mut Vec<u8>) {
+    out.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+}
+
+/// A place in bytes that nobody vouches for.
+struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, count: usize) -> Result<&'a [u8], EnvError> {
+        let left = &self.bytes[self.at..];
+        let Some(taken) = left.get(..count) else {
+            let found = format!("{} bytes to the end", left.len());
+            return Err(bad(self.at, &found, &format!("{count}")));
+        };
+        self.at += count;
+        Ok(taken)
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], EnvError> {
+        let mut array = [0; N];
+        array.copy_from_slice(self.take(N)?);
+        Ok(array)
+    }
+
+    fn u8(&mut self) -> Result<u8, EnvError> {
+        self.array::<1>().map(|[byte]| byte)
+    }
+
+    fn u16(&mut self) -> Result<u16, EnvError> {
+        self.array().map(u16::from_le_bytes)
+    }
+
+    fn u32(&mut self) -> Result<u32, EnvError> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    fn u64(&mut self) -> Result<u64, EnvError> {
+        self.array().map(u64::from_le_bytes)
+    }
+
+    fn numbers<const N: usize>(&mut self) -> Result<[f32; N], EnvError> {
+        let mut numbers = [0.0; N];
+        for number in &mut numbers {
+            *number = f32::from_le_bytes(self.array()?);
+        }
+        Ok(numbers)
+    }
+
+    /// Refuses a count of things that the rest of the bytes cannot hold, before memory is taken for them.
+    fn expect_room(&self, count: usize, each: usize, what: &str) -> Result<(), EnvError> {
+        let left = self.bytes.len() - self.at;
+        if count.checked_mul(each).is_some_and(|bytes| bytes <= left) {
+            return Ok(());
+        }
+        let found = format!("{count} {what} in {left} bytes");
+        Err(bad(self.at, &found, &format!("at most {}", left / each)))
+    }
+
+    fn text(&mut self) -> Result<String, EnvError> {
+        let (at, length) = (self.at, self.u16()?);
+        let bytes = self.take(usize::from(length))?;
+        let text = std::str::from_utf8(bytes).map_err(|_| bad(at, "a name that is not UTF-8", "text"))?;
+        Ok(text.to_owned())
+    }
+
+    fn points(&mut self, count: usize, what: &str) -> Result<Vec<[f32; 3]>, EnvError> {
+        self.expect_room(count, 12, what)?;
+        (0..count).map(|_| self.numbers()).collect()
+    }
+
+    fn model(&mut self) -> Result<LibraryModel, EnvError> {
+        let at = self.at;
+        let (class, name) = (self.text()?, self.text()?);
+        let collider = self.collider()?;
+        let count = self.u32()? as usize;
+        let corners = self.points(count, "corners")?;
+        let count = usize::from(self.u16()?);
+        self.expect_room(count, 13, "colours")?;
+        let paints: Vec<Paint> = (0..count).map(|_| self.paint()).collect::<Result<_, _>>()?;
+        let num_levels = self.u8()?;
+        let mut levels = Vec::new();
+        for _ in 0..num_levels {
+            let [error] = self.numbers()?;
+            let lists = paints.iter().map(|_| self.triangles(corners.len()));
+            levels.push(Detail {
+                error,
+                triangles: lists.collect::<Result<_, _>>()?,
+            });
+        }
+        let checked = LibraryModel::checked(class, name, collider, corners, paints, levels);
+        checked.map_err(|(found, expected)| bad(at, &format!("a model with {found}"), &expected))
+    }
+
+    fn collider(&mut self) -> Result<ColliderShape, EnvError> {
+        let (at, tag) = (self.at, self.u8()?);
+        Ok(match tag {
+            0 => ColliderShape::Box { half: self.numbers()? },
+            1 => {
+                let [radius] = self.numbers()?;
+                ColliderShape::Ball { radius }
+            }
+            2 | 3 => {
+                let [radius, half_height] = self.numbers()?;
+                if tag == 2 {
+                    ColliderShape::Cylinder { radius, half_height }
+                } else {
+                    ColliderShape::Capsule { radius, half_height }
+                }
+            }
+            4 => {
+                let count = usize::from(self.u8()?).min(MAX_HULL_POINTS + 1);
+                let points = self.points(count, "points of a hull")?;
+                ColliderShape::Hull { points }
+            }
+            _ => return Err(bad(at, &format!("collider {tag}"), "0 to 4")),
+        })
+    }
+
+    fn paint(&mut self) -> Result<Paint, EnvError> {
+        let (at, tag) = (self.at, self.u8()?);
+        let color = self.numbers()?;
+        match tag {
+            0 => Ok(Paint::Fixed(color)),
+            1 => Ok(Paint::Main(color)),
+            _ => Err(bad(at, &format!("colour {tag}"), "0 or 1")),
+        }
+    }
+
+    fn triangles(&mut self, num_corners: usize) -> Result<Vec<[u32; 3]>, EnvError> {
+        let count = self.u32()? as usize;
+        let is_small = num_corners <= SMALL;
+        self.expect_room(count, if is_small { 6 } else { 12 }, "triangles")?;
+        let mut triangles = Vec::with_capacity(count);
+        for _ in 0..count {
+            triangles.push(if is_small {
+                [self.u16()?, self.u16()?, self.u16()?].map(u32::from)
+            } else {
+                [self.u32()?, self.u32()?, self.u32()?]
+            });
+        }
+        Ok(triangles)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn model(class: &str, collider: ColliderShape) -> LibraryModel {
+        let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.0]];
+        let level = |error: f32, triangles: &[[u32; 3]]| Detail {
+            error,
+            triangles: vec![triangles.to_vec(), vec![[1, 2, 3]]],
+        };
+        LibraryModel::checked(
+            class.into(),
+            "1".into(),
+            collider,
+            corners,
+            vec![Paint::Main([0.5, 0.25, 1.0]), Paint::Fixed([0.0, 0.1, 0.2])],
+            vec![level(0.0, &[[0, 2, 1], [0, 1, 3], [0, 3, 2]]), level(0.25, &[])],
+        )
+        .expect("a tetrahedron is sound")
+    }
+
+    fn library() -> Library {
+        let mut library = Library::default();
+        let (radius, half_height) = (0.5, 1.0);
+        let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 2.0]];
+        for (class, collider) in [
+            ("box", ColliderShape::Box { half: [0.5, 0.5, 1.0] }),
+            ("ball", ColliderShape::Ball { radius }),
+            ("post", ColliderShape::Cylinder { radius, half_height }),
+            ("pill", ColliderShape::Capsule { radius, half_height }),
+            ("stone", ColliderShape::Hull { points }),
+        ] {
+            library.insert(model(class, collider)).expect("every class is new");
+        }
+        library
+    }
+
+    #[test]
+    fn what_was_written_is_read_again() {
+        let library = library();
+        let bytes = library.to_bytes();
+        assert_eq!(Library::from_bytes(&bytes), Ok(library));
+        assert_eq!(&bytes[..12], b"DRIFTLIB\x01\0\0\0", "the name, and version 1");
+    }
+
+    #[test]
+    fn every_cut_and_every_flipped_bit_is_noticed() {
+        let bytes = library().to_bytes();
+        for length in 0..bytes.len() {
+            let read = Library::from_bytes(&bytes[..length]);
+            assert!(read.is_err(), "the first {length} bytes");
+        }
+        for bit in 0..bytes.len() * 8 {
+            let mut flipped = bytes.clone();
+            flipped[bit / 8] ^= 1 << (bit % 8);
+            assert!(Library::from_bytes(&flipped).is_err(), "bit {bit}");
+        }
+    }
+
+    #[test]
+    fn a_message_says_where_and_what() {
+        #[track_caller]
+        fn check(bytes: &[u8], expected: &str) {
+            let error = Library::from_bytes(bytes).expect_err("the bytes are no library");
+            assert_eq!(error.to_string(), expected);
+        }
+        check(
+            b"GIF89a",
+            "library, byte 0: found other bytes, expected DRIFTLIB, the beginning of a library",
+        );
+        let many = sealed(&u32::MAX.to_le_bytes());
+        check(
+            &many,
+            "library, byte 52: found 4294967295 models, expected at most 10000",
+        );
+        let few = sealed(&9_u32.to_le_bytes());
+        check(&few, "library, byte 56: found 9 models in 0 bytes, expected at most 0");
+        let mut body = library().to_bytes()[HEADER..].to_vec();
+        body.push(0);
+        let long = sealed(&body);
+        let end = long.len() - 1;
+        check(
+            &long,
+            &format!("library, byte {end}: found 1 bytes behind the last model, expected the end"),
+        );
+    }
+
+    proptest! {
+        /// The checksum is made to fit, so that what is behind it is met by every kind of nonsense.
+        #[test]
+        fn changed_models_are_refused_or_sound(
+            changes in proptest::collection::vec((0_usize..2000, any::<u8>()), 1..8),
+            length in 0_usize..2000,
+        ) {
+            let mut body = library().to_bytes()[HEADER..].to_vec();
+            for (at, byte) in changes {
+                let at = at % body.len();
+                body[at] = byte;
+            }
+            if length % 3 == 0 {
+                body.truncate(length);
+            }
+            if let Ok(read) = Library::from_bytes(&sealed(&body)) {
+                prop_assert_eq!(read.to_bytes(), sealed(&body));
+                for model in read.models() {
+                    let asset = model.asset();
+                    prop_assert!(asset.height.is_finite() && asset.radius.is_finite());
+                }
+            }
+        }
+
+        #[test]
+        fn no_bytes_make_it_panic(body in proptest::collection::vec(any::<u8>(), 0..400)) {
+            prop_assert!(Library::from_bytes(&body).is_err());
+            let _ = Library::from_bytes(&sealed(&body));
+        }
+    }
+}

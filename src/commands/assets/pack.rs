@@ -1,0 +1,124 @@
+//! `driftworld assets pack`: glTF files into a library. How a file becomes a model is decided in `env`.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use driftworld::env::{ColliderKind, ImportOptions, ImportSize, Library, LibraryModel};
+
+use super::super::{Failure, output};
+use super::{list, source};
+
+/// Pack glTF files into a library, with levels of detail and bodies to bump into.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld assets pack lamp.glb -o town.assets --height 4 --collider cylinder
+  driftworld assets pack oak.glb beech.glb -o trees.assets --class tree
+  driftworld assets pack bin.gltf -o town.assets --add --main paint")]
+pub(crate) struct Pack {
+    /// The glTF files: .glb, or .gltf with what lies beside it.
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// The library to write.
+    #[arg(short, long, value_name = "LIBRARY")]
+    output: PathBuf,
+    /// Keep the models that the library holds already.
+    #[arg(long)]
+    add: bool,
+    /// The class of all of them; without it each has its file's name as its class.
+    #[arg(long, value_name = "NAME")]
+    class: Option<String>,
+    /// Make each so many metres high.
+    #[arg(long, value_name = "METRES", conflicts_with = "scale")]
+    height: Option<f32>,
+    /// Metres for each unit of the files.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    scale: f32,
+    /// What the agent bumps into.
+    #[arg(long, value_enum, default_value_t = Body::Auto)]
+    collider: Body,
+    /// The material whose colour gives way to an object's color; without it the one named main, if any.
+    #[arg(long, value_name = "MATERIAL")]
+    main: Option<String>,
+}
+
+/// The bodies that models can get.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Body {
+    /// A ball for what is round, else the smaller one of box and cylinder.
+    Auto,
+    /// A box around what is lower than 2 m.
+    Box,
+    /// A ball as high as the model.
+    Ball,
+    /// A cylinder around what is lower than 2 m.
+    Cylinder,
+    /// A cylinder with round ends.
+    Capsule,
+    /// About the least convex shape around all of it.
+    Hull,
+}
+
+impl Pack {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let mut library = if self.add && self.output.exists() {
+            source::library(&self.output)?
+        } else {
+            Library::default()
+        };
+        let first = library.models().len();
+        for path in &self.files {
+            self.pack(path, &mut library)?;
+        }
+        let bytes = library.to_bytes();
+        output::write(&self.output, &bytes)?;
+        output::line(list::models(&library.models()[first..]))?;
+        output::line(format!(
+            "\n{}: {} models, {} bytes",
+            self.output.display(),
+            library.models().len(),
+            bytes.len()
+        ))
+    }
+
+    fn pack(&self, path: &Path, library: &mut Library) -> Result<(), Failure> {
+        let in_file = |error: driftworld::env::EnvError| Failure::input(format!("{}: {error}", path.display()));
+        let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        let class = self.class.clone().or(stem).unwrap_or_default().to_lowercase();
+        let options = ImportOptions {
+            name: free_name(library, &class),
+            class,
+            size: self.height.map_or(ImportSize::Scale(self.scale), ImportSize::Height),
+            collider: self.collider.kind(),
+            main: self.main.clone(),
+        };
+        let bytes = source::model(path)?;
+        let imported = LibraryModel::from_gltf(&bytes, &options, &mut source::beside(path)).map_err(in_file)?;
+        for warning in &imported.warnings {
+            output::note(format!("warning: {}: {warning}", path.display()));
+        }
+        library.insert(imported.model).map_err(in_file)
+    }
+}
+
+/// The first number from 1 that no model of the class has for its name.
+fn free_name(library: &Library, class: &str) -> String {
+    let taken = |name: &String| {
+        let is_it = |model: &LibraryModel| model.class() == class && model.name() == name;
+        library.models().iter().any(is_it)
+    };
+    let mut names = (1_u32..).map(|number| number.to_string());
+    names.find(|name| !taken(name)).unwrap_or_default()
+}
+
+impl Body {
+    fn kind(self) -> ColliderKind {
+        match self {
+            Self::Auto => ColliderKind::Auto,
+            Self::Box => ColliderKind::Box,
+            Self::Ball => ColliderKind::Ball,
+            Self::Cylinder => ColliderKind::Cylinder,
+            Self::Capsule => ColliderKind::Capsule,
+            Self::Hull => ColliderKind::Hull,
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Reading libraries and glTF files from disk: never more than their limits, and nothing outside a model's own folder.
+
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use driftworld::env::{Catalogue, Library, MAX_IMPORT_BYTES};
+
+use super::super::Failure;
+
+/// The largest library in bytes.
+const MAX_LIBRARY_BYTES: usize = 1 << 30;
+
+/// The libraries that a command's worlds take their assets from.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct LibraryChoice {
+    /// A library of assets in front of the built-in ones; may be given several times, the last one first.
+    #[arg(long = "assets", value_name = "LIBRARY")]
+    libraries: Vec<PathBuf>,
+}
+
+impl LibraryChoice {
+    /// The built-in assets, and the chosen libraries in front of them.
+    pub(crate) fn catalogue(&self) -> Result<Catalogue, Failure> {
+        let mut catalogue = Catalogue::default();
+        for library in self.read()? {
+            catalogue = catalogue.with_library(&library);
+        }
+        Ok(catalogue)
+    }
+
+    /// The chosen libraries, in the order they were named in.
+    pub(super) fn read(&self) -> Result<Vec<Library>, Failure> {
+        self.libraries.iter().map(|path| library(path)).collect()
+    }
+}
+
+/// A library from its file.
+pub(super) fn library(path: &Path) -> Result<Library, Failure> {
+    let bytes = bytes(path, MAX_LIBRARY_BYTES).map_err(|reason| unreadable(path, &reason))?;
+    Library::from_bytes(&bytes).map_err(|error| Failure::input(format!("{}: {error}", path.display())))
+}
+
+/// The bytes of a glTF file.
+pub(super) fn model(path: &Path) -> Result<Vec<u8>, Failure> {
+    bytes(path, MAX_IMPORT_BYTES).map_err(|reason| unreadable(path, &reason))
+}
+
+fn unreadable(path: &Path, reason: &str) -> Failure {
+    Failure::input(format!("{}: cannot be read: {reason}", path.display()))
+}
+
+/// Reads the files beside a glTF file, as far as they lie in its folder when all links are followed.
+pub(super) fn beside(path: &Path) -> impl FnMut(&str) -> Result<Vec<u8>, String> {
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    move |relative| {
+        let folder = if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            &folder
+        };
+        let whole = |path: &Path| path.canonicalize().map_err(|error| error.to_string());
+        let (folder, file) = (whole(folder)?, whole(&folder.join(relative))?);
+        if !file.starts_with(&folder) {
+            return Err("it leads out of the model's folder".to_owned());
+        }
+        bytes(&file, MAX_IMPORT_BYTES)
+    }
+}
+
+/// The bytes of a regular file of at most `most` bytes.
+fn bytes(path: &Path, most: usize) -> Result<Vec<u8>, String> {
+    let said = |error: std::io::Error| error.to_string();
+    // Looked at before it is opened: opening a pipe would wait for ever.
+    if !fs::metadata(path).map_err(said)?.is_file() {
+        return Err("found a folder or a device, expected a file".to_owned());
+    }
+    let mut bytes = Vec::new();
+    let file = fs::File::open(path).map_err(said)?;
+    file.take(most as u64 + 1).read_to_end(&mut bytes).map_err(said)?;
+    if bytes.len() > most {
+        return Err(format!("found more than {most} bytes, expected at most that"));
+    }
+    Ok(bytes)
+}

@@ -1,0 +1,237 @@
+//! Models from a file to a world, as users take them there: packed, listed, drawn, bumped into.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use driftworld::env::{Action, Catalogue, Environment, Library, Warning};
+use driftworld::spec::World;
+
+const MODEL: &str = "examples/assets/lighthouse.gltf";
+const WORLD: &str = "examples/assets/harbour.json";
+
+/// What the command says: its exit code, its results and its messages.
+fn driftworld(arguments: &[&str]) -> (Option<i32>, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_driftworld"))
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("the command was built by cargo and starts");
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (output.status.code(), text(&output.stdout), text(&output.stderr))
+}
+
+#[track_caller]
+fn succeed(arguments: &[&str]) -> String {
+    let (code, said, error) = driftworld(arguments);
+    assert_eq!(code, Some(0), "{arguments:?}: {error}");
+    said
+}
+
+#[track_caller]
+fn fail(arguments: &[&str]) -> String {
+    let (code, _, error) = driftworld(arguments);
+    assert_eq!(code, Some(1), "{arguments:?}: {error}");
+    assert!(!error.contains("panicked"), "{error}");
+    error
+}
+
+fn scratch() -> tempfile::TempDir {
+    tempfile::tempdir().expect("the machine has a folder for temporary files")
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("temporary paths are UTF-8")
+}
+
+/// The lighthouse in a library of its own.
+fn packed(folder: &tempfile::TempDir) -> PathBuf {
+    let library = folder.path().join("harbour.assets");
+    succeed(&["assets", "pack", MODEL, "-o", text(&library)]);
+    library
+}
+
+fn world() -> World {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let json = std::fs::read_to_string(root.join(WORLD)).expect("the example is committed");
+    World::from_json(WORLD, &json).expect("the example is a sound world")
+}
+
+#[test]
+fn a_model_is_packed_once_and_lives_in_worlds() {
+    let folder = scratch();
+    let bytes = std::fs::read(packed(&folder)).expect("the library was written");
+    let library = Library::from_bytes(&bytes).expect("what was packed is read again");
+    let model = &library.models()[0];
+    assert_eq!((model.class(), model.name()), ("lighthouse", "1"));
+    let (whole, _) = model.level(0).expect("every model has its whole form");
+    let (coarse, error) = model.level(1).expect("835 triangles are worth simplifying");
+    assert!(
+        whole == 803 && coarse < whole / 2 && error > 0.0,
+        "{whole}, {coarse}, {error}"
+    );
+    assert!((model.asset().height - 10.2).abs() < 1e-3, "{} m", model.asset().height);
+
+    let catalogue = Catalogue::default().with_library(&library);
+    let mut environment = Environment::with_catalogue(world(), catalogue).expect("the world starts");
+    assert_eq!(environment.warnings(), [], "its class is known");
+    // Straight ahead stands a tower of 4 m across, 18 m away.
+    for _ in 0..60 {
+        environment
+            .step(Action::Continuous([10.0, 0.0, 0.0]))
+            .expect("the episode goes on");
+    }
+    let [x, y] = environment.agent().position;
+    assert!(
+        x.abs() < 1.6 && (1.3..1.6).contains(&y),
+        "it stops before the tower: {x}, {y}"
+    );
+    let class = environment.scene().items[0].class_id;
+    let seen = environment
+        .observe()
+        .class
+        .iter()
+        .filter(|other| **other == class)
+        .count();
+    assert!(seen > 84 * 84 / 4, "it sees {seen} pixels of it");
+
+    let moment = environment.snapshot();
+    let mut other = Environment::new(World::default()).expect("the world starts");
+    other.restore(&moment).expect("moments can be gone back to");
+    assert_eq!(
+        other.observe().rgb,
+        environment.observe().rgb,
+        "a moment brings its library along"
+    );
+    environment.reset(world()).expect("the world starts anew");
+    assert_eq!(environment.warnings(), [], "and so does a reset");
+    let unknown = |warning: &Warning| matches!(warning, Warning::UnknownAsset { .. });
+    let without = Environment::new(world()).expect("the world starts").warnings();
+    assert_eq!(without.len(), 3);
+    assert!(without.iter().all(unknown), "without the library: {without:?}");
+}
+
+#[test]
+fn packing_twice_gives_the_same_bytes_and_adding_goes_on_counting() {
+    let folder = scratch();
+    let library = packed(&folder);
+    let first = std::fs::read(&library).expect("the library was written");
+    packed(&folder);
+    assert_eq!(std::fs::read(&library).expect("it was written again"), first);
+    let arguments = [
+        "assets",
+        "pack",
+        MODEL,
+        "-o",
+        text(&library),
+        "--add",
+        "--height",
+        "3",
+        "--collider",
+        "hull",
+    ];
+    let said = succeed(&arguments);
+    assert!(
+        said.contains("lighthouse  2") && said.contains("3.00 m") && said.contains("hull of"),
+        "{said}"
+    );
+    let listed = succeed(&["assets", "list", text(&library)]);
+    assert_eq!(
+        listed.lines().filter(|line| line.starts_with("lighthouse")).count(),
+        2,
+        "{listed}"
+    );
+}
+
+#[test]
+fn models_are_listed_and_drawn() {
+    let folder = scratch();
+    let library = packed(&folder);
+    let built_in = succeed(&["assets", "list"]);
+    assert!(
+        built_in
+            .lines()
+            .any(|line| line.starts_with("tree") && line.contains("1–49")),
+        "{built_in}"
+    );
+    let picture = folder.path().join("picture.png");
+    let output = text(&picture);
+    for (arguments, expected) in [
+        (["assets", "show", "lighthouse", "1"].as_slice(), "940 × "),
+        (&["assets", "show", "lighthouse"], "244 × "),
+        (&["assets", "show", "tent"], "708 × "),
+    ] {
+        let arguments = [arguments, &["--assets", text(&library), "-o", output]].concat();
+        let said = succeed(&arguments);
+        assert!(said.contains(expected), "{said}");
+        assert!(picture.exists());
+    }
+    let drawn = ["render", WORLD, "--view", "rgb", "--size", "64", "-o", output];
+    let (_, _, warned) = driftworld(&drawn);
+    assert_eq!(warned.matches("a placeholder stands there").count(), 3, "{warned}");
+    let placeholder = std::fs::read(&picture).expect("the picture was written");
+    let (_, _, silent) = driftworld(&[drawn.as_slice(), &["--assets", text(&library)]].concat());
+    assert_eq!(silent, "");
+    assert!(std::fs::read(&picture).expect("the picture was written") != placeholder);
+}
+
+#[test]
+fn what_cannot_be_packed_says_why_and_leaves_no_library() {
+    #[track_caller]
+    fn check(model: &Path, library: &Path, expected: &str) {
+        let error = fail(&["assets", "pack", text(model), "-o", text(library)]);
+        assert!(error.contains(expected), "{error}");
+        assert!(!library.exists(), "nothing is half written");
+    }
+    let folder = scratch();
+    let library = folder.path().join("harbour.assets");
+    check(
+        &folder.path().join("absent.glb"),
+        &library,
+        "absent.glb: cannot be read",
+    );
+    check(folder.path(), &library, "found a folder or a device, expected a file");
+    let hostile = Path::new(env!("CARGO_MANIFEST_DIR")).join("env/tests/hostile");
+    check(
+        &hostile.join("uri_above.gltf"),
+        &library,
+        "/buffers/0/uri: found \"../../etc/passwd\"",
+    );
+    check(&hostile.join("cycle_of_nodes.gltf"), &library, "a tree of nodes");
+    let broken = folder.path().join("broken.assets");
+    std::fs::write(&broken, b"DRIFTLIB and nothing more").expect("the scratch folder can be written");
+    let error = fail(&["assets", "list", text(&broken)]);
+    assert!(error.contains("broken.assets: library, byte"), "{error}");
+    assert!(fail(&["assets", "show", "dragon"]).contains("\"dragon\" is not known"));
+}
+
+/// A link in the model's folder must not lead to files elsewhere.
+#[cfg(unix)]
+#[test]
+fn links_out_of_the_folder_are_not_followed() {
+    let folder = scratch();
+    let inside = folder.path().join("models");
+    std::fs::create_dir(&inside).expect("the scratch folder can be written");
+    std::fs::write(folder.path().join("secret.bin"), [0; 36]).expect("the scratch folder can be written");
+    std::os::unix::fs::symlink("../secret.bin", inside.join("lamp.bin")).expect("links can be made");
+    let json = r#"{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 36, "uri": "lamp.bin"}]}"#;
+    let model = inside.join("lamp.gltf");
+    std::fs::write(&model, json).expect("the scratch folder can be written");
+    let error = fail(&[
+        "assets",
+        "pack",
+        text(&model),
+        "-o",
+        text(&folder.path().join("x.assets")),
+    ]);
+    assert!(error.contains("it leads out of the model's folder"), "{error}");
+    std::fs::remove_file(inside.join("lamp.bin")).expect("the link is there");
+    std::fs::write(inside.join("lamp.bin"), [0; 36]).expect("the scratch folder can be written");
+    let error = fail(&[
+        "assets",
+        "pack",
+        text(&model),
+        "-o",
+        text(&folder.path().join("x.assets")),
+    ]);
+    assert!(error.contains("nothing to draw"), "now the file is read: {error}");
+}
