@@ -5,9 +5,13 @@
 #![cfg(feature = "gpu")]
 
 use std::path::Path;
+use std::sync::Arc;
 
-use driftworld_env::{Camera, CpuRenderer, Frame, GpuChoice, GpuRenderer, Scene};
-use driftworld_spec::{Color, Object, Wall, World};
+use driftworld_env::{
+    Action, Autoreset, Batch, BatchOptions, Camera, CpuRenderer, EnvError, Environment, Episode, Frame, GpuChoice,
+    GpuRenderer, Images, Picture, RendererKind, RendererReport, Scene, Target,
+};
+use driftworld_spec::{Color, Modality, Object, Wall, World};
 
 /// A renderer on this machine's adapter, if there is one.
 fn gpu() -> Option<GpuRenderer> {
@@ -43,7 +47,7 @@ fn worlds() -> Vec<(String, World)> {
     ];
     let mut worlds: Vec<_> = files.map(|file| (file.to_owned(), world(file))).into();
     let mut foggy = world(files[1]);
-    foggy.environment_params.fog_distance = Some(20.0);
+    foggy.environment_params.fog_distance = Some(50.0);
     foggy.environment_params.light_intensity = 0.6;
     foggy.environment_params.walls = [-12.0, 3.0, 14.0]
         .map(|x| Wall {
@@ -58,9 +62,10 @@ fn worlds() -> Vec<(String, World)> {
     let made_up = (0..40).map(|number| format!("thing{number}"));
     for (k, class) in classes.into_iter().chain(made_up).enumerate() {
         let angle = k as f64 * 0.7;
-        let away = 4.0 + k as f64 * 0.6;
+        let away = 4.0 + k as f64 * 0.3;
         let mut object = Object::new(&class, [away * angle.sin(), away * angle.cos()]);
         object.heading = 37.0 * k as f64;
+        object.scale = 2.0;
         zoo.objects.push(object);
     }
     worlds.push(("every class".to_owned(), zoo));
@@ -189,4 +194,159 @@ fn pictures_of_84_pixels_are_alike() {
 #[test]
 fn pictures_of_256_pixels_are_alike() {
     check_likeness(256);
+}
+
+/// A batch on the graphics card, after so many steps.
+fn stepped(autoreset: Autoreset, num_threads: usize, renderer: RendererKind) -> Batch {
+    let world = world("generator/tests/golden/find_objects-huddle-7-1.json");
+    let source = Arc::new(move |episode: Episode| {
+        let mut world = world.clone();
+        world.max_steps = 3 + episode.env as u32;
+        world.agent_params.heading = 60.0 * (episode.env as f64 + episode.index as f64);
+        world.agent_params.observation_size = 48;
+        world.agent_params.supersampling = 2;
+        world.agent_params.modalities = vec![
+            Modality::Rgb,
+            Modality::Depth,
+            Modality::Segmentation,
+            Modality::Class,
+            Modality::Instance,
+        ];
+        Ok(world)
+    });
+    let options = BatchOptions {
+        autoreset,
+        num_threads,
+        renderer,
+    };
+    let mut batch = Batch::new(6, source, options).expect("the worlds are sound");
+    for _ in 0..5 {
+        let actions = [Action::Continuous([3.0, 9.0, 0.0]); 6];
+        batch.step(&actions).expect("the actions are sound");
+    }
+    batch
+}
+
+/// Share of values that are alike.
+fn alike<T: Copy>(found: &[T], expected: &[T], near: impl Fn(T, T) -> bool) -> f64 {
+    assert_eq!(found.len(), expected.len());
+    share(
+        found.iter().zip(expected).filter(|(a, b)| near(**a, **b)).count(),
+        found.len(),
+    )
+}
+
+fn check_images(found: &Images, expected: &Images) {
+    let all = [
+        alike(&found.rgb, &expected.rgb, |a, b| a.abs_diff(b) <= 3),
+        alike(&found.depth, &expected.depth, |a, b| (a - b).abs() <= 0.01 * b),
+        alike(&found.category, &expected.category, |a, b| a == b),
+        alike(&found.class, &expected.class, |a, b| a == b),
+        alike(&found.instance, &expected.instance, |a, b| a == b),
+    ];
+    assert!(all.iter().all(|share| *share >= 0.995), "{all:?}");
+}
+
+#[test]
+fn a_batch_on_the_card_is_as_one_on_the_processor() {
+    let Some(_) = gpu() else { return };
+    for autoreset in [Autoreset::NextStep, Autoreset::SameStep] {
+        for num_threads in [1, 2] {
+            let found = stepped(autoreset, num_threads, RendererKind::Gpu);
+            let expected = stepped(autoreset, num_threads, RendererKind::Cpu);
+            assert_eq!(
+                (found.renderer(), expected.renderer()),
+                (RendererKind::Gpu, RendererKind::Cpu)
+            );
+            let (out, wanted) = (found.outputs(), expected.outputs());
+            assert_eq!((&out.rewards, &out.states), (&wanted.rewards, &wanted.states));
+            assert_eq!(
+                (&out.terminated, &out.truncated),
+                (&wanted.terminated, &wanted.truncated)
+            );
+            check_images(&out.images, &wanted.images);
+            if let (Some(out), Some(wanted)) = (found.final_outputs(), expected.final_outputs()) {
+                // What ended in step 5: a limit of 5 steps, or a second episode.
+                assert_eq!((&out.truncated, &out.states), (&wanted.truncated, &wanted.states));
+                check_images(&out.images, &wanted.images);
+            }
+        }
+    }
+}
+
+#[test]
+fn pictures_drawn_together_are_those_drawn_alone() {
+    let Some(mut gpu) = gpu() else { return };
+    let world = world("env/benches/scenes/arena_20.json");
+    let scene = Scene::from_world(&world);
+    let cameras = cameras(&world, &scene);
+    // Of two sizes, so that they need two passes.
+    let size = |k: usize| if k.is_multiple_of(3) { 60 } else { 84 };
+    let mut together: Vec<Frame> = (0..cameras.len()).map(|k| Frame::new(size(k), size(k))).collect();
+    let pictures = together.iter_mut().zip(&cameras);
+    let mut pictures: Vec<_> = pictures
+        .map(|(frame, camera)| Picture {
+            scene: &scene,
+            camera: *camera,
+            target: frame.target(),
+        })
+        .collect();
+    gpu.draw_batch(&mut pictures).expect("the adapter draws");
+    for (k, (frame, camera)) in together.iter().zip(&cameras).enumerate() {
+        let mut alone = Frame::new(size(k), size(k));
+        gpu.render(&scene, camera, &mut alone).expect("the adapter draws");
+        // A corner on the edge of a pixel may fall to either side, depending on where in the target the picture lies.
+        let like = likeness(frame, &alone);
+        assert!(like.colors >= 0.999 && like.instances >= 0.999, "picture {k}: {like:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_drawn_is_an_error() {
+    let Some(mut gpu) = gpu() else { return };
+    let scene = Scene::from_world(&World::default());
+    let camera = Camera::overview(&scene);
+    let mut short = vec![0; 5];
+    let mut target = Target {
+        width: 4,
+        height: 4,
+        rgb: Some(&mut short),
+        ..Target::default()
+    };
+    let error = gpu.draw(&scene, &camera, &mut target).expect_err("too short");
+    assert_eq!(error, EnvError::PictureSize { width: 4, height: 4 });
+    // And it goes on drawing.
+    gpu.render(&scene, &camera, &mut Frame::new(1, 300))
+        .expect("an odd size");
+    gpu.render(&scene, &camera, &mut Frame::new(0, 0))
+        .expect("nothing to do");
+    gpu.draw_batch(&mut []).expect("nothing to do");
+}
+
+#[test]
+fn an_environment_draws_with_the_card_that_was_asked_for() {
+    let Some(gpu) = gpu() else { return };
+    let world = world("env/benches/scenes/arena_8.json");
+    let mut environment = Environment::with_renderer(world, RendererKind::Gpu).expect("there is an adapter");
+    assert!(environment.renderer().device().starts_with(gpu.adapter_name()));
+    let found = environment.observe().clone();
+    let mut expected = Frame::new(found.width, found.height);
+    CpuRenderer::new().render(environment.scene(), &environment.camera(), &mut expected);
+    assert!(likeness(&found, &expected).colors >= 0.99);
+    let report = RendererReport::make();
+    let here = report
+        .adapters
+        .iter()
+        .find(|adapter| adapter.name == gpu.adapter_name());
+    let here = here.expect("the report names it");
+    assert_eq!((&here.problem, here.is_software), (&None, gpu.is_software()));
+    let takes_it = report
+        .adapters
+        .iter()
+        .any(|adapter| !adapter.is_software && adapter.problem.is_none());
+    assert_eq!(
+        report.auto == RendererKind::Gpu,
+        takes_it,
+        "auto takes cards, never software"
+    );
 }

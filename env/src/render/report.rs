@@ -34,6 +34,7 @@ pub struct AdapterReport {
     pub problem: Option<String>,
 }
 
+#[cfg(not(feature = "gpu"))]
 /// Why a build without the feature `gpu` has no adapter, and what to do.
 pub(super) const NO_FEATURE: &str =
     "this build has no graphics renderer; build it with `cargo build --release --features gpu`";

@@ -12,7 +12,7 @@ use super::event::{Step, Warning};
 use crate::EnvError;
 use crate::agents::Agent;
 use crate::camera::Camera;
-use crate::render::{CpuRenderer, Frame, Target};
+use crate::render::{CpuRenderer, Frame, Renderer, RendererKind, Target};
 use crate::scene::Scene;
 
 /// A world that runs: reset, step, look.
@@ -37,7 +37,7 @@ pub struct Environment {
     pub(super) ground: Ground,
     pub(super) episode: Episode,
     pub(super) had_targets: bool,
-    renderer: CpuRenderer,
+    renderer: Renderer,
     frame: Frame,
 }
 
@@ -47,7 +47,22 @@ impl Environment {
     /// # Errors
     /// None today: a checked world can always start. The signature leaves room for worlds that name libraries of assets.
     pub fn new(world: World) -> Result<Self, EnvError> {
-        Ok(Self::build(Arc::new(world), CpuRenderer::new(), Frame::new(0, 0)))
+        Ok(Self::build(Arc::new(world), Renderer::default(), Frame::new(0, 0)))
+    }
+
+    /// A world at its start, drawn by a renderer of this kind.
+    ///
+    /// # Errors
+    /// As [`Environment::new`]; [`EnvError::NoGpu`] if a graphics card is asked for and none works.
+    pub fn with_renderer(world: World, kind: RendererKind) -> Result<Self, EnvError> {
+        let mut environment = Self::new(world)?;
+        environment.renderer = Renderer::new(kind)?;
+        Ok(environment)
+    }
+
+    /// What draws this world's pictures.
+    pub fn renderer(&self) -> &Renderer {
+        &self.renderer
     }
 
     /// Leaves this world for another, or for the same from its start; buffers for pictures are kept.
@@ -64,7 +79,7 @@ impl Environment {
         *self = Self::build(world, std::mem::take(&mut self.renderer), frame);
     }
 
-    fn build(world: Arc<World>, renderer: CpuRenderer, frame: Frame) -> Self {
+    fn build(world: Arc<World>, renderer: Renderer, frame: Frame) -> Self {
         let scene = Scene::from_world(&world);
         let ground = Ground::new(&world, &scene);
         let seed = Seed::of(&world);
@@ -219,8 +234,28 @@ impl Environment {
         motion.met
     }
 
-    /// What the agent sees now, at the world's observation size, in all modalities. Drawn when asked for, never before.
+    /// What the agent sees now, at the world's observation size. Drawn when asked for, never before.
+    ///
+    /// Should a graphics card fail, the processor draws in its place; [`Environment::try_observe`] says so instead.
     pub fn observe(&mut self) -> &Frame {
+        if self.draw_observation().is_err() {
+            let camera = self.camera();
+            // On the processor: only for so many points that no buffer holds them, then one a pixel.
+            CpuRenderer::new().render(&self.scene, &camera, &mut self.frame);
+        }
+        &self.frame
+    }
+
+    /// As [`Environment::observe`], but nothing takes the place of a graphics card that fails.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw_batch`].
+    pub fn try_observe(&mut self) -> Result<&Frame, EnvError> {
+        self.draw_observation()?;
+        Ok(&self.frame)
+    }
+
+    fn draw_observation(&mut self) -> Result<(), EnvError> {
         let agent = &self.world.agent_params;
         let ([width, height], supersampling) = (agent.picture_size(), agent.supersampling);
         if (self.frame.width, self.frame.height) != (width, height) {
@@ -231,11 +266,7 @@ impl Environment {
             supersampling,
             ..self.frame.target()
         };
-        if self.renderer.draw(&self.scene, &camera, &mut target).is_err() {
-            // Only for so many points that no buffer holds them: then one a pixel.
-            self.renderer.render(&self.scene, &camera, &mut self.frame);
-        }
-        &self.frame
+        self.renderer.draw(&self.scene, &camera, &mut target)
     }
 
     /// The agent's camera.
@@ -252,13 +283,13 @@ impl Environment {
     /// A picture of any size from any camera.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels.
+    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels; on a graphics card, as [`Renderer::draw_batch`].
     pub fn render(&mut self, camera: &Camera, width: u32, height: u32) -> Result<Frame, EnvError> {
         if !(1..=4096).contains(&width) || !(1..=4096).contains(&height) {
             return Err(EnvError::PictureSize { width, height });
         }
         let mut frame = Frame::new(width, height);
-        self.renderer.render(&self.scene, camera, &mut frame);
+        self.renderer.render(&self.scene, camera, &mut frame)?;
         Ok(frame)
     }
 }

@@ -4,11 +4,11 @@
 use super::device::Device;
 use super::pipelines::{DEPTH_FORMAT, WORD_FORMAT};
 
-/// Rows that are copied from a texture must begin at multiples of so many bytes.
-const ALIGNMENT: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
-
 /// Bytes of a pixel in each texture.
 const BYTES: u32 = 4;
+
+/// Rows that are copied from a texture must begin at multiples of so many pixels.
+const ALIGNED: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / BYTES;
 
 /// The most pixels of a pass, unless a single tile has more.
 const MOST_PIXELS: u32 = 1 << 24;
@@ -37,17 +37,18 @@ impl Grid {
     pub(super) fn new(tile: [u32; 2], count: usize, most: u32) -> Option<Self> {
         let [width, height] = tile;
         // Textures are padded to whole aligned rows.
-        let most_columns = most / ALIGNMENT * ALIGNMENT / width.max(1);
+        let most_columns = most / ALIGNED * ALIGNED / width.max(1);
         let most_rows = most / height.max(1);
         if most_columns == 0 || most_rows == 0 {
             return None;
         }
-        let count = u32::try_from(count)
+        let count = u32::try_from(rounded(count))
             .unwrap_or(u32::MAX)
-            .min((MOST_PIXELS / (width * height)).max(1));
+            .min((MOST_PIXELS / (width * height)).max(1))
+            .min(most_columns.saturating_mul(most_rows));
         let square = (f64::from(count) * f64::from(height) / f64::from(width)).sqrt().ceil() as u32;
-        let columns = square.clamp(1, most_columns).min(count);
-        let rows = count.div_ceil(columns).clamp(1, most_rows);
+        let columns = square.max(count.div_ceil(most_rows)).clamp(1, most_columns).min(count);
+        let rows = count.div_ceil(columns);
         Some(Self { tile, columns, rows })
     }
 
@@ -67,12 +68,53 @@ impl Grid {
 
     /// Pixels from side to side, padded to whole aligned rows, and from top to bottom.
     fn size(self) -> [u32; 2] {
-        let width = (self.columns * self.tile[0]).next_multiple_of(ALIGNMENT / BYTES);
+        let width = (self.columns * self.tile[0]).next_multiple_of(ALIGNED);
         [width, self.rows * self.tile[1]]
     }
 }
 
-/// Textures and the buffer behind them, kept from pass to pass.
+/// A few more tiles than asked for, so that passes of about as many can use the same textures.
+fn rounded(count: usize) -> usize {
+    count.next_multiple_of((count.next_power_of_two() / 8).max(1))
+}
+
+/// The most atlases that are kept, and the most pixels that they have together.
+const MOST_KEPT: (usize, u64) = (16, 1 << 25);
+
+/// Atlases of several sizes: depths can only be copied from whole textures, so that each grid needs its own.
+#[derive(Debug, Default)]
+pub(super) struct Atlases(Vec<Atlas>);
+
+impl Atlases {
+    /// One for this grid; a new one if there is none.
+    pub(super) fn take(&mut self, device: &Device, grid: Grid, planes: Planes) -> Atlas {
+        let serves = |atlas: &Atlas| {
+            let room = atlas.back.size() >= bytes_back(grid, planes);
+            atlas.size == grid.size() && room && (atlas.items.is_some() || !planes.items)
+        };
+        if let Some(place) = self.0.iter().position(serves) {
+            return self.0.remove(place);
+        }
+        let pixels = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
+        let (most, most_pixels) = MOST_KEPT;
+        let mut total = pixels(grid.size());
+        // The oldest go first.
+        let kept = self.0.iter().rev().take(most - 1).take_while(|atlas| {
+            total += pixels(atlas.size);
+            total <= most_pixels
+        });
+        let count = kept.count();
+        self.0.drain(..self.0.len() - count);
+        Atlas::new(device, grid, planes)
+    }
+
+    /// Keeps one for the next time.
+    pub(super) fn put_back(&mut self, atlas: Atlas) {
+        self.0.push(atlas);
+    }
+}
+
+/// Textures and the buffer behind them.
 #[derive(Debug)]
 pub(super) struct Atlas {
     /// Width and height in pixels.
@@ -84,17 +126,8 @@ pub(super) struct Atlas {
 }
 
 impl Atlas {
-    /// The same if it is large enough for a grid and not far too large, or a new one.
-    pub(super) fn fit(kept: Option<Self>, device: &Device, grid: Grid, planes: Planes) -> Self {
+    fn new(device: &Device, grid: Grid, planes: Planes) -> Self {
         let [width, height] = grid.size();
-        if let Some(kept) = kept {
-            let fits = kept.size[0] >= width && kept.size[1] >= height && (kept.items.is_some() || !planes.items);
-            let room = u64::from(kept.size[0]) * u64::from(kept.size[1]);
-            if fits && room <= 4 * u64::from(width) * u64::from(height) && kept.back.size() >= bytes_back(grid, planes)
-            {
-                return kept;
-            }
-        }
         let texture = |label, format| {
             device.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
@@ -253,10 +286,12 @@ mod tests {
     fn tiles_lie_in_a_square_as_far_as_textures_allow() {
         check([84, 84], 1, 8192, Some([1, 1]));
         check([84, 84], 64, 8192, Some([8, 8]));
-        check([84, 84], 65, 8192, Some([9, 8]));
+        check([84, 84], 65, 8192, Some([9, 9]));
         check([160, 40], 64, 8192, Some([4, 16]));
         check([4096, 1], 8, 8192, Some([1, 8]));
         check([84, 84], 64, 200, Some([2, 2]));
+        check([84, 1000], 9, 2048, Some([10, 1]));
+        check([300, 2], 1000, 1100, Some([3, 342]));
         check([8192, 8192], 3, 8192, Some([1, 1]));
         check([8193, 1], 1, 8192, None);
         check([1, 8193], 1, 8192, None);

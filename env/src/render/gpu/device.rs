@@ -50,6 +50,7 @@ impl Device {
         let clip = wgpu::Features::CLIP_DISTANCES;
         let features = match clipping {
             Clipping::IfPossible => adapter.features() & clip,
+            #[cfg(test)]
             Clipping::Never => wgpu::Features::empty(),
         };
         let limits = adapter.limits();
@@ -101,7 +102,7 @@ impl Device {
 pub(super) enum Clipping {
     IfPossible,
     /// As on an adapter that cannot: for tests.
-    #[cfg_attr(not(test), expect(dead_code, reason = "tests ask for it"))]
+    #[cfg(test)]
     Never,
 }
 

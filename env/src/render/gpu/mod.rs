@@ -274,3 +274,64 @@ fn jobs_for(index: usize, picture: &Picture<'_>) -> impl Iterator<Item = Job> + 
         .into_iter()
         .flatten()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::device::Clipping;
+    use super::*;
+
+    /// A renderer on each adapter of this machine; none where there is none.
+    fn each(clipping: Clipping) -> Vec<GpuRenderer> {
+        let adapters = adapter::all().unwrap_or_default();
+        let open = |adapter: &wgpu::Adapter| Device::open(adapter, clipping).map(GpuRenderer::proven);
+        adapters.iter().filter_map(|adapter| open(adapter).ok()?.ok()).collect()
+    }
+
+    fn several(renderer: &mut GpuRenderer) -> Result<Vec<Frame>, EnvError> {
+        let world = driftworld_spec::World {
+            objects: vec![driftworld_spec::Object::new("tree", [1.0, 4.0]); 3],
+            ..Default::default()
+        };
+        let scene = Scene::from_world(&world);
+        let mut frames = vec![Frame::new(40, 30); 5];
+        let mut pictures: Vec<_> = (0..)
+            .zip(&mut frames)
+            .map(|(k, frame)| Picture {
+                scene: &scene,
+                camera: Camera::first_person([0.0, 0.0], 20.0 * k as f32 - 30.0, 1.0, 60.0),
+                target: frame.target(),
+            })
+            .collect();
+        renderer.draw_batch(&mut pictures)?;
+        drop(pictures);
+        Ok(frames)
+    }
+
+    #[test]
+    fn an_adapter_that_cannot_clip_draws_tile_by_tile_to_the_same_end() {
+        let together = each(Clipping::IfPossible).into_iter();
+        for (mut clips, mut does_not) in together.zip(each(Clipping::Never)) {
+            assert!(!does_not.device.has_clip_distances);
+            let pairs = several(&mut clips)
+                .expect("it draws")
+                .into_iter()
+                .zip(several(&mut does_not).expect("it draws"));
+            for (a, b) in pairs {
+                let differing = a.instance.iter().zip(&b.instance).filter(|(a, b)| a != b).count();
+                assert!(differing <= 2, "{differing} of 1200 pixels");
+                assert!(a.instance.iter().all(|item| *item <= 3));
+            }
+        }
+    }
+
+    #[test]
+    fn a_lost_device_is_an_error_and_no_panic() {
+        for mut renderer in each(Clipping::IfPossible) {
+            renderer.device.device.destroy();
+            for _ in 0..2 {
+                let error = several(&mut renderer).expect_err("there is no device any more");
+                assert_eq!(error.code(), "env/gpu", "{error}");
+            }
+        }
+    }
+}

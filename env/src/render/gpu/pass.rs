@@ -4,7 +4,7 @@
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use super::atlas::{Atlas, Grid, Layout, Planes};
+use super::atlas::{Atlas, Atlases, Grid, Layout, Planes};
 use super::device::Device;
 use super::instances::{InstanceWords, TileContents, WORDS};
 use super::library::{Library, Mesh};
@@ -17,7 +17,7 @@ use crate::EnvError;
 pub(super) struct Stage {
     pipelines: Pipelines,
     library: Library,
-    atlas: Option<Atlas>,
+    atlases: Atlases,
     tiles: Growing,
     instances: Growing,
     sizes: wgpu::Buffer,
@@ -88,7 +88,7 @@ impl Stage {
         Self {
             pipelines: Pipelines::new(device),
             library: Library::new(),
-            atlas: None,
+            atlases: Atlases::default(),
             tiles: Growing::new("tiles", wgpu::BufferUsages::STORAGE),
             instances: Growing::new("instances", wgpu::BufferUsages::VERTEX),
             sizes: device.buffer("atlas", 16, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST),
@@ -112,7 +112,7 @@ impl Stage {
     ) -> Result<(), EnvError> {
         let outcome = self.try_run(device, pass, take);
         if outcome.is_err() {
-            self.atlas = None;
+            self.atlases = Atlases::default();
             self.tiles.buffer = None;
             self.instances.buffer = None;
             self.library = Library::new();
@@ -134,7 +134,7 @@ impl Stage {
             self.tile_words.push(content.tile);
         }
         self.sort(contents, device.has_clip_distances);
-        let atlas = Atlas::fit(self.atlas.take(), device, grid, planes);
+        let atlas = self.atlases.take(device, grid, planes);
         let scale = atlas.size().map(|pixels| 2.0 / pixels as f32);
         device
             .queue
@@ -185,7 +185,7 @@ impl Stage {
         device.check()?;
         read(device, &atlas, layout, take)?;
         device.check()?;
-        self.atlas = Some(atlas);
+        self.atlases.put_back(atlas);
         Ok(())
     }
 
