@@ -76,7 +76,7 @@ fn vulkan_hints(loaders: &[&Path], drivers: &[&Path]) -> Vec<String> {
         let mut files = std::fs::read_dir(folder).into_iter().flatten().flatten();
         files.any(|file| file.path().extension().is_some_and(|end| end == "json"))
     };
-    if !drivers.iter().any(|folder| holds_driver(&folder)) {
+    if !drivers.iter().any(holds_driver) {
         hints.push(
             "no Vulkan driver is announced (a .json file in /usr/share/vulkan/icd.d or /etc/vulkan/icd.d): install your card's \
              driver, or software in its place with apt-get install mesa-vulkan-drivers"

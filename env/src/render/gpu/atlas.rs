@@ -129,7 +129,7 @@ impl Atlas {
     fn new(device: &Device, grid: Grid, planes: Planes) -> Self {
         let [width, height] = grid.size();
         let texture = |label, format| {
-            device.device.create_texture(&wgpu::TextureDescriptor {
+            device.card.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size: extent(width, height),
                 mip_level_count: 1,
@@ -164,8 +164,8 @@ impl Atlas {
         let words = view(&self.words);
         let items = self.items.as_ref().filter(|_| planes.items).map(view);
         let depth = view(&self.depth);
-        let mut colors = vec![attachment(&words)];
-        colors.extend(items.as_ref().map(attachment));
+        let mut colors = vec![Some(attachment(&words))];
+        colors.extend(items.as_ref().map(|items| Some(attachment(items))));
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("tiles"),
             color_attachments: &colors,
@@ -261,8 +261,8 @@ fn extent(width: u32, height: u32) -> wgpu::Extent3d {
     }
 }
 
-fn attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachment<'_>> {
-    Some(wgpu::RenderPassColorAttachment {
+fn attachment(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
+    wgpu::RenderPassColorAttachment {
         view,
         depth_slice: None,
         resolve_target: None,
@@ -270,7 +270,7 @@ fn attachment(view: &wgpu::TextureView) -> Option<wgpu::RenderPassColorAttachmen
             load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
             store: wgpu::StoreOp::Store,
         },
-    })
+    }
 }
 
 #[cfg(test)]

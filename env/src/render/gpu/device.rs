@@ -8,7 +8,7 @@ use crate::EnvError;
 /// A device with its queue, its limits and what it complains about.
 #[derive(Debug)]
 pub(super) struct Device {
-    pub(super) device: wgpu::Device,
+    pub(super) card: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     pub(super) info: wgpu::AdapterInfo,
     pub(super) limits: wgpu::Limits,
@@ -67,7 +67,7 @@ impl Device {
         let noted = complaints.clone();
         device.set_device_lost_callback(move |reason, text| noted.note_loss(format!("{reason:?}: {text}")));
         Ok(Self {
-            device,
+            card: device,
             queue,
             info: adapter.get_info(),
             limits,
@@ -77,7 +77,7 @@ impl Device {
     }
 
     pub(super) fn buffer(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
-        self.device.create_buffer(&wgpu::BufferDescriptor {
+        self.card.create_buffer(&wgpu::BufferDescriptor {
             label: Some(label),
             size,
             usage,

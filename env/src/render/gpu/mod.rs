@@ -61,7 +61,7 @@ impl GpuRenderer {
     /// # Errors
     /// [`EnvError::NoGpu`], with what was tried and why it failed.
     pub fn new(choice: GpuChoice) -> Result<Self, EnvError> {
-        adapter::first(choice, |device| Self::proven(device))
+        adapter::first(choice, Self::proven)
     }
 
     /// A renderer on this device, after it has drawn a small picture.
@@ -327,7 +327,7 @@ mod tests {
     #[test]
     fn a_lost_device_is_an_error_and_no_panic() {
         for mut renderer in each(Clipping::IfPossible) {
-            renderer.device.device.destroy();
+            renderer.device.card.destroy();
             for _ in 0..2 {
                 let error = several(&mut renderer).expect_err("there is no device any more");
                 assert_eq!(error.code(), "env/gpu", "{error}");

@@ -145,7 +145,7 @@ impl Stage {
             .instances
             .write(device, bytemuck::cast_slice(self.sorted.as_flattened()));
         let vertices = self.library.upload(device);
-        let bind_group = device.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        let bind_group = device.card.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("tiles and atlas"),
             layout: &self.pipelines.bindings,
             entries: &[
@@ -162,7 +162,7 @@ impl Stage {
         let items = planes.items;
         let pipelines = self.pipelines.pair(device, Kind { items, fog });
         let mut encoder = device
-            .device
+            .card
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut render = atlas.begin(&mut encoder, planes);
@@ -261,7 +261,7 @@ fn read(device: &Device, atlas: &Atlas, layout: Layout, take: impl FnOnce(&[u8],
             // Called once.
             let _ = noted.set(outcome);
         });
-    let waited = device.device.poll(wgpu::PollType::wait_indefinitely());
+    let waited = device.card.poll(wgpu::PollType::wait_indefinitely());
     waited.map_err(|error| failed(&error))?;
     match done.get() {
         Some(Ok(())) => {}

@@ -42,20 +42,18 @@ pub(super) struct Pipelines {
 
 impl Pipelines {
     pub(super) fn new(device: &Device) -> Self {
-        let module = device.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        let module = device.card.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("driftworld"),
             source: wgpu::ShaderSource::Wgsl(source(device.has_clip_distances).into()),
         });
-        let bindings = device
-            .device
-            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("tiles and atlas"),
-                entries: &[
-                    binding(0, wgpu::BufferBindingType::Storage { read_only: true }),
-                    binding(1, wgpu::BufferBindingType::Uniform),
-                ],
-            });
-        let layout = device.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        let bindings = device.card.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("tiles and atlas"),
+            entries: &[
+                binding(0, wgpu::BufferBindingType::Storage { read_only: true }),
+                binding(1, wgpu::BufferBindingType::Uniform),
+            ],
+        });
+        let layout = device.card.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("tiles and atlas"),
             bind_group_layouts: &[Some(&bindings)],
             immediate_size: 0,
@@ -229,6 +227,6 @@ impl Stages<'_> {
             multiview_mask: None,
             cache: None,
         };
-        device.device.create_render_pipeline(&descriptor)
+        device.card.create_render_pipeline(&descriptor)
     }
 }
