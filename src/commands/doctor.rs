@@ -38,6 +38,12 @@ fn missing(report: &RendererReport) -> Vec<String> {
     };
     let mut missing = vec![reason.clone()];
     if report.has_gpu_feature && cfg!(target_os = "linux") {
+        for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+            if let Some(files) = std::env::var_os(name) {
+                let files = files.display().to_string();
+                missing.push(format!("{name} is set to {files:?}: only those drivers are looked for"));
+            }
+        }
         missing.extend(vulkan_hints(
             &LOADER_FOLDERS.map(Path::new),
             &DRIVER_FOLDERS.map(Path::new),

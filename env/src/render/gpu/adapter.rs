@@ -27,9 +27,20 @@ pub(super) fn all() -> Result<Vec<wgpu::Adapter>, String> {
     if adapters.is_empty() {
         let options = wgpu::RequestAdapterOptions::default();
         let said = pollster::block_on(instance.request_adapter(&options));
-        return Err(said.map_or_else(|error| error.to_string(), |_| "no adapter".to_owned()));
+        return Err(said.map_or_else(|error| shortened(&error.to_string()), |_| "no adapter".to_owned()));
     }
     Ok(adapters)
+}
+
+/// What wgpu says of a machine without adapters, but for the interfaces that this system or this build does not have.
+fn shortened(said: &str) -> String {
+    let (what, why) = said.split_once("; ").unwrap_or((said, ""));
+    let idle = |part: &&str| part.ends_with("not compiled in") || part.ends_with("not requested");
+    let why: Vec<&str> = why.split(", ").filter(|part| !part.is_empty() && !idle(part)).collect();
+    if why.is_empty() {
+        return said.to_owned();
+    }
+    format!("{}: {}", what.to_lowercase(), why.join(", "))
 }
 
 /// Opens the first adapter on which `prove` succeeds.
@@ -83,6 +94,20 @@ pub(super) fn kind_name(info: &wgpu::AdapterInfo) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_interfaces_that_could_be_used_are_blamed() {
+        for (said, expected) in [
+            (
+                "No suitable adapter found; noop not requested, vulkan drivers could not be loaded, metal support not compiled in",
+                "no suitable adapter found: vulkan drivers could not be loaded",
+            ),
+            ("Nothing; gl not requested", "Nothing; gl not requested"),
+            ("Nothing", "Nothing"),
+        ] {
+            assert_eq!(shortened(said), expected);
+        }
+    }
 
     #[test]
     fn software_comes_last() {
