@@ -33,7 +33,9 @@ fn batches(c: &mut Criterion) {
             let mut images = vec![(vec![0; 3 * PIXELS], vec![0.0; depths], vec![0; depths]); count];
             group.bench_function(format!("{count} pictures of 84 × 84"), |bench| {
                 bench.iter(|| {
-                    let views = images.iter_mut().zip(cameras.iter().cycle());
+                    // From all around the circle, however many there are.
+                    let around = (0..count).map(|k| &cameras[k * cameras.len() / count]);
+                    let views = images.iter_mut().zip(around);
                     let mut pictures: Vec<_> = views
                         .map(|((rgb, depth, class), camera)| Picture {
                             scene: environment.scene(),
@@ -65,7 +67,7 @@ fn processor(c: &mut Criterion) {
     group.throughput(Throughput::Elements(64));
     group.bench_function("64 pictures of 84 × 84", |bench| {
         bench.iter(|| {
-            for camera in &cameras[..64] {
+            for camera in (0..64).map(|k| &cameras[k * cameras.len() / 64]) {
                 let mut target = Target {
                     width: SIZE,
                     height: SIZE,

@@ -167,8 +167,8 @@ impl Stage {
         {
             let mut render = atlas.begin(&mut encoder, planes);
             render.set_bind_group(0, &bind_group, &[]);
-            render.set_pipeline(&pipelines.rows);
-            render.draw(0..6 * grid.tile[1], 0..self.tile_words.len() as u32);
+            render.set_pipeline(&pipelines.backdrop);
+            render.draw(0..6, 0..self.tile_words.len() as u32);
             render.set_pipeline(&pipelines.objects);
             render.set_vertex_buffer(0, vertices.slice(..));
             render.set_vertex_buffer(1, instances.slice(..));

@@ -27,7 +27,7 @@ pub(super) struct Kind {
 /// Both pipelines of a pass.
 #[derive(Debug)]
 pub(super) struct Pair {
-    pub(super) rows: wgpu::RenderPipeline,
+    pub(super) backdrop: wgpu::RenderPipeline,
     pub(super) objects: wgpu::RenderPipeline,
 }
 
@@ -73,7 +73,7 @@ impl Pipelines {
         } = self;
         let place = usize::from(kind.items) + 2 * usize::from(kind.fog);
         made[place].get_or_insert_with(|| Pair {
-            rows: rows(device, module, layout, kind),
+            backdrop: backdrop(device, module, layout, kind),
             objects: objects(device, module, layout, kind),
         })
     }
@@ -97,7 +97,7 @@ fn source(has_clip_distances: bool) -> String {
         enable,
         &constants,
         include_str!("tile.wgsl"),
-        include_str!("rows.wgsl"),
+        include_str!("backdrop.wgsl"),
         &objects,
     ]
     .concat()
@@ -117,16 +117,16 @@ fn binding(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEn
 }
 
 /// What lies behind: it is drawn first and overwrites whatever was there.
-fn rows(
+fn backdrop(
     device: &Device,
     module: &wgpu::ShaderModule,
     layout: &wgpu::PipelineLayout,
     kind: Kind,
 ) -> wgpu::RenderPipeline {
     let stages = Stages {
-        label: "rows",
-        vertex: "rows_vertex",
-        fragment: "rows_fragment",
+        label: "backdrop",
+        vertex: "backdrop_vertex",
+        fragment: "backdrop_fragment",
         buffers: &[],
         cull_mode: None,
         depth_compare: wgpu::CompareFunction::Always,
