@@ -71,11 +71,33 @@ fn every_subcommand_has_help_with_an_example() {
         "metrics",
         "schema",
         "bench",
+        "doctor",
     ] {
         assert!(all.contains(&format!("  {name} ")), "{name} is listed");
         let help = succeed(&[name, "--help"]);
         assert!(help.contains("Example"), "{name} shows an example:\n{help}");
     }
+}
+
+#[test]
+fn the_doctor_says_what_draws_here() {
+    assert!(succeed(&["doctor"]).contains("cpu   works: processor ("));
+    let report: serde_json::Value = serde_json::from_str(&succeed(&["doctor", "--json"])).expect("JSON");
+    assert_eq!(report["cpu"]["works"], true);
+    assert!(
+        ["cpu", "gpu"].contains(&report["auto"].as_str().unwrap_or_default()),
+        "{report}"
+    );
+    if report["gpu"]["in_this_build"] == false {
+        let missing = report["gpu"]["missing"][0].as_str().unwrap_or_default();
+        assert!(missing.contains("--features gpu"), "{report}");
+        let error = fail(1, &["render", "find_objects", "--renderer", "gpu"]);
+        assert!(
+            error.contains("--features gpu") && error.contains("driftworld doctor"),
+            "{error}"
+        );
+    }
+    assert!(fail(2, &["render", "find_objects", "--renderer", "crayon"]).contains("expected cpu, gpu or auto"));
 }
 
 #[test]

@@ -184,6 +184,45 @@ pub enum EnvError {
         /// What could be there.
         expected: String,
     },
+    /// The name of a renderer that there is not.
+    #[error("renderer: found {found:?}, expected cpu, gpu or auto")]
+    NoSuchRenderer {
+        /// The name.
+        found: String,
+    },
+    /// A graphics card is asked for, and none can be had.
+    #[error(
+        "renderer gpu: found no graphics adapter that works, expected one ({}); `driftworld doctor` says what is missing, \
+         the renderer cpu works everywhere",
+        tried.join("; ")
+    )]
+    NoGpu {
+        /// What was tried, and why it failed.
+        tried: Vec<String>,
+    },
+    /// A picture that a graphics card cannot hold.
+    #[error(
+        "picture: found {width} × {height} points, expected at most {most} each way on {adapter}; draw it with the renderer cpu, \
+         smaller, or with less supersampling"
+    )]
+    GpuPicture {
+        /// Width in points: pixels times supersampling.
+        width: u32,
+        /// Height in points.
+        height: u32,
+        /// The most that the adapter takes.
+        most: u32,
+        /// The adapter's name.
+        adapter: String,
+    },
+    /// A graphics card fails.
+    #[error("renderer gpu: {adapter}: {reason}; expected a picture; the renderer cpu works everywhere")]
+    Gpu {
+        /// The adapter's name.
+        adapter: String,
+        /// What it says.
+        reason: String,
+    },
 }
 
 impl EnvError {
@@ -202,6 +241,10 @@ impl EnvError {
             Self::NoRoom { .. } => "env/no-room",
             Self::NoHeading { .. } => "env/no-heading",
             Self::PictureSize { .. } => "env/picture-size",
+            Self::NoSuchRenderer { .. } => "env/no-such-renderer",
+            Self::NoGpu { .. } => "env/no-gpu",
+            Self::GpuPicture { .. } => "env/gpu-picture",
+            Self::Gpu { .. } => "env/gpu",
             Self::BatchSize { .. } => "env/batch-size",
             Self::BatchThreads { .. } => "env/batch-threads",
             Self::StateLength { .. } => "env/state-length",
@@ -249,6 +292,25 @@ mod tests {
             },
             EnvError::NoHeading { found: f64::NAN },
             EnvError::PictureSize { width: 0, height: 5000 },
+            EnvError::NoSuchRenderer {
+                found: "GPU".to_owned(),
+            },
+            EnvError::NoGpu {
+                tried: vec![
+                    "Card 1 (vulkan): is software".to_owned(),
+                    "Card 2 (vulkan): is lost".to_owned(),
+                ],
+            },
+            EnvError::GpuPicture {
+                width: 16_384,
+                height: 16_384,
+                most: 8192,
+                adapter: "Card 1".to_owned(),
+            },
+            EnvError::Gpu {
+                adapter: "Card 1".to_owned(),
+                reason: "out of graphics memory".to_owned(),
+            },
             EnvError::BatchSize { found: 0, most: 65_536 },
             EnvError::BatchThreads {
                 wanted: 100_000,

@@ -28,8 +28,11 @@ pub use batch::{Autoreset, Batch, BatchOptions, Episode, ImageLayout, Images, MA
 pub use camera::Camera;
 pub use error::EnvError;
 pub use render::{
-    CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, CpuRenderer,
-    FAR_DEPTH, Frame, Image, Target, category_color, depth_to_gray, top_down,
+    AdapterReport, CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE,
+    CATEGORY_SKY, CpuRenderer, FAR_DEPTH, Frame, Image, Picture, Renderer, RendererKind, RendererReport, Target,
+    category_color, depth_to_gray, top_down,
 };
+#[cfg(feature = "gpu")]
+pub use render::{GpuChoice, GpuRenderer};
 pub use scene::{Item, Light, Scene, WallPanel};
 pub use sim::{Action, AgentState, Environment, Event, ObjectState, Obstacle, Snapshot, Step, Warning};

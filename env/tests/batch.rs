@@ -46,7 +46,16 @@ fn action(step: usize, env: usize) -> Action {
 }
 
 fn batch(autoreset: Autoreset, num_threads: usize) -> Batch {
-    Batch::new(NUM_ENVS, source(), BatchOptions { autoreset, num_threads }).expect("the worlds are sound")
+    Batch::new(
+        NUM_ENVS,
+        source(),
+        BatchOptions {
+            autoreset,
+            num_threads,
+            ..BatchOptions::default()
+        },
+    )
+    .expect("the worlds are sound")
 }
 
 /// What an environment shows, drawn by itself.
@@ -211,6 +220,7 @@ fn a_world_that_cannot_be_had_stops_its_environment_alone() {
     let options = BatchOptions {
         autoreset: Autoreset::NextStep,
         num_threads: 1,
+        ..BatchOptions::default()
     };
     let mut batch = Batch::new(3, source, options).expect("first episodes are there");
     let still = [Action::Continuous([0.0; 3]); 3];

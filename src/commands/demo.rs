@@ -127,7 +127,7 @@ impl Demo {
                     .variant_description(name)
                     .unwrap_or_default()
                     .to_owned(),
-                pictures: vec![views.first_person().rgb, map],
+                pictures: vec![views.first_person()?.rgb, map],
             })
         };
         let rows = shown.iter().map(row).collect::<Result<Vec<_>, Failure>>()?;

@@ -6,6 +6,7 @@ mod convert;
 mod curriculum;
 mod demo;
 mod distance;
+mod doctor;
 mod input;
 mod metrics;
 mod order;
@@ -58,6 +59,8 @@ pub(crate) enum Command {
     Schema(schema::Schema),
     /// Measure how fast this build is on this machine.
     Bench(bench::Bench),
+    /// Say which renderers work on this machine, and what is missing for the others.
+    Doctor(doctor::Doctor),
 }
 
 impl Command {
@@ -79,6 +82,7 @@ impl Command {
             Self::Metrics(command) => command.run(),
             Self::Schema(command) => command.run(),
             Self::Bench(command) => command.run(),
+            Self::Doctor(command) => command.run(),
         }
     }
 }

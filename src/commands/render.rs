@@ -1,10 +1,12 @@
 //! `driftworld render`: pictures of a world. What a pixel is, is decided in `env`; which pictures make a sheet, here.
 
+use std::cell::RefCell;
 use std::path::PathBuf;
+use std::rc::Rc;
 
 use clap::{Args, ValueEnum};
 use driftworld::env::{
-    Camera, Catalogue, CpuRenderer, Environment, Frame, Scene, category_color, depth_to_gray, top_down,
+    Camera, Catalogue, Environment, Frame, Renderer, RendererKind, Scene, category_color, depth_to_gray, top_down,
 };
 use driftworld::spec::World;
 
@@ -32,6 +34,10 @@ pub(crate) struct Render {
     /// Turn the first-person camera this many degrees clockwise from the agent's heading.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     turn: f64,
+    /// What draws: the processor, a graphics card, or a graphics card if there is one (cpu, gpu, auto). Maps are always drawn by
+    /// the processor.
+    #[arg(long, default_value_t, value_name = "RENDERER")]
+    renderer: RendererKind,
     /// The PNG file.
     #[arg(short, long, default_value = "world.png", value_name = "FILE")]
     output: PathBuf,
@@ -70,31 +76,32 @@ impl Render {
     }
 
     fn picture(&self, world: &World, catalogue: &Catalogue) -> Result<Picture, Failure> {
-        let views = Views::with_catalogue(world, catalogue, self.size, self.turn as f32);
+        let views = Views::with_catalogue(world, catalogue, self.size, self.turn as f32)
+            .drawn_by(Renderer::new(self.renderer)?);
         Ok(match self.view {
-            View::Overview => views.overview(self.size * 16 / 9),
+            View::Overview => views.overview(self.size * 16 / 9)?,
             View::TopDown => views.top_down(),
-            View::Rgb => views.first_person().rgb,
-            View::Depth => views.first_person().depth,
-            View::Segmentation => views.first_person().segmentation,
-            View::Sheet => self.sheet(world, catalogue, &views)?,
+            View::Rgb => views.first_person()?.rgb,
+            View::Depth => views.first_person()?.depth,
+            View::Segmentation => views.first_person()?.segmentation,
+            View::Sheet => self.sheet(&views)?,
         })
     }
 
-    fn sheet(&self, world: &World, catalogue: &Catalogue, views: &Views) -> Result<Picture, Failure> {
-        let small = Views::with_catalogue(world, catalogue, (self.size * 2 / 3).max(1), self.turn as f32);
-        let seen = views.first_person();
+    fn sheet(&self, views: &Views) -> Result<Picture, Failure> {
+        let small = views.of_size((self.size * 2 / 3).max(1));
+        let seen = views.first_person()?;
         let row = |title: &str, words: String, pictures| SheetRow {
             title: title.into(),
             words,
             pictures,
         };
-        let (classes, close_ups): (Vec<String>, Vec<Picture>) = small.close_ups(5).into_iter().unzip();
+        let (classes, close_ups): (Vec<String>, Vec<Picture>) = small.close_ups(5)?.into_iter().unzip();
         let mut rows = vec![
             row(
                 "The world",
                 "from outside, and from above: the arrow is the agent, small things are drawn larger".into(),
-                vec![views.overview(self.size * 16 / 9), views.top_down()],
+                vec![views.overview(self.size * 16 / 9)?, views.top_down()],
             ),
             row(
                 "What the agent sees",
@@ -104,7 +111,7 @@ impl Render {
             row(
                 "All around the agent",
                 "ahead, right, behind, left; 90° each".into(),
-                small.all_around(),
+                small.all_around()?,
             ),
         ];
         if !close_ups.is_empty() {
@@ -135,6 +142,7 @@ pub(crate) struct Views<'a> {
     scene: Scene,
     size: u32,
     turn: f32,
+    renderer: Rc<RefCell<Renderer>>,
 }
 
 /// The three modalities of one view.
@@ -156,25 +164,43 @@ impl<'a> Views<'a> {
             scene: Scene::from_world_with(world, catalogue),
             size,
             turn,
+            renderer: Rc::default(),
+        }
+    }
+
+    /// The same, drawn by another renderer than the processor's.
+    fn drawn_by(self, renderer: Renderer) -> Self {
+        Self {
+            renderer: Rc::new(RefCell::new(renderer)),
+            ..self
+        }
+    }
+
+    /// The same in another size.
+    fn of_size(&self, size: u32) -> Self {
+        Self {
+            size,
+            renderer: Rc::clone(&self.renderer),
+            ..Self::with_catalogue(self.world, self.scene.catalogue(), size, self.turn)
         }
     }
 
     /// From outside, above a corner of the arena.
-    pub(crate) fn overview(&self, width: u32) -> Picture {
+    pub(crate) fn overview(&self, width: u32) -> Result<Picture, Failure> {
         self.smooth(&Camera::overview(&self.scene), width)
     }
 
     /// What the agent sees at the start.
-    pub(crate) fn first_person(&self) -> Seen {
+    pub(crate) fn first_person(&self) -> Result<Seen, Failure> {
         let camera = self.agent_camera(self.turn);
-        let frame = self.frame(&camera, self.size, self.size);
+        let frame = self.frame(&camera, self.size, self.size)?;
         let picture = |rgb| Picture {
             width: self.size,
             height: self.size,
             rgb,
         };
-        Seen {
-            rgb: self.smooth(&camera, self.size),
+        Ok(Seen {
+            rgb: self.smooth(&camera, self.size)?,
             depth: picture(
                 depth_to_gray(&frame.depth)
                     .into_iter()
@@ -188,11 +214,11 @@ impl<'a> Views<'a> {
                     .flat_map(|category| category_color(*category))
                     .collect(),
             ),
-        }
+        })
     }
 
     /// What the agent sees ahead, to its right, behind and to its left.
-    pub(crate) fn all_around(&self) -> Vec<Picture> {
+    pub(crate) fn all_around(&self) -> Result<Vec<Picture>, Failure> {
         let look = |turn: f32| {
             let camera = Camera {
                 field_of_view_deg: 90.0,
@@ -200,11 +226,11 @@ impl<'a> Views<'a> {
             };
             self.smooth(&camera, self.size)
         };
-        [0.0, 90.0, 180.0, 270.0].map(look).to_vec()
+        [0.0, 90.0, 180.0, 270.0].into_iter().map(look).collect()
     }
 
     /// The first object of each class that is nearest to the agent, from near by, with the name of its class.
-    pub(crate) fn close_ups(&self, most: usize) -> Vec<(String, Picture)> {
+    pub(crate) fn close_ups(&self, most: usize) -> Result<Vec<(String, Picture)>, Failure> {
         let start = self.world.agent_params.coordinates;
         let far = |index: &usize| {
             let [x, y] = self.world.objects[*index].coordinates;
@@ -220,10 +246,10 @@ impl<'a> Views<'a> {
         for index in indices {
             let class = self.world.objects[index].class.to_lowercase();
             if shown.len() < most && !shown.iter().any(|(other, _)| *other == class) {
-                shown.push((class, self.smooth(&self.close_to(index), self.size)));
+                shown.push((class, self.smooth(&self.close_to(index), self.size)?));
             }
         }
-        shown
+        Ok(shown)
     }
 
     /// A camera that looks at an object from where the agent is, so near that the object fills the picture.
@@ -274,20 +300,20 @@ impl<'a> Views<'a> {
     }
 
     /// A colour picture with smooth edges: drawn at twice the size where that is allowed.
-    fn smooth(&self, camera: &Camera, width: u32) -> Picture {
+    fn smooth(&self, camera: &Camera, width: u32) -> Result<Picture, Failure> {
         let twice = if self.size.max(width) <= 2048 { 2 } else { 1 };
-        let frame = self.frame(camera, width * twice, self.size * twice);
+        let frame = self.frame(camera, width * twice, self.size * twice)?;
         let picture = Picture {
             width: frame.width,
             height: frame.height,
             rgb: frame.rgb,
         };
-        if twice == 2 { picture.halved() } else { picture }
+        Ok(if twice == 2 { picture.halved() } else { picture })
     }
 
-    fn frame(&self, camera: &Camera, width: u32, height: u32) -> Frame {
+    fn frame(&self, camera: &Camera, width: u32, height: u32) -> Result<Frame, Failure> {
         let mut frame = Frame::new(width, height);
-        CpuRenderer::new().render(&self.scene, camera, &mut frame);
-        frame
+        self.renderer.borrow_mut().render(&self.scene, camera, &mut frame)?;
+        Ok(frame)
     }
 }

@@ -16,6 +16,7 @@ pub(crate) enum Stage {
     Tidy,
     Clippy,
     Tests,
+    Gpu,
     Doctests,
     Docs,
     Examples,
@@ -34,12 +35,13 @@ pub(crate) enum Outcome {
 
 impl Stage {
     /// In the order in which they run: the quick ones first, so that most mistakes show within seconds.
-    pub(crate) const ALL: [Self; 12] = [
+    pub(crate) const ALL: [Self; 13] = [
         Self::Fmt,
         Self::Layers,
         Self::Tidy,
         Self::Clippy,
         Self::Tests,
+        Self::Gpu,
         Self::Doctests,
         Self::Docs,
         Self::Examples,
@@ -57,6 +59,7 @@ impl Stage {
             Self::Tidy => "tidy",
             Self::Clippy => "clippy",
             Self::Tests => "tests",
+            Self::Gpu => "gpu",
             Self::Doctests => "doctests",
             Self::Docs => "docs",
             Self::Examples => "examples",
@@ -75,6 +78,9 @@ impl Stage {
             Self::Tidy => "files open with their purpose, carry telling names, and link to what exists",
             Self::Clippy => "no compiler or clippy warning in any target, with all features",
             Self::Tests => "unit, integration, property and golden tests pass",
+            Self::Gpu => {
+                "with the feature gpu, a graphics card draws what the processor draws; skipped without an adapter"
+            }
             Self::Doctests => "every example in a doc comment runs",
             Self::Docs => "the documentation builds without a warning",
             Self::Examples => "every program in examples/ ends well in an empty folder",
@@ -106,6 +112,8 @@ impl Stage {
                 "warnings",
             ]),
             Self::Tests => runner::stage(workspace).map(Outcome::PassedWith),
+            // The whole workspace, so that dependencies keep the features they were built with for the stage before.
+            Self::Gpu => passed(&["test", "--workspace", "--features", "gpu", "--lib", "--test", "parity"]),
             Self::Doctests => passed(&["test", "--doc", "--workspace"]),
             Self::Docs => {
                 let mut command = cargo(workspace, &["doc", "--workspace", "--no-deps"]);

@@ -89,6 +89,12 @@ impl Asset {
         self.levels.iter().map(|level| (level.num_triangles, level.error))
     }
 
+    /// All there is to choose from for [`Asset::level`].
+    #[cfg(feature = "gpu")]
+    pub(crate) fn coats_of_levels(&self) -> impl Iterator<Item = &[Coat]> {
+        self.levels.iter().map(|level| level.coats.as_slice())
+    }
+
     /// Radius of the ball around the middle of the asset's height that holds all of it, in metres at scale 1.
     pub(crate) fn ball_radius(&self) -> f32 {
         let half = self.height / 2.0;

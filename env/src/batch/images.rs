@@ -134,7 +134,30 @@ pub(super) struct ImagesMut<'a> {
     instance: &'a mut [u32],
 }
 
-impl ImagesMut<'_> {
+impl<'a> ImagesMut<'a> {
+    /// Each environment's images, all at once.
+    pub(super) fn targets(self, num_envs: usize) -> impl Iterator<Item = Target<'a>> {
+        let mut rest = Some(self);
+        (0..num_envs).map_while(move |_| {
+            let (one, more) = rest.take()?.split(1);
+            rest = Some(more);
+            Some(one.whole())
+        })
+    }
+
+    fn whole(self) -> Target<'a> {
+        Target {
+            width: self.size[0],
+            height: self.size[1],
+            supersampling: self.supersampling,
+            rgb: wanted(self.rgb),
+            depth: wanted(self.depth),
+            category: wanted(self.category),
+            class: wanted(self.class),
+            instance: wanted(self.instance),
+        }
+    }
+
     /// Those of the first environments, and the rest.
     pub(super) fn split(self, num_envs: usize) -> (Self, Self) {
         let pixels = num_envs * self.size[0] as usize * self.size[1] as usize;
@@ -186,6 +209,10 @@ impl ImagesMut<'_> {
 pub(super) fn halves<T>(all: &mut [T], at: usize) -> (&mut [T], &mut [T]) {
     let at = at.min(all.len());
     all.split_at_mut(at)
+}
+
+fn wanted<T>(all: &mut [T]) -> Option<&mut [T]> {
+    (!all.is_empty()).then_some(all)
 }
 
 /// One environment's share of a buffer; none of an empty one.

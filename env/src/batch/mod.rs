@@ -1,6 +1,7 @@
 //! [`Batch`]: many environments that step together, in one contiguous buffer per output. One environment's part of it is in
 //! `slot.rs`, the buffers of images in `images.rs`; what happens inside an environment is in `sim`.
 
+mod graphics;
 mod images;
 mod outputs;
 mod slot;
@@ -16,7 +17,7 @@ use self::outputs::OutputsMut;
 use self::slot::Slot;
 use crate::EnvError;
 use crate::assets::Catalogue;
-use crate::render::CpuRenderer;
+use crate::render::{CpuRenderer, Renderer, RendererKind};
 use crate::sim::{Action, Environment, Event};
 
 /// The most environments of one batch.
@@ -56,6 +57,8 @@ pub struct BatchOptions {
     pub autoreset: Autoreset,
     /// Threads that step and draw; 0 is one for each processor.
     pub num_threads: usize,
+    /// What draws: the processor, each environment by itself; or a graphics card, all environments at once.
+    pub renderer: RendererKind,
 }
 
 /// `num_envs` environments that step together.
@@ -82,6 +85,8 @@ pub struct Batch {
     finals: Option<Outputs>,
     autoreset: Autoreset,
     renderers: Vec<CpuRenderer>,
+    /// Draws all environments' images together, if a graphics card does; the renderers above are idle then.
+    graphics: Option<Renderer>,
     pool: Option<rayon::ThreadPool>,
 }
 
@@ -91,6 +96,16 @@ struct Part<'a> {
     outputs: OutputsMut<'a>,
     finals: Option<OutputsMut<'a>>,
     renderers: &'a mut [CpuRenderer],
+    drawing: Drawing,
+}
+
+/// When images are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Drawing {
+    /// Right after an environment's step.
+    Now,
+    /// After the steps of all.
+    Later,
 }
 
 /// What all parts are to do.
@@ -103,6 +118,8 @@ enum Work<'a> {
     Reset {
         chosen: &'a [bool],
     },
+    /// Begins the episodes that follow those whose last image had to be drawn first.
+    BeginLate,
 }
 
 impl Batch {
@@ -135,8 +152,9 @@ impl Batch {
                 most: MAX_ENVS,
             });
         }
+        let graphics = Some(Renderer::new(options.renderer)?).filter(|renderer| renderer.kind() == RendererKind::Gpu);
         let pool = match options.num_threads {
-            1 => None,
+            1 if graphics.is_none() => None,
             wanted => {
                 let pool = rayon::ThreadPoolBuilder::new()
                     .num_threads(wanted)
@@ -165,6 +183,7 @@ impl Batch {
             outputs,
             autoreset: options.autoreset,
             renderers: vec![CpuRenderer::new(); parts],
+            graphics,
             pool,
         };
         batch.work(Work::Reset { chosen: &[] })?;
@@ -273,17 +292,67 @@ impl Batch {
         }
     }
 
+    /// What draws the images: the processor or a graphics card.
+    pub fn renderer(&self) -> RendererKind {
+        self.graphics.as_ref().map_or(RendererKind::Cpu, Renderer::kind)
+    }
+
     fn work(&mut self, work: Work<'_>) -> Result<(), EnvError> {
+        if self.graphics.is_none() {
+            return self.go(work, Drawing::Now);
+        }
+        let mut outcome = self.go(work, Drawing::Later);
+        if let Some(finals) = &mut self.finals
+            && matches!(work, Work::Step { .. })
+        {
+            let last = draw_together(
+                &mut self.graphics,
+                self.pool.as_ref(),
+                &self.slots,
+                finals,
+                |_, slot| slot.ends_late(),
+            );
+            outcome = outcome.and(last).and(self.go(Work::BeginLate, Drawing::Later));
+        }
+        let chosen = match work {
+            Work::Reset { chosen } => chosen,
+            Work::Step { .. } | Work::BeginLate => &[],
+        };
+        let (pool, outputs) = (self.pool.as_ref(), &mut self.outputs);
+        let drawn = draw_together(&mut self.graphics, pool, &self.slots, outputs, |env, _| {
+            chosen.get(env) != Some(&false)
+        });
+        outcome.and(drawn)
+    }
+
+    fn go(&mut self, work: Work<'_>, drawing: Drawing) -> Result<(), EnvError> {
         let part = Part {
             slots: &mut self.slots,
             outputs: self.outputs.view(),
             finals: self.finals.as_mut().map(Outputs::view),
             renderers: &mut self.renderers,
+            drawing,
         };
         match &self.pool {
             Some(pool) => pool.install(|| part.run(0, work)),
             None => part.run(0, work),
         }
+    }
+}
+
+/// Draws the chosen environments' images at once, on the batch's own threads.
+fn draw_together(
+    graphics: &mut Option<Renderer>,
+    pool: Option<&rayon::ThreadPool>,
+    slots: &[Slot],
+    outputs: &mut Outputs,
+    is_chosen: impl Fn(usize, &Slot) -> bool + Send,
+) -> Result<(), EnvError> {
+    let Some(renderer) = graphics else { return Ok(()) };
+    let images = outputs.images.view();
+    match pool {
+        Some(pool) => pool.install(|| graphics::draw(renderer, slots, images, is_chosen)),
+        None => graphics::draw(renderer, slots, images, is_chosen),
     }
 }
 
@@ -307,12 +376,14 @@ impl Part<'_> {
             outputs,
             finals,
             renderers,
+            drawing: self.drawing,
         };
         let high = Part {
             slots: more_slots,
             outputs: more_outputs,
             finals: more_finals,
             renderers: more_renderers,
+            drawing: self.drawing,
         };
         let (low, high) = rayon::join(|| low.run(first, work), || high.run(first + middle, work));
         low.and(high)
@@ -325,6 +396,7 @@ impl Part<'_> {
         };
         for (index, slot) in self.slots.iter_mut().enumerate() {
             let env = first + index;
+            let renderer = (self.drawing == Drawing::Now).then_some(&mut *renderer);
             let done = match work {
                 Work::Reset { chosen } if chosen.get(env) == Some(&false) => Ok(()),
                 Work::Reset { .. } => slot.reset(index, &mut self.outputs, renderer),
@@ -336,6 +408,7 @@ impl Part<'_> {
                     self.finals.as_mut(),
                     renderer,
                 ),
+                Work::BeginLate => slot.begin_late(index, &mut self.outputs),
             };
             outcome = outcome.and(done);
         }

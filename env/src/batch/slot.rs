@@ -74,12 +74,26 @@ impl Slot {
         }
     }
 
+    /// Begins the next episode after a same-step reset whose last picture has been drawn in the meantime.
+    pub(super) fn begin_late(&mut self, index: usize, outputs: &mut OutputsMut<'_>) -> Result<(), EnvError> {
+        if self.ends_late() {
+            self.begin()?;
+            self.environment.write_state(outputs.state(index))?;
+        }
+        Ok(())
+    }
+
+    /// Whether the step that was just made ended the episode, and the next has not begun.
+    pub(super) fn ends_late(&self) -> bool {
+        self.is_over && self.step.ended()
+    }
+
     /// Begins the next episode if that is due, and hands out the observation.
     pub(super) fn reset(
         &mut self,
         index: usize,
         outputs: &mut OutputsMut<'_>,
-        renderer: &mut CpuRenderer,
+        renderer: Option<&mut CpuRenderer>,
     ) -> Result<(), EnvError> {
         if self.is_over {
             self.begin()?;
@@ -96,7 +110,7 @@ impl Slot {
         index: usize,
         outputs: &mut OutputsMut<'_>,
         finals: Option<&mut OutputsMut<'_>>,
-        renderer: &mut CpuRenderer,
+        mut renderer: Option<&mut CpuRenderer>,
     ) -> Result<(), EnvError> {
         if self.is_over {
             // Next-step autoreset; or an episode that could not begin in its own time.
@@ -107,7 +121,11 @@ impl Slot {
         self.is_over = self.step.ended();
         if let (true, Autoreset::SameStep, Some(finals)) = (self.is_over, autoreset, finals) {
             finals.note(index, &self.step);
-            self.observe(index, finals, renderer)?;
+            self.observe(index, finals, renderer.as_deref_mut())?;
+            if renderer.is_none() {
+                // The last picture is still to be drawn: see `begin_late`.
+                return Ok(());
+            }
             self.begin()?;
         }
         self.observe(index, outputs, renderer)
@@ -131,8 +149,16 @@ impl Slot {
         Ok(())
     }
 
-    fn observe(&self, index: usize, outputs: &mut OutputsMut<'_>, renderer: &mut CpuRenderer) -> Result<(), EnvError> {
+    /// Hands out the state vector, and the images if there is a renderer: without one they are drawn later, for all environments
+    /// together.
+    fn observe(
+        &self,
+        index: usize,
+        outputs: &mut OutputsMut<'_>,
+        renderer: Option<&mut CpuRenderer>,
+    ) -> Result<(), EnvError> {
         self.environment.write_state(outputs.state(index))?;
+        let Some(renderer) = renderer else { return Ok(()) };
         let camera = self.environment.camera();
         let mut target = outputs.images.target(index);
         if target.is_empty() {

@@ -11,10 +11,10 @@ use crate::scene::Scene;
 pub(crate) const SQUARE: f32 = 2.0;
 
 /// How much lighter or darker than the ground the squares are, and the blocks of 8 × 8 of them.
-const CONTRAST: [f32; 2] = [0.045, 0.03];
+pub(super) const CONTRAST: [f32; 2] = [0.045, 0.03];
 
 /// How squares fade as they get smaller than pixels: by how many of them a pixel covers.
-const FADING: [f32; 2] = [1.3, 1.3 / 8.0];
+pub(super) const FADING: [f32; 2] = [1.3, 1.3 / 8.0];
 
 /// What lies behind everything, row by row. Kept from picture to picture.
 #[derive(Clone, Debug, Default)]

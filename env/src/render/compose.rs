@@ -16,20 +16,20 @@ use crate::scene::{ARENA_WALLS, Scene};
 pub(super) const CATEGORY_BITS: u32 = 3;
 
 /// Ground further than this many squares from the origin shows none: their numbers would not fit.
-const MOST_SQUARES: f32 = 8000.0;
+pub(super) const MOST_SQUARES: f32 = 8000.0;
 
 /// Added to the numbers of squares so that none is negative; a multiple of 16, so that their pattern stays.
-const SHIFT: f32 = 8192.0;
+pub(super) const SHIFT: f32 = 8192.0;
 
 /// The four walls around the camera, as far as the formulas need them. For each: 1 / distance of the wall along the view
 /// axis is `base + right · x + up · y` for a pixel x to the right and y up at 1 m.
 pub(super) struct Walls {
-    base: [f32; 4],
-    right: [f32; 4],
-    up: [f32; 4],
-    inks: [u32; 4],
+    pub(super) base: [f32; 4],
+    pub(super) right: [f32; 4],
+    pub(super) up: [f32; 4],
+    pub(super) inks: [u32; 4],
     /// Metres from the camera up to the walls' upper edge.
-    above: f32,
+    pub(super) above: f32,
 }
 
 /// One row's part of [`Walls`], and what stands behind them.

@@ -10,15 +10,13 @@ use super::lanes::{Avx2, Avx512};
 use super::lanes::{Lanes, MOST_LANES, Portable};
 use super::raster::{Paintwork, draw_block};
 use super::shade::Shader;
+use super::sight::{InSight, What, find, level, sort};
 use super::target::Target;
 use super::view::{NEAR, Pose, View};
 use crate::EnvError;
 use crate::assets::Paint;
 use crate::camera::Camera;
-use crate::scene::{ARENA_WALLS, Item, PanelGroup, Scene};
-
-/// Largest error of a simplified mesh that is drawn, in pixels.
-const TOLERANCE: f32 = 0.5;
+use crate::scene::{Item, PanelGroup, Scene};
 
 /// Draws scenes on the processor. Keeps its buffers from picture to picture, and allocates nothing once they are large enough.
 ///
@@ -44,22 +42,6 @@ enum Set {
     Avx2(Avx2),
     #[cfg(target_arch = "x86_64")]
     Avx512(Avx512),
-}
-
-/// Something that may be in the picture.
-#[derive(Clone, Copy, Debug)]
-struct InSight {
-    /// Depth of its nearest point in metres.
-    nearest: f32,
-    /// Depth of its middle.
-    middle: f32,
-    what: What,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum What {
-    Item(u32),
-    Panels(u32),
 }
 
 impl Default for CpuRenderer {
@@ -116,10 +98,7 @@ impl CpuRenderer {
     /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels, there are at most 2²⁶ points of supersampling, and every
     /// image has room for exactly its pixels.
     pub fn draw(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) -> Result<(), EnvError> {
-        if !target.is_sound() {
-            let (width, height) = (target.width, target.height);
-            return Err(EnvError::PictureSize { width, height });
-        }
+        target.check()?;
         match target.supersampling {
             0 | 1 => self.run(scene, camera, target),
             samples => self.run_sampled(scene, camera, target, samples),
@@ -207,8 +186,9 @@ impl CpuRenderer {
         let shader = Shader::new(&scene.light);
         let walls = Walls::around(scene, &view, &shader);
         self.canvas.clear(width, height, ITEMS);
-        self.find(scene, &view, walls.is_some());
-        let order = std::mem::take(&mut self.order);
+        let mut order = std::mem::take(&mut self.order);
+        find(scene, &view, walls.is_some(), &mut order);
+        sort(&mut order);
         for &sight in &order {
             match sight.what {
                 What::Item(index) => {
@@ -240,39 +220,6 @@ impl CpuRenderer {
         composition.write::<L, ITEMS>(lanes, &mut self.scratch, target);
     }
 
-    /// Puts what may be seen in order, near to far: what is behind is then mostly hidden when it comes.
-    fn find(&mut self, scene: &Scene, view: &View, walls_are_drawn: bool) {
-        self.order.clear();
-        let mut note = |middle: [f32; 3], radius: f32, what: What| {
-            let middle = view.view_from_world(middle);
-            if view.sees(middle, radius) {
-                self.order.push(InSight {
-                    nearest: middle[2] - radius,
-                    middle: middle[2],
-                    what,
-                });
-            }
-        };
-        for (index, item) in scene.items.iter().enumerate() {
-            if item.visible {
-                let [x, y] = item.position;
-                let half = item.asset.height * item.scale / 2.0;
-                note(
-                    [x, y, half],
-                    item.asset.ball_radius() * item.scale,
-                    What::Item(index as u32),
-                );
-            }
-        }
-        for (index, group) in scene.panels().iter().enumerate() {
-            if index >= ARENA_WALLS || !walls_are_drawn {
-                note(group.middle, group.radius, What::Panels(index as u32));
-            }
-        }
-        self.order
-            .sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.what.cmp(&b.what)));
-    }
-
     /// How far columns are from the picture's middle, padded to whole vectors.
     fn measure_columns(&mut self, view: &View, width: usize) {
         self.offsets.clear();
@@ -293,12 +240,7 @@ impl CpuRenderer {
         shader: &Shader,
         scene: &Scene,
     ) {
-        let pose = Pose {
-            position: [item.position[0], item.position[1], 0.0],
-            heading_deg: item.heading_deg,
-            scale: item.scale,
-        };
-        let at = view.placement(&pose, scene.light.direction);
+        let at = view.placement(&Pose::of(item), scene.light.direction);
         let label = if ITEMS {
             0
         } else {
@@ -311,8 +253,7 @@ impl CpuRenderer {
             item: index + 1,
             may_be_cut: sight.nearest < NEAR,
         };
-        let pixels_per_metre = view.scale * item.scale / sight.middle.max(NEAR);
-        for coat in item.asset.level(TOLERANCE / pixels_per_metre) {
+        for coat in level(item, sight, view) {
             let color = match coat.paint {
                 Paint::Main(own) => item.color.unwrap_or(own),
                 Paint::Fixed(color) => color,
@@ -334,12 +275,7 @@ impl CpuRenderer {
         shader: &Shader,
         scene: &Scene,
     ) {
-        let pose = Pose {
-            position: [0.0; 3],
-            heading_deg: 0.0,
-            scale: 1.0,
-        };
-        let at = view.placement(&pose, scene.light.direction);
+        let at = view.placement(&Pose::WORLD, scene.light.direction);
         let paint = Paintwork {
             color: shader.in_light(group.color),
             ambient: shader.ambient,
@@ -380,7 +316,7 @@ impl Set {
 }
 
 /// Each pixel as the mean, rounded, of its `samples` × `samples` points.
-fn average(points: &[u8], rgb: &mut [u8], width: usize, samples: usize) {
+pub(super) fn average(points: &[u8], rgb: &mut [u8], width: usize, samples: usize) {
     let row_length = 3 * width * samples;
     let count = (samples * samples) as u32;
     for (rows, out) in points

@@ -1,4 +1,4 @@
-//! Pictures of scenes. The CPU renderer is the default and needs no driver.
+//! Pictures of scenes. The CPU renderer is the default and needs no driver; that for graphics cards is behind the feature `gpu`.
 #![expect(
     clippy::inline_always,
     reason = "what works on vectors must end up inside a function that has their instruction set"
@@ -9,9 +9,16 @@ mod canvas;
 mod compose;
 mod cpu;
 mod frame;
+#[cfg(feature = "gpu")]
+mod gpu;
+mod kind;
 mod lanes;
+mod picture;
 mod raster;
+mod renderer;
+mod report;
 mod shade;
+mod sight;
 mod target;
 mod top_down;
 mod view;
@@ -21,5 +28,11 @@ pub use frame::{
     CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, FAR_DEPTH,
     Frame, category_color, depth_to_gray,
 };
+#[cfg(feature = "gpu")]
+pub use gpu::{GpuChoice, GpuRenderer};
+pub use kind::RendererKind;
+pub use picture::Picture;
+pub use renderer::Renderer;
+pub use report::{AdapterReport, RendererReport};
 pub use target::Target;
 pub use top_down::{Image, top_down};

@@ -9,7 +9,8 @@ pub(crate) struct Shader {
     direction: [f32; 3],
     /// Share of the light that comes from everywhere.
     pub(crate) ambient: f32,
-    tint: [f32; 3],
+    /// The light's colour times how bright it is.
+    pub(crate) tint: [f32; 3],
 }
 
 impl Shader {

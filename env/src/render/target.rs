@@ -3,6 +3,7 @@
 use driftworld_spec::MAX_POINTS;
 
 use super::frame::Frame;
+use crate::EnvError;
 
 /// The images that a render is to fill; what is `None` is not computed. Row 0 is on top.
 #[derive(Debug, Default)]
@@ -26,8 +27,34 @@ pub struct Target<'a> {
 }
 
 impl Target<'_> {
+    /// The same images, lent for a while.
+    pub fn reborrow(&mut self) -> Target<'_> {
+        Target {
+            width: self.width,
+            height: self.height,
+            supersampling: self.supersampling,
+            rgb: self.rgb.as_deref_mut(),
+            depth: self.depth.as_deref_mut(),
+            category: self.category.as_deref_mut(),
+            class: self.class.as_deref_mut(),
+            instance: self.instance.as_deref_mut(),
+        }
+    }
+
+    /// # Errors
+    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels, there are at most 2²⁶ points of supersampling, and every
+    /// image has room for exactly its pixels.
+    pub(super) fn check(&self) -> Result<(), EnvError> {
+        let (width, height) = (self.width, self.height);
+        if self.is_sound() {
+            Ok(())
+        } else {
+            Err(EnvError::PictureSize { width, height })
+        }
+    }
+
     /// Whether sizes are in their range and every slice has one element for each pixel (three bytes for colour).
-    pub(super) fn is_sound(&self) -> bool {
+    fn is_sound(&self) -> bool {
         let pixels = self.width as usize * self.height as usize;
         let fits = |length: Option<usize>, each: usize| length.is_none_or(|length| length == pixels * each);
         (1..=4096).contains(&self.width)

@@ -1,6 +1,7 @@
 //! A camera ready to project, and what an object's own frame looks like from it. Filling is in `canvas.rs`.
 
 use crate::camera::{Axes, Camera};
+use crate::scene::Item;
 use crate::vector::{add, dot, scaled, sub};
 
 /// Nearest distance at which anything is drawn, in metres.
@@ -40,6 +41,23 @@ pub(crate) struct Pose {
     pub(crate) position: [f32; 3],
     pub(crate) heading_deg: f32,
     pub(crate) scale: f32,
+}
+
+impl Pose {
+    /// That of what is given in the world's own frame.
+    pub(crate) const WORLD: Self = Self {
+        position: [0.0; 3],
+        heading_deg: 0.0,
+        scale: 1.0,
+    };
+
+    pub(crate) fn of(item: &Item) -> Self {
+        Self {
+            position: [item.position[0], item.position[1], 0.0],
+            heading_deg: item.heading_deg,
+            scale: item.scale,
+        }
+    }
 }
 
 impl View {

@@ -13,7 +13,7 @@ use super::pushing::is_pushed;
 use super::state::Came;
 use crate::EnvError;
 use crate::assets::Catalogue;
-use crate::render::{CpuRenderer, Frame};
+use crate::render::{Frame, Renderer, RendererKind};
 use crate::scene::Scene;
 
 /// A world that runs: reset, step, look.
@@ -41,7 +41,7 @@ pub struct Environment {
     /// The objects' tags, for events.
     pub(super) tags: Vec<Option<Arc<str>>>,
     pub(super) scratch: Scratch,
-    pub(super) renderer: CpuRenderer,
+    pub(super) renderer: Renderer,
     pub(super) frame: Frame,
 }
 
@@ -74,7 +74,27 @@ impl Environment {
     )]
     pub fn with_catalogue(world: World, catalogue: Catalogue) -> Result<Self, EnvError> {
         let frame = Frame::new(0, 0);
-        Ok(Self::build(Arc::new(world), &catalogue, CpuRenderer::new(), frame))
+        Ok(Self::build(Arc::new(world), &catalogue, Renderer::default(), frame))
+    }
+
+    /// A world at its start, drawn by a renderer of this kind.
+    ///
+    /// # Errors
+    /// As [`Environment::new`]; [`EnvError::NoGpu`] if a graphics card is asked for and none works.
+    pub fn with_renderer(world: World, kind: RendererKind) -> Result<Self, EnvError> {
+        let mut environment = Self::new(world)?;
+        environment.set_renderer(Renderer::new(kind)?);
+        Ok(environment)
+    }
+
+    /// What draws this world's pictures.
+    pub fn renderer(&self) -> &Renderer {
+        &self.renderer
+    }
+
+    /// Lets another renderer draw from now on.
+    pub fn set_renderer(&mut self, renderer: Renderer) {
+        self.renderer = renderer;
     }
 
     /// Leaves this world for another, or for the same from its start; buffers for pictures are kept.
@@ -96,7 +116,7 @@ impl Environment {
         *self = Self::build(world, catalogue, std::mem::take(&mut self.renderer), frame);
     }
 
-    fn build(mut world: Arc<World>, catalogue: &Catalogue, renderer: CpuRenderer, frame: Frame) -> Self {
+    fn build(mut world: Arc<World>, catalogue: &Catalogue, renderer: Renderer, frame: Frame) -> Self {
         // A world that was written down while it ran is taken back to its start, and then told how far it had come.
         let came = world.progress.is_some().then(|| Came::out_of(&mut world));
         let scene = Scene::from_world_with(&world, catalogue);

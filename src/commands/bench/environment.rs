@@ -66,6 +66,7 @@ fn batch(world: &World, num_envs: usize, num_threads: usize) -> Result<Batch, Fa
     let options = BatchOptions {
         autoreset: Autoreset::NextStep,
         num_threads,
+        ..BatchOptions::default()
     };
     Ok(Batch::new(num_envs, Arc::new(move |_| Ok(world.clone())), options)?)
 }

@@ -1,0 +1,119 @@
+//! Finding graphics cards: which there are, in which order they are tried, and why one cannot be used. Opening one is in
+//! `device.rs`.
+
+use crate::EnvError;
+
+use super::device::{Clipping, Device};
+
+/// Which adapters a renderer may be made on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum GpuChoice {
+    /// Any, graphics cards first; software that stands in for one, such as Mesa's llvmpipe, last.
+    #[default]
+    Any,
+    /// Graphics cards alone.
+    Hardware,
+}
+
+/// All adapters of this machine, the most able first, and what the graphics interfaces say if there is none.
+pub(super) fn all() -> Result<Vec<wgpu::Adapter>, String> {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = wgpu::Backends::PRIMARY;
+    // No debug layers: they are not part of what is drawn, and slow.
+    descriptor.flags = wgpu::InstanceFlags::empty();
+    let instance = wgpu::Instance::new(descriptor);
+    let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    adapters.sort_by_key(|adapter| rank(adapter.get_info().device_type));
+    if adapters.is_empty() {
+        let options = wgpu::RequestAdapterOptions::default();
+        let said = pollster::block_on(instance.request_adapter(&options));
+        return Err(said.map_or_else(|error| shortened(&error.to_string()), |_| "no adapter".to_owned()));
+    }
+    Ok(adapters)
+}
+
+/// What wgpu says of a machine without adapters, but for the interfaces that this system or this build does not have.
+fn shortened(said: &str) -> String {
+    let (what, why) = said.split_once("; ").unwrap_or((said, ""));
+    let idle = |part: &&str| part.ends_with("not compiled in") || part.ends_with("not requested");
+    let why: Vec<&str> = why.split(", ").filter(|part| !part.is_empty() && !idle(part)).collect();
+    if why.is_empty() {
+        return said.to_owned();
+    }
+    format!("{}: {}", what.to_lowercase(), why.join(", "))
+}
+
+/// Opens the first adapter on which `prove` succeeds.
+///
+/// # Errors
+/// [`EnvError::NoGpu`], with what was tried.
+pub(super) fn first<T>(choice: GpuChoice, prove: impl Fn(Device) -> Result<T, EnvError>) -> Result<T, EnvError> {
+    let adapters = all().map_err(|reason| EnvError::NoGpu { tried: vec![reason] })?;
+    let mut tried = Vec::new();
+    for adapter in adapters {
+        let info = adapter.get_info();
+        let outcome = if choice == GpuChoice::Hardware && is_software(&info) {
+            Err("is software".to_owned())
+        } else {
+            Device::open(&adapter, Clipping::IfPossible)
+                .and_then(|device| prove(device).map_err(|error| error.to_string()))
+        };
+        match outcome {
+            Ok(proven) => return Ok(proven),
+            Err(reason) => tried.push(format!("{} ({}): {reason}", info.name, info.backend)),
+        }
+    }
+    Err(EnvError::NoGpu { tried })
+}
+
+pub(super) fn is_software(info: &wgpu::AdapterInfo) -> bool {
+    info.device_type == wgpu::DeviceType::Cpu
+}
+
+fn rank(kind: wgpu::DeviceType) -> u8 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}
+
+/// The kind of an adapter in words.
+pub(super) fn kind_name(info: &wgpu::AdapterInfo) -> &'static str {
+    match info.device_type {
+        wgpu::DeviceType::DiscreteGpu => "discrete graphics card",
+        wgpu::DeviceType::IntegratedGpu => "integrated graphics",
+        wgpu::DeviceType::VirtualGpu => "virtual graphics card",
+        wgpu::DeviceType::Other => "of unknown kind",
+        wgpu::DeviceType::Cpu => "software",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_interfaces_that_could_be_used_are_blamed() {
+        for (said, expected) in [
+            (
+                "No suitable adapter found; noop not requested, vulkan drivers could not be loaded, metal support not compiled in",
+                "no suitable adapter found: vulkan drivers could not be loaded",
+            ),
+            ("Nothing; gl not requested", "Nothing; gl not requested"),
+            ("Nothing", "Nothing"),
+        ] {
+            assert_eq!(shortened(said), expected);
+        }
+    }
+
+    #[test]
+    fn software_comes_last() {
+        use wgpu::DeviceType::{Cpu, DiscreteGpu, IntegratedGpu, Other, VirtualGpu};
+        let mut kinds = [Cpu, Other, VirtualGpu, DiscreteGpu, IntegratedGpu];
+        kinds.sort_by_key(|kind| rank(*kind));
+        assert_eq!(kinds, [DiscreteGpu, IntegratedGpu, VirtualGpu, Other, Cpu]);
+    }
+}

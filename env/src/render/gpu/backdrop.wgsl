@@ -1,0 +1,107 @@
+// What lies behind all objects: sky, ground and the arena's walls by formula, after backdrop.rs and compose.rs. A tile is one
+// rectangle. What a picture's pixels share comes along with it, for software that stands in for a card loads a number for a
+// whole triangle far faster than one for each pixel; a rectangle for each row, so that rows need no second reckoning, was ten
+// times slower there.
+
+struct Whole {
+    @builtin(position) position: vec4f,
+    // The middle in pixels of the atlas; metres per pixel at 1 m; the camera's height.
+    @location(0) @interpolate(flat, either) middle_step_height: vec4f,
+    @location(1) @interpolate(flat, either) place_right: vec4f,
+    @location(2) @interpolate(flat, either) forward_up: vec4f,
+    // How much rays rise: ahead, and for each metre up; metres up to the walls' upper edge; 1 where there are walls.
+    @location(3) @interpolate(flat, either) rise_walls: vec4f,
+    @location(4) @interpolate(flat, either) wall_base: vec4f,
+    @location(5) @interpolate(flat, either) wall_right: vec4f,
+    @location(6) @interpolate(flat, either) wall_up: vec4f,
+    @location(7) @interpolate(flat, either) wall_inks: vec4u,
+    // The ground's colour; squares that a pixel covers per square metre of distance.
+    @location(8) @interpolate(flat, either) ground_blur: vec4f,
+    // The sky's; how far the outermost column is from the middle at 1 m.
+    @location(9) @interpolate(flat, either) zenith_width: vec4f,
+    @location(10) @interpolate(flat, either) horizon: vec3f,
+    @location(11) @interpolate(flat, either) number: u32,
+}
+
+struct Behind {
+    @location(0) word: u32,
+    @location(1) item: u32,
+    @builtin(frag_depth) depth: f32,
+}
+
+@vertex
+fn backdrop_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) number: u32) -> Whole {
+    let tile = tiles[number];
+    let right = select(0.0, 1.0, vertex == 2u || vertex == 3u || vertex == 5u);
+    let below = select(0.0, 1.0, vertex == 1u || vertex == 4u || vertex == 5u);
+    let corner = tile.place.xy + vec2f(right, below) * tile.place.zw;
+    let step = tile.forward_step.w;
+    let height = tile.right_height.w;
+
+    var whole: Whole;
+    whole.position = vec4f(corner.x * atlas.scale.x - 1.0, 1.0 - corner.y * atlas.scale.y, 0.0, 1.0);
+    whole.middle_step_height = vec4f(tile.place.xy + tile.place.zw / 2.0, step, height);
+    whole.place_right = vec4f(tile.position_walls.xy, tile.right_height.xy);
+    whole.forward_up = vec4f(tile.forward_step.xy, tile.up_above.xy);
+    whole.rise_walls = vec4f(tile.forward_step.z, tile.up_above.z, tile.up_above.w, tile.position_walls.w);
+    whole.wall_base = tile.wall_base;
+    whole.wall_right = tile.wall_right;
+    whole.wall_up = tile.wall_up;
+    whole.wall_inks = tile.wall_inks;
+    whole.ground_blur = vec4f(tile.ground.xyz, step / (height * SQUARE));
+    whole.zenith_width = vec4f(tile.zenith.xyz, abs((0.5 - tile.place.z / 2.0) * step));
+    whole.horizon = tile.horizon.xyz;
+    whole.number = number;
+    return whole;
+}
+
+fn sky(whole: Whole, rise: f32) -> vec3f {
+    let slope = max(rise, 0.0);
+    let steepness = slope / sqrt(slope * slope + 1.0);
+    let left = 1.0 - steepness;
+    let share = 1.0 - left * (left * left);
+    return share * (whole.zenith_width.xyz - whole.horizon) + whole.horizon;
+}
+
+// The ground's colour where a ray meets it, at 1 / this distance, so far to the right and up at 1 m.
+fn ground(whole: Whole, inverse: f32, offset: vec2f) -> vec3f {
+    let metres = 1.0 / max(inverse, 1e-6);
+    let blur = metres * metres * whole.ground_blur.w;
+    let change = max(vec2f(1.0) - blur * FADING, vec2f(0.0)) * CONTRAST;
+    let ahead = whole.forward_up.xy + offset.y * whole.forward_up.zw;
+    let place = (whole.place_right.xy + ahead * metres) / SQUARE;
+    let across = whole.place_right.zw * metres / SQUARE;
+    let furthest = abs(place) + abs(across) * whole.zenith_width.w;
+    let squares = vec2u((place + SHIFT) + across * offset.x);
+    let is_seen = max(furthest.x, furthest.y) < MOST_SQUARES;
+    let both = select(0u, squares.x ^ squares.y, is_seen);
+    let fine = select(1.0 + change.x, 1.0 - change.x, (both & 1u) != 0u);
+    let share = select(fine + change.y, fine - change.y, (both & 8u) != 0u);
+    return share * whole.ground_blur.xyz;
+}
+
+@fragment
+fn backdrop_fragment(whole: Whole) -> Behind {
+    let away = whole.position.xy - whole.middle_step_height.xy;
+    let offset = vec2f(away.x, -away.y) * whole.middle_step_height.z;
+    let rise = offset.y * whole.rise_walls.y + whole.rise_walls.x;
+    let is_ground = rise < 0.0;
+    var inverse = max(-rise, 0.0) / whole.middle_step_height.w;
+    let levels = select(sky(whole, rise), ground(whole, inverse, offset), is_ground);
+    var word = ink(levels, select(SKY, MAP, is_ground));
+
+    let walls = (whole.wall_base + offset.y * whole.wall_up) + whole.wall_right * offset.x;
+    let nearest = max(max(walls.x, walls.y), max(walls.z, walls.w));
+    let edge = max(rise, 0.0) / whole.rise_walls.z;
+    if whole.rise_walls.w > 0.0 && nearest >= edge && nearest > inverse {
+        inverse = nearest;
+        // The first of the nearest.
+        word = select(whole.wall_inks.w, whole.wall_inks.z, walls.z == nearest);
+        word = select(word, whole.wall_inks.y, walls.y == nearest);
+        word = select(word, whole.wall_inks.x, walls.x == nearest);
+    }
+    if FOG {
+        word = in_fog(word, inverse, whole.number);
+    }
+    return Behind(word, 0u, min(inverse * NEAR, 1.0));
+}

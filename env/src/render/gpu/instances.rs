@@ -1,0 +1,157 @@
+//! What of one scene is drawn into one tile: an instance for each object in sight, and for each triangle of walls that are not
+//! drawn by formula. The triangles of objects are kept in `library.rs`.
+
+use std::sync::Arc;
+
+use super::super::compose::{CATEGORY_BITS, Walls};
+use super::super::cpu::category;
+use super::super::frame::CATEGORY_MAP;
+use super::super::shade::Shader;
+use super::super::sight::{InSight, What, find, level};
+use super::super::view::{Placement, Pose, View};
+use super::tile::{self, TileWords};
+use crate::assets::{Asset, BLOCK, Block};
+use crate::camera::Camera;
+use crate::scene::{Item, PanelGroup, Scene};
+
+/// Words of an instance: the size of `Instance` in `objects.wgsl`.
+pub(super) const WORDS: usize = 22;
+
+/// The word of an instance that holds the number of its tile.
+const TILE: usize = 19;
+
+/// One instance, in the order of `Instance` in `objects.wgsl`.
+pub(super) type InstanceWords = [u32; WORDS];
+
+/// What an instance is one of.
+#[derive(Clone, Debug)]
+pub(super) enum Shape {
+    /// The triangle whose corners the instance holds itself.
+    Triangle,
+    /// An asset, and which of its levels: the address of the level's coats, which lasts as long as the asset.
+    Asset(Arc<Asset>, usize),
+}
+
+/// What is drawn into one tile. Kept from pass to pass.
+#[derive(Debug, Default)]
+pub(super) struct TileContents {
+    pub(super) tile: TileWords,
+    pub(super) instances: Vec<InstanceWords>,
+    /// One for each instance.
+    pub(super) shapes: Vec<Shape>,
+    sights: Vec<InSight>,
+}
+
+impl TileContents {
+    /// Finds what a camera sees of a scene in a picture of this size. Where the tile will lie is not known yet: see
+    /// [`TileContents::place`].
+    pub(super) fn gather(&mut self, scene: &Scene, camera: &Camera, size: [u32; 2], labels: Labels) {
+        let view = View::new(camera, size[0] as usize, size[1] as usize);
+        let shader = Shader::new(&scene.light);
+        let walls = Walls::around(scene, &view, &shader);
+        self.tile = tile::words(scene, &view, &shader, walls.as_ref(), [0, 0]);
+        self.instances.clear();
+        self.shapes.clear();
+        let mut sights = std::mem::take(&mut self.sights);
+        find(scene, &view, walls.is_some(), &mut sights);
+        for &sight in &sights {
+            match sight.what {
+                What::Item(index) => self.add_item(&scene.items[index as usize], index, sight, &view, scene, labels),
+                What::Panels(index) => self.add_panels(&scene.panels()[index as usize], &view, scene),
+            }
+        }
+        self.sights = sights;
+    }
+
+    /// Puts the tile where it will be drawn: its number in the pass, and its left upper corner in the atlas.
+    pub(super) fn place(&mut self, number: u32, corner: [u32; 2]) {
+        self.tile[0][0] = (corner[0] as f32).to_bits();
+        self.tile[0][1] = (corner[1] as f32).to_bits();
+        for instance in &mut self.instances {
+            instance[TILE] = number;
+        }
+    }
+
+    fn add_item(&mut self, item: &Item, index: u32, sight: InSight, view: &View, scene: &Scene, labels: Labels) {
+        let at = view.placement(&Pose::of(item), scene.light.direction);
+        let class = match labels {
+            Labels::WithClass => u32::from(item.class_id) << CATEGORY_BITS,
+            Labels::CategoryOnly => 0,
+        };
+        let label = (class | u32::from(category(item))) << 24;
+        let color = item.color.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
+        let coats = level(item, sight, view);
+        self.instances.push(instance(&at, at.sun, color, [label, index + 1]));
+        self.shapes
+            .push(Shape::Asset(Arc::clone(&item.asset), coats.as_ptr().addr()));
+    }
+
+    fn add_panels(&mut self, group: &PanelGroup, view: &View, scene: &Scene) {
+        let at = view.placement(&Pose::WORLD, scene.light.direction);
+        let [r, g, b] = group.color;
+        let label = u32::from(CATEGORY_MAP) << 24;
+        for (block, lane) in group.blocks.iter().flat_map(triangles) {
+            let normal = normal(block, lane);
+            let lit = (0..3).map(|axis| normal[axis] * at.sun[axis]).sum();
+            let of_corners = corners_as_rows(&at, corners(block, lane));
+            self.instances
+                .push(instance(&of_corners, [lit, 0.0, 0.0], [r, g, b, 1.0], [label, 0]));
+            self.shapes.push(Shape::Triangle);
+        }
+    }
+}
+
+/// What the highest byte of a pixel's word holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Labels {
+    /// The category alone: the class follows from the item.
+    CategoryOnly,
+    /// Class and category.
+    WithClass,
+}
+
+/// The lanes of a block that hold a triangle.
+pub(super) fn triangles(block: &Block) -> impl Iterator<Item = (&Block, usize)> {
+    let real = |lane: &usize| normal(block, *lane) != [0.0; 3];
+    (0..BLOCK).filter(real).map(move |lane| (block, lane))
+}
+
+pub(super) fn normal(block: &Block, lane: usize) -> [f32; 3] {
+    block.normal.map(|row| row[lane])
+}
+
+pub(super) fn corners(block: &Block, lane: usize) -> [[f32; 3]; 3] {
+    [0, 3, 6].map(|first| [0, 1, 2].map(|axis| block.corners[first + axis][lane]))
+}
+
+/// The way of a triangle's corners to the screen, as rows for corners (1, 0, 0), (0, 1, 0) and (0, 0, 1): neighbours then share
+/// their edges to the bit.
+fn corners_as_rows(at: &Placement, corners: [[f32; 3]; 3]) -> Placement {
+    let row = |row: &[f32; 4]| {
+        let [a, b, c] = corners.map(|[x, y, z]| x * row[0] + (y * row[1] + (z * row[2] + row[3])));
+        [a, b, c, 0.0]
+    };
+    Placement {
+        column: row(&at.column),
+        row: row(&at.row),
+        depth: row(&at.depth),
+        ..*at
+    }
+}
+
+/// The words of an instance; the tile's number comes later.
+fn instance(at: &Placement, sun: [f32; 3], color: [f32; 4], [label, item]: [u32; 2]) -> InstanceWords {
+    let mut words = [0; WORDS];
+    let numbers = at
+        .column
+        .iter()
+        .chain(&at.row)
+        .chain(&at.depth)
+        .chain(&sun)
+        .chain(&color);
+    for (word, number) in words.iter_mut().zip(numbers) {
+        *word = number.to_bits();
+    }
+    words[TILE..].copy_from_slice(&[0, label, item]);
+    words
+}

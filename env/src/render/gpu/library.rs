@@ -1,0 +1,160 @@
+//! The triangles of every asset that was drawn so far, on the graphics card, and where each begins. What is drawn in a picture
+//! is found in `instances.rs`.
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::device::Device;
+use super::instances::{Shape, corners, normal, triangles};
+use crate::assets::{Asset, Coat, Paint};
+
+/// Numbers of a vertex: place, normal, colour, and whether the object's own colour takes its place.
+pub(super) const VERTEX_LENGTH: usize = 10;
+
+/// More vertices than this are forgotten, so that no stream of ever new assets fills the memory: 160 MiB.
+const MOST_VERTICES: usize = 1 << 22;
+
+/// Where an asset's triangles are among all vertices.
+pub(super) type Mesh = Range<u32>;
+
+/// All meshes, the triangle of [`Shape::Triangle`] first.
+#[derive(Debug)]
+pub(super) struct Library {
+    meshes: Vec<Mesh>,
+    /// Numbers of meshes by the address of their coats.
+    known: HashMap<usize, u32>,
+    /// Keeps the addresses from being used anew.
+    assets: Vec<Arc<Asset>>,
+    vertices: Vec<f32>,
+    buffer: Option<wgpu::Buffer>,
+    /// How many of the vertices are in the buffer.
+    uploaded: usize,
+}
+
+impl Library {
+    pub(super) fn new() -> Self {
+        let mut library = Self {
+            meshes: Vec::new(),
+            known: HashMap::new(),
+            assets: Vec::new(),
+            vertices: Vec::new(),
+            buffer: None,
+            uploaded: 0,
+        };
+        library.forget();
+        library
+    }
+
+    /// How many meshes there are.
+    pub(super) fn num_meshes(&self) -> usize {
+        self.meshes.len()
+    }
+
+    pub(super) fn mesh(&self, number: u32) -> Mesh {
+        self.meshes[number as usize].clone()
+    }
+
+    /// Forgets all assets if there are too many; numbers of meshes from before are void then.
+    pub(super) fn make_room(&mut self) {
+        if self.vertices.len() / VERTEX_LENGTH > MOST_VERTICES {
+            self.forget();
+        }
+    }
+
+    fn forget(&mut self) {
+        self.meshes.clear();
+        self.known.clear();
+        self.assets.clear();
+        self.vertices.clear();
+        self.buffer = None;
+        self.uploaded = 0;
+        for corner in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+            self.vertices.extend(corner);
+            // An upright face that takes its instance's colour.
+            self.vertices.extend([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        }
+        self.meshes.push(0..3);
+    }
+
+    /// The number of a shape's mesh; what is new is put down.
+    pub(super) fn number(&mut self, shape: &Shape) -> u32 {
+        let Shape::Asset(asset, address) = shape else { return 0 };
+        if let Some(&number) = self.known.get(address) {
+            return number;
+        }
+        let number = self.meshes.len() as u32;
+        let first = self.num_vertices();
+        let level = asset.coats_of_levels().find(|coats| coats.as_ptr().addr() == *address);
+        for coat in level.unwrap_or_default() {
+            self.add(coat);
+        }
+        self.meshes.push(first..self.num_vertices());
+        self.known.insert(*address, number);
+        self.assets.push(Arc::clone(asset));
+        number
+    }
+
+    fn num_vertices(&self) -> u32 {
+        (self.vertices.len() / VERTEX_LENGTH) as u32
+    }
+
+    fn add(&mut self, coat: &Coat) {
+        let ([r, g, b], is_main) = match coat.paint {
+            Paint::Main(own) => (own, 1.0),
+            Paint::Fixed(color) => (color, 0.0),
+        };
+        for (block, lane) in coat.blocks.iter().flat_map(triangles) {
+            for corner in corners(block, lane) {
+                self.vertices.extend(corner);
+                self.vertices.extend(normal(block, lane));
+                self.vertices.extend([r, g, b, is_main]);
+            }
+        }
+    }
+
+    /// The vertices on the card; what is new goes there first.
+    pub(super) fn upload(&mut self, device: &Device) -> &wgpu::Buffer {
+        let length = self.vertices.len();
+        let bytes = bytemuck::cast_slice(&self.vertices);
+        if self.uploaded < length
+            && let Some(buffer) = &self.buffer
+            && buffer.size() >= bytes.len() as u64
+        {
+            let from = self.uploaded * size_of::<f32>();
+            device.queue.write_buffer(buffer, from as u64, &bytes[from..]);
+            self.uploaded = length;
+        }
+        if self.uploaded < length {
+            self.buffer = None;
+        }
+        self.uploaded = length;
+        self.buffer.get_or_insert_with(|| {
+            let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
+            // Room for as many again, so that the next few assets need no other buffer.
+            let buffer = device.buffer("vertices", 2 * bytes.len() as u64, usage);
+            device.queue.write_buffer(&buffer, 0, bytes);
+            buffer
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assets::asset;
+    use driftworld_spec::Model;
+
+    #[test]
+    fn an_asset_is_put_down_once_with_all_its_triangles() {
+        let mut library = Library::new();
+        let asset = asset("tree", &Model::default());
+        let coats = asset.level(0.0);
+        let shape = Shape::Asset(Arc::clone(&asset), coats.as_ptr().addr());
+        let number = library.number(&shape);
+        assert_eq!((number, library.number(&shape), library.num_meshes()), (1, 1, 2));
+        let triangles: usize = asset.parts.iter().map(|part| part.mesh.triangles.len()).sum();
+        assert_eq!(library.mesh(number), 3..3 + 3 * triangles as u32);
+        assert_eq!(library.number(&Shape::Triangle), 0);
+    }
+}

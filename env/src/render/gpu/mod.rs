@@ -1,0 +1,337 @@
+//! [`GpuRenderer`]: the same pictures drawn by a graphics card, many at once. How one pass is drawn is in `pass.rs`; who decides
+//! for this renderer or the processor's is `renderer.rs`.
+//!
+//! The pictures of a batch are tiles of one large target. All objects of one mesh, whichever tile they are in, are drawn
+//! together, cut at the edges of their tiles; one buffer brings all images back.
+
+mod adapter;
+mod atlas;
+mod device;
+mod instances;
+mod library;
+mod pass;
+mod pipelines;
+mod survey;
+mod tile;
+mod unpack;
+
+use rayon::prelude::*;
+
+pub use adapter::GpuChoice;
+pub(super) use survey::survey;
+
+use self::atlas::{Grid, Planes};
+use self::device::Device;
+use self::instances::{Labels, TileContents};
+use self::pass::{Pass, Stage, most_in_a_pass};
+use super::compose::CATEGORY_BITS;
+use super::cpu::average;
+use super::frame::Frame;
+use super::picture::Picture;
+use super::target::Target;
+use crate::EnvError;
+use crate::camera::Camera;
+use crate::scene::Scene;
+
+/// Draws scenes on a graphics card. Keeps its buffers from picture to picture.
+///
+/// Pictures are those of [`CpuRenderer`](super::CpuRenderer) but for single pixels at edges: each adapter rounds a little
+/// differently. One renderer draws one batch at a time, on the thread that asks and with rayon's threads beside it.
+#[derive(Debug)]
+pub struct GpuRenderer {
+    device: Device,
+    stage: Stage,
+    contents: Vec<TileContents>,
+}
+
+/// One picture to draw, or its colours alone at several points per pixel.
+#[derive(Clone, Copy, Debug)]
+struct Job {
+    picture: usize,
+    size: [u32; 2],
+    planes: Planes,
+    labels: Labels,
+    /// Points per pixel along each side.
+    samples: u32,
+}
+
+impl GpuRenderer {
+    /// A renderer on the first adapter that draws a small picture.
+    ///
+    /// # Errors
+    /// [`EnvError::NoGpu`], with what was tried and why it failed.
+    pub fn new(choice: GpuChoice) -> Result<Self, EnvError> {
+        adapter::first(choice, Self::proven)
+    }
+
+    /// A renderer on this device, after it has drawn a small picture.
+    fn proven(device: Device) -> Result<Self, EnvError> {
+        let stage = Stage::new(&device);
+        device.check()?;
+        let mut renderer = Self {
+            device,
+            stage,
+            contents: Vec::new(),
+        };
+        let scene = Scene::from_world(&driftworld_spec::World::default());
+        renderer.render(&scene, &Camera::overview(&scene), &mut Frame::new(16, 16))?;
+        Ok(renderer)
+    }
+
+    /// The adapter's name, as its driver gives it.
+    pub fn adapter_name(&self) -> &str {
+        &self.device.info.name
+    }
+
+    /// The graphics interface in use: `vulkan`, `metal` or `dx12`.
+    pub fn backend(&self) -> &'static str {
+        self.device.info.backend.to_str()
+    }
+
+    /// Whether the adapter is software that stands in for a graphics card.
+    pub fn is_software(&self) -> bool {
+        adapter::is_software(&self.device.info)
+    }
+
+    /// Draws all images of a frame.
+    ///
+    /// # Errors
+    /// As [`GpuRenderer::draw_batch`].
+    pub fn render(&mut self, scene: &Scene, camera: &Camera, frame: &mut Frame) -> Result<(), EnvError> {
+        if frame.width == 0 || frame.height == 0 {
+            return Ok(());
+        }
+        self.draw_batch(&mut [Picture {
+            scene,
+            camera: *camera,
+            target: frame.target(),
+        }])
+    }
+
+    /// Draws the images that the target asks for.
+    ///
+    /// # Errors
+    /// As [`GpuRenderer::draw_batch`].
+    pub fn draw(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) -> Result<(), EnvError> {
+        self.draw_batch(&mut [Picture {
+            scene,
+            camera: *camera,
+            target: target.reborrow(),
+        }])
+    }
+
+    /// Draws many pictures, those of one size together.
+    ///
+    /// # Errors
+    /// [`EnvError::PictureSize`] as for [`CpuRenderer::draw`](super::CpuRenderer::draw), and [`EnvError::GpuPicture`] for pictures
+    /// that this adapter cannot hold, before anything is drawn; [`EnvError::Gpu`] when the device fails: some images may be old then.
+    pub fn draw_batch(&mut self, pictures: &mut [Picture<'_>]) -> Result<(), EnvError> {
+        let mut jobs = Vec::with_capacity(pictures.len());
+        for (index, picture) in pictures.iter().enumerate() {
+            picture.target.check()?;
+            jobs.extend(jobs_for(index, picture));
+        }
+        let most = self.device.limits.max_texture_dimension_2d;
+        for job in &jobs {
+            let single = Grid::new(job.size, 1, most);
+            let room = self.device.limits.max_buffer_size;
+            if single.is_none_or(|grid| atlas::bytes_back(grid, job.planes) > room) {
+                let adapter = self.device.info.name.clone();
+                return Err(EnvError::GpuPicture {
+                    width: job.size[0],
+                    height: job.size[1],
+                    most,
+                    adapter,
+                });
+            }
+        }
+        jobs.sort_by_key(|job| (job.size, job.planes));
+        let [most_tiles, _] = most_in_a_pass(&self.device.limits);
+        for alike in jobs.chunk_by(|a, b| (a.size, a.planes) == (b.size, b.planes)) {
+            let mut rest = alike;
+            while let Some(first) = rest.first() {
+                let grid = Grid::new(first.size, rest.len(), most);
+                let count = grid.map_or(1, Grid::capacity).min(rest.len()).min(most_tiles);
+                let (now, later) = rest.split_at(count);
+                self.draw_pass(now, pictures)?;
+                rest = later;
+            }
+        }
+        Ok(())
+    }
+
+    /// Draws jobs that are alike and fit into one pass; or in halves, if they hold too many objects.
+    fn draw_pass(&mut self, jobs: &[Job], pictures: &mut [Picture<'_>]) -> Result<(), EnvError> {
+        let mut contents = std::mem::take(&mut self.contents);
+        if contents.len() < jobs.len() {
+            contents.resize_with(jobs.len(), TileContents::default);
+        }
+        let seen: &[Picture<'_>] = pictures;
+        let together = contents[..jobs.len()].par_iter_mut().zip(jobs).with_min_len(8);
+        together.for_each(|(content, job)| {
+            let picture = &seen[job.picture];
+            content.gather(picture.scene, &picture.camera, job.size, job.labels);
+        });
+        let count: usize = contents[..jobs.len()]
+            .iter()
+            .map(|content| content.instances.len())
+            .sum();
+        let [_, most] = most_in_a_pass(&self.device.limits);
+        let outcome = if count <= most {
+            self.draw_gathered(jobs, pictures, &mut contents[..jobs.len()])
+        } else if jobs.len() > 1 {
+            let (low, high) = jobs.split_at(jobs.len() / 2);
+            self.draw_pass(low, pictures)
+                .and_then(|()| self.draw_pass(high, pictures))
+        } else {
+            let reason = format!("found {count} objects in sight, expected at most {most}");
+            Err(self.device.failed(reason))
+        };
+        self.contents = contents;
+        outcome
+    }
+
+    fn draw_gathered(
+        &mut self,
+        jobs: &[Job],
+        pictures: &mut [Picture<'_>],
+        contents: &mut [TileContents],
+    ) -> Result<(), EnvError> {
+        let Some(first) = jobs.first() else { return Ok(()) };
+        let most = self.device.limits.max_texture_dimension_2d;
+        let Some(grid) = Grid::new(first.size, jobs.len(), most) else {
+            return Ok(());
+        };
+        let fog = jobs
+            .iter()
+            .any(|job| pictures[job.picture].scene.light.fog_distance.is_some());
+        let pass = Pass {
+            grid,
+            planes: first.planes,
+            fog,
+            contents,
+        };
+        self.stage.run(&self.device, pass, |bytes, layout| {
+            // Jobs of a pass are for different pictures, in their order.
+            let mut tiles = jobs.iter().enumerate().peekable();
+            let work: Vec<_> = pictures
+                .iter_mut()
+                .enumerate()
+                .filter_map(|(index, picture)| Some((tiles.next_if(|(_, job)| job.picture == index)?, picture)))
+                .collect();
+            work.into_par_iter()
+                .with_min_len(4)
+                .for_each(|((number, job), picture)| {
+                    let (scene, target, corner) = (picture.scene, &mut picture.target, grid.corner(number));
+                    if job.samples == 1 {
+                        unpack::unpack(bytes, layout, corner, scene, job.labels, target);
+                    } else if let Some(rgb) = &mut target.rgb {
+                        let mut points = vec![0; 3 * job.size[0] as usize * job.size[1] as usize];
+                        let mut fine = Target {
+                            width: job.size[0],
+                            height: job.size[1],
+                            rgb: Some(&mut points),
+                            ..Target::default()
+                        };
+                        unpack::unpack(bytes, layout, corner, scene, job.labels, &mut fine);
+                        average(&points, rgb, target.width as usize, job.samples as usize);
+                    }
+                });
+        })
+    }
+}
+
+/// What must be drawn for a picture: everything at once, or colours apart if they are the mean of several points.
+fn jobs_for(index: usize, picture: &Picture<'_>) -> impl Iterator<Item = Job> + use<> {
+    let target = &picture.target;
+    let fits = picture.scene.num_classes() < 1 << (8 - CATEGORY_BITS);
+    let labels = if fits { Labels::WithClass } else { Labels::CategoryOnly };
+    let sampled = target.supersampling > 1 && target.rgb.is_some();
+    let labelled = target.category.is_some() || (fits && target.class.is_some());
+    let plain = Job {
+        picture: index,
+        size: [target.width, target.height],
+        planes: Planes {
+            words: labelled || (target.rgb.is_some() && !sampled),
+            depth: target.depth.is_some(),
+            items: target.instance.is_some() || (!fits && target.class.is_some()),
+        },
+        labels,
+        samples: 1,
+    };
+    let fine = Job {
+        size: plain.size.map(|pixels| pixels * target.supersampling),
+        planes: Planes {
+            words: true,
+            depth: false,
+            items: false,
+        },
+        samples: target.supersampling,
+        ..plain
+    };
+    let is_wanted = plain.planes.words || plain.planes.depth || plain.planes.items;
+    [is_wanted.then_some(plain), sampled.then_some(fine)]
+        .into_iter()
+        .flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::device::Clipping;
+    use super::*;
+
+    /// A renderer on each adapter of this machine; none where there is none.
+    fn each(clipping: Clipping) -> Vec<GpuRenderer> {
+        let adapters = adapter::all().unwrap_or_default();
+        let open = |adapter: &wgpu::Adapter| Device::open(adapter, clipping).map(GpuRenderer::proven);
+        adapters.iter().filter_map(|adapter| open(adapter).ok()?.ok()).collect()
+    }
+
+    fn several(renderer: &mut GpuRenderer) -> Result<Vec<Frame>, EnvError> {
+        let world = driftworld_spec::World {
+            objects: vec![driftworld_spec::Object::new("tree", [1.0, 4.0]); 3],
+            ..Default::default()
+        };
+        let scene = Scene::from_world(&world);
+        let mut frames = vec![Frame::new(40, 30); 5];
+        let mut pictures: Vec<_> = (0..)
+            .zip(&mut frames)
+            .map(|(k, frame)| Picture {
+                scene: &scene,
+                camera: Camera::first_person([0.0, 0.0], 20.0 * k as f32 - 30.0, 1.0, 60.0),
+                target: frame.target(),
+            })
+            .collect();
+        renderer.draw_batch(&mut pictures)?;
+        drop(pictures);
+        Ok(frames)
+    }
+
+    #[test]
+    fn an_adapter_that_cannot_clip_draws_tile_by_tile_to_the_same_end() {
+        let together = each(Clipping::IfPossible).into_iter();
+        for (mut clips, mut does_not) in together.zip(each(Clipping::Never)) {
+            assert!(!does_not.device.has_clip_distances);
+            let pairs = several(&mut clips)
+                .expect("it draws")
+                .into_iter()
+                .zip(several(&mut does_not).expect("it draws"));
+            for (a, b) in pairs {
+                let differing = a.instance.iter().zip(&b.instance).filter(|(a, b)| a != b).count();
+                assert!(differing <= 2, "{differing} of 1200 pixels");
+                assert!(a.instance.iter().all(|item| *item <= 3));
+            }
+        }
+    }
+
+    #[test]
+    fn a_lost_device_is_an_error_and_no_panic() {
+        for mut renderer in each(Clipping::IfPossible) {
+            renderer.device.card.destroy();
+            for _ in 0..2 {
+                let error = several(&mut renderer).expect_err("there is no device any more");
+                assert_eq!(error.code(), "env/gpu", "{error}");
+            }
+        }
+    }
+}

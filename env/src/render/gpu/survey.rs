@@ -1,0 +1,59 @@
+//! Trying every adapter of this machine, for a report. What it is compared with is the processor's picture.
+
+use super::super::cpu::CpuRenderer;
+use super::super::frame::Frame;
+use super::super::report::AdapterReport;
+use super::device::{Clipping, Device};
+use super::{GpuRenderer, adapter};
+use crate::camera::Camera;
+use crate::scene::Scene;
+use driftworld_spec::{Object, World};
+
+/// Side of the picture that is drawn as a proof, in pixels.
+const SIDE: u32 = 64;
+
+/// Share of pixels that must be as the processor draws them, but for a little.
+const ALIKE: f64 = 0.98;
+
+/// Every adapter with what becomes of a small picture on it; or why there is none.
+pub(in super::super) fn survey() -> Result<Vec<AdapterReport>, String> {
+    Ok(adapter::all()?.iter().map(report).collect())
+}
+
+fn report(adapter: &wgpu::Adapter) -> AdapterReport {
+    let info = adapter.get_info();
+    AdapterReport {
+        name: info.name.clone(),
+        backend: info.backend.to_str().to_owned(),
+        kind: adapter::kind_name(&info).to_owned(),
+        driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+        is_software: adapter::is_software(&info),
+        problem: prove(adapter).err(),
+    }
+}
+
+/// Draws a small picture and looks whether it is the right one.
+fn prove(adapter: &wgpu::Adapter) -> Result<(), String> {
+    let device = Device::open(adapter, Clipping::IfPossible)?;
+    let mut renderer = GpuRenderer::proven(device).map_err(|error| error.to_string())?;
+    let world = World {
+        objects: vec![Object::new("tree", [0.0, 8.0]), Object::new("cube", [2.0, 5.0])],
+        ..World::default()
+    };
+    let scene = Scene::from_world(&world);
+    let camera = Camera::first_person([0.0, 0.0], 0.0, 1.0, 60.0);
+    let (mut drawn, mut expected) = (Frame::new(SIDE, SIDE), Frame::new(SIDE, SIDE));
+    renderer
+        .render(&scene, &camera, &mut drawn)
+        .map_err(|error| error.to_string())?;
+    CpuRenderer::new().render(&scene, &camera, &mut expected);
+    let pairs = drawn.rgb.iter().zip(&expected.rgb);
+    let alike = pairs.filter(|(a, b)| a.abs_diff(**b) <= 3).count() as f64 / drawn.rgb.len() as f64;
+    if alike < ALIKE {
+        return Err(format!(
+            "draws another picture: {:.1} % of it is as it should be",
+            100.0 * alike
+        ));
+    }
+    Ok(())
+}

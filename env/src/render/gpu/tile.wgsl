@@ -1,0 +1,60 @@
+// What every shader shares: the pictures of a pass, and how colours become bytes. Written after shade.rs and compose.rs;
+// the constants come from there.
+
+// One picture of a pass, as `tile.rs` writes it. Angles and metres are those of view.rs.
+struct Tile {
+    // Its left upper corner in the atlas, then its width and height, all in pixels.
+    place: vec4f,
+    // The camera's axes. With them: metres per pixel at 1 m; the camera's height; metres up to the walls' upper edge.
+    forward_step: vec4f,
+    right_height: vec4f,
+    up_above: vec4f,
+    // Where the camera is, and 1 where the arena's walls are drawn by formula.
+    position_walls: vec4f,
+    wall_base: vec4f,
+    wall_right: vec4f,
+    wall_up: vec4f,
+    wall_inks: vec4u,
+    // Levels 0 to 255 and above.
+    ground: vec4f,
+    zenith: vec4f,
+    horizon: vec4f,
+    // The light's colour, and the share of it that comes from everywhere.
+    tint_ambient: vec4f,
+    // Colour of fog, and the distance at which half of what is seen is fog; 0 where there is none.
+    fog: vec4f,
+}
+
+struct Atlas {
+    // From pixels to clip space: 2 / width and 2 / height.
+    scale: vec2f,
+}
+
+// What a fragment may write: bytes of colour and label; the item's number.
+struct Pixel {
+    @location(0) word: u32,
+    @location(1) item: u32,
+}
+
+@group(0) @binding(0) var<storage, read> tiles: array<Tile>;
+@group(0) @binding(1) var<uniform> atlas: Atlas;
+
+// Whether any tile of the pass has fog.
+override FOG: bool = false;
+
+fn ink(levels: vec3f, label: u32) -> u32 {
+    let bytes = vec3u(min(levels + 0.5, vec3f(255.0)));
+    return (label << 24u) | (bytes.z << 16u) | (bytes.y << 8u) | bytes.x;
+}
+
+// A word's colours turned into the fog's with distance; the sky stays.
+fn in_fog(word: u32, inverse: f32, tile: u32) -> u32 {
+    let fog = tiles[tile].fog;
+    if fog.w <= 0.0 || inverse <= 0.0 {
+        return word;
+    }
+    let reach = inverse * fog.w;
+    let share = 1.0 / (reach * reach + 1.0);
+    let levels = vec3f(vec3u(word & 255u, (word >> 8u) & 255u, (word >> 16u) & 255u));
+    return ink(levels + (fog.xyz - levels) * share, word >> 24u);
+}

@@ -1,0 +1,148 @@
+//! [`Renderer`]: the processor's renderer or the graphics card's, whichever was chosen. How each draws is its own.
+
+use super::cpu::CpuRenderer;
+use super::frame::Frame;
+#[cfg(feature = "gpu")]
+use super::gpu::{GpuChoice, GpuRenderer};
+use super::kind::RendererKind;
+use super::picture::Picture;
+#[cfg(not(feature = "gpu"))]
+use super::report::NO_FEATURE;
+use super::target::Target;
+use crate::EnvError;
+use crate::camera::Camera;
+use crate::scene::Scene;
+
+/// Draws scenes, on the processor or on a graphics card.
+#[derive(Debug, Default)]
+pub struct Renderer(Inner);
+
+#[derive(Debug)]
+enum Inner {
+    Cpu(Box<CpuRenderer>),
+    #[cfg(feature = "gpu")]
+    Gpu(Box<GpuRenderer>),
+}
+
+impl Default for Inner {
+    fn default() -> Self {
+        Self::Cpu(Box::default())
+    }
+}
+
+impl Renderer {
+    /// A renderer of this kind.
+    ///
+    /// # Errors
+    /// [`EnvError::NoGpu`] if a graphics card is asked for and none works, or this build cannot use any.
+    pub fn new(kind: RendererKind) -> Result<Self, EnvError> {
+        match kind {
+            RendererKind::Cpu => Ok(Self::default()),
+            RendererKind::Gpu => Self::on_any_gpu(),
+            RendererKind::Auto => Ok(Self::automatic()),
+        }
+    }
+
+    #[cfg(feature = "gpu")]
+    fn on_any_gpu() -> Result<Self, EnvError> {
+        let renderer = GpuRenderer::new(GpuChoice::Any)?;
+        Ok(Self(Inner::Gpu(Box::new(renderer))))
+    }
+
+    #[cfg(not(feature = "gpu"))]
+    fn on_any_gpu() -> Result<Self, EnvError> {
+        let tried = vec![NO_FEATURE.to_owned()];
+        Err(EnvError::NoGpu { tried })
+    }
+
+    #[cfg(feature = "gpu")]
+    fn automatic() -> Self {
+        GpuRenderer::new(GpuChoice::Hardware).map_or_else(|_| Self::default(), |gpu| Self(Inner::Gpu(Box::new(gpu))))
+    }
+
+    #[cfg(not(feature = "gpu"))]
+    fn automatic() -> Self {
+        Self::default()
+    }
+
+    /// What it became: never [`RendererKind::Auto`].
+    pub fn kind(&self) -> RendererKind {
+        match &self.0 {
+            Inner::Cpu(_) => RendererKind::Cpu,
+            #[cfg(feature = "gpu")]
+            Inner::Gpu(_) => RendererKind::Gpu,
+        }
+    }
+
+    /// What it draws with, in words: the instruction set, or the adapter and its graphics interface.
+    pub fn device(&self) -> String {
+        match &self.0 {
+            Inner::Cpu(renderer) => format!("processor ({})", renderer.instruction_set()),
+            #[cfg(feature = "gpu")]
+            Inner::Gpu(renderer) => format!("{} ({})", renderer.adapter_name(), renderer.backend()),
+        }
+    }
+
+    /// Draws all images of a frame.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw_batch`].
+    pub fn render(&mut self, scene: &Scene, camera: &Camera, frame: &mut Frame) -> Result<(), EnvError> {
+        match &mut self.0 {
+            Inner::Cpu(renderer) => {
+                renderer.render(scene, camera, frame);
+                Ok(())
+            }
+            #[cfg(feature = "gpu")]
+            Inner::Gpu(renderer) => renderer.render(scene, camera, frame),
+        }
+    }
+
+    /// Draws the images that the target asks for.
+    ///
+    /// # Errors
+    /// As [`Renderer::draw_batch`].
+    pub fn draw(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) -> Result<(), EnvError> {
+        match &mut self.0 {
+            Inner::Cpu(renderer) => renderer.draw(scene, camera, target),
+            #[cfg(feature = "gpu")]
+            Inner::Gpu(renderer) => renderer.draw(scene, camera, target),
+        }
+    }
+
+    /// Draws many pictures; a graphics card draws those of one size together.
+    ///
+    /// # Errors
+    /// [`EnvError::PictureSize`] for sizes that cannot be; on a graphics card also [`EnvError::GpuPicture`] for pictures that it
+    /// cannot hold, and [`EnvError::Gpu`] when it fails. Some images may be old then.
+    pub fn draw_batch(&mut self, pictures: &mut [Picture<'_>]) -> Result<(), EnvError> {
+        match &mut self.0 {
+            Inner::Cpu(renderer) => pictures
+                .iter_mut()
+                .try_for_each(|picture| renderer.draw(picture.scene, &picture.camera, &mut picture.target)),
+            #[cfg(feature = "gpu")]
+            Inner::Gpu(renderer) => renderer.draw_batch(pictures),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_processor_is_always_there() {
+        let renderer = Renderer::new(RendererKind::Cpu).expect("a processor");
+        assert_eq!(renderer.kind(), RendererKind::Cpu);
+        assert!(renderer.device().starts_with("processor ("));
+        let automatic = Renderer::new(RendererKind::Auto).expect("at least the processor");
+        assert_ne!(automatic.kind(), RendererKind::Auto);
+    }
+
+    #[cfg(not(feature = "gpu"))]
+    #[test]
+    fn without_the_feature_the_error_says_how_to_build_it() {
+        let error = Renderer::new(RendererKind::Gpu).expect_err("not in this build");
+        assert!(error.to_string().contains("--features gpu"), "{error}");
+    }
+}

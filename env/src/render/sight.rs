@@ -1,0 +1,91 @@
+//! What of a scene may be in a picture, and how closely it is looked at. How it is drawn is each renderer's.
+
+use super::view::{NEAR, View};
+use crate::assets::Coat;
+use crate::scene::{ARENA_WALLS, Item, Scene};
+
+/// Largest error of a simplified mesh that is drawn, in pixels.
+const TOLERANCE: f32 = 0.5;
+
+/// Something that may be in the picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct InSight {
+    /// Depth of its nearest point in metres.
+    pub(super) nearest: f32,
+    /// Depth of its middle.
+    middle: f32,
+    pub(super) what: What,
+}
+
+/// Which item of a scene, or which group of its panels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum What {
+    Item(u32),
+    Panels(u32),
+}
+
+/// Finds what may be seen, in the scene's order; the arena's own walls only if they are not drawn by formula.
+pub(super) fn find(scene: &Scene, view: &View, walls_are_drawn: bool, found: &mut Vec<InSight>) {
+    found.clear();
+    let mut note = |middle: [f32; 3], radius: f32, what: What| {
+        let middle = view.view_from_world(middle);
+        if view.sees(middle, radius) {
+            found.push(InSight {
+                nearest: middle[2] - radius,
+                middle: middle[2],
+                what,
+            });
+        }
+    };
+    for (index, item) in scene.items.iter().enumerate() {
+        if item.visible {
+            let [x, y] = item.position;
+            let half = item.asset.height * item.scale / 2.0;
+            note(
+                [x, y, half],
+                item.asset.ball_radius() * item.scale,
+                What::Item(index as u32),
+            );
+        }
+    }
+    for (index, group) in scene.panels().iter().enumerate() {
+        if index >= ARENA_WALLS || !walls_are_drawn {
+            note(group.middle, group.radius, What::Panels(index as u32));
+        }
+    }
+}
+
+/// Puts what may be seen in order, near to far: what is behind is then mostly hidden when it comes.
+pub(super) fn sort(found: &mut [InSight]) {
+    found.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.what.cmp(&b.what)));
+}
+
+/// The mesh of an item that is fine enough for how near it is.
+pub(super) fn level<'a>(item: &'a Item, sight: InSight, view: &View) -> &'a [Coat] {
+    let pixels_per_metre = view.scale * item.scale / sight.middle.max(NEAR);
+    item.asset.level(TOLERANCE / pixels_per_metre)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Camera;
+    use driftworld_spec::{Object, World};
+
+    #[test]
+    fn what_is_ahead_comes_near_to_far_and_what_is_behind_not_at_all() {
+        let objects = [[0.0, 30.0], [0.0, -10.0], [0.0, 10.0]].map(|place| Object::new("cube", place));
+        let scene = Scene::from_world(&World {
+            objects: objects.to_vec(),
+            ..World::default()
+        });
+        let view = View::new(&Camera::first_person([0.0, 0.0], 0.0, 1.0, 60.0), 84, 84);
+        let mut found = Vec::new();
+        find(&scene, &view, true, &mut found);
+        sort(&mut found);
+        let order: Vec<What> = found.iter().map(|sight| sight.what).collect();
+        assert_eq!(order, [What::Item(2), What::Item(0)]);
+        find(&scene, &view, false, &mut found);
+        assert!(found.len() > 2, "the arena's walls, as panels");
+    }
+}

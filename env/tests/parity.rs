@@ -1,0 +1,352 @@
+//! The graphics card draws what the processor draws: colours, depths and labels of the same scenes, pixel by pixel.
+//!
+//! A pixel may differ at an edge: the card snaps corners to a grid within the pixel, the processor does not. Where there is no
+//! adapter the tests say that they are skipped; with `DRIFTWORLD_REQUIRE_GPU=1` they fail there.
+#![cfg(feature = "gpu")]
+
+use std::path::Path;
+use std::sync::Arc;
+
+use driftworld_env::{
+    Action, Autoreset, Batch, BatchOptions, Camera, CpuRenderer, EnvError, Environment, Episode, Frame, GpuChoice,
+    GpuRenderer, Images, Picture, RendererKind, RendererReport, Scene, Target,
+};
+use driftworld_spec::{Color, Modality, Object, Wall, World};
+
+/// A renderer on this machine's adapter, if there is one.
+fn gpu() -> Option<GpuRenderer> {
+    match GpuRenderer::new(GpuChoice::Any) {
+        Ok(renderer) => Some(renderer),
+        Err(error) if std::env::var_os("DRIFTWORLD_REQUIRE_GPU").is_some_and(|value| value == "1") => {
+            panic!("DRIFTWORLD_REQUIRE_GPU=1: {error}")
+        }
+        Err(error) => {
+            #[expect(clippy::print_stdout, reason = "a skip must be seen")]
+            {
+                println!("skipped: {error}");
+            }
+            None
+        }
+    }
+}
+
+fn world(file: &str) -> World {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(file);
+    let text = std::fs::read_to_string(&path).expect("the file is part of the repository");
+    World::from_json(file, &text).expect("it holds a world")
+}
+
+/// Worlds of all kinds: many objects, walls that are not the arena's, fog, dusk, more classes than fit into a label.
+fn worlds() -> Vec<(String, World)> {
+    let files = [
+        "env/benches/scenes/arena_8.json",
+        "env/benches/scenes/arena_20.json",
+        "generator/tests/golden/find_objects-huddle-7-1.json",
+        "generator/tests/golden/find_objects-red-7-0.json",
+        "generator/tests/golden/get_to_goal-hazards-7-2.json",
+    ];
+    let mut worlds: Vec<_> = files.map(|file| (file.to_owned(), world(file))).into();
+    let mut foggy = world(files[1]);
+    foggy.environment_params.fog_distance = Some(50.0);
+    foggy.environment_params.light_intensity = 0.6;
+    foggy.environment_params.walls = [-12.0, 3.0, 14.0]
+        .map(|x| Wall {
+            polygon: vec![[x, -4.0], [x + 6.0, 2.0], [x + 5.0, 3.0], [x - 1.0, -3.0]],
+            height: Some(1.5),
+            color: Some(Color([0.7, 0.3, 0.2])),
+        })
+        .to_vec();
+    worlds.push(("fog, dusk, walls".to_owned(), foggy));
+    let mut zoo = World::default();
+    let classes: Vec<_> = driftworld_env::classes().map(|(class, _)| class.to_owned()).collect();
+    let made_up = (0..40).map(|number| format!("thing{number}"));
+    for (k, class) in classes.into_iter().chain(made_up).enumerate() {
+        let angle = k as f64 * 0.7;
+        let away = 4.0 + k as f64 * 0.3;
+        let mut object = Object::new(&class, [away * angle.sin(), away * angle.cos()]);
+        object.heading = 37.0 * k as f64;
+        object.scale = 2.0;
+        zoo.objects.push(object);
+    }
+    worlds.push(("every class".to_owned(), zoo));
+    worlds
+}
+
+/// What agents see from several places, something askew, and the arena from outside.
+fn cameras(world: &World, scene: &Scene) -> Vec<Camera> {
+    let agent = &world.agent_params;
+    let start = agent.coordinates.map(|metres| metres as f32);
+    let eye = |position, heading| {
+        let height = agent.agent_height as f32;
+        Camera::first_person(position, heading, height, agent.field_of_view as f32)
+    };
+    let mut cameras: Vec<_> = [0.0, 90.0, 180.0, 270.0]
+        .map(|turn| eye(start, agent.heading as f32 + turn))
+        .into();
+    let [x, y] = scene.arena_size().map(|side| side / 2.0 - 1.0);
+    cameras.push(eye([x, y], 225.0));
+    cameras.push(eye([-x, y * 0.3], 80.0));
+    cameras.push(Camera {
+        pitch_deg: -25.0,
+        field_of_view_deg: 100.0,
+        ..eye([start[0], start[1] - 3.0], 33.0)
+    });
+    cameras.push(Camera::overview(scene));
+    cameras
+}
+
+/// How much of two pictures is alike.
+#[derive(Debug)]
+struct Likeness {
+    colors: f64,
+    classes: f64,
+    instances: f64,
+    categories: f64,
+    depths: f64,
+}
+
+fn share(count: usize, of: usize) -> f64 {
+    if of == 0 { 1.0 } else { count as f64 / of as f64 }
+}
+
+fn likeness(found: &Frame, expected: &Frame) -> Likeness {
+    let pixels = expected.depth.len();
+    let same = |alike: &dyn Fn(usize) -> bool| share((0..pixels).filter(|&pixel| alike(pixel)).count(), pixels);
+    let smooth: Vec<usize> = (0..pixels).filter(|&pixel| !is_silhouette(expected, pixel)).collect();
+    let near = |&&pixel: &&usize| (found.depth[pixel] - expected.depth[pixel]).abs() <= 0.01 * expected.depth[pixel];
+    Likeness {
+        colors: same(&|pixel| (3 * pixel..3 * pixel + 3).all(|byte| found.rgb[byte].abs_diff(expected.rgb[byte]) <= 3)),
+        classes: same(&|pixel| found.class[pixel] == expected.class[pixel]),
+        instances: same(&|pixel| found.instance[pixel] == expected.instance[pixel]),
+        categories: same(&|pixel| found.category[pixel] == expected.category[pixel]),
+        depths: share(smooth.iter().filter(near).count(), smooth.len()),
+    }
+}
+
+/// Whether depth changes by more than 3 % between a pixel and one beside it.
+fn is_silhouette(frame: &Frame, pixel: usize) -> bool {
+    let (width, height) = (frame.width as usize, frame.height as usize);
+    let (x, y) = (pixel % width, pixel / width);
+    let depth = frame.depth[pixel];
+    let around = |at: usize, most: usize| at.saturating_sub(1)..=(at + 1).min(most - 1);
+    around(y, height).any(|y| {
+        around(x, width).any(|x| {
+            let other = frame.depth[y * width + x];
+            (other - depth).abs() > 0.03 * depth.min(other)
+        })
+    })
+}
+
+/// Writes a picture, the other, and where they differ, beside each other: for looking at after a failure.
+fn write_difference(name: &str, found: &Frame, expected: &Frame) -> std::path::PathBuf {
+    let (width, height) = (expected.width as usize, expected.height as usize);
+    let mut rgb = Vec::with_capacity(9 * width * height);
+    for y in 0..height {
+        let row = 3 * width * y..3 * width * (y + 1);
+        rgb.extend(&found.rgb[row.clone()]);
+        rgb.extend(&expected.rgb[row.clone()]);
+        rgb.extend(row.map(|byte| found.rgb[byte].abs_diff(expected.rgb[byte]).saturating_mul(20)));
+    }
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}.png"));
+    let file = std::fs::File::create(&path).expect("cargo made the folder");
+    let mut encoder = png::Encoder::new(file, 3 * width as u32, height as u32);
+    encoder.set_color(png::ColorType::Rgb);
+    let mut writer = encoder.write_header().expect("a header");
+    writer.write_image_data(&rgb).expect("as many pixels as said");
+    path
+}
+
+fn check_likeness(size: u32) {
+    let Some(mut gpu) = gpu() else { return };
+    let mut cpu = CpuRenderer::new();
+    let mut failures = Vec::new();
+    for (k, (name, world)) in worlds().iter().enumerate() {
+        let scene = Scene::from_world(world);
+        for (c, camera) in cameras(world, &scene).iter().enumerate() {
+            let (mut found, mut expected) = (Frame::new(size, size), Frame::new(size, size));
+            gpu.render(&scene, camera, &mut found).expect("the adapter draws");
+            cpu.render(&scene, camera, &mut expected);
+            let like = likeness(&found, &expected);
+            let is_good = like.colors >= 0.99
+                && like.classes >= 0.995
+                && like.instances >= 0.995
+                && like.categories >= 0.995
+                && like.depths >= 0.999;
+            if !is_good {
+                let path = write_difference(&format!("parity-{size}-{k}-{c}"), &found, &expected);
+                failures.push(format!("{name}, camera {c}: {like:?}; see {}", path.display()));
+            }
+        }
+    }
+    assert!(
+        failures.is_empty(),
+        "at {size} pixels on {}:\n{}",
+        gpu.adapter_name(),
+        failures.join("\n")
+    );
+}
+
+#[test]
+fn pictures_of_84_pixels_are_alike() {
+    check_likeness(84);
+}
+
+#[test]
+fn pictures_of_256_pixels_are_alike() {
+    check_likeness(256);
+}
+
+/// A batch on the graphics card, after so many steps.
+fn stepped(autoreset: Autoreset, num_threads: usize, renderer: RendererKind) -> Batch {
+    let world = world("generator/tests/golden/find_objects-huddle-7-1.json");
+    let source = Arc::new(move |episode: Episode| {
+        let mut world = world.clone();
+        world.max_steps = 3 + episode.env as u32;
+        world.agent_params.heading = 60.0 * (episode.env as f64 + episode.index as f64);
+        world.agent_params.observation_size = 48;
+        world.agent_params.supersampling = 2;
+        world.agent_params.modalities = vec![
+            Modality::Rgb,
+            Modality::Depth,
+            Modality::Segmentation,
+            Modality::Class,
+            Modality::Instance,
+        ];
+        Ok(world)
+    });
+    let options = BatchOptions {
+        autoreset,
+        num_threads,
+        renderer,
+    };
+    let mut batch = Batch::new(6, source, options).expect("the worlds are sound");
+    for _ in 0..5 {
+        let actions = [Action::Continuous([3.0, 9.0, 0.0]); 6];
+        batch.step(&actions).expect("the actions are sound");
+    }
+    batch
+}
+
+/// Share of values that are alike.
+fn alike<T: Copy>(found: &[T], expected: &[T], near: impl Fn(T, T) -> bool) -> f64 {
+    assert_eq!(found.len(), expected.len());
+    share(
+        found.iter().zip(expected).filter(|(a, b)| near(**a, **b)).count(),
+        found.len(),
+    )
+}
+
+fn check_images(found: &Images, expected: &Images) {
+    let all = [
+        alike(&found.rgb, &expected.rgb, |a, b| a.abs_diff(b) <= 3),
+        alike(&found.depth, &expected.depth, |a, b| (a - b).abs() <= 0.01 * b),
+        alike(&found.category, &expected.category, |a, b| a == b),
+        alike(&found.class, &expected.class, |a, b| a == b),
+        alike(&found.instance, &expected.instance, |a, b| a == b),
+    ];
+    assert!(all.iter().all(|share| *share >= 0.995), "{all:?}");
+}
+
+#[test]
+fn a_batch_on_the_card_is_as_one_on_the_processor() {
+    let Some(_) = gpu() else { return };
+    for autoreset in [Autoreset::NextStep, Autoreset::SameStep] {
+        for num_threads in [1, 2] {
+            let found = stepped(autoreset, num_threads, RendererKind::Gpu);
+            let expected = stepped(autoreset, num_threads, RendererKind::Cpu);
+            assert_eq!(
+                (found.renderer(), expected.renderer()),
+                (RendererKind::Gpu, RendererKind::Cpu)
+            );
+            let (out, wanted) = (found.outputs(), expected.outputs());
+            assert_eq!((&out.rewards, &out.states), (&wanted.rewards, &wanted.states));
+            assert_eq!(
+                (&out.terminated, &out.truncated),
+                (&wanted.terminated, &wanted.truncated)
+            );
+            check_images(&out.images, &wanted.images);
+            if let (Some(out), Some(wanted)) = (found.final_outputs(), expected.final_outputs()) {
+                // What ended in step 5: a limit of 5 steps, or a second episode.
+                assert_eq!((&out.truncated, &out.states), (&wanted.truncated, &wanted.states));
+                check_images(&out.images, &wanted.images);
+            }
+        }
+    }
+}
+
+#[test]
+fn pictures_drawn_together_are_those_drawn_alone() {
+    let Some(mut gpu) = gpu() else { return };
+    let world = world("env/benches/scenes/arena_20.json");
+    let scene = Scene::from_world(&world);
+    let cameras = cameras(&world, &scene);
+    // Of two sizes, so that they need two passes.
+    let size = |k: usize| if k.is_multiple_of(3) { 60 } else { 84 };
+    let mut together: Vec<Frame> = (0..cameras.len()).map(|k| Frame::new(size(k), size(k))).collect();
+    let pictures = together.iter_mut().zip(&cameras);
+    let mut pictures: Vec<_> = pictures
+        .map(|(frame, camera)| Picture {
+            scene: &scene,
+            camera: *camera,
+            target: frame.target(),
+        })
+        .collect();
+    gpu.draw_batch(&mut pictures).expect("the adapter draws");
+    for (k, (frame, camera)) in together.iter().zip(&cameras).enumerate() {
+        let mut alone = Frame::new(size(k), size(k));
+        gpu.render(&scene, camera, &mut alone).expect("the adapter draws");
+        // A corner on the edge of a pixel may fall to either side, depending on where in the target the picture lies.
+        let like = likeness(frame, &alone);
+        assert!(like.colors >= 0.999 && like.instances >= 0.999, "picture {k}: {like:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_drawn_is_an_error() {
+    let Some(mut gpu) = gpu() else { return };
+    let scene = Scene::from_world(&World::default());
+    let camera = Camera::overview(&scene);
+    let mut short = vec![0; 5];
+    let mut target = Target {
+        width: 4,
+        height: 4,
+        rgb: Some(&mut short),
+        ..Target::default()
+    };
+    let error = gpu.draw(&scene, &camera, &mut target).expect_err("too short");
+    assert_eq!(error, EnvError::PictureSize { width: 4, height: 4 });
+    // And it goes on drawing.
+    gpu.render(&scene, &camera, &mut Frame::new(1, 300))
+        .expect("an odd size");
+    gpu.render(&scene, &camera, &mut Frame::new(0, 0))
+        .expect("nothing to do");
+    gpu.draw_batch(&mut []).expect("nothing to do");
+}
+
+#[test]
+fn an_environment_draws_with_the_card_that_was_asked_for() {
+    let Some(gpu) = gpu() else { return };
+    let world = world("env/benches/scenes/arena_8.json");
+    let mut environment = Environment::with_renderer(world, RendererKind::Gpu).expect("there is an adapter");
+    assert!(environment.renderer().device().starts_with(gpu.adapter_name()));
+    let found = environment.observe().clone();
+    let mut expected = Frame::new(found.width, found.height);
+    CpuRenderer::new().render(environment.scene(), &environment.camera(), &mut expected);
+    assert!(likeness(&found, &expected).colors >= 0.99);
+    let report = RendererReport::make();
+    let here = report
+        .adapters
+        .iter()
+        .find(|adapter| adapter.name == gpu.adapter_name());
+    let here = here.expect("the report names it");
+    assert_eq!((&here.problem, here.is_software), (&None, gpu.is_software()));
+    let takes_it = report
+        .adapters
+        .iter()
+        .any(|adapter| !adapter.is_software && adapter.problem.is_none());
+    assert_eq!(
+        report.auto == RendererKind::Gpu,
+        takes_it,
+        "auto takes cards, never software"
+    );
+}

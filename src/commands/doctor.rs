@@ -1,0 +1,213 @@
+//! `driftworld doctor`: what this machine can draw with, and what is missing. Each renderer is tried by `env`; the hints on what
+//! to install are here.
+
+use std::path::Path;
+
+use clap::Args;
+use driftworld::env::{AdapterReport, RendererKind, RendererReport};
+use serde_json::{Value, json};
+
+use super::{Failure, output};
+
+/// Say which renderers work on this machine, and what is missing for the others.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld doctor
+  driftworld doctor --json")]
+pub(crate) struct Doctor {
+    /// Print the report as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Doctor {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let report = RendererReport::make();
+        let missing = missing(&report);
+        if self.json {
+            return output::json(&as_json(&report, &missing));
+        }
+        output::print(&as_text(&report, &missing))
+    }
+}
+
+/// What to do so that there is a graphics card to draw with; empty if there is one, or software in its place.
+fn missing(report: &RendererReport) -> Vec<String> {
+    let Some(reason) = &report.no_adapter else {
+        return Vec::new();
+    };
+    let mut missing = vec![reason.clone()];
+    if report.has_gpu_feature && cfg!(target_os = "linux") {
+        for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
+            if let Some(files) = std::env::var_os(name) {
+                let files = files.display().to_string();
+                missing.push(format!("{name} is set to {files:?}: only those drivers are looked for"));
+            }
+        }
+        missing.extend(vulkan_hints(
+            &LOADER_FOLDERS.map(Path::new),
+            &DRIVER_FOLDERS.map(Path::new),
+        ));
+    }
+    missing
+}
+
+/// Where Linux keeps the Vulkan loader.
+const LOADER_FOLDERS: [&str; 6] = [
+    "/usr/lib/x86_64-linux-gnu",
+    "/usr/lib/aarch64-linux-gnu",
+    "/usr/lib64",
+    "/usr/lib",
+    "/lib64",
+    "/usr/local/lib",
+];
+
+/// Where drivers tell the loader that they are there.
+const DRIVER_FOLDERS: [&str; 3] = [
+    "/usr/share/vulkan/icd.d",
+    "/etc/vulkan/icd.d",
+    "/usr/local/share/vulkan/icd.d",
+];
+
+/// What the folders say about why Vulkan has no adapter.
+fn vulkan_hints(loaders: &[&Path], drivers: &[&Path]) -> Vec<String> {
+    let mut hints = Vec::new();
+    if !loaders.iter().any(|folder| folder.join("libvulkan.so.1").exists()) {
+        hints.push(
+            "the Vulkan loader (libvulkan.so.1) is in none of the usual folders: on Debian and Ubuntu, apt-get install libvulkan1"
+                .to_owned(),
+        );
+    }
+    let holds_driver = |folder: &&Path| {
+        let mut files = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        files.any(|file| file.path().extension().is_some_and(|end| end == "json"))
+    };
+    if !drivers.iter().any(holds_driver) {
+        hints.push(
+            "no Vulkan driver is announced (a .json file in /usr/share/vulkan/icd.d or /etc/vulkan/icd.d): install your card's \
+             driver, or software in its place with apt-get install mesa-vulkan-drivers"
+                .to_owned(),
+        );
+    }
+    hints
+}
+
+fn as_text(report: &RendererReport, missing: &[String]) -> String {
+    let mut lines = vec![format!("cpu   works: processor ({})", report.instruction_set)];
+    for adapter in &report.adapters {
+        lines.push(format!("gpu   {}", adapter_line(adapter)));
+    }
+    for text in missing {
+        lines.push(format!("gpu   missing: {text}"));
+    }
+    let why = match (report.auto, report.adapters.is_empty()) {
+        (RendererKind::Gpu, _) => "a graphics card that works",
+        (_, true) => "there is no graphics adapter",
+        (_, false) => "no graphics card works, and software in its place is slower than the processor's own renderer",
+    };
+    lines.push(format!("auto  takes {}: {why}", report.auto));
+    lines.join("\n") + "\n"
+}
+
+fn adapter_line(adapter: &AdapterReport) -> String {
+    let outcome = match &adapter.problem {
+        None => "works".to_owned(),
+        Some(problem) => format!("does not work: {problem}"),
+    };
+    let AdapterReport {
+        name,
+        backend,
+        kind,
+        driver,
+        ..
+    } = adapter;
+    format!("{outcome}: {name} ({backend}; {kind}; driver {driver})")
+}
+
+fn as_json(report: &RendererReport, missing: &[String]) -> Value {
+    let adapter = |adapter: &AdapterReport| {
+        json!({
+            "name": adapter.name,
+            "backend": adapter.backend,
+            "kind": adapter.kind,
+            "driver": adapter.driver,
+            "is_software": adapter.is_software,
+            "works": adapter.problem.is_none(),
+            "problem": adapter.problem,
+        })
+    };
+    json!({
+        "cpu": { "works": true, "instruction_set": report.instruction_set },
+        "gpu": {
+            "in_this_build": report.has_gpu_feature,
+            "adapters": report.adapters.iter().map(adapter).collect::<Vec<_>>(),
+            "missing": missing,
+        },
+        "auto": report.auto.name(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report(is_software: bool, problem: Option<&str>) -> RendererReport {
+        RendererReport {
+            instruction_set: "avx2",
+            has_gpu_feature: true,
+            adapters: vec![AdapterReport {
+                name: "Card 1".to_owned(),
+                backend: "vulkan".to_owned(),
+                kind: "discrete graphics card".to_owned(),
+                driver: "Driver 2".to_owned(),
+                is_software,
+                problem: problem.map(str::to_owned),
+            }],
+            no_adapter: None,
+            auto: if is_software || problem.is_some() {
+                RendererKind::Cpu
+            } else {
+                RendererKind::Gpu
+            },
+        }
+    }
+
+    #[track_caller]
+    fn check(report: &RendererReport, expected: &[&str]) {
+        let text = as_text(report, &missing(report));
+        for part in expected {
+            assert!(text.contains(part), "{part:?} in:\n{text}");
+        }
+    }
+
+    #[test]
+    fn the_report_names_each_adapter_and_what_auto_takes() {
+        check(
+            &report(false, None),
+            &[
+                "cpu   works: processor (avx2)",
+                "gpu   works: Card 1 (vulkan; discrete graphics card; driver Driver 2)",
+                "auto  takes gpu",
+            ],
+        );
+        check(&report(true, None), &["auto  takes cpu: no graphics card works"]);
+        check(
+            &report(false, Some("is lost")),
+            &["gpu   does not work: is lost: Card 1", "auto  takes cpu"],
+        );
+    }
+
+    #[test]
+    fn a_machine_without_vulkan_is_told_what_to_install() {
+        let empty = tempfile::tempdir().expect("a folder");
+        let hints = vulkan_hints(&[empty.path()], &[empty.path()]);
+        assert!(
+            hints[0].contains("libvulkan1") && hints[1].contains("mesa-vulkan-drivers"),
+            "{hints:?}"
+        );
+        for file in ["libvulkan.so.1", "card.json"] {
+            std::fs::write(empty.path().join(file), "").expect("a file");
+        }
+        assert!(vulkan_hints(&[empty.path()], &[empty.path()]).is_empty());
+    }
+}
