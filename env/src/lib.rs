@@ -9,6 +9,7 @@ mod assets;
 mod batch;
 mod camera;
 mod error;
+mod photograph;
 mod render;
 mod scene;
 mod sim;
@@ -19,6 +20,7 @@ pub use assets::{Asset, ColliderShape, Mesh, Paint, Part, asset, classes};
 pub use batch::{Autoreset, Batch, BatchOptions, Episode, ImageLayout, Images, MAX_ENVS, Outputs, WorldSource};
 pub use camera::Camera;
 pub use error::EnvError;
+pub use photograph::{MAX_PHOTOGRAPHS, Photograph, Studio};
 pub use render::{
     CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, CpuRenderer,
     FAR_DEPTH, Frame, Image, Target, category_color, depth_to_gray, top_down,

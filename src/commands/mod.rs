@@ -9,6 +9,7 @@ mod input;
 mod metrics;
 mod order;
 mod output;
+mod photograph;
 mod pictures;
 mod render;
 mod run;
@@ -41,6 +42,8 @@ pub(crate) enum Command {
     Convert(convert::Convert),
     /// Draw what an agent sees of a world, and the world from above.
     Render(render::Render),
+    /// Photograph every object of a world from around and above.
+    Photograph(photograph::Photograph),
     /// Measure how far apart two variants or two worlds are.
     Distance(distance::Distance),
     /// Put variants into an order by their distances.
@@ -68,6 +71,7 @@ impl Command {
             Self::Vary(command) => command.run(),
             Self::Convert(command) => command.run(),
             Self::Render(command) => command.run(),
+            Self::Photograph(command) => command.run(),
             Self::Distance(command) => command.run(),
             Self::Order(command) => command.run(),
             Self::Curriculum(command) => command.run(),

@@ -142,7 +142,7 @@ impl Environment {
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if self.world.game_mode == GameMode::CollectImages {
-            warnings.push(Warning::NoImageCollection);
+            warnings.push(Warning::ForPhotographs);
         }
         for (index, (object, item)) in self.world.objects.iter().zip(&self.scene.items).enumerate() {
             if !item.asset.known {

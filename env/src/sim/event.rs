@@ -56,8 +56,8 @@ pub enum Warning {
         /// Index of the object.
         object: usize,
     },
-    /// The world is for taking pictures of its objects, and runs as if it were for learning.
-    NoImageCollection,
+    /// The world is for photographs of its objects ([`Studio`](crate::Studio)); stepped, it runs as if it were for learning.
+    ForPhotographs,
 }
 
 impl std::fmt::Display for Warning {
@@ -75,9 +75,9 @@ impl std::fmt::Display for Warning {
                     "/objects/{object}/motion_model: found no speed, or a patrol without waypoints; it stands still"
                 )
             }
-            Self::NoImageCollection => {
-                f.write_str("/game_mode: collect_images is not there yet; the world runs as learn")
-            }
+            Self::ForPhotographs => f.write_str(
+                "/game_mode: collect_images is for `driftworld photograph`; stepped, the world runs as learn",
+            ),
         }
     }
 }
