@@ -8,6 +8,7 @@ mod agents;
 mod assets;
 mod batch;
 mod camera;
+mod channel;
 mod error;
 mod photograph;
 mod render;
@@ -19,6 +20,7 @@ pub use agents::{Agent, OnRailsAgent, RandomAgent};
 pub use assets::{Asset, ColliderShape, Mesh, Paint, Part, asset, classes};
 pub use batch::{Autoreset, Batch, BatchOptions, Episode, ImageLayout, Images, MAX_ENVS, Outputs, WorldSource};
 pub use camera::Camera;
+pub use channel::{Category, Channel, Channels, Level, MAX_MESSAGE_BYTES, Outgoing, Received, Screenshot};
 pub use error::EnvError;
 pub use photograph::{MAX_PHOTOGRAPHS, Photograph, Studio};
 pub use render::{
