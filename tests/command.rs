@@ -64,6 +64,7 @@ fn every_subcommand_has_help_with_an_example() {
         "convert",
         "render",
         "photograph",
+        "console",
         "distance",
         "order",
         "curriculum",
@@ -230,6 +231,7 @@ fn photographs_are_where_their_manifest_says() {
     let out = folder.path().join("deep/photographs");
     let said = succeed(&[
         "photograph",
+        "console",
         text(&world),
         "-o",
         text(&out),

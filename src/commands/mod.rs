@@ -1,12 +1,14 @@
 //! The subcommands, one file each, and what they share: how they fail. What is written and shown is in `output.rs`.
 
 mod bench;
+mod console;
 mod convert;
 mod curriculum;
 mod demo;
 mod distance;
 mod input;
 mod metrics;
+mod modality;
 mod order;
 mod output;
 mod photograph;
@@ -42,6 +44,8 @@ pub(crate) enum Command {
     Convert(convert::Convert),
     /// Draw what an agent sees of a world, and the world from above.
     Render(render::Render),
+    /// Step through a world by hand: act, look, change it, send it messages.
+    Console(console::Console),
     /// Photograph every object of a world from around and above.
     Photograph(photograph::Photograph),
     /// Measure how far apart two variants or two worlds are.
@@ -71,6 +75,7 @@ impl Command {
             Self::Vary(command) => command.run(),
             Self::Convert(command) => command.run(),
             Self::Render(command) => command.run(),
+            Self::Console(command) => command.run(),
             Self::Photograph(command) => command.run(),
             Self::Distance(command) => command.run(),
             Self::Order(command) => command.run(),

@@ -4,23 +4,20 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use driftworld::env::{
     CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, Environment,
-    Frame, Photograph as View, Studio, Target, Warning, category_color,
+    Frame, Photograph as View, Studio, Warning, category_color,
 };
-use driftworld::spec::{Modality, Object, World};
+use driftworld::spec::{Object, World};
 use serde::Serialize;
 
 use super::input::WorldChoice;
-use super::pictures::{Gray, Picture};
+use super::modality::{Kind, metres_per_level, target};
 use super::{Failure, output};
 
 /// The longest part of a file name that comes from the document.
 const LONGEST_NAME: usize = 40;
-
-/// The greatest number of a 16-bit image.
-const FULL: f32 = 65_535.0;
 
 /// Photograph every object of a world from around and above.
 ///
@@ -41,17 +38,6 @@ pub(crate) struct Photograph {
     /// The folder for the pictures and manifest.json; pictures of the same name are replaced.
     #[arg(short, long, default_value = "photographs", value_name = "FOLDER")]
     output: PathBuf,
-}
-
-/// One kind of image.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize)]
-#[serde(rename_all = "lowercase")]
-enum Kind {
-    Rgb,
-    Depth,
-    Segmentation,
-    Class,
-    Instance,
 }
 
 /// What all pictures of a folder have in common, and the list of them.
@@ -104,10 +90,11 @@ impl Photograph {
         let views = studio.photographs();
         let [width, height] = studio.picture_size();
         let mut frame = Frame::new(width, height);
+        let supersampling = studio.supersampling();
         let mut entries = Vec::with_capacity(views.len() * kinds.len());
         let bar = output::progress(views.len() as u64, "photographs");
         for view in &views {
-            studio.take(view, &mut target(&mut frame, &kinds, studio.supersampling()))?;
+            studio.take(view, &mut target(&mut frame, &kinds, supersampling))?;
             for kind in &kinds {
                 entries.push(self.keep(&world, view, *kind, &frame)?);
             }
@@ -128,13 +115,7 @@ impl Photograph {
     fn kinds(&self, world: &World) -> Result<Vec<Kind>, Failure> {
         let mut kinds = self.modalities.clone();
         if kinds.is_empty() {
-            kinds.extend(world.agent_params.modalities.iter().map(|modality| match modality {
-                Modality::Rgb => Kind::Rgb,
-                Modality::Depth => Kind::Depth,
-                Modality::Segmentation => Kind::Segmentation,
-                Modality::Class => Kind::Class,
-                Modality::Instance => Kind::Instance,
-            }));
+            kinds.extend(world.agent_params.modalities.iter().copied().map(Kind::from));
         }
         kinds.sort_unstable();
         kinds.dedup();
@@ -151,24 +132,7 @@ impl Photograph {
         let object = &world.objects[view.object];
         let file = file_name(view, object, kind, world.objects.len());
         let metres_per_level = (kind == Kind::Depth).then(|| metres_per_level(view.distance));
-        let bytes = match kind {
-            Kind::Rgb => picture(frame, frame.rgb.clone()).to_png()?,
-            Kind::Segmentation => {
-                let colors = frame.category.iter().flat_map(|category| category_color(*category));
-                picture(frame, colors.collect()).to_png()?
-            }
-            Kind::Depth => {
-                let level = metres_per_level.unwrap_or(1.0);
-                gray(
-                    frame,
-                    frame.depth.iter().map(|metres| (metres / level + 0.5).min(FULL) as u16),
-                )
-                .to_png()?
-            }
-            Kind::Class => gray(frame, frame.class.iter().copied()).to_png()?,
-            // There are fewer photographs, and so fewer objects, than 16 bits can count.
-            Kind::Instance => gray(frame, frame.instance.iter().map(|id| *id as u16)).to_png()?,
-        };
+        let bytes = kind.to_png(frame, metres_per_level.unwrap_or(1.0))?;
         output::write(&self.output.join(&file), &bytes)?;
         Ok(Entry {
             file,
@@ -184,40 +148,6 @@ impl Photograph {
             metres_per_level,
         })
     }
-}
-
-/// The images of a frame that are wanted.
-fn target<'a>(frame: &'a mut Frame, kinds: &[Kind], supersampling: u32) -> Target<'a> {
-    let mut target = Target {
-        supersampling,
-        ..frame.target()
-    };
-    let wanted = |kind: Kind| kinds.contains(&kind);
-    target.rgb = target.rgb.filter(|_| wanted(Kind::Rgb));
-    target.depth = target.depth.filter(|_| wanted(Kind::Depth));
-    target.category = target.category.filter(|_| wanted(Kind::Segmentation));
-    target.class = target.class.filter(|_| wanted(Kind::Class));
-    target.instance = target.instance.filter(|_| wanted(Kind::Instance));
-    target
-}
-
-fn picture(frame: &Frame, rgb: Vec<u8>) -> Picture {
-    let (width, height) = (frame.width, frame.height);
-    Picture { width, height, rgb }
-}
-
-fn gray(frame: &Frame, levels: impl Iterator<Item = u16>) -> Gray {
-    Gray {
-        width: frame.width,
-        height: frame.height,
-        levels: levels.collect(),
-    }
-}
-
-/// The finest of millimetres, centimetres and decimetres by which twice the distance to the object can be told.
-fn metres_per_level(distance: f32) -> f32 {
-    let fine = [0.001, 0.01].into_iter().find(|level| 2.0 * distance < level * FULL);
-    fine.unwrap_or(0.1)
 }
 
 fn manifest<'a>(world: &'a World, photographs: Vec<Entry<'a>>) -> Manifest<'a> {
@@ -263,13 +193,7 @@ fn classes(world: &World) -> BTreeMap<&str, u16> {
 /// Folder and name of a picture, such as `000_barrel_2/yaw_090_up_30_rgb.png`.
 fn file_name(view: &View, object: &Object, kind: Kind, objects: usize) -> String {
     let digits = objects.saturating_sub(1).to_string().len().max(3);
-    let kind = match kind {
-        Kind::Rgb => "rgb",
-        Kind::Depth => "depth",
-        Kind::Segmentation => "segmentation",
-        Kind::Class => "class",
-        Kind::Instance => "instance",
-    };
+    let kind = kind.name();
     format!(
         "{:0digits$}_{}_{}/yaw_{}_up_{}_{kind}.png",
         view.object,
@@ -351,10 +275,5 @@ mod tests {
             "{:?}",
             names.iter().nth(9)
         );
-    }
-
-    #[test]
-    fn depths_are_as_fine_as_the_distance_allows() {
-        assert_eq!([2.0, 40.0, 900.0].map(metres_per_level), [0.001, 0.01, 0.1]);
     }
 }

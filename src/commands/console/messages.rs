@@ -1,0 +1,71 @@
+//! Messages of L2Explorer's channels in the console: which texts hold messages, and how answers are shown. What they do is
+//! decided in `env`.
+
+use driftworld::env::{Channel, Outgoing};
+use serde_json::Value;
+
+/// The longest message that is shown whole, in characters.
+const LONGEST: usize = 600;
+
+/// The messages of a text: one message, one with its channel (`{"channel", "message"}`), or a list of these under `tests`.
+///
+/// A message without a channel goes where its action can be asked. What is no message is handed on as it is, to be refused.
+pub(super) fn messages(text: &str) -> Vec<(Channel, String)> {
+    let Ok(mut json) = serde_json::from_str::<Value>(text) else {
+        return vec![(Channel::Reset, text.to_owned())];
+    };
+    match json.get_mut("tests").map(Value::take) {
+        Some(Value::Array(list)) => list.into_iter().map(message).collect(),
+        _ => vec![message(json)],
+    }
+}
+
+fn message(mut json: Value) -> (Channel, String) {
+    let named = json.get("channel").and_then(Value::as_str).and_then(Channel::from_name);
+    let json = match json.get_mut("message") {
+        Some(inner) => inner.take(),
+        None => json,
+    };
+    let action = json.get("action").and_then(Value::as_str).unwrap_or_default();
+    let channel = named.or_else(|| Channel::for_action(&action.trim().to_lowercase()));
+    (channel.unwrap_or(Channel::Reset), json.to_string())
+}
+
+/// A message to the client as a line: remarks as text, all else as JSON behind its channel.
+pub(super) fn shown(message: &Outgoing) -> String {
+    if let ("debug_message", Some(payload)) = (message.action, &message.payload) {
+        let field = |key: &str| payload[key].as_str().unwrap_or_default();
+        return format!("[{}] {}: {}", field("category"), field("level"), field("message"));
+    }
+    let json = message.to_json();
+    let length = json.chars().count();
+    if length <= LONGEST {
+        return format!("<- {} {json}", message.channel.name());
+    }
+    let first: String = json.chars().take(LONGEST).collect();
+    format!("<- {} {first}… ({length} characters in all)", message.channel.name())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_find_their_channel() {
+        let check = |text: &str, expected: &[Channel]| {
+            let found: Vec<Channel> = messages(text).into_iter().map(|(channel, _)| channel).collect();
+            assert_eq!(found, expected, "{text}");
+        };
+        check(r#"{ "action": "Get_Observers" }"#, &[Channel::State]);
+        check(
+            r#"{ "channel": "debug", "message": { "action": "get_observers" } }"#,
+            &[Channel::Debug],
+        );
+        check(
+            r#"{ "tests": [{ "action": "save_screenshot" }, { "channel": "State", "message": {} }] }"#,
+            &[Channel::Debug, Channel::State],
+        );
+        check("no JSON", &[Channel::Reset]);
+        check("3", &[Channel::Reset]);
+    }
+}
