@@ -231,7 +231,6 @@ fn photographs_are_where_their_manifest_says() {
     let out = folder.path().join("deep/photographs");
     let said = succeed(&[
         "photograph",
-        "console",
         text(&world),
         "-o",
         text(&out),

@@ -93,6 +93,12 @@ impl Completer for Words {
         let before: Vec<&str> = line[..start].split_whitespace().collect();
         let mut words = self.after(&before);
         words.retain(|word| word.starts_with(&line[start..]));
+        // What is complete is followed by the next word; a key, by its value.
+        if let [only] = &mut words[..]
+            && !only.ends_with('=')
+        {
+            only.push(' ');
+        }
         Ok((start, words))
     }
 }
@@ -124,12 +130,12 @@ mod tests {
                 .expect("there is no way to fail");
             assert_eq!(found.1, expected, "{line}");
         };
-        check("sta", &["state"]);
-        check("show d", &["depth"]);
+        check("sta", &["state "]);
+        check("show d", &["depth "]);
         check("log academy o", &["on", "off"]);
-        check("destroy o", &["oak"]);
-        check("restore ", &["before"]);
-        check("spawn bar", &["barrel"]);
+        check("destroy o", &["oak "]);
+        check("restore ", &["before "]);
+        check("spawn bar", &["barrel "]);
         check("spawn barrel 1 2 uni", &["unique_name="]);
         check("info x", &[]);
     }

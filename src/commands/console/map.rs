@@ -63,13 +63,13 @@ mod tests {
 
     #[test]
     fn what_pays_is_a_capital_and_the_agent_looks_its_way() {
-        let mut coin = Object::new("barrel", [3.0, 3.0]);
+        let mut coin = Object::new("barrel", [2.8, 2.8]);
         coin.reward = 1.0;
         coin.reward_stimulus = vec![Stimulus::AgentCollide];
         let mut world = World {
             objects: vec![
                 coin,
-                Object::new("tree", [-3.0, -3.0]),
+                Object::new("tree", [-2.8, -2.8]),
                 Object::new("rock", [500.0, 0.0]),
             ],
             ..World::default()
@@ -77,8 +77,18 @@ mod tests {
         world.environment_params.map_size = [10.0, 10.0];
         world.agent_params.heading = 90.0;
         let environment = Environment::new(world).expect("every checked world starts");
-        let expected = "####################\n#                  #\n#               B  #\n#                  #\n#                  #\n\
-                        #         >        r\n#                  #\n#                  #\n#   t              #\n####################\n";
-        assert_eq!(letters(&environment, 20), expected);
+        let expected = [
+            "####################",
+            "#                  #",
+            "#              B   #",
+            "#                  #",
+            "#                  #",
+            "#         >        r",
+            "#                  #",
+            "#   t              #",
+            "#                  #",
+            "####################\n",
+        ];
+        assert_eq!(letters(&environment, 20), expected.join("\n"));
     }
 }

@@ -3,9 +3,11 @@
 
 mod editor;
 mod line;
+mod look;
 mod map;
 mod messages;
 mod place;
+mod report;
 mod screen;
 mod session;
 
