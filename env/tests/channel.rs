@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use driftworld_env::Channel::{Debug, Reset, State};
 use driftworld_env::{Action, Category, Channel, Channels, Environment, MAX_MESSAGE_BYTES, Outgoing};
 use driftworld_spec::{Object, World};
 use serde_json::{Value, json};
@@ -86,35 +87,37 @@ fn every_message_of_the_original_is_understood() {
     assert!((y - 10.1).abs() < 1e-5, "1 m/s for 0.1 s from 10: {y}");
 }
 
+/// A message that must be answered by an error, and change nothing.
+#[track_caller]
+fn check(channel: Channel, text: &str, expected: &str) {
+    let (mut environment, mut channels) = start();
+    channels.set_active(Category::Agent, true);
+    let before = (environment.state(), format!("{:?}", environment.snapshot()));
+    let received = channels.receive(&mut environment, channel, text, NOW);
+    assert_eq!(received.messages.len(), 1, "{text:.80}");
+    assert!(received.screenshot.is_none() && !received.reset, "{text:.80}");
+    let answer = &received.messages[0];
+    assert_eq!((answer.action, answer.channel), ("error", channel), "{text:.80}");
+    let texts = answer
+        .payload
+        .as_ref()
+        .and_then(Value::as_array)
+        .expect("a list of texts");
+    let said = texts[0].as_str().expect("a text");
+    assert!(said.contains(expected) && said.len() < 2000, "{text:.80}: {said}");
+    assert_eq!(
+        before,
+        (environment.state(), format!("{:?}", environment.snapshot())),
+        "{text:.80}"
+    );
+    assert!(
+        channels.watched().is_empty() && channels.is_active(Category::Agent),
+        "{text:.80}"
+    );
+}
+
 #[test]
-fn hostile_messages_are_answered_by_an_error_and_change_nothing() {
-    let check = |channel: Channel, text: &str, expected: &str| {
-        let (mut environment, mut channels) = start();
-        channels.set_active(Category::Agent, true);
-        let before = (environment.state(), format!("{:?}", environment.snapshot()));
-        let received = channels.receive(&mut environment, channel, text, NOW);
-        assert_eq!(received.messages.len(), 1, "{text:.80}");
-        assert!(received.screenshot.is_none() && !received.reset, "{text:.80}");
-        let answer = &received.messages[0];
-        assert_eq!((answer.action, answer.channel), ("error", channel), "{text:.80}");
-        let texts = answer
-            .payload
-            .as_ref()
-            .and_then(Value::as_array)
-            .expect("a list of texts");
-        let said = texts[0].as_str().expect("a text");
-        assert!(said.contains(expected) && said.len() < 2000, "{text:.80}: {said}");
-        assert_eq!(
-            before,
-            (environment.state(), format!("{:?}", environment.snapshot())),
-            "{text:.80}"
-        );
-        assert!(
-            channels.watched().is_empty() && channels.is_active(Category::Agent),
-            "{text:.80}"
-        );
-    };
-    use Channel::{Debug, Reset, State};
+fn hostile_resets_and_objects_change_nothing() {
     check(Reset, "not JSON", "not valid JSON");
     check(Reset, "null", "found null");
     check(Reset, &" ".repeat(MAX_MESSAGE_BYTES + 1), "expected at most");
@@ -160,6 +163,10 @@ fn hostile_messages_are_answered_by_an_error_and_change_nothing() {
         r#"{ "action": "object_create", "unique_name": 7, "payload": { "class": "tree", "coordinates": [1, 2] } }"#,
         "unique_name: found a number",
     );
+}
+
+#[test]
+fn hostile_watchers_change_nothing() {
     check(State, r#"{ "action": "set_active_observers" }"#, "found no state");
     check(
         State,
@@ -171,6 +178,10 @@ fn hostile_messages_are_answered_by_an_error_and_change_nothing() {
         r#"{ "action": "set_active_observers", "state": "objects" }"#,
         "found a text",
     );
+}
+
+#[test]
+fn hostile_debugging_changes_nothing() {
     check(Debug, r#"{ "action": "save_screenshot", "payload": {} }"#, "filename");
     for factor in ["0", "49", "1.5", "\"2\"", "-1", "1e300"] {
         let text = format!(

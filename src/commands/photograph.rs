@@ -22,7 +22,8 @@ const LONGEST_NAME: usize = 40;
 /// Photograph every object of a world from around and above.
 ///
 /// Each object stands alone, in full daylight, on ground and under sky of the world's colours. How far, from how many
-/// sides and how many heights is said by the world's image_params, the pictures' size and field of view by its agent_params.
+/// sides and at how many heights is said by the world's `image_params`; how large, and with what field of view, by its
+/// `agent_params`.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld photograph world.json -o photographs

@@ -4,10 +4,12 @@
 mod category;
 mod exchange;
 mod message;
+mod request;
 
 pub use category::{Category, Level};
-pub use exchange::{Channels, Received, Screenshot};
+pub use exchange::{Channels, Received};
 pub use message::{MAX_MESSAGE_BYTES, Outgoing};
+pub use request::Screenshot;
 
 /// One of the three channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

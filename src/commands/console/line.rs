@@ -182,22 +182,19 @@ fn words(text: &str) -> Result<Vec<String>, String> {
     for letter in text.chars() {
         match quote {
             Some(open) if letter == open => quote = None,
-            Some(_) => word.get_or_insert_default().push(letter),
             None if letter == '"' || letter == '\'' => {
                 quote = Some(letter);
                 word.get_or_insert_default();
             }
             None if letter.is_whitespace() => words.extend(word.take()),
-            None => word.get_or_insert_default().push(letter),
+            _ => word.get_or_insert_default().push(letter),
         }
     }
-    match quote {
-        Some(open) => Err(format!("found {open} once, expected it twice: around a word")),
-        None => {
-            words.extend(word);
-            Ok(words)
-        }
+    if let Some(open) = quote {
+        return Err(format!("found {open} once, expected it twice: around a word"));
     }
+    words.extend(word);
+    Ok(words)
 }
 
 fn number(word: &str) -> Result<f64, String> {
@@ -241,8 +238,7 @@ fn step(words: &[&str]) -> Result<Line, String> {
 
 fn action(words: &[&str]) -> Result<Line, String> {
     let (count, words) = match words {
-        ["-c", steps, rest @ ..] => (count(steps)?, rest),
-        [rest @ .., "-c", steps] => (count(steps)?, rest),
+        ["-c", steps, rest @ ..] | [rest @ .., "-c", steps] => (count(steps)?, rest),
         _ => (1, words),
     };
     let ["-a", numbers @ ..] = words else {

@@ -32,7 +32,8 @@ impl Session<'_> {
         Ok(frame)
     }
 
-    fn from_above(&self, width: u32, height: u32) -> Image {
+    /// The map, with the agent on it.
+    fn bird_view(&self, width: u32, height: u32) -> Image {
         let agent = self.environment.agent();
         let agent = Some((agent.position, agent.heading_deg));
         top_down(self.environment.scene(), width, height, agent)
@@ -45,7 +46,7 @@ impl Session<'_> {
         };
         let size = self.screen.size(width as f32 / height as f32, columns);
         Ok(match (picture, self.screen.colors) {
-            (Picture::Map, true) => half_blocks(size[0], &self.from_above(size[0], size[1]).rgb),
+            (Picture::Map, true) => half_blocks(size[0], &self.bird_view(size[0], size[1]).rgb),
             (Picture::Map, false) => map::letters(&self.environment, size[0]),
             (Picture::Seen(kind), true) => half_blocks(size[0], &colors(&self.seen(kind, size)?, kind)),
             (Picture::Seen(kind), false) => letters(&self.seen(kind, size)?, kind),
@@ -66,7 +67,7 @@ impl Session<'_> {
         let bytes = match picture {
             Picture::Seen(kind) => kind.to_png(&self.seen(kind, size)?, METRES_PER_LEVEL).map_err(said)?,
             Picture::Map if size.iter().all(|side| (1..=4096).contains(side)) => {
-                let Image { width, height, rgb } = self.from_above(size[0], size[1]);
+                let Image { width, height, rgb } = self.bird_view(size[0], size[1]);
                 pictures::Picture { width, height, rgb }.to_png().map_err(said)?
             }
             Picture::Map => {

@@ -70,7 +70,7 @@ impl<'a> Session<'a> {
     pub(super) fn greeting(&self) -> String {
         let hash = self.start.hash();
         let objects = self.start.objects.len();
-        format!("world {:.12}, {objects} objects; help lists the commands", hash)
+        format!("world {hash:.12}, {objects} objects; help lists the commands")
     }
 
     /// Names for completion.
@@ -135,36 +135,30 @@ impl<'a> Session<'a> {
 
     fn act(&mut self, action: Action, count: u32) -> Result<String, String> {
         self.environment.check(action).map_err(plain)?;
-        let (mut text, mut lines, mut reward, mut steps) = (String::new(), 0, 0.0, 0);
+        let (mut lines, mut left_out, mut reward, mut steps) = (Vec::new(), 0, 0.0, 0);
         let mut last = Step::default();
         while steps < count && !last.ended() {
             last = self.environment.step(action).map_err(plain)?;
             steps += 1;
             reward += last.reward;
-            for line in self.told(&last) {
-                lines += 1;
-                if lines <= MOST_LINES {
-                    text += &(line + "\n");
-                }
-            }
+            let mut told = self.told(&last);
+            let room = told.len().min(MOST_LINES.saturating_sub(lines.len()));
+            left_out += told.len() - room;
+            lines.extend(told.drain(..room));
         }
-        if lines > MOST_LINES {
-            text += &format!("… and {} lines more\n", lines - MOST_LINES);
+        if left_out > 0 {
+            lines.push(format!("… and {left_out} lines more"));
         }
+        let how = match (last.ended(), last.success, last.terminated) {
+            (false, ..) => "",
+            (true, true, _) => ": success",
+            (true, false, true) => ": failure",
+            (true, false, false) => ": its last step",
+        };
         let plural = if steps == 1 { "" } else { "s" };
-        text += &format!(
-            "{steps} step{plural}, reward {}; {}",
-            short(reward as f32),
-            self.agent()
-        );
-        if last.ended() {
-            text += match (last.success, last.terminated) {
-                (true, _) => ": success",
-                (false, true) => ": failure",
-                (false, false) => ": its last step",
-            };
-        }
-        Ok(text)
+        let (reward, agent) = (short(reward as f32), self.agent());
+        lines.push(format!("{steps} step{plural}, reward {reward}; {agent}{how}"));
+        Ok(lines.join("\n"))
     }
 
     /// What a step is worth telling.
