@@ -322,6 +322,19 @@ mod tests {
     }
 
     #[test]
+    fn a_world_for_photographs_says_so_when_it_runs() {
+        let world = World {
+            game_mode: driftworld_spec::GameMode::CollectImages,
+            ..World::default()
+        };
+        let warnings = crate::Environment::new(world)
+            .expect("every checked world starts")
+            .warnings();
+        assert_eq!(warnings, [crate::Warning::ForPhotographs]);
+        assert!(warnings[0].to_string().contains("driftworld photograph"));
+    }
+
+    #[test]
     fn more_photographs_than_there_may_be_are_refused_before_any_is_taken() {
         let objects = vec![Object::new("cube", [0.0, 0.0]); 100];
         assert!(Studio::new(&world(2.0, 100, 5, objects.clone())).is_ok());

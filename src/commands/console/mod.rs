@@ -52,13 +52,16 @@ pub(crate) struct Console {
 
 impl Console {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        let script = match &self.script {
+            Some(path) => Some((path, input::text(path)?)),
+            None => None,
+        };
         let world = self.choice.world()?;
         let mut session = Session::new(&self.choice, world, &self.out, Screen::of_this_terminal())?;
         output::line(session.greeting())?;
-        if let Some(script) = &self.script {
-            let text = input::text(script)?;
+        if let Some((path, text)) = script {
             let lines = text.lines().map(|line| Ok(line.to_owned()));
-            return self.follow(&mut session, &script.display().to_string(), lines);
+            return self.follow(&mut session, &path.display().to_string(), lines);
         }
         if std::io::stdin().is_terminal() {
             return converse(&mut session);
