@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use driftworld::env::{Action, Category, Channels, CpuRenderer, Environment, Level, Snapshot, Step};
+use driftworld::env::{Action, Category, Channels, CpuRenderer, Environment, Event, Level, Snapshot, Step};
 use driftworld::spec::{Object, World, nearest};
 
 use super::super::Failure;
@@ -141,10 +141,7 @@ impl<'a> Session<'a> {
             last = self.environment.step(action).map_err(plain)?;
             steps += 1;
             reward += last.reward;
-            let mut told = self.told(&last);
-            let room = told.len().min(MOST_LINES.saturating_sub(lines.len()));
-            left_out += told.len() - room;
-            lines.extend(told.drain(..room));
+            left_out += self.tell(&last, &mut lines);
         }
         if left_out > 0 {
             lines.push(format!("… and {left_out} lines more"));
@@ -161,31 +158,26 @@ impl<'a> Session<'a> {
         Ok(lines.join("\n"))
     }
 
-    /// What a step is worth telling.
-    fn told(&mut self, step: &Step) -> Vec<String> {
+    /// Adds lines on what happened in a step while there is room for more; hands back how many there was none for.
+    fn tell(&mut self, step: &Step, lines: &mut Vec<String>) -> usize {
         let number = self.environment.num_steps();
         let world = self.environment.world();
-        let mut lines: Vec<String> = step
-            .events
-            .iter()
-            .map(|event| {
-                let (object, reward) = (&world.objects[event.object], short(event.reward as f32));
-                let gone = if event.destroyed { ", destroyed" } else { "" };
-                let class = &object.class;
-                format!(
-                    "step {number}: {:?} object {} ({class}), reward {reward}{gone}",
-                    event.stimulus, event.object
-                )
-            })
-            .collect();
+        let event = |event: &Event| {
+            let (object, reward) = (&world.objects[event.object], short(event.reward as f32));
+            let gone = if event.destroyed { ", destroyed" } else { "" };
+            let (class, stimulus) = (&object.class, event.stimulus);
+            format!(
+                "step {number}: {stimulus:?} object {} ({class}), reward {reward}{gone}",
+                event.object
+            )
+        };
+        let room = MOST_LINES.saturating_sub(lines.len());
+        lines.extend(step.events.iter().take(room).map(event));
         let time = self.time();
-        lines.extend(
-            self.channels
-                .after_step(&self.environment, step, &time)
-                .iter()
-                .map(shown),
-        );
-        lines
+        let messages = self.channels.after_step(&self.environment, step, &time);
+        let rest = MOST_LINES.saturating_sub(lines.len());
+        lines.extend(messages.iter().take(rest).map(shown));
+        step.events.len().saturating_sub(room) + messages.len().saturating_sub(rest)
     }
 
     fn reset(&mut self, to: Option<&str>) -> Result<String, String> {
