@@ -64,6 +64,8 @@ fn every_subcommand_has_help_with_an_example() {
         "convert",
         "render",
         "assets",
+        "photograph",
+        "console",
         "distance",
         "order",
         "curriculum",
@@ -240,6 +242,40 @@ fn render_draws_a_map_of_the_original() {
     ]);
     let bytes = std::fs::read(&picture).expect("the picture was written");
     assert_eq!(&bytes[1..4], b"PNG");
+}
+
+#[test]
+fn photographs_are_where_their_manifest_says() {
+    let folder = scratch();
+    let world = folder.path().join("world.json");
+    let text_of_world = r#"{ "image_params": { "yaw_subdivisions": 3, "vertical_subdivisions": 2 },
+        "objects": [{ "class": "../../out", "coordinates": [0, 0] }, { "class": "Car", "coordinates": [9, 9] }] }"#;
+    std::fs::write(&world, text_of_world).expect("the scratch folder can be written");
+    let out = folder.path().join("deep/photographs");
+    let said = succeed(&[
+        "photograph",
+        text(&world),
+        "-o",
+        text(&out),
+        "--modalities",
+        "rgb,depth",
+    ]);
+    assert!(said.contains("2 objects in 24 pictures of 84 × 84 pixels"), "{said}");
+    let manifest = std::fs::read_to_string(out.join("manifest.json")).expect("the manifest was written");
+    let manifest: serde_json::Value = serde_json::from_str(&manifest).expect("the manifest is JSON");
+    let listed = manifest["photographs"].as_array().expect("it lists photographs");
+    assert_eq!(listed.len(), 24);
+    for entry in listed {
+        let file = entry["file"].as_str().expect("each has its file");
+        assert!(!file.contains("..") && out.join(file).is_file(), "{file}");
+    }
+    assert_eq!(manifest["classes"]["Car"], 2);
+    assert_eq!(listed[12]["file"], "001_car_1/yaw_000_up_00_rgb.png");
+    let inside = std::fs::read_dir(folder.path().join("deep"))
+        .expect("the folder is there")
+        .count();
+    assert_eq!(inside, 1, "nothing was written beside the folder");
+    assert!(fail(2, &["photograph", "find_objects", "--modalities", "smell"]).contains("possible values"));
 }
 
 #[test]

@@ -156,6 +156,19 @@ pub enum EnvError {
         /// The heading asked for, in degrees.
         found: f64,
     },
+    /// More photographs of one world than there may be.
+    #[error(
+        "photographs: found {objects} objects in {views} views each, expected at most {most} photographs; use fewer objects, or \
+         lower image_params.yaw_subdivisions or vertical_subdivisions"
+    )]
+    TooManyPhotographs {
+        /// Objects of the world.
+        objects: usize,
+        /// Views of each.
+        views: usize,
+        /// The most photographs there can be.
+        most: usize,
+    },
     /// A picture of a size that cannot be.
     #[error("picture: found {width} × {height} pixels, expected 1 to 4096 each way")]
     PictureSize {
@@ -240,6 +253,7 @@ impl EnvError {
             Self::AlreadyGone { .. } => "env/already-gone",
             Self::NoRoom { .. } => "env/no-room",
             Self::NoHeading { .. } => "env/no-heading",
+            Self::TooManyPhotographs { .. } => "env/too-many-photographs",
             Self::PictureSize { .. } => "env/picture-size",
             Self::NoSuchRenderer { .. } => "env/no-such-renderer",
             Self::NoGpu { .. } => "env/no-gpu",
@@ -291,6 +305,11 @@ mod tests {
                 width: 1.0,
             },
             EnvError::NoHeading { found: f64::NAN },
+            EnvError::TooManyPhotographs {
+                objects: 86,
+                views: 1000,
+                most: 50_000,
+            },
             EnvError::PictureSize { width: 0, height: 5000 },
             EnvError::NoSuchRenderer {
                 found: "GPU".to_owned(),

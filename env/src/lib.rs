@@ -8,7 +8,9 @@ mod agents;
 mod assets;
 mod batch;
 mod camera;
+mod channel;
 mod error;
+mod photograph;
 mod render;
 mod scene;
 mod sim;
@@ -26,7 +28,9 @@ pub use assets::{
 };
 pub use batch::{Autoreset, Batch, BatchOptions, Episode, ImageLayout, Images, MAX_ENVS, Outputs, WorldSource};
 pub use camera::Camera;
+pub use channel::{Category, Channel, Channels, Level, MAX_MESSAGE_BYTES, Outgoing, Received, Screenshot};
 pub use error::EnvError;
+pub use photograph::{MAX_PHOTOGRAPHS, Photograph, Studio};
 pub use render::{
     AdapterReport, CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE,
     CATEGORY_SKY, CpuRenderer, FAR_DEPTH, Frame, Image, Picture, Renderer, RendererKind, RendererReport, Target,

@@ -18,7 +18,7 @@ pub const MAX_BYTES: usize = 64 << 20;
 
 /// A parsed JSON text.
 pub(crate) struct Document<'a> {
-    name: &'a str,
+    pub(crate) name: &'a str,
     text: &'a str,
     pub(crate) value: Value,
 }

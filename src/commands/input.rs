@@ -117,19 +117,39 @@ pub(crate) struct WorldChoice {
 impl WorldChoice {
     /// Reads or draws the world.
     pub(crate) fn world(&self) -> Result<World, Failure> {
-        let maps = self.maps.as_deref().map(maps).transpose()?;
-        if !self.l2explorer && !is_world_file(&self.world) {
-            let mut sampler = Sampler::new(&tasks::variant(&self.world)?, self.seed);
-            if let Some(maps) = maps {
-                sampler = sampler.with_maps(Arc::new(maps));
-            }
-            return Ok(sampler.world(self.index)?);
+        if self.is_file() {
+            return self.named(&self.world);
         }
-        let mut world = world(&self.world, self.seed, self.index, self.l2explorer)?;
+        self.numbered(self.index)
+    }
+
+    /// World number `index` of the variant, under the same seed.
+    pub(crate) fn numbered(&self, index: u64) -> Result<World, Failure> {
+        if self.is_file() {
+            return Err(Failure::input(format!(
+                "{}: is one world, not a variant that has worlds by number; name a world file",
+                self.world
+            )));
+        }
+        let mut sampler = Sampler::new(&tasks::variant(&self.world)?, self.seed);
+        if let Some(maps) = self.maps.as_deref().map(maps).transpose()? {
+            sampler = sampler.with_maps(Arc::new(maps));
+        }
+        Ok(sampler.world(index)?)
+    }
+
+    /// Another world, by the same options: a file, or the first world of a variant.
+    pub(crate) fn named(&self, name: &str) -> Result<World, Failure> {
+        let maps = self.maps.as_deref().map(maps).transpose()?;
+        let mut world = world(name, self.seed, 0, self.l2explorer)?;
         if let Some(maps) = maps {
             maps.apply(&mut world);
         }
         Ok(world)
+    }
+
+    fn is_file(&self) -> bool {
+        self.l2explorer || is_world_file(&self.world)
     }
 }
 

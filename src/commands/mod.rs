@@ -2,6 +2,7 @@
 
 mod assets;
 mod bench;
+mod console;
 mod convert;
 mod curriculum;
 mod demo;
@@ -9,8 +10,10 @@ mod distance;
 mod doctor;
 mod input;
 mod metrics;
+mod modality;
 mod order;
 mod output;
+mod photograph;
 mod pictures;
 mod render;
 mod run;
@@ -45,6 +48,10 @@ pub(crate) enum Command {
     Render(render::Render),
     /// Turn glTF models into libraries that worlds can use, and look at what there is.
     Assets(assets::Assets),
+    /// Step through a world by hand: act, look, change it, send it messages.
+    Console(console::Console),
+    /// Photograph every object of a world from around and above.
+    Photograph(photograph::Photograph),
     /// Measure how far apart two variants or two worlds are.
     Distance(distance::Distance),
     /// Put variants into an order by their distances.
@@ -75,6 +82,8 @@ impl Command {
             Self::Convert(command) => command.run(),
             Self::Render(command) => command.run(),
             Self::Assets(command) => command.run(),
+            Self::Console(command) => command.run(),
+            Self::Photograph(command) => command.run(),
             Self::Distance(command) => command.run(),
             Self::Order(command) => command.run(),
             Self::Curriculum(command) => command.run(),

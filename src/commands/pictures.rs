@@ -20,6 +20,38 @@ pub(crate) struct Picture {
     pub(crate) rgb: Vec<u8>,
 }
 
+/// A picture of numbers in memory: 16 bits each, row 0 on top.
+pub(crate) struct Gray {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) levels: Vec<u16>,
+}
+
+impl Gray {
+    /// The picture as a PNG file's bytes.
+    pub(crate) fn to_png(&self) -> Result<Vec<u8>, Failure> {
+        let bytes: Vec<u8> = self.levels.iter().flat_map(|level| level.to_be_bytes()).collect();
+        png_of(
+            [self.width, self.height],
+            png::ColorType::Grayscale,
+            png::BitDepth::Sixteen,
+            &bytes,
+        )
+    }
+}
+
+/// A PNG file's bytes.
+fn png_of(size: [u32; 2], color: png::ColorType, depth: png::BitDepth, data: &[u8]) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(data)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
 /// A text in a picture: where its anchor is, how large in pixels, in which colour.
 struct Label<'a> {
     text: &'a str,
@@ -69,14 +101,12 @@ impl Picture {
 
     /// The picture as a PNG file's bytes.
     pub(crate) fn to_png(&self) -> Result<Vec<u8>, Failure> {
-        let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&self.rgb)?;
-        writer.finish()?;
-        Ok(bytes)
+        png_of(
+            [self.width, self.height],
+            png::ColorType::Rgb,
+            png::BitDepth::Eight,
+            &self.rgb,
+        )
     }
 
     /// Writes the picture as a PNG file.

@@ -127,7 +127,8 @@ impl Batch {
     ///
     /// # Errors
     /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchWorld`] where the source has no world;
-    /// [`EnvError::BatchImages`] where worlds ask for different images; [`EnvError::BatchThreads`] if threads cannot be had.
+    /// [`EnvError::BatchImages`] where worlds ask for different images; [`EnvError::BatchThreads`] if threads cannot be had;
+    /// [`EnvError::NoGpu`] if a graphics card is asked for and none works; and as [`Renderer::draw_batch`].
     pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
         Self::with_catalogue(num_envs, source, options, &Catalogue::default())
     }

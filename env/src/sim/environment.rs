@@ -191,7 +191,7 @@ impl Environment {
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if self.world.game_mode == GameMode::CollectImages {
-            warnings.push(Warning::NoImageCollection);
+            warnings.push(Warning::ForPhotographs);
         }
         if let Some(obstacle) = self.obstacle(self.world.agent_params.coordinates) {
             warnings.push(Warning::StartsInside { obstacle });

@@ -77,8 +77,8 @@ pub enum Warning {
         /// Index of the object.
         object: usize,
     },
-    /// The world is for taking pictures of its objects, and runs as if it were for learning.
-    NoImageCollection,
+    /// The world is for photographs of its objects ([`Studio`](crate::Studio)); stepped, it runs as if it were for learning.
+    ForPhotographs,
 }
 
 impl std::fmt::Display for Warning {
@@ -108,9 +108,9 @@ impl std::fmt::Display for Warning {
                     "/objects/{object}/pushable: found an object that moves by itself or is not solid; it is not pushed"
                 )
             }
-            Self::NoImageCollection => {
-                f.write_str("/game_mode: collect_images is not there yet; the world runs as learn")
-            }
+            Self::ForPhotographs => f.write_str(
+                "/game_mode: collect_images is for `driftworld photograph`; stepped, the world runs as learn",
+            ),
         }
     }
 }

@@ -10,7 +10,7 @@ use super::{AGENT, ENVIRONMENT, IMAGE, Keys, OBJECT, RULES, WORLD, Warning, blac
 use crate::document::{Document, describe, escape};
 use crate::error::{Problem, SpecError};
 use crate::schema;
-use crate::world::World;
+use crate::world::{Object, World};
 
 impl World {
     /// Reads a reset file of the original: words in any case, numbers as strings, colours in 0..255, old keys.
@@ -39,23 +39,55 @@ impl World {
         )?;
         let world: Self = document.deserialize()?;
         document.fail_on(world.problems().into_iter().map(original).collect())?;
-        let warnings = reader
-            .warnings
-            .into_iter()
-            .chain(outside(&world, &kept))
-            .map(|(pointer, text)| {
-                let (line, column) = document.place(&pointer);
-                Warning {
-                    name: name.to_owned(),
-                    pointer,
-                    line,
-                    column,
-                    text,
-                }
-            });
-        let mut warnings: Vec<Warning> = warnings.collect();
-        warnings.sort_by_key(|warning| (warning.line, warning.column));
+        let warnings = document.warnings(reader.warnings.into_iter().chain(outside(&world, &kept)));
         Ok((world, warnings))
+    }
+}
+
+impl Object {
+    /// Reads one object as the original writes it, as [`World::from_l2explorer`] reads the objects of a world.
+    ///
+    /// # Errors
+    /// [`SpecError`] where the text is not JSON, has no class, or holds a value that no leniency can make sense of.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::Object;
+    /// let text = r#"{ "class": "Tree", "model": 2, "coordinates": ["3", 4], "reward_stimulus": "agentcollide" }"#;
+    /// let (tree, warnings) = Object::from_l2explorer("payload", text)?;
+    /// assert_eq!((tree.class.as_str(), tree.coordinates), ("tree", [3.0, 4.0]));
+    /// assert_eq!(warnings[0].to_string(), "payload:1:47 (/coordinates): the text \"3\" is read as a number");
+    /// # Ok::<(), driftworld_spec::SpecError>(())
+    /// ```
+    pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
+        let mut document = Document::parse(name, text)?;
+        let mut reader = Reader::default();
+        if let Some(map) = document.value.as_object().cloned() {
+            document.value = Json::Object(reader.object("", &map));
+        }
+        document.check_schema(schema::object())?;
+        let object = document.deserialize()?;
+        Ok((object, document.warnings(reader.warnings)))
+    }
+}
+
+impl Document<'_> {
+    /// What the reader remarked, in the order of the text.
+    fn warnings(&self, remarks: impl IntoIterator<Item = (String, String)>) -> Vec<Warning> {
+        let warning = |(pointer, text): (String, String)| {
+            let (line, column) = self.place(&pointer);
+            let name = self.name.to_owned();
+            Warning {
+                name,
+                pointer,
+                line,
+                column,
+                text,
+            }
+        };
+        let mut warnings: Vec<Warning> = remarks.into_iter().map(warning).collect();
+        warnings.sort_by_key(|warning| (warning.line, warning.column));
+        warnings
     }
 }
 

@@ -1,4 +1,4 @@
-//! Checking what was built in code by the rules that documents are read by. Reading documents is in `mod.rs`.
+//! One object without a world: read from a text, or built in code and checked by the same rules. Reading worlds is in `mod.rs`.
 
 use super::Object;
 use crate::document::Document;
@@ -6,6 +6,16 @@ use crate::error::SpecError;
 use crate::schema;
 
 impl Object {
+    /// Reads one object, strictly. `name` is what messages call the text.
+    ///
+    /// # Errors
+    /// [`SpecError`] with every problem of the text at once, sorted by place.
+    pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
+        let document = Document::parse(name, text)?;
+        document.check_schema(schema::object())?;
+        document.deserialize()
+    }
+
     /// Checks an object that was built in code by the rules that objects of a document obey.
     ///
     /// # Errors
@@ -35,6 +45,27 @@ mod tests {
         change(&mut object);
         let said = object.check().expect_err("the object is not sound").to_string();
         assert!(said.contains(expected), "{said}");
+    }
+
+    #[test]
+    fn an_object_is_read_alone_as_in_a_world() {
+        let tree = Object::from_json("spawn", r#"{ "class": "tree", "coordinates": [3, 4], "color": "red" }"#)
+            .expect("the object is sound");
+        assert_eq!(
+            (tree.coordinates, tree.color),
+            ([3.0, 4.0], crate::Color::from_name("red"))
+        );
+        let error = Object::from_json(
+            "spawn",
+            r#"{ "class": "tree", "coordinates": [3, 4], "colour": "red" }"#,
+        )
+        .expect_err("the key is not known")
+        .to_string();
+        assert!(
+            error.contains("(/colour)") && error.contains("did you mean \"color\"?"),
+            "{error}"
+        );
+        assert!(Object::from_json("spawn", "3").is_err());
     }
 
     #[test]

@@ -107,7 +107,7 @@ pub enum GameMode {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct ImageParams {
-    /// Distance of the camera as a factor on the object's size.
+    /// Distance of the camera as a factor on that from which the object just fits into the picture.
     #[schemars(range(min = 0.1, max = 100.0))]
     pub zoom: f64,
     /// Views around each object.

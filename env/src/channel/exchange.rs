@@ -1,0 +1,295 @@
+//! [`Channels`]: does what messages ask for, and answers. How a message is read and written is in `message.rs`; what its
+//! payload says, in `request.rs`.
+
+use driftworld_spec::World;
+use serde_json::{Value, json};
+
+use super::Channel;
+use super::category::{Category, Level};
+use super::message::{Message, Outgoing, Refusal, unknown};
+use super::request::{PARTS, Screenshot, categories, create, parts, remark_of, screenshot};
+use crate::{Environment, Step};
+
+/// Our end of the three channels: who watches what, and which remarks are wanted.
+///
+/// Messages in, messages out; the caller carries them, tells the time, and writes screenshots. A message that is not
+/// understood is answered by an `error` and changes nothing. Tokens of ours are made of the world's hash and a count, in the
+/// form of a UUID (version 8): the same messages give the same answers.
+///
+/// # Example
+/// ```
+/// use driftworld_env::{Channel, Channels, Environment};
+/// use driftworld_spec::World;
+/// let mut environment = Environment::new(World::default())?;
+/// let mut channels = Channels::new(environment.world());
+/// let spawn = r#"{ "token": "a", "action": "object_create", "payload": { "class": "tree", "coordinates": [3, 4] } }"#;
+/// let answer = channels.receive(&mut environment, Channel::Reset, spawn, "2026-01-01T00:00:00");
+/// assert_eq!((answer.messages[0].action, answer.messages[0].req_token.as_deref()), ("ok", Some("a")));
+/// assert_eq!(environment.objects().len(), 1);
+/// # Ok::<(), driftworld_env::EnvError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Channels {
+    /// The hash of the world that the last reset asked for.
+    world: String,
+    sent: u64,
+    /// What is told at each step, of [`PARTS`].
+    watched: Vec<&'static str>,
+    /// Which of [`Category::ALL`] are on.
+    active: [bool; 4],
+}
+
+/// What came of a message.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Received {
+    /// What to send back, in this order.
+    pub messages: Vec<Outgoing>,
+    /// A picture to be written before it is answered by [`Channels::answer_screenshot`].
+    pub screenshot: Option<Screenshot>,
+    /// Whether the environment is at the start of a new world.
+    pub reset: bool,
+}
+
+/// What a message that was understood leads to.
+enum Answer {
+    Say(&'static str, Option<Value>),
+    Picture(Screenshot),
+}
+
+const OK: Answer = Answer::Say("ok", None);
+
+impl Channels {
+    /// Channels of a world at its start: nothing is watched, no remarks are wanted.
+    pub fn new(world: &World) -> Self {
+        Self {
+            world: world.hash(),
+            sent: 0,
+            watched: Vec::new(),
+            active: [false; 4],
+        }
+    }
+
+    /// Whether remarks of a category are wanted.
+    pub fn is_active(&self, category: Category) -> bool {
+        self.active[category as usize]
+    }
+
+    /// Turns the remarks of a category on or off, as `set_debug_categories` does.
+    pub fn set_active(&mut self, category: Category, active: bool) {
+        self.active[category as usize] = active;
+    }
+
+    /// The parts of the world that are told at each step.
+    pub fn watched(&self) -> &[&'static str] {
+        &self.watched
+    }
+
+    /// Does what a message asks for. `time` is the time now in ISO 8601.
+    pub fn receive(&mut self, environment: &mut Environment, channel: Channel, text: &str, time: &str) -> Received {
+        let mut received = Received::default();
+        let (token, done) = match Message::parse(text) {
+            Ok(message) => {
+                let said = format!("{} received {:.40}", channel.name(), message.action);
+                received
+                    .messages
+                    .extend(self.remark(Category::Communications, Level::Info, said, time));
+                let done = self.carry_out(environment, channel, &message, time, &mut received);
+                (message.token, done)
+            }
+            Err((token, refusal)) => (token, Err(refusal)),
+        };
+        match done {
+            Ok(Answer::Say(action, payload)) => {
+                received
+                    .messages
+                    .push(self.message(channel, action, payload, token, time));
+            }
+            Ok(Answer::Picture(screenshot)) => received.screenshot = Some(Screenshot { token, ..screenshot }),
+            Err(refusal) => {
+                let said = format!("{} refused: {}", channel.name(), refusal.texts()[0]);
+                received
+                    .messages
+                    .extend(self.remark(Category::Communications, Level::Error, said, time));
+                let payload = Some(json!(refusal.texts()));
+                received
+                    .messages
+                    .push(self.message(channel, "error", payload, token, time));
+            }
+        }
+        received
+    }
+
+    /// The answer to a message that asked for a picture, when it has been written, or why it was not.
+    pub fn answer_screenshot(&mut self, screenshot: &Screenshot, written: Result<(), String>, time: &str) -> Outgoing {
+        let token = screenshot.token.clone();
+        match written {
+            Ok(()) => self.message(Channel::Debug, "ok", None, token, time),
+            Err(text) => self.message(Channel::Debug, "error", Some(json!([text])), token, time),
+        }
+    }
+
+    /// What is to be told after a step: remarks on what happened, then the parts of the world that are watched.
+    pub fn after_step(&mut self, environment: &Environment, step: &Step, time: &str) -> Vec<Outgoing> {
+        let mut messages = Vec::new();
+        for event in &step.events {
+            let object = &environment.world().objects[event.object];
+            let gone = if event.destroyed { ", destroyed" } else { "" };
+            let said = format!(
+                "{:?} object {} ({}), reward {}{gone}",
+                event.stimulus, event.object, object.class, event.reward
+            );
+            messages.extend(self.remark(Category::Agent, Level::Info, said, time));
+        }
+        if step.ended() {
+            let how = match (step.success, step.terminated) {
+                (true, _) => "as a success",
+                (false, true) => "as a failure",
+                (false, false) => "at its last step",
+            };
+            let (steps, earned) = (environment.num_steps(), environment.episode_return());
+            let said = format!("the episode ended {how} after {steps} steps, return {earned}");
+            messages.extend(self.remark(Category::Academy, Level::Info, said, time));
+        }
+        if !self.watched.is_empty() {
+            let payload = Some(self.state(environment));
+            messages.push(self.message(Channel::State, "state", payload, None, time));
+        }
+        messages
+    }
+
+    /// A remark on the Debug channel, if its category is on.
+    pub fn remark(
+        &mut self,
+        category: Category,
+        level: Level,
+        text: impl Into<String>,
+        time: &str,
+    ) -> Option<Outgoing> {
+        self.is_active(category).then(|| {
+            let payload = json!({
+                "category": category.name(), "level": level.name(), "message": text.into(), "stack_trace": "",
+            });
+            self.message(Channel::Debug, "debug_message", Some(payload), None, time)
+        })
+    }
+
+    fn carry_out(
+        &mut self,
+        environment: &mut Environment,
+        channel: Channel,
+        message: &Message,
+        time: &str,
+        received: &mut Received,
+    ) -> Result<Answer, Refusal> {
+        if let Some(right) = Channel::for_action(&message.action).filter(|right| *right != channel) {
+            return Err(Refusal::new(format!(
+                "action: found {:?} on the {} channel, expected it on the {} channel",
+                message.action,
+                channel.name(),
+                right.name()
+            )));
+        }
+        match message.action.as_str() {
+            "reset_environment" => {
+                let remarks = self.reset(environment, message)?;
+                received.reset = true;
+                let said = format!("a new episode of world {:.12}", self.world);
+                received
+                    .messages
+                    .extend(self.remark(Category::Academy, Level::Info, said, time));
+                for said in remarks {
+                    received
+                        .messages
+                        .extend(self.remark(Category::Worldmaker, Level::Warning, said, time));
+                }
+                Ok(OK)
+            }
+            "object_create" => {
+                let (index, remarks) = create(environment, message)?;
+                let said = format!("object {index} is a {}", environment.world().objects[index].class);
+                received
+                    .messages
+                    .extend(self.remark(Category::Worldmaker, Level::Info, said, time));
+                for said in remarks {
+                    received
+                        .messages
+                        .extend(self.remark(Category::Worldmaker, Level::Warning, said, time));
+                }
+                Ok(OK)
+            }
+            "get_observers" => Ok(Answer::Say("observer_list", Some(json!({ "state": PARTS })))),
+            "set_active_observers" => {
+                self.watched = parts(message)?;
+                Ok(OK)
+            }
+            "save_screenshot" => screenshot(environment, message).map(Answer::Picture),
+            "get_debug_categories" => {
+                let all = Category::ALL
+                    .map(|category| json!({ "category": category.name(), "active": self.is_active(category) }));
+                Ok(Answer::Say("debug_categories", Some(json!(all))))
+            }
+            "set_debug_categories" => {
+                for (category, active) in categories(message)? {
+                    self.set_active(category, active);
+                }
+                Ok(OK)
+            }
+            other => Err(unknown("action", other, channel.actions())),
+        }
+    }
+
+    /// Hands back remarks on the new world.
+    fn reset(&mut self, environment: &mut Environment, message: &Message) -> Result<Vec<String>, Refusal> {
+        let payload = message.payload("a world as in L2Explorer's reset files")?;
+        let (world, warnings) =
+            World::from_l2explorer("payload", &payload.to_string()).map_err(|error| Refusal::of_document(&error))?;
+        let hash = world.hash();
+        environment
+            .reset(world)
+            .map_err(|error| Refusal::new(error.to_string()))?;
+        self.world = hash;
+        let own = environment.warnings().into_iter().map(|warning| warning.to_string());
+        Ok(warnings.iter().map(remark_of).chain(own).collect())
+    }
+
+    /// The parts of the world that are watched, as they are now. Objects that are gone are left out.
+    fn state(&self, environment: &Environment) -> Value {
+        let mut world = environment.state();
+        let mut present = environment.objects().iter().map(|object| object.present);
+        world.objects.retain(|_| present.next().unwrap_or(true));
+        let all = serde_json::to_value(&world).expect("a world has string keys only, which always serialise");
+        self.watched
+            .iter()
+            .map(|part| ((*part).to_owned(), all[*part].clone()))
+            .collect()
+    }
+
+    fn message(
+        &mut self,
+        channel: Channel,
+        action: &'static str,
+        payload: Option<Value>,
+        req_token: Option<String>,
+        time: &str,
+    ) -> Outgoing {
+        self.sent += 1;
+        // The hash has 64 digits, of which this takes 18: what UUID version 8 leaves free, but for the count.
+        let hash = &self.world;
+        let token = format!(
+            "{}-{}-8{}-8{}-{:012x}",
+            &hash[..8],
+            &hash[8..12],
+            &hash[12..15],
+            &hash[15..18],
+            self.sent & 0xffff_ffff_ffff
+        );
+        Outgoing {
+            channel,
+            action,
+            payload,
+            token,
+            req_token,
+            time: time.to_owned(),
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! L2Explorer's three channels of JSON messages: what a client asks of a running world, and what it is told. How messages
+//! travel, what time it is and where files go is the caller's: nothing here reads or writes anything.
+
+mod category;
+mod exchange;
+mod message;
+mod request;
+
+pub use category::{Category, Level};
+pub use exchange::{Channels, Received};
+pub use message::{MAX_MESSAGE_BYTES, Outgoing};
+pub use request::Screenshot;
+
+/// One of the three channels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Channel {
+    /// New worlds, and new objects in the world there is.
+    Reset,
+    /// Parts of the world, told at each step to who asked for them.
+    State,
+    /// Pictures, and remarks on what goes on.
+    Debug,
+}
+
+impl Channel {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Reset, Self::State, Self::Debug];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Reset => "Reset",
+            Self::State => "State",
+            Self::Debug => "Debug",
+        }
+    }
+
+    /// The identifier by which the original's client knows it.
+    pub fn guid(self) -> &'static str {
+        match self {
+            Self::Reset => "621f0a70-4f87-11ea-a6bf-784f4387d1f7",
+            Self::State => "37715121-3bce-45ff-966d-680586560a5d",
+            Self::Debug => "c5fba0b5-6392-4433-a95f-cdec6b0061e1",
+        }
+    }
+
+    /// What can be asked on it.
+    pub fn actions(self) -> &'static [&'static str] {
+        match self {
+            Self::Reset => &["reset_environment", "object_create"],
+            Self::State => &["get_observers", "set_active_observers"],
+            Self::Debug => &["save_screenshot", "get_debug_categories", "set_debug_categories"],
+        }
+    }
+
+    /// The channel of this name, in any case, or of this identifier.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let named = |channel: &Self| channel.name().eq_ignore_ascii_case(name) || channel.guid() == name.to_lowercase();
+        Self::ALL.into_iter().find(named)
+    }
+
+    /// The channel on which an action can be asked.
+    pub fn for_action(action: &str) -> Option<Self> {
+        let takes = |channel: &Self| channel.actions().contains(&action);
+        Self::ALL.into_iter().find(takes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn channels_are_known_by_name_identifier_and_action() {
+        for channel in Channel::ALL {
+            assert_eq!(Channel::from_name(&channel.name().to_uppercase()), Some(channel));
+            assert_eq!(Channel::from_name(channel.guid()), Some(channel));
+            for action in channel.actions() {
+                assert_eq!(Channel::for_action(action), Some(channel));
+            }
+        }
+        assert_eq!(Channel::from_name("Chat"), None);
+    }
+}

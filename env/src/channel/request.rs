@@ -1,0 +1,132 @@
+//! What the payloads of messages ask for: objects, parts to watch, pictures, categories. Doing it is in `exchange.rs`.
+
+use driftworld_spec::Object;
+use serde_json::Value;
+
+use super::category::Category;
+use super::message::{Message, Refusal, kind, unknown};
+use crate::Environment;
+
+/// The parts of a world that a client can watch.
+pub(super) const PARTS: [&str; 4] = ["agent_params", "environment_params", "objects", "game_mode"];
+
+/// The longest side of a screenshot in pixels.
+const LONGEST_SIDE: u32 = 4096;
+
+/// A picture that a client asks for: what the agent sees now, in colour.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Screenshot {
+    /// The name that the client wants; the caller decides where, and whether, such a file may be.
+    pub filename: String,
+    /// Width in pixels, at most 4096.
+    pub width: u32,
+    /// Height in pixels, at most 4096.
+    pub height: u32,
+    /// The message that asked.
+    pub(super) token: Option<String>,
+}
+
+/// A warning without its place in our own copy of the text.
+pub(super) fn remark_of(warning: &driftworld_spec::Warning) -> String {
+    format!("({}): {}", warning.pointer, warning.text)
+}
+
+/// Puts an object into the world; hands back its index, and remarks on it.
+pub(super) fn create(environment: &mut Environment, message: &Message) -> Result<(usize, Vec<String>), Refusal> {
+    let payload = message.payload("an object as in L2Explorer's reset files")?;
+    let (mut object, warnings) =
+        Object::from_l2explorer("payload", &payload.to_string()).map_err(|error| Refusal::of_document(&error))?;
+    match message.all.get("unique_name") {
+        None | Some(Value::Null) => {}
+        Some(Value::String(name)) => object.unique_name = Some(name.clone()),
+        Some(other) => {
+            return Err(Refusal::new(format!(
+                "unique_name: found {}, expected a text",
+                kind(other)
+            )));
+        }
+    }
+    let index = environment
+        .spawn(object)
+        .map_err(|error| Refusal::new(error.to_string()))?;
+    Ok((index, warnings.iter().map(remark_of).collect()))
+}
+
+/// The parts that `set_active_observers` names: in its payload, or beside its action.
+pub(super) fn parts(message: &Message) -> Result<Vec<&'static str>, Refusal> {
+    let own = message.payload.as_ref().and_then(|payload| payload.get("state"));
+    let beside = own.or(message.all.get("state"));
+    let Some(list) = beside.or(message.payload.as_ref().filter(|payload| payload.is_array())) else {
+        return Err(Refusal::new(
+            "payload: found no state, expected a list of parts of the world",
+        ));
+    };
+    let Value::Array(names) = list else {
+        return Err(Refusal::new(format!("state: found {}, expected a list", kind(list))));
+    };
+    let part = |name: &Value| {
+        let Some(name) = name.as_str() else {
+            return Err(Refusal::new(format!("state: found {}, expected texts", kind(name))));
+        };
+        let known = PARTS.into_iter().find(|part| part.eq_ignore_ascii_case(name));
+        known.ok_or_else(|| unknown("state", name, &PARTS))
+    };
+    let mut found = names.iter().map(part).collect::<Result<Vec<_>, _>>()?;
+    found.sort_unstable();
+    found.dedup();
+    Ok(found)
+}
+
+pub(super) fn screenshot(environment: &Environment, message: &Message) -> Result<Screenshot, Refusal> {
+    let payload = message.payload("a filename")?;
+    let Some(filename) = payload.get("filename").and_then(Value::as_str) else {
+        return Err(Refusal::new(
+            "payload/filename: found no text, expected the name of a PNG file",
+        ));
+    };
+    let [width, height] = environment.world().agent_params.picture_size();
+    let most = LONGEST_SIDE / width.max(height);
+    let factor = match payload.get("upscale_factor") {
+        None | Some(Value::Null) => 1.0,
+        Some(factor) => factor.as_f64().unwrap_or(f64::NAN),
+    };
+    if factor.fract() != 0.0 || !(1.0..=f64::from(most)).contains(&factor) {
+        return Err(Refusal::new(format!(
+            "payload/upscale_factor: expected a whole number from 1 to {most}, so that no side is longer than {LONGEST_SIDE} pixels"
+        )));
+    }
+    let factor = factor as u32;
+    Ok(Screenshot {
+        filename: filename.to_owned(),
+        width: width * factor,
+        height: height * factor,
+        token: None,
+    })
+}
+
+/// What `set_debug_categories` asks for; all of it is sound, or none is taken.
+pub(super) fn categories(message: &Message) -> Result<Vec<(Category, bool)>, Refusal> {
+    let payload = message.payload("a list of {category, active}")?;
+    let list = match payload {
+        Value::Array(list) => list.as_slice(),
+        single @ Value::Object(_) => std::slice::from_ref(single),
+        other => {
+            return Err(Refusal::new(format!(
+                "payload: found {}, expected a list of {{category, active}}",
+                kind(other)
+            )));
+        }
+    };
+    let one = |entry: &Value| {
+        let (name, active) = (entry.get("category").and_then(Value::as_str), entry.get("active"));
+        let (Some(name), Some(Value::Bool(active))) = (name, active) else {
+            return Err(Refusal::new(
+                "payload: expected entries such as {\"category\": \"agent\", \"active\": true}",
+            ));
+        };
+        let names = Category::ALL.map(Category::name);
+        let category = Category::from_name(name).ok_or_else(|| unknown("category", name, &names))?;
+        Ok((category, *active))
+    };
+    list.iter().map(one).collect()
+}

@@ -1,0 +1,344 @@
+//! Photographs of a world's objects, one at a time, from around and above: what `collect_images` asks for. Files, and how
+//! pictures are written into them, are the caller's.
+
+use driftworld_spec::{EnvironmentParams, World};
+
+use crate::EnvError;
+use crate::camera::Camera;
+use crate::render::{CpuRenderer, Target};
+use crate::scene::{Item, Scene};
+use crate::vector::{add, scaled};
+
+/// The most photographs of one world: so many that object numbers fit into 16-bit images.
+pub const MAX_PHOTOGRAPHS: usize = 50_000;
+
+/// How far the sun stands from the camera, in degrees to the photographer's left, and how high.
+const SUN: [f32; 2] = [35.0, 50.0];
+
+/// One view of one object.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Photograph {
+    /// Index of the object in the world.
+    pub object: usize,
+    /// Where the camera stands around the object, in degrees clockwise from where the object faces, 0..360: 0 shows its
+    /// front, 90 its right side.
+    pub yaw_deg: f32,
+    /// How high the camera stands above the level of the object's middle, in degrees, 0..=90: 90 looks straight down.
+    pub elevation_deg: f32,
+    /// From the camera to the object's middle in metres.
+    pub distance: f32,
+}
+
+/// A place where the objects of a world are photographed one by one.
+///
+/// Each object stands alone on a ground of the world's colour under a sky of the world's colour, without walls and fog. It
+/// is full daylight, whatever the world's light is, with the sun behind the photographer's left shoulder: no view is of a
+/// shaded side. The same object gives the same pixels wherever it stands and faces in the world.
+///
+/// # Example
+/// ```
+/// use driftworld_env::Studio;
+/// use driftworld_spec::{ImageParams, Object, World};
+/// let world = World {
+///     image_params: Some(ImageParams { zoom: 1.5, yaw_subdivisions: 4, vertical_subdivisions: 3 }),
+///     objects: vec![Object::new("barrel", [3.0, 4.0])],
+///     ..World::default()
+/// };
+/// let photographs = Studio::new(&world)?.photographs();
+/// assert_eq!(photographs.len(), 12);
+/// assert_eq!((photographs[5].yaw_deg, photographs[5].elevation_deg), (90.0, 45.0));
+/// # Ok::<(), driftworld_env::EnvError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Studio {
+    scene: Scene,
+    renderer: CpuRenderer,
+    zoom: f32,
+    yaws: u32,
+    elevations: u32,
+    size: [u32; 2],
+    supersampling: u32,
+    field_of_view_deg: f32,
+}
+
+impl Studio {
+    /// A studio for a world's objects, by the world's `image_params`; where it has none, by their defaults.
+    ///
+    /// # Errors
+    /// [`EnvError::TooManyPhotographs`] for more than [`MAX_PHOTOGRAPHS`].
+    pub fn new(world: &World) -> Result<Self, EnvError> {
+        let image = world.image_params.clone().unwrap_or_default();
+        let views = image.yaw_subdivisions as usize * image.vertical_subdivisions as usize;
+        let objects = world.objects.len();
+        if objects.saturating_mul(views) > MAX_PHOTOGRAPHS {
+            return Err(EnvError::TooManyPhotographs {
+                objects,
+                views,
+                most: MAX_PHOTOGRAPHS,
+            });
+        }
+        let mut scene = Scene::from_world(&World {
+            environment_params: backdrop(&world.environment_params),
+            objects: world.objects.clone(),
+            ..World::default()
+        });
+        for item in &mut scene.items {
+            (item.position, item.heading_deg, item.visible) = ([0.0; 2], 0.0, false);
+        }
+        Ok(Self {
+            scene,
+            renderer: CpuRenderer::new(),
+            zoom: image.zoom as f32,
+            yaws: image.yaw_subdivisions,
+            elevations: image.vertical_subdivisions,
+            size: world.agent_params.picture_size(),
+            supersampling: world.agent_params.supersampling,
+            field_of_view_deg: world.agent_params.field_of_view as f32,
+        })
+    }
+
+    /// Width and height of the photographs in pixels: those of the world's observations.
+    pub fn picture_size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Points per pixel along each side that colours are the mean of, as the world asks for.
+    pub fn supersampling(&self) -> u32 {
+        self.supersampling
+    }
+
+    /// All photographs: object by object, from the side up to the top, each time once around.
+    ///
+    /// Yaws are the full circle in `yaw_subdivisions` equal parts, from the front on. The first elevation is 0 and the last
+    /// of several 90 degrees.
+    pub fn photographs(&self) -> Vec<Photograph> {
+        let mut photographs = Vec::with_capacity(self.scene.items.len() * (self.yaws * self.elevations) as usize);
+        for (object, item) in self.scene.items.iter().enumerate() {
+            let distance = self.distance(item);
+            for up in 0..self.elevations {
+                let elevation_deg = 90.0 * up as f32 / (self.elevations - 1).max(1) as f32;
+                photographs.extend((0..self.yaws).map(|around| Photograph {
+                    object,
+                    yaw_deg: 360.0 * around as f32 / self.yaws as f32,
+                    elevation_deg,
+                    distance,
+                }));
+            }
+        }
+        photographs
+    }
+
+    /// How far the camera stands from an object's middle: `zoom` times as far as that the ball around it just fits.
+    fn distance(&self, item: &Item) -> f32 {
+        let [width, height] = self.size.map(|pixels| pixels as f32);
+        let half = (self.field_of_view_deg.clamp(1.0, 170.0) / 2.0).to_radians();
+        let tangent = libm::sinf(half) / libm::cosf(half) * (width / height).min(1.0);
+        let sine = tangent / (1.0 + tangent * tangent).sqrt();
+        self.zoom * item.asset.ball_radius() * item.scale / sine
+    }
+
+    /// The camera of a photograph. The object stands at the origin and faces along +y.
+    ///
+    /// # Errors
+    /// [`EnvError::NoSuchObject`].
+    pub fn camera(&self, photograph: &Photograph) -> Result<Camera, EnvError> {
+        let item = self.item(photograph)?;
+        let middle = [0.0, 0.0, item.asset.height * item.scale / 2.0];
+        let towards_camera = direction(photograph.yaw_deg, photograph.elevation_deg);
+        Ok(Camera {
+            position: add(middle, scaled(towards_camera, photograph.distance)),
+            heading_deg: photograph.yaw_deg + 180.0,
+            pitch_deg: -photograph.elevation_deg,
+            field_of_view_deg: self.field_of_view_deg,
+        })
+    }
+
+    /// Takes a photograph: fills the images that the target asks for. Class and object numbers are those of the world.
+    ///
+    /// # Errors
+    /// [`EnvError::NoSuchObject`]; [`EnvError::PictureSize`] as for [`CpuRenderer::draw`].
+    pub fn take(&mut self, photograph: &Photograph, target: &mut Target<'_>) -> Result<(), EnvError> {
+        let camera = self.camera(photograph)?;
+        self.scene.light.direction = direction(photograph.yaw_deg + SUN[0], SUN[1]);
+        self.scene.items[photograph.object].visible = true;
+        let drawn = self.renderer.draw(&self.scene, &camera, target);
+        self.scene.items[photograph.object].visible = false;
+        drawn
+    }
+
+    fn item(&self, photograph: &Photograph) -> Result<&Item, EnvError> {
+        let count = self.scene.items.len();
+        let found = photograph.object;
+        self.scene
+            .items
+            .get(found)
+            .ok_or(EnvError::NoSuchObject { found, count })
+    }
+}
+
+/// The arena without all that could stand in the way, in full daylight.
+fn backdrop(environment: &EnvironmentParams) -> EnvironmentParams {
+    EnvironmentParams {
+        ground_color: environment.ground_color,
+        sky_color: environment.sky_color,
+        wall_height: 0.0,
+        ..EnvironmentParams::default()
+    }
+}
+
+/// A direction in space, of length 1, from its degrees clockwise from +y and its degrees above the horizon.
+fn direction(heading_deg: f32, elevation_deg: f32) -> [f32; 3] {
+    let (heading, elevation) = (heading_deg.to_radians(), elevation_deg.to_radians());
+    let level = libm::cosf(elevation);
+    [
+        libm::sinf(heading) * level,
+        libm::cosf(heading) * level,
+        libm::sinf(elevation),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::{CATEGORY_POSITIVE, Frame};
+    use driftworld_spec::{ImageParams, Object};
+
+    fn world(zoom: f64, yaws: u32, elevations: u32, objects: Vec<Object>) -> World {
+        World {
+            image_params: Some(ImageParams {
+                zoom,
+                yaw_subdivisions: yaws,
+                vertical_subdivisions: elevations,
+            }),
+            objects,
+            ..World::default()
+        }
+    }
+
+    fn take(studio: &mut Studio, photograph: &Photograph) -> Frame {
+        let [width, height] = studio.picture_size();
+        let mut frame = Frame::new(width, height);
+        studio
+            .take(photograph, &mut frame.target())
+            .expect("the photograph is one of this studio");
+        frame
+    }
+
+    /// Pixels of the object, and whether none of them is at the picture's rim.
+    fn subject(frame: &Frame) -> (usize, bool) {
+        let (width, height) = (frame.width as usize, frame.height as usize);
+        let is_rim = |at: usize| {
+            let (x, y) = (at % width, at / width);
+            x == 0 || y == 0 || x == width - 1 || y == height - 1
+        };
+        let seen: Vec<usize> = (0..frame.instance.len()).filter(|at| frame.instance[*at] > 0).collect();
+        (seen.len(), !seen.iter().any(|at| is_rim(*at)))
+    }
+
+    #[test]
+    fn every_known_asset_is_in_the_picture_whole_from_everywhere() {
+        let objects = crate::classes()
+            .map(|(class, _)| {
+                let mut object = Object::new(class, [-20.0, 30.0]);
+                object.scale = 3.0;
+                object
+            })
+            .collect();
+        for (width, field_of_view) in [(None, 60.0), (Some(40), 100.0), (Some(160), 20.0)] {
+            let mut world = world(1.05, 3, 3, Vec::clone(&objects));
+            world.agent_params.observation_width = width;
+            world.agent_params.field_of_view = field_of_view;
+            let mut studio = Studio::new(&world).expect("there are few photographs");
+            for photograph in studio.photographs() {
+                let (pixels, whole) = subject(&take(&mut studio, &photograph));
+                let class = &world.objects[photograph.object].class;
+                assert!(pixels > 20 && whole, "{class} {photograph:?}: {pixels} pixels");
+            }
+        }
+    }
+
+    #[test]
+    fn twice_the_zoom_is_twice_the_distance_and_about_a_quarter_of_the_pixels() {
+        let pixels = |zoom: f64| {
+            let mut studio =
+                Studio::new(&world(zoom, 1, 1, vec![Object::new("cube", [0.0, 0.0])])).expect("one photograph");
+            let photograph = studio.photographs()[0];
+            (photograph.distance, subject(&take(&mut studio, &photograph)).0 as f32)
+        };
+        let ((near, large), (far, small)) = (pixels(2.0), pixels(4.0));
+        assert_eq!(far, 2.0 * near);
+        assert!((3.0..5.5).contains(&(large / small)), "{large} and {small}");
+    }
+
+    #[test]
+    fn yaw_0_shows_the_front_and_90_the_right_side() {
+        let studio = Studio::new(&world(2.0, 4, 2, vec![Object::new("car", [0.0, 0.0])])).expect("eight photographs");
+        let all = studio.photographs();
+        let place = |index: usize| studio.camera(&all[index]).expect("it is of this studio").position;
+        assert!(place(0)[1] > 1.0 && place(0)[0].abs() < 1e-3, "{:?}", place(0));
+        assert!(place(1)[0] > 1.0 && place(1)[1].abs() < 1e-3, "{:?}", place(1));
+        let above = place(4);
+        assert!(above[2] > 1.0 && above[0].abs().max(above[1].abs()) < 1e-3, "{above:?}");
+    }
+
+    #[test]
+    fn an_object_looks_the_same_wherever_it_stands_and_whatever_is_around_it() {
+        let mut car = Object::new("car", [0.0, 0.0]);
+        car.reward = 1.0;
+        let mut other = car.clone();
+        (other.coordinates, other.heading) = ([40.0, -3.0], 77.0);
+        let mut alone = Studio::new(&world(2.0, 5, 2, vec![car])).expect("few photographs");
+        let mut crowd = world(2.0, 5, 2, vec![Object::new("building", [40.0, -3.0]), other]);
+        crowd.environment_params.predefined_map = 2;
+        crowd.environment_params.light_intensity = 0.1;
+        crowd.environment_params.fog_distance = Some(1.0);
+        let mut crowd = Studio::new(&crowd).expect("few photographs");
+        let (all, of_two) = (alone.photographs(), crowd.photographs());
+        for (photograph, same) in all.iter().zip(&of_two[10..]) {
+            let (one, two) = (take(&mut alone, photograph), take(&mut crowd, same));
+            assert_eq!(
+                (&one.rgb, &one.depth, &one.category),
+                (&two.rgb, &two.depth, &two.category)
+            );
+            assert!(one.category.contains(&CATEGORY_POSITIVE));
+            assert!(
+                two.instance.iter().all(|id| [0, 2].contains(id)),
+                "numbers are the world's"
+            );
+            assert!(two.class.contains(&2) && !two.class.contains(&1));
+        }
+    }
+
+    #[test]
+    fn no_view_is_of_a_shaded_side() {
+        let mut ball = Object::new("icosphere", [0.0, 0.0]);
+        ball.color = driftworld_spec::Color::from_name("white");
+        let mut studio = Studio::new(&world(1.5, 8, 1, vec![ball])).expect("eight photographs");
+        for photograph in studio.photographs() {
+            let frame = take(&mut studio, &photograph);
+            let middle = 3 * (42 * 84 + 42);
+            assert!(frame.rgb[middle] > 150, "{photograph:?}: {}", frame.rgb[middle]);
+        }
+    }
+
+    #[test]
+    fn a_world_for_photographs_says_so_when_it_runs() {
+        let world = World {
+            game_mode: driftworld_spec::GameMode::CollectImages,
+            ..World::default()
+        };
+        let warnings = crate::Environment::new(world)
+            .expect("every checked world starts")
+            .warnings();
+        assert_eq!(warnings, [crate::Warning::ForPhotographs]);
+        assert!(warnings[0].to_string().contains("driftworld photograph"));
+    }
+
+    #[test]
+    fn more_photographs_than_there_may_be_are_refused_before_any_is_taken() {
+        let objects = vec![Object::new("cube", [0.0, 0.0]); 100];
+        assert!(Studio::new(&world(2.0, 100, 5, objects.clone())).is_ok());
+        let error = Studio::new(&world(2.0, 100, 6, objects)).expect_err("60 000 are too many");
+        assert_eq!(error.code(), "env/too-many-photographs");
+    }
+}

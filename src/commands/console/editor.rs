@@ -1,0 +1,142 @@
+//! Editing lines on a terminal: history and completion. What a line says is in `line.rs`.
+
+use driftworld::env::Category;
+use rustyline::completion::Completer;
+use rustyline::error::ReadlineError;
+use rustyline::highlight::Highlighter;
+use rustyline::hint::Hinter;
+use rustyline::history::MemHistory;
+use rustyline::validate::Validator;
+use rustyline::{Config, Context, Helper};
+
+use super::super::Failure;
+use super::super::modality::Kind;
+use super::line::COMMANDS;
+
+/// Names that the world gives at this moment.
+#[derive(Default)]
+pub(super) struct Names {
+    pub(super) objects: Vec<String>,
+    pub(super) snapshots: Vec<String>,
+}
+
+/// Reads lines from a terminal.
+pub(super) struct Editor(rustyline::Editor<Words, MemHistory>);
+
+impl Editor {
+    pub(super) fn new() -> Result<Self, Failure> {
+        let config = Config::builder().auto_add_history(true).build();
+        let mut editor = rustyline::Editor::with_history(config.clone(), MemHistory::with_config(&config))?;
+        editor.set_helper(Some(Words(Names::default())));
+        Ok(Self(editor))
+    }
+
+    /// The next line that is neither empty nor a comment; none when the user leaves. Ctrl-C drops the line.
+    pub(super) fn read(&mut self, names: Names) -> Result<Option<String>, Failure> {
+        self.0.set_helper(Some(Words(names)));
+        loop {
+            match self.0.readline("driftworld> ") {
+                Ok(line) if line.trim().is_empty() || line.trim_start().starts_with('#') => {}
+                Ok(line) => return Ok(Some(line)),
+                Err(ReadlineError::Interrupted) => {}
+                Err(ReadlineError::Eof) => return Ok(None),
+                Err(error) => return Err(Failure::input(format!("terminal: {error}"))),
+            }
+        }
+    }
+}
+
+/// What Tab completes.
+struct Words(Names);
+
+impl Words {
+    /// The words that may stand behind those that are there already.
+    fn after(&self, before: &[&str]) -> Vec<String> {
+        let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+        let modalities = || Kind::ALL.map(|kind| kind.name().to_owned());
+        match before {
+            [] | ["help"] => COMMANDS.map(|(name, _, _)| name.to_owned()).into(),
+            ["show"] => modalities().into(),
+            ["screenshot", _] => modalities().into_iter().chain(["map".to_owned()]).collect(),
+            ["log"] => Category::ALL.map(|category| category.name().to_owned()).into(),
+            ["log", _] => owned(&["on", "off"]),
+            ["state"] => owned(&["--json"]),
+            ["action"] => owned(&["-c", "-a"]),
+            ["destroy"] => self.0.objects.clone(),
+            ["restore" | "snapshot"] => self.0.snapshots.clone(),
+            ["spawn"] => driftworld::env::classes().map(|(class, _)| class.to_owned()).collect(),
+            ["spawn", _, _, _, ..] => owned(&[
+                "color=",
+                "destroy_stimulus=",
+                "heading=",
+                "model=",
+                "motion_model=",
+                "reward=",
+                "reward_stimulus=",
+                "scale=",
+                "solid=",
+                "speed=",
+                "tag=",
+                "unique_name=",
+            ]),
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl Completer for Words {
+    type Candidate = String;
+
+    fn complete(&self, line: &str, pos: usize, _: &Context<'_>) -> rustyline::Result<(usize, Vec<String>)> {
+        let line = &line[..pos];
+        let start = line.rfind(char::is_whitespace).map_or(0, |at| at + 1);
+        let before: Vec<&str> = line[..start].split_whitespace().collect();
+        let mut words = self.after(&before);
+        words.retain(|word| word.starts_with(&line[start..]));
+        // What is complete is followed by the next word; a key, by its value.
+        if let [only] = &mut words[..]
+            && !only.ends_with('=')
+        {
+            only.push(' ');
+        }
+        Ok((start, words))
+    }
+}
+
+impl Hinter for Words {
+    type Hint = String;
+}
+
+impl Highlighter for Words {}
+
+impl Validator for Words {}
+
+impl Helper for Words {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_completed_by_what_stands_before_them() {
+        let check = |line: &str, expected: &[&str]| {
+            let words = Words(Names {
+                objects: vec!["oak".to_owned()],
+                snapshots: vec!["before".to_owned()],
+            });
+            let history = MemHistory::new();
+            let found = words
+                .complete(line, line.len(), &Context::new(&history))
+                .expect("there is no way to fail");
+            assert_eq!(found.1, expected, "{line}");
+        };
+        check("sta", &["state "]);
+        check("show d", &["depth "]);
+        check("log academy o", &["on", "off"]);
+        check("destroy o", &["oak "]);
+        check("restore ", &["before "]);
+        check("spawn bar", &["barrel "]);
+        check("spawn barrel 1 2 uni", &["unique_name="]);
+        check("info x", &[]);
+    }
+}

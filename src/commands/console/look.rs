@@ -1,0 +1,87 @@
+//! Pictures of a running world: shown in the terminal, or kept in files. How letters and colours are chosen is in
+//! `screen.rs` and `map.rs`.
+
+use driftworld::env::{Frame, Image, top_down};
+
+use super::super::modality::Kind;
+use super::super::modality::target;
+use super::super::pictures;
+use super::line::Picture;
+use super::map;
+use super::screen::{colors, half_blocks, letters};
+use super::session::{Session, plain, said};
+
+/// How many metres a level of a depth image stands for.
+const METRES_PER_LEVEL: f32 = 0.01;
+
+impl Session<'_> {
+    /// What the agent sees, with colours smooth as the world asks for.
+    fn seen(&mut self, kind: Kind, [width, height]: [u32; 2]) -> Result<Frame, String> {
+        if !(1..=4096).contains(&width) || !(1..=4096).contains(&height) {
+            return Err(format!("found {width} × {height} pixels, expected 1 to 4096 each way"));
+        }
+        let wanted = self.environment.world().agent_params.supersampling;
+        // A picture with too many points for its smoothness is drawn less smooth.
+        let samples = (1..=wanted).rev().find(|samples| width.max(height) * samples <= 8192);
+        let mut frame = Frame::new(width, height);
+        let mut target = target(&mut frame, &[kind], samples.unwrap_or(1));
+        let camera = self.environment.camera();
+        self.renderer
+            .draw(self.environment.scene(), &camera, &mut target)
+            .map_err(plain)?;
+        Ok(frame)
+    }
+
+    /// The map, with the agent on it.
+    fn bird_view(&self, width: u32, height: u32) -> Image {
+        let agent = self.environment.agent();
+        let agent = Some((agent.position, agent.heading_deg));
+        top_down(self.environment.scene(), width, height, agent)
+    }
+
+    pub(super) fn show(&mut self, picture: Picture, columns: Option<u32>) -> Result<String, String> {
+        let [width, height] = match picture {
+            Picture::Seen(_) => self.environment.world().agent_params.picture_size(),
+            Picture::Map => [1, 1],
+        };
+        let size = self.screen.size(width as f32 / height as f32, columns);
+        Ok(match (picture, self.screen.colors) {
+            (Picture::Map, true) => half_blocks(size[0], &self.bird_view(size[0], size[1]).rgb),
+            (Picture::Map, false) => map::letters(&self.environment, size[0]),
+            (Picture::Seen(kind), true) => half_blocks(size[0], &colors(&self.seen(kind, size)?, kind)),
+            (Picture::Seen(kind), false) => letters(&self.seen(kind, size)?, kind),
+        })
+    }
+
+    pub(super) fn screenshot(
+        &mut self,
+        file: &str,
+        picture: Picture,
+        size: Option<[u32; 2]>,
+    ) -> Result<String, String> {
+        let own = self.environment.world().agent_params.picture_size();
+        let size = size.unwrap_or(match picture {
+            Picture::Map => [480, 480],
+            Picture::Seen(_) => own,
+        });
+        let bytes = match picture {
+            Picture::Seen(kind) => kind.to_png(&self.seen(kind, size)?, METRES_PER_LEVEL).map_err(said)?,
+            Picture::Map if size.iter().all(|side| (1..=4096).contains(side)) => {
+                let Image { width, height, rgb } = self.bird_view(size[0], size[1]);
+                pictures::Picture { width, height, rgb }.to_png().map_err(said)?
+            }
+            Picture::Map => {
+                return Err(format!(
+                    "found {} × {} pixels, expected 1 to 4096 each way",
+                    size[0], size[1]
+                ));
+            }
+        };
+        let path = self.folder.write(file, "png", &bytes)?;
+        let unit = match picture {
+            Picture::Seen(Kind::Depth) => ", 1 cm a level",
+            _ => "",
+        };
+        Ok(format!("{}: {} × {} pixels{unit}", path.display(), size[0], size[1]))
+    }
+}

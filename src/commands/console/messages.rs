@@ -1,0 +1,129 @@
+//! Messages of L2Explorer's channels in the console: which texts hold messages, and how answers are shown. What they do is
+//! decided in `env`.
+
+use std::path::Path;
+
+use driftworld::env::{Channel, Outgoing};
+use driftworld::spec::nearest;
+use serde_json::Value;
+
+use super::super::input;
+use super::super::modality::Kind;
+use super::line::Picture;
+use super::session::{Session, said};
+
+/// The longest message that is shown whole, in characters.
+const LONGEST: usize = 600;
+
+impl Session<'_> {
+    /// Sends the messages of a text, or of the file that it names.
+    pub(super) fn send(&mut self, text: &str) -> Result<String, String> {
+        let inline = text.starts_with(['{', '[']);
+        let read = if inline {
+            Ok(text.to_owned())
+        } else {
+            input::text(Path::new(text))
+        };
+        let (mut lines, mut refused) = (Vec::new(), None);
+        for (channel, message) in messages(&read.map_err(said)?) {
+            let time = self.time();
+            let received = self.channels.receive(&mut self.environment, channel, &message, &time);
+            if received.reset {
+                self.start = self.environment.world().clone();
+            }
+            let mut answers = received.messages;
+            if let Some(picture) = received.screenshot {
+                let size = Some([picture.width, picture.height]);
+                let written = self.screenshot(&picture.filename, Picture::Seen(Kind::Rgb), size);
+                lines.extend(written.iter().cloned());
+                answers.push(self.channels.answer_screenshot(&picture, written.map(drop), &time));
+            }
+            lines.extend(answers.iter().map(shown));
+            refused = refused.or(answers.iter().find_map(refusal));
+        }
+        match refused {
+            None => Ok(lines.join("\n")),
+            // The answers that were no errors are said all the same.
+            Some(text) => Err(format!("{text}\n{}", lines.join("\n"))),
+        }
+    }
+}
+
+/// Why a message was refused, if this says so.
+fn refusal(answer: &Outgoing) -> Option<String> {
+    let texts = answer
+        .payload
+        .as_ref()
+        .filter(|_| answer.action == "error")?
+        .as_array()?;
+    let texts: Vec<&str> = texts.iter().filter_map(|text| text.as_str()).collect();
+    Some(format!("the message was refused: {}", texts.join("; ")))
+}
+
+/// The messages of a text: one message, one with its channel (`{"channel", "message"}`), or a list of these under `tests`.
+///
+/// A message without a channel goes where its action can be asked. What is no message is handed on as it is, to be refused.
+fn messages(text: &str) -> Vec<(Channel, String)> {
+    let Ok(mut json) = serde_json::from_str::<Value>(text) else {
+        return vec![(Channel::Reset, text.to_owned())];
+    };
+    match json.get_mut("tests").map(Value::take) {
+        Some(Value::Array(list)) => list.into_iter().map(message).collect(),
+        _ => vec![message(json)],
+    }
+}
+
+fn message(mut json: Value) -> (Channel, String) {
+    let named = json.get("channel").and_then(Value::as_str).and_then(Channel::from_name);
+    let json = match json.get_mut("message") {
+        Some(inner) => inner.take(),
+        None => json,
+    };
+    let action = json.get("action").and_then(Value::as_str).unwrap_or_default();
+    let action = action.trim().to_lowercase();
+    // A misspelt action goes where it was meant to go, so that the answer can say how it is spelt.
+    let meant = || nearest(&action, Channel::ALL.into_iter().flat_map(Channel::actions));
+    let channel = named
+        .or_else(|| Channel::for_action(&action))
+        .or_else(|| Channel::for_action(&meant()?));
+    (channel.unwrap_or(Channel::Reset), json.to_string())
+}
+
+/// A message to the client as a line: remarks as text, all else as JSON behind its channel.
+pub(super) fn shown(message: &Outgoing) -> String {
+    if let ("debug_message", Some(payload)) = (message.action, &message.payload) {
+        let field = |key: &str| payload[key].as_str().unwrap_or_default();
+        return format!("[{}] {}: {}", field("category"), field("level"), field("message"));
+    }
+    let json = message.to_json();
+    let length = json.chars().count();
+    if length <= LONGEST {
+        return format!("<- {} {json}", message.channel.name());
+    }
+    let first: String = json.chars().take(LONGEST).collect();
+    format!("<- {} {first}… ({length} characters in all)", message.channel.name())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_find_their_channel() {
+        let check = |text: &str, expected: &[Channel]| {
+            let found: Vec<Channel> = messages(text).into_iter().map(|(channel, _)| channel).collect();
+            assert_eq!(found, expected, "{text}");
+        };
+        check(r#"{ "action": "Get_Observers" }"#, &[Channel::State]);
+        check(
+            r#"{ "channel": "debug", "message": { "action": "get_observers" } }"#,
+            &[Channel::Debug],
+        );
+        check(
+            r#"{ "tests": [{ "action": "save_screenshot" }, { "channel": "State", "message": {} }] }"#,
+            &[Channel::Debug, Channel::State],
+        );
+        check("no JSON", &[Channel::Reset]);
+        check("3", &[Channel::Reset]);
+    }
+}

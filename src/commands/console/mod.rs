@@ -1,0 +1,146 @@
+//! `driftworld console`: a running world by hand. Lines come from a terminal, a pipe or a script, and are read here; what
+//! they say is in `line.rs`, what is done in `session.rs`.
+
+mod editor;
+mod line;
+mod look;
+mod map;
+mod messages;
+mod place;
+mod report;
+mod screen;
+mod session;
+
+use std::io::{BufRead, IsTerminal, Read};
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::input::{self, WorldChoice};
+use super::{Failure, output};
+use editor::Editor;
+use screen::Screen;
+use session::{Reply, Session};
+
+/// The longest line that is read, in bytes: a message may hold a whole world.
+const LONGEST_LINE: u64 = 64 << 20;
+
+/// Step through a world by hand: act, look, change it, send it messages.
+///
+/// On a terminal, lines can be edited, called back and completed (Tab). From a pipe or a script, each line is a command, `#`
+/// begins a comment, each command is shown before its answer, and the first error ends with exit code 1.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld console find_objects#red --seed 7
+  driftworld console world.json --script tour.txt --out pictures
+  printf 'step 10 2 0 0\\nobjects\\n' | driftworld console find_objects
+
+Type help for the commands.")]
+pub(crate) struct Console {
+    #[command(flatten)]
+    choice: WorldChoice,
+    /// Read commands from this file.
+    #[arg(long, value_name = "FILE")]
+    script: Option<PathBuf>,
+    /// Go on after an error of a script or a pipe; the exit code is 1 all the same.
+    #[arg(long)]
+    keep_going: bool,
+    /// The folder that screenshots and states are written into, and nowhere else.
+    #[arg(long, default_value = "console-out", value_name = "FOLDER")]
+    out: PathBuf,
+}
+
+impl Console {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let script = match &self.script {
+            Some(path) => Some((path, input::text(path)?)),
+            None => None,
+        };
+        let world = self.choice.world()?;
+        let mut session = Session::new(&self.choice, world, &self.out, Screen::of_this_terminal())?;
+        output::line(session.greeting())?;
+        if let Some((path, text)) = script {
+            let lines = text.lines().map(|line| Ok(line.to_owned()));
+            return self.follow(&mut session, &path.display().to_string(), lines);
+        }
+        if std::io::stdin().is_terminal() {
+            return converse(&mut session);
+        }
+        self.follow(&mut session, "standard input", lines_of_standard_input())
+    }
+
+    /// Carries out lines that nobody edits.
+    fn follow(
+        &self,
+        session: &mut Session,
+        name: &str,
+        lines: impl Iterator<Item = Result<String, Failure>>,
+    ) -> Result<(), Failure> {
+        let mut failed = 0;
+        for (number, line) in lines.enumerate() {
+            let line = line?;
+            let line = line.trim();
+            if line.is_empty() || line.starts_with('#') {
+                continue;
+            }
+            output::line(format!("> {line}"))?;
+            match session.execute(line) {
+                Ok(Reply::Said(text)) => say(&text)?,
+                Ok(Reply::Quit) => break,
+                Err(text) => {
+                    output::line(format!("error: {text}"))?;
+                    failed += 1;
+                    if !self.keep_going {
+                        return Err(Failure::input(format!("{name}:{}: {text}", number + 1)));
+                    }
+                }
+            }
+        }
+        if failed > 0 {
+            return Err(Failure::input(format!("{name}: {failed} commands failed")));
+        }
+        Ok(())
+    }
+}
+
+/// Carries out lines from a terminal until its user leaves.
+fn converse(session: &mut Session) -> Result<(), Failure> {
+    let mut editor = Editor::new()?;
+    while let Some(line) = editor.read(session.names())? {
+        match session.execute(&line) {
+            Ok(Reply::Said(text)) => say(&text)?,
+            Ok(Reply::Quit) => break,
+            Err(text) => output::line(format!("error: {text}"))?,
+        }
+    }
+    Ok(())
+}
+
+fn say(text: &str) -> Result<(), Failure> {
+    if text.is_empty() {
+        return Ok(());
+    }
+    output::line(text.trim_end_matches('\n'))
+}
+
+/// The lines of standard input, each as soon as it is there.
+fn lines_of_standard_input() -> impl Iterator<Item = Result<String, Failure>> {
+    let mut number = 0;
+    std::iter::from_fn(move || {
+        number += 1;
+        let failed = |what: String| Some(Err(Failure::input(format!("standard input:{number}: {what}"))));
+        let mut bytes = Vec::new();
+        let mut input = std::io::stdin().lock().take(LONGEST_LINE + 1);
+        match input.read_until(b'\n', &mut bytes) {
+            Ok(0) => None,
+            Ok(length) if length as u64 > LONGEST_LINE => {
+                failed(format!("found a longer line, expected at most {LONGEST_LINE} bytes"))
+            }
+            Ok(_) => match String::from_utf8(bytes) {
+                Ok(line) => Some(Ok(line)),
+                Err(_) => failed("the line is not UTF-8 text".to_owned()),
+            },
+            Err(error) => failed(format!("cannot be read: {error}")),
+        }
+    })
+}

@@ -1,0 +1,107 @@
+//! Where the console may write: inside one folder, whatever a name says. Writing itself is in `output.rs`.
+
+use std::path::{Component, Path, PathBuf};
+
+use super::super::Failure;
+use super::super::output;
+
+/// A folder for files that are named by commands and messages.
+pub(super) struct Folder(PathBuf);
+
+impl Folder {
+    pub(super) fn new(path: &Path) -> Self {
+        Self(path.to_owned())
+    }
+
+    /// Writes a file inside the folder, and hands back its path. The ending is added where it is missing.
+    pub(super) fn write(&self, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, String> {
+        let path = self.inside(name, ending)?;
+        output::write(&path, bytes).map_err(|failure| match failure {
+            Failure::Input(text) | Failure::Usage(text) => text,
+        })?;
+        Ok(path)
+    }
+
+    /// The path of a name, if it is inside and does not lead out by links.
+    fn inside(&self, name: &str, ending: &str) -> Result<PathBuf, String> {
+        let refuse = |found: &str| {
+            Err(format!(
+                "file: found {name:?}, {found}, expected a name inside {} such as picture.{ending}",
+                self.0.display()
+            ))
+        };
+        let mut relative = PathBuf::from(name);
+        if relative.extension().is_none() {
+            relative.set_extension(ending);
+        }
+        let normal = relative.components().all(|part| matches!(part, Component::Normal(_)));
+        if !normal || relative.file_name().is_none() || name.contains(['\0', '\\', ':']) || name.len() > 255 {
+            return refuse("which leads elsewhere");
+        }
+        if !relative
+            .extension()
+            .is_some_and(|found| found.eq_ignore_ascii_case(ending))
+        {
+            return refuse("which ends otherwise");
+        }
+        let mut path = self.0.clone();
+        for part in relative.components() {
+            path.push(part);
+            match path.symlink_metadata() {
+                Ok(found) if found.is_symlink() => return refuse("which is a link"),
+                Ok(found) if !(found.is_file() || found.is_dir()) => return refuse("which is no file"),
+                _ => {}
+            }
+        }
+        if path.is_dir() {
+            return refuse("which is a folder");
+        }
+        Ok(path)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_written_outside() {
+        let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let folder = Folder::new(&root.path().join("out"));
+        for name in [
+            "../a.png",
+            "/tmp/a.png",
+            "b/../../a.png",
+            "..",
+            "",
+            ".",
+            "a\\b.png",
+            "C:a.png",
+            "a.sh",
+            "a\0.png",
+        ] {
+            assert!(folder.write(name, "png", b"x").is_err(), "{name:?}");
+        }
+        let count = std::fs::read_dir(root.path()).expect("the folder is there").count();
+        assert_eq!(count, 0, "not even the folder was made");
+        let path = folder.write("deep/a", "png", b"x").expect("the name is inside");
+        assert!(path.ends_with("out/deep/a.png") && path.is_file());
+        assert!(folder.write("deep.png/../../b.png", "png", b"x").is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_not_followed() {
+        let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let out = root.path().join("out");
+        std::fs::create_dir(&out).expect("the folder can be made");
+        let outside = root.path().join("outside.png");
+        std::fs::write(&outside, "mine").expect("the folder can be written");
+        std::os::unix::fs::symlink(&outside, out.join("a.png")).expect("links can be made");
+        std::os::unix::fs::symlink(root.path(), out.join("up")).expect("links can be made");
+        let folder = Folder::new(&out);
+        assert!(folder.write("a.png", "png", b"x").is_err());
+        assert!(folder.write("up/b.png", "png", b"x").is_err());
+        assert_eq!(std::fs::read_to_string(&outside).expect("it is there still"), "mine");
+    }
+}

@@ -1,0 +1,120 @@
+//! What the console tells of a world in words and tables, and of itself. Pictures are in `look.rs`.
+
+use std::fmt::Write;
+
+use driftworld::spec::nearest;
+
+use super::super::modality::Kind;
+use super::super::table::table;
+use super::line::COMMANDS;
+use super::session::{MOST_LINES, Session};
+
+impl Session<'_> {
+    pub(super) fn agent(&self) -> String {
+        let agent = self.environment.agent();
+        let [x, y] = agent.position.map(short);
+        let [vx, vy] = agent.velocity.map(short);
+        format!(
+            "agent at ({x}, {y}) m, heading {}°, velocity ({vx}, {vy}) m/s; step {}, return {}{}",
+            short(agent.heading_deg),
+            self.environment.num_steps(),
+            short(self.environment.episode_return() as f32),
+            if self.environment.ended() {
+                "; the episode has ended"
+            } else {
+                ""
+            }
+        )
+    }
+
+    pub(super) fn info(&self) -> String {
+        let world = self.environment.world();
+        let agent = &world.agent_params;
+        let there = self
+            .environment
+            .objects()
+            .iter()
+            .filter(|object| object.present)
+            .count();
+        let [width, height] = agent.picture_size();
+        let list = |names: Vec<String>| {
+            if names.is_empty() {
+                "none".to_owned()
+            } else {
+                names.join(", ")
+            }
+        };
+        let modalities = agent.modalities.iter().map(|it| Kind::from(*it).name().to_owned());
+        let limit = match world.max_steps {
+            0 => "no limit".to_owned(),
+            steps => format!("at most {steps}"),
+        };
+        let mut text = format!(
+            "world      {}\nsteps      {}, {limit}\nreturn     {}{}\narena      {:?} m, map {}\nobjects    {}, of which {there} are there\n\
+             actions    {:?}, {} s each\npictures   {width} × {height} pixels: {}\nwatched    {}\nsnapshots  {}",
+            world.hash(),
+            self.environment.num_steps(),
+            short(self.environment.episode_return() as f32),
+            if self.environment.ended() { ", ended" } else { "" },
+            world.environment_params.arena_size(),
+            world.environment_params.predefined_map,
+            world.objects.len(),
+            agent.action_model,
+            agent.time_step,
+            list(modalities.collect()),
+            list(self.channels.watched().iter().map(|part| (*part).to_owned()).collect()),
+            list(self.snapshots.keys().cloned().collect()),
+        );
+        for warning in self.environment.warnings().iter().take(10) {
+            write!(text, "\nwarning    {warning}").expect("writing to a String does not fail");
+        }
+        text
+    }
+
+    pub(super) fn objects(&self) -> String {
+        let world = self.environment.world();
+        let states = self.environment.objects().iter().zip(&self.environment.scene().items);
+        let rows = world.objects.iter().zip(states).enumerate().take(MOST_LINES);
+        let rows = rows.map(|(index, (object, (state, item)))| {
+            let [x, y] = item.position.map(short);
+            let name = object.unique_name.as_ref().or(object.tag.as_ref());
+            [
+                index.to_string(),
+                format!("{} {}", object.class, object.model.0),
+                name.cloned().unwrap_or_default(),
+                x,
+                y,
+                short(item.heading_deg),
+                short(state.reward as f32),
+                if state.present { "" } else { "gone" }.to_owned(),
+            ]
+        });
+        let headings = ["object", "class", "name or tag", "x", "y", "heading", "reward", ""];
+        let mut text = table(headings, rows.collect(), &[0, 3, 4, 5, 6]);
+        if world.objects.len() > MOST_LINES {
+            write!(text, "\nand {} more", world.objects.len() - MOST_LINES).expect("writing to a String does not fail");
+        }
+        text
+    }
+}
+
+/// The list of commands, or one of them.
+pub(super) fn help(command: Option<&str>) -> Result<String, String> {
+    let line = |(name, usage, what): &(&str, &str, &str)| format!("{:<48} {what}", format!("{name} {usage}"));
+    let Some(command) = command else {
+        return Ok(COMMANDS.iter().map(line).collect::<Vec<_>>().join("\n"));
+    };
+    let found = COMMANDS.iter().find(|(name, _, _)| *name == command);
+    found.map(line).ok_or_else(|| {
+        let near = nearest(command, COMMANDS.map(|(name, _, _)| name));
+        let near = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
+        format!("found command {command:?}, expected one that help lists{near}")
+    })
+}
+
+/// A number with at most two decimals, and without those that say nothing.
+pub(super) fn short(number: f32) -> String {
+    let text = format!("{number:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}

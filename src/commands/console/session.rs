@@ -1,0 +1,260 @@
+//! A running world and what the console does to it. What a line says is in `line.rs`; what is told of the world in
+//! `report.rs`, shown of it in `look.rs`, and sent to it in `messages.rs`.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use driftworld::env::{Action, Category, Channels, CpuRenderer, Environment, Event, Level, Snapshot, Step};
+use driftworld::spec::{Object, World, nearest};
+
+use super::super::Failure;
+use super::super::input::WorldChoice;
+use super::editor::Names;
+use super::line::Line;
+use super::messages::shown;
+use super::place::Folder;
+use super::report::{help, short};
+use super::screen::Screen;
+
+/// The most moments that are remembered.
+const MOST_SNAPSHOTS: usize = 100;
+
+/// The most lines that one command says.
+pub(super) const MOST_LINES: usize = 500;
+
+/// A running world with all that the console remembers.
+pub(super) struct Session<'a> {
+    pub(super) choice: &'a WorldChoice,
+    /// The world that `reset` goes back to.
+    pub(super) start: World,
+    pub(super) environment: Environment,
+    pub(super) channels: Channels,
+    pub(super) snapshots: BTreeMap<String, Snapshot>,
+    pub(super) renderer: CpuRenderer,
+    pub(super) folder: Folder,
+    pub(super) screen: Screen,
+}
+
+/// What comes of a line.
+pub(super) enum Reply {
+    Said(String),
+    Quit,
+}
+
+/// A refusal in one sentence.
+pub(super) fn said(failure: Failure) -> String {
+    match failure {
+        Failure::Input(text) | Failure::Usage(text) => text,
+    }
+}
+
+pub(super) fn plain(error: impl std::error::Error) -> String {
+    error.to_string()
+}
+
+impl<'a> Session<'a> {
+    pub(super) fn new(choice: &'a WorldChoice, world: World, out: &Path, screen: Screen) -> Result<Self, Failure> {
+        Ok(Self {
+            choice,
+            channels: Channels::new(&world),
+            environment: Environment::new(world.clone())?,
+            start: world,
+            snapshots: BTreeMap::new(),
+            renderer: CpuRenderer::new(),
+            folder: Folder::new(out),
+            screen,
+        })
+    }
+
+    /// What stands above the first prompt.
+    pub(super) fn greeting(&self) -> String {
+        let hash = self.start.hash();
+        let objects = self.start.objects.len();
+        format!("world {hash:.12}, {objects} objects; help lists the commands")
+    }
+
+    /// Names for completion.
+    pub(super) fn names(&self) -> Names {
+        let objects = &self.environment.world().objects;
+        Names {
+            objects: objects
+                .iter()
+                .filter_map(|object| object.unique_name.clone())
+                .take(1000)
+                .collect(),
+            snapshots: self.snapshots.keys().cloned().collect(),
+        }
+    }
+
+    /// Does what a line says. On error nothing is changed, but by the messages of a file before the one refused.
+    pub(super) fn execute(&mut self, line: &str) -> Result<Reply, String> {
+        let text = match Line::parse(line)? {
+            Line::Quit => return Ok(Reply::Quit),
+            Line::Help(command) => help(command.as_deref())?,
+            Line::Info => self.info(),
+            Line::Objects => self.objects(),
+            Line::Agent => self.agent(),
+            Line::StateJson => self.environment.state().to_json_pretty(),
+            Line::StateFile(file) => {
+                let text = self.environment.state().to_json_pretty();
+                self.folder.write(&file, "json", text.as_bytes())?.display().to_string()
+            }
+            Line::Act { action, count } => self.act(action, count)?,
+            Line::Reset(to) => self.reset(to.as_deref())?,
+            Line::Spawn(json) => self.spawn(&json)?,
+            Line::Destroy(object) => self.destroy(&object)?,
+            Line::Teleport { position, heading } => {
+                let heading = heading.unwrap_or(f64::from(self.environment.agent().heading_deg));
+                self.environment.teleport(position, heading).map_err(plain)?;
+                self.agent()
+            }
+            Line::Show { picture, columns } => self.show(picture, columns)?,
+            Line::Screenshot { file, picture, size } => self.screenshot(&file, picture, size)?,
+            Line::Snapshot(name) => self.snapshot(name)?,
+            Line::Restore(name) => self.restore(&name)?,
+            Line::Send(text) => self.send(&text)?,
+            Line::Log(change) => self.log(change),
+        };
+        Ok(Reply::Said(text))
+    }
+
+    /// Simulated time since the start, as a date: a script says the same each time.
+    pub(super) fn time(&self) -> String {
+        let seconds = f64::from(self.environment.num_steps()) * self.environment.world().agent_params.time_step;
+        jiff::Timestamp::from_microsecond((seconds * 1e6) as i64)
+            .unwrap_or(jiff::Timestamp::UNIX_EPOCH)
+            .to_string()
+    }
+
+    /// A remark, as a line of its own, if its category is on.
+    fn remark(&mut self, category: Category, text: String) -> String {
+        let time = self.time();
+        let remark = self.channels.remark(category, Level::Info, text, &time);
+        remark.map_or_else(String::new, |message| shown(&message) + "\n")
+    }
+
+    fn act(&mut self, action: Action, count: u32) -> Result<String, String> {
+        self.environment.check(action).map_err(plain)?;
+        let (mut lines, mut left_out, mut reward, mut steps) = (Vec::new(), 0, 0.0, 0);
+        let mut last = Step::default();
+        while steps < count && !last.ended() {
+            last = self.environment.step(action).map_err(plain)?;
+            steps += 1;
+            reward += last.reward;
+            left_out += self.tell(&last, &mut lines);
+        }
+        if left_out > 0 {
+            lines.push(format!("… and {left_out} lines more"));
+        }
+        let how = match (last.ended(), last.success, last.terminated) {
+            (false, ..) => "",
+            (true, true, _) => ": success",
+            (true, false, true) => ": failure",
+            (true, false, false) => ": its last step",
+        };
+        let plural = if steps == 1 { "" } else { "s" };
+        let (reward, agent) = (short(reward as f32), self.agent());
+        lines.push(format!("{steps} step{plural}, reward {reward}; {agent}{how}"));
+        Ok(lines.join("\n"))
+    }
+
+    /// Adds lines on what happened in a step while there is room for more; hands back how many there was none for.
+    fn tell(&mut self, step: &Step, lines: &mut Vec<String>) -> usize {
+        let number = self.environment.num_steps();
+        let world = self.environment.world();
+        let event = |event: &Event| {
+            let (object, reward) = (&world.objects[event.object], short(event.reward as f32));
+            let gone = if event.destroyed { ", destroyed" } else { "" };
+            let (class, stimulus) = (&object.class, event.stimulus);
+            format!(
+                "step {number}: {stimulus:?} object {} ({class}), reward {reward}{gone}",
+                event.object
+            )
+        };
+        let room = MOST_LINES.saturating_sub(lines.len());
+        lines.extend(step.events.iter().take(room).map(event));
+        let time = self.time();
+        let messages = self.channels.after_step(&self.environment, step, &time);
+        let rest = MOST_LINES.saturating_sub(lines.len());
+        lines.extend(messages.iter().take(rest).map(shown));
+        step.events.len().saturating_sub(room) + messages.len().saturating_sub(rest)
+    }
+
+    fn reset(&mut self, to: Option<&str>) -> Result<String, String> {
+        let world = match to {
+            None => self.start.clone(),
+            Some(text) => match text.parse() {
+                Ok(index) => self.choice.numbered(index).map_err(said)?,
+                Err(_) => self.choice.named(text).map_err(said)?,
+            },
+        };
+        self.environment.reset(world.clone()).map_err(plain)?;
+        self.start = world;
+        let hash = self.start.hash();
+        let remark = self.remark(Category::Academy, format!("a new episode of world {hash:.12}"));
+        let objects = self.start.objects.len();
+        Ok(format!("{remark}world {hash:.12}, {objects} objects; {}", self.agent()))
+    }
+
+    fn spawn(&mut self, json: &str) -> Result<String, String> {
+        let object = Object::from_json("spawn", json).map_err(plain)?;
+        let class = object.class.clone();
+        let index = self.environment.spawn(object).map_err(plain)?;
+        let remark = self.remark(Category::Worldmaker, format!("object {index} is a {class}"));
+        Ok(format!("{remark}object {index}"))
+    }
+
+    fn destroy(&mut self, object: &str) -> Result<String, String> {
+        let index = match object.parse() {
+            Ok(index) => index,
+            Err(_) => self.environment.find(object).ok_or_else(|| {
+                let near = nearest(object, self.names().objects);
+                let near = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
+                format!("found object {object:?}, expected an index or a unique_name{near}")
+            })?,
+        };
+        self.environment.destroy(index).map_err(plain)?;
+        let remark = self.remark(Category::Worldmaker, format!("object {index} was taken away"));
+        Ok(format!("{remark}object {index} is gone"))
+    }
+
+    fn snapshot(&mut self, name: Option<String>) -> Result<String, String> {
+        let Some(name) = name else {
+            let names: Vec<&str> = self.snapshots.keys().map(String::as_str).collect();
+            return Ok(if names.is_empty() {
+                "no moments yet".to_owned()
+            } else {
+                names.join(", ")
+            });
+        };
+        if self.snapshots.len() >= MOST_SNAPSHOTS && !self.snapshots.contains_key(&name) {
+            return Err(format!(
+                "found {MOST_SNAPSHOTS} moments, expected fewer; use a name again"
+            ));
+        }
+        self.snapshots.insert(name.clone(), self.environment.snapshot());
+        Ok(format!("{name}: step {}", self.environment.num_steps()))
+    }
+
+    fn restore(&mut self, name: &str) -> Result<String, String> {
+        let Some(moment) = self.snapshots.get(name) else {
+            let near = nearest(name, self.snapshots.keys());
+            let near = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
+            return Err(format!(
+                "found moment {name:?}, expected one that snapshot has made{near}"
+            ));
+        };
+        self.environment.restore(moment).map_err(plain)?;
+        Ok(self.agent())
+    }
+
+    fn log(&mut self, change: Option<(Category, bool)>) -> String {
+        if let Some((category, active)) = change {
+            self.channels.set_active(category, active);
+        }
+        let state = |category: Category| if self.channels.is_active(category) { "on" } else { "off" };
+        Category::ALL
+            .map(|category| format!("{} {}", category.name(), state(category)))
+            .join(", ")
+    }
+}

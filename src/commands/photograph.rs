@@ -1,0 +1,280 @@
+//! `driftworld photograph`: every object of a world from around and above, as PNG files with a manifest. Where the camera
+//! stands and what is in the picture is decided in `env`.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use clap::Args;
+use driftworld::env::{
+    CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, Environment,
+    Frame, Photograph as View, Studio, Warning, category_color,
+};
+use driftworld::spec::{Object, World};
+use serde::Serialize;
+
+use super::input::WorldChoice;
+use super::modality::{Kind, metres_per_level, target};
+use super::{Failure, output};
+
+/// The longest part of a file name that comes from the document.
+const LONGEST_NAME: usize = 40;
+
+/// Photograph every object of a world from around and above.
+///
+/// Each object stands alone, in full daylight, on ground and under sky of the world's colours. How far, from how many
+/// sides and at how many heights is said by the world's `image_params`; how large, and with what field of view, by its
+/// `agent_params`.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld photograph world.json -o photographs
+  driftworld photograph find_objects#red --seed 7 --modalities rgb,depth,instance -o photographs
+
+Depths are 16-bit, in the manifest's metres_per_level; classes and instances are 16-bit numbers, 0 where there is no object.")]
+pub(crate) struct Photograph {
+    #[command(flatten)]
+    choice: WorldChoice,
+    /// Which images of each view; those of the world if not given.
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    modalities: Vec<Kind>,
+    /// The folder for the pictures and manifest.json; pictures of the same name are replaced.
+    #[arg(short, long, default_value = "photographs", value_name = "FOLDER")]
+    output: PathBuf,
+}
+
+/// What all pictures of a folder have in common, and the list of them.
+#[derive(Serialize)]
+struct Manifest<'a> {
+    world: String,
+    /// Width and height in pixels.
+    size: [u32; 2],
+    field_of_view_deg: f64,
+    zoom: f64,
+    yaw_subdivisions: u32,
+    vertical_subdivisions: u32,
+    /// sRGB bytes by which segmentation images show a reward category.
+    categories: BTreeMap<&'static str, [u8; 3]>,
+    /// Numbers of class images.
+    classes: BTreeMap<&'a str, u16>,
+    photographs: Vec<Entry<'a>>,
+}
+
+#[derive(Serialize)]
+struct Entry<'a> {
+    file: String,
+    modality: Kind,
+    object: usize,
+    class: &'a str,
+    model: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unique_name: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tag: Option<&'a str>,
+    yaw_deg: f32,
+    elevation_deg: f32,
+    /// From the camera to the object's middle in metres.
+    distance: f32,
+    /// Of depth images: 65535 levels and more are the background.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    metres_per_level: Option<f32>,
+}
+
+impl Photograph {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let world = self.choice.world()?;
+        let kinds = self.kinds(&world)?;
+        let mut studio = Studio::new(&world)?;
+        for warning in Environment::new(world.clone())?.warnings() {
+            if matches!(warning, Warning::UnknownAsset { .. }) {
+                output::note(format!("warning: {warning}"));
+            }
+        }
+        let views = studio.photographs();
+        let [width, height] = studio.picture_size();
+        let mut frame = Frame::new(width, height);
+        let supersampling = studio.supersampling();
+        let mut entries = Vec::with_capacity(views.len() * kinds.len());
+        let bar = output::progress(views.len() as u64, "photographs");
+        for view in &views {
+            studio.take(view, &mut target(&mut frame, &kinds, supersampling))?;
+            for kind in &kinds {
+                entries.push(self.keep(&world, view, *kind, &frame)?);
+            }
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        let manifest = manifest(&world, entries);
+        let text = serde_json::to_string_pretty(&manifest)? + "\n";
+        output::write(&self.output.join("manifest.json"), text.as_bytes())?;
+        output::line(format!(
+            "{}: {} objects in {} pictures of {width} × {height} pixels",
+            self.output.display(),
+            world.objects.len(),
+            manifest.photographs.len(),
+        ))
+    }
+
+    fn kinds(&self, world: &World) -> Result<Vec<Kind>, Failure> {
+        let mut kinds = self.modalities.clone();
+        if kinds.is_empty() {
+            kinds.extend(world.agent_params.modalities.iter().copied().map(Kind::from));
+        }
+        kinds.sort_unstable();
+        kinds.dedup();
+        if kinds.is_empty() {
+            return Err(Failure::usage(
+                "the world has no agent_params.modalities; say which images with --modalities, such as --modalities rgb",
+            ));
+        }
+        Ok(kinds)
+    }
+
+    /// Writes one image of a view.
+    fn keep<'a>(&self, world: &'a World, view: &View, kind: Kind, frame: &Frame) -> Result<Entry<'a>, Failure> {
+        let object = &world.objects[view.object];
+        let file = file_name(view, object, kind, world.objects.len());
+        let metres_per_level = (kind == Kind::Depth).then(|| metres_per_level(view.distance));
+        let bytes = kind.to_png(frame, metres_per_level.unwrap_or(1.0))?;
+        output::write(&self.output.join(&file), &bytes)?;
+        Ok(Entry {
+            file,
+            modality: kind,
+            object: view.object,
+            class: &object.class,
+            model: &object.model.0,
+            unique_name: object.unique_name.as_deref(),
+            tag: object.tag.as_deref(),
+            yaw_deg: view.yaw_deg,
+            elevation_deg: view.elevation_deg,
+            distance: view.distance,
+            metres_per_level,
+        })
+    }
+}
+
+fn manifest<'a>(world: &'a World, photographs: Vec<Entry<'a>>) -> Manifest<'a> {
+    let image = world.image_params.clone().unwrap_or_default();
+    let categories = [
+        ("sky", CATEGORY_SKY),
+        ("map", CATEGORY_MAP),
+        ("building", CATEGORY_BUILDING),
+        ("positive", CATEGORY_POSITIVE),
+        ("neutral", CATEGORY_NEUTRAL),
+        ("negative", CATEGORY_NEGATIVE),
+    ];
+    Manifest {
+        world: world.hash(),
+        size: world.agent_params.picture_size(),
+        field_of_view_deg: world.agent_params.field_of_view,
+        zoom: image.zoom,
+        yaw_subdivisions: image.yaw_subdivisions,
+        vertical_subdivisions: image.vertical_subdivisions,
+        categories: categories
+            .map(|(name, category)| (name, category_color(category)))
+            .into(),
+        classes: classes(world),
+        photographs,
+    }
+}
+
+/// Class numbers: from 1, in order of first appearance, whatever the case of their letters.
+fn classes(world: &World) -> BTreeMap<&str, u16> {
+    let mut seen: Vec<String> = Vec::new();
+    let mut classes = BTreeMap::new();
+    for object in &world.objects {
+        let lower = object.class.to_lowercase();
+        let index = seen.iter().position(|other| *other == lower).unwrap_or_else(|| {
+            seen.push(lower);
+            seen.len() - 1
+        });
+        classes.insert(object.class.as_str(), u16::try_from(index + 1).unwrap_or(u16::MAX));
+    }
+    classes
+}
+
+/// Folder and name of a picture, such as `000_barrel_2/yaw_090_up_30_rgb.png`.
+fn file_name(view: &View, object: &Object, kind: Kind, objects: usize) -> String {
+    let digits = objects.saturating_sub(1).to_string().len().max(3);
+    let kind = kind.name();
+    format!(
+        "{:0digits$}_{}_{}/yaw_{}_up_{}_{kind}.png",
+        view.object,
+        safe(&object.class),
+        safe(&object.model.0),
+        degrees(view.yaw_deg, 3),
+        degrees(view.elevation_deg, 2),
+    )
+}
+
+/// Whole degrees, or degrees and hundredths: no two views are nearer than that.
+fn degrees(angle: f32, digits: usize) -> String {
+    if angle.fract() == 0.0 {
+        return format!("{angle:0digits$}");
+    }
+    format!("{angle:0width$.2}", width = digits + 3)
+}
+
+/// A text of a document as a part of a file name: other than letters, digits and `-` become `-`.
+fn safe(text: &str) -> String {
+    let plain = |letter: char| {
+        if letter.is_ascii_alphanumeric() {
+            letter.to_ascii_lowercase()
+        } else {
+            '-'
+        }
+    };
+    let text: String = text.chars().take(LONGEST_NAME).map(plain).collect();
+    match text.trim_matches('-') {
+        "" => "x".to_owned(),
+        trimmed => trimmed.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_a_document_cannot_lead_out_of_the_folder() {
+        let check = |class: &str, expected: &str| {
+            let view = View {
+                object: 7,
+                yaw_deg: 90.0,
+                elevation_deg: 30.0,
+                distance: 1.0,
+            };
+            let found = file_name(&view, &Object::new(class, [0.0, 0.0]), Kind::Rgb, 12);
+            assert_eq!(found, format!("007_{expected}_1/yaw_090_up_30_rgb.png"));
+        };
+        check("barrel", "barrel");
+        check("../x", "x");
+        check("/etc/passwd", "etc-passwd");
+        check("..\\..\\Con:\0", "con");
+        check("Löwe", "l-we");
+        check("..", "x");
+        check(&"long".repeat(30), &"long".repeat(10));
+    }
+
+    #[test]
+    fn no_two_views_have_one_name() {
+        let world = World {
+            image_params: Some(driftworld::spec::ImageParams {
+                zoom: 1.0,
+                yaw_subdivisions: 7,
+                vertical_subdivisions: 360,
+            }),
+            objects: vec![Object::new("cube", [0.0, 0.0]); 2],
+            ..World::default()
+        };
+        let views = Studio::new(&world).expect("few photographs").photographs();
+        let names: std::collections::BTreeSet<String> = views
+            .iter()
+            .map(|view| file_name(view, &world.objects[view.object], Kind::Depth, 2))
+            .collect();
+        assert_eq!(names.len(), 2 * 7 * 360);
+        assert!(
+            names.contains("001_cube_1/yaw_051.43_up_00.25_depth.png"),
+            "{:?}",
+            names.iter().nth(9)
+        );
+    }
+}

@@ -1,0 +1,264 @@
+//! `driftworld console` as scripts and pipes meet it: whole transcripts, exit codes, and files that stay in their folder.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use driftworld::spec::World;
+
+const WORLD: &str = "examples/console/world.json";
+
+/// Runs the console with lines on its standard input, and `--out` in a folder of the test's own.
+fn console(arguments: &[&str], out: &Path, lines: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_driftworld"))
+        .arg("console")
+        .args(arguments)
+        .arg("--out")
+        .arg(out)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the command was built by cargo and starts");
+    let mut input = child.stdin.take().expect("standard input is piped");
+    // A console that ends early leaves the rest unread.
+    let _ = input.write_all(lines.as_bytes());
+    drop(input);
+    child.wait_with_output().expect("the command ends")
+}
+
+/// What was said, with the folder's own name left out.
+fn said(output: &Output, out: &Path) -> String {
+    String::from_utf8_lossy(&output.stdout).replace(&out.display().to_string(), "OUT")
+}
+
+/// A transcript without the world's hash, which is another as soon as worlds get another key.
+fn without_hash(transcript: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(WORLD);
+    let text = std::fs::read_to_string(path).expect("the example is there");
+    let hash = World::from_json(WORLD, &text).expect("the example is sound").hash();
+    let token = format!("{}-{}-8{}-8{}-", &hash[..8], &hash[8..12], &hash[12..15], &hash[15..18]);
+    transcript
+        .replace(&hash, "HASH")
+        .replace(&hash[..12], "HASH")
+        .replace(&token, "TOKEN-")
+}
+
+fn scratch() -> tempfile::TempDir {
+    tempfile::tempdir().expect("the machine has a folder for temporary files")
+}
+
+/// A transcript that must end well.
+#[track_caller]
+fn transcript(lines: &str) -> String {
+    let folder = scratch();
+    let out = folder.path().join("out");
+    let output = console(&[WORLD], &out, lines);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{error}{}", said(&output, &out));
+    said(&output, &out)
+}
+
+/// What the console refuses, line by line; nothing is written.
+#[track_caller]
+fn refused(lines: &str) -> String {
+    let folder = scratch();
+    let out = folder.path().join("out");
+    let output = console(&[WORLD, "--keep-going"], &out, lines);
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output, &out));
+    let error = String::from_utf8_lossy(&output.stderr);
+    let count = lines.lines().count();
+    assert_eq!(error, format!("error: standard input: {count} commands failed\n"));
+    assert!(!out.exists(), "nothing was written");
+    said(&output, &out)
+}
+
+#[test]
+fn the_tour_says_what_it_said_before() {
+    let folder = scratch();
+    let out = folder.path().join("out");
+    let output = console(&[WORLD, "--script", "examples/console/tour.txt"], &out, "");
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    insta::assert_snapshot!("tour", without_hash(&said(&output, &out)));
+    let mut files: Vec<_> = std::fs::read_dir(&out)
+        .expect("the tour wrote files")
+        .map(|entry| entry.expect("the folder can be listed").file_name())
+        .collect();
+    files.sort();
+    assert_eq!(files, ["map.png", "now.json", "view.png"]);
+    let state = std::fs::read_to_string(out.join("now.json")).expect("the state was written");
+    assert!(state.contains("\"food\""), "what was spawned is in it");
+}
+
+#[test]
+fn a_pipe_says_the_same_as_a_script() {
+    let folder = scratch();
+    let out = folder.path().join("out");
+    let script = std::fs::read_to_string("examples/console/tour.txt").expect("the tour is there");
+    let by_script = console(&[WORLD, "--script", "examples/console/tour.txt"], &out, "");
+    let by_pipe = console(&[WORLD], &out, &script);
+    assert_eq!(said(&by_script, &out), said(&by_pipe, &out));
+}
+
+#[test]
+fn every_command_is_explained() {
+    insta::assert_snapshot!("help", without_hash(&transcript("help\nhelp spawn\n")));
+}
+
+#[test]
+fn wrong_lines_are_refused_with_what_was_expected() {
+    let lines = [
+        "telport 1 2",
+        "xyzzy",
+        "objects please",
+        "step many",
+        "step 5 1 2",
+        "action -a 3",
+        "action -a 1 2 inf",
+        "teleport 1000 0",
+        "teleport 5 2",
+        "spawn tree 1",
+        "spawn tree 1 2 colour=red",
+        "spawn tree 1 2 scale=-1",
+        "spawn tree 1 2 unique_name=coin",
+        "spawn { \"class\": }",
+        "destroy 99",
+        "destroy coni",
+        "restore start",
+        "reset 5",
+        "reset no_such_file.json",
+        "show smell",
+        "log everything on",
+        "screenshot ../out.png",
+        "screenshot /etc/motd",
+        "screenshot a.txt",
+        "screenshot a.png 5000x5",
+        "state ../../state.json",
+        "send_message { \"action\": \"dance\" }",
+        "send_message { \"action\": \"get_observer\" }",
+        "send_message { \"action\": \"save_screenshot\", \"payload\": { \"filename\": \"../../a.png\" } }",
+        "destroy 'coin",
+    ];
+    insta::assert_snapshot!("refused", without_hash(&refused(&lines.join("\n"))));
+    assert!(refused("send_message no_such_file.json").contains("no_such_file.json: cannot be read"));
+}
+
+#[test]
+fn the_first_error_ends_a_script_with_its_line() {
+    let folder = scratch();
+    let script = folder.path().join("bad.txt");
+    std::fs::write(&script, "# nothing\n\nstep 3\nstap\nstep 3\n").expect("the scratch folder can be written");
+    let script = script.to_str().expect("temporary paths are UTF-8");
+    let output = console(&[WORLD, "--script", script], folder.path(), "");
+    assert_eq!(output.status.code(), Some(1));
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(
+        error,
+        format!("error: {script}:4: found command \"stap\", expected one that help lists; did you mean \"step\"?\n")
+    );
+    assert_eq!(said(&output, folder.path()).matches("> step 3").count(), 1);
+}
+
+#[test]
+fn an_episode_that_has_ended_wants_a_reset() {
+    let ended = transcript("step 1000\n");
+    assert!(
+        ended.contains("60 steps, reward 0;") && ended.contains(": its last step"),
+        "{ended}"
+    );
+    let folder = scratch();
+    let output = console(&[WORLD], folder.path(), "step 60\nstep\n");
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        error.contains("standard input:2: step: the episode has ended, expected a reset first"),
+        "{error}"
+    );
+    transcript("step 60\nreset\nstep\n");
+}
+
+#[test]
+fn a_variant_has_worlds_by_number() {
+    let folder = scratch();
+    let lines = "reset 5\ninfo\nreset 0\ninfo\nreset\ninfo\nreset examples/console/world.json\ninfo\n";
+    let output = console(&["find_objects#red", "--seed", "7"], folder.path(), lines);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let said = said(&output, folder.path());
+    let hashes: Vec<&str> = said
+        .lines()
+        .filter_map(|line| line.strip_prefix("world      "))
+        .collect();
+    assert_eq!(hashes.len(), 4, "{said}");
+    assert!(
+        hashes[0] != hashes[1] && hashes[1] == hashes[2] && hashes[2] != hashes[3],
+        "{hashes:?}"
+    );
+}
+
+/// The original's messages, or a visible skip.
+fn original() -> Option<PathBuf> {
+    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/reference");
+    let root = std::env::var_os("DRIFTWORLD_REFERENCE").map_or(default, PathBuf::from);
+    let messages = root.join("l2explorer/channel_messages.json");
+    if messages.exists() {
+        return Some(messages);
+    }
+    #[expect(clippy::print_stdout, reason = "a skip must be seen")]
+    {
+        println!("skipped: {} is not there; set DRIFTWORLD_REFERENCE", messages.display());
+    }
+    None
+}
+
+#[test]
+fn the_originals_messages_run_through_whole() {
+    let Some(messages) = original() else { return };
+    let folder = scratch();
+    let out = folder.path().join("out");
+    let lines = format!("send_message '{}'\nstep 2 1 0 0\nobjects\n", messages.display());
+    let output = console(&[WORLD], &out, &lines);
+    let said = said(&output, &out);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}{said}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert_eq!(said.matches("\"action\":\"state\"").count(), 2, "{said}");
+    assert!(said.contains("thing"), "{said}");
+    assert!(out.join("l2explorer_screenshot.png").is_file());
+}
+
+#[test]
+fn lines_that_are_no_text_are_an_error_and_no_panic() {
+    let folder = scratch();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_driftworld"))
+        .args(["console", "find_objects"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the command was built by cargo and starts");
+    let mut input = child.stdin.take().expect("standard input is piped");
+    input.write_all(b"info\n\xff\xfe\n").expect("the console reads");
+    drop(input);
+    let output = child.wait_with_output().expect("the command ends");
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        error.contains("standard input:2: the line is not UTF-8 text"),
+        "{error}"
+    );
+    drop(folder);
+}
