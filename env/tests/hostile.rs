@@ -527,6 +527,24 @@ proptest! {
         let _ = import(&bytes);
     }
 
+    /// The same in a GLB file, whose lengths and numbers are bytes of their own.
+    #[test]
+    fn changed_bytes_of_a_glb_never_make_it_panic(
+        changes in proptest::collection::vec((any::<usize>(), any::<u8>()), 1..8),
+        cut in any::<usize>(),
+    ) {
+        let mut bytes = glb(2, &text(&sound()), 0);
+        for (at, byte) in changes {
+            // Half of the changes meet the headers.
+            let at = if at % 2 == 0 { at / 2 % 20 } else { at % bytes.len() };
+            bytes[at] = byte;
+        }
+        if cut % 4 == 0 {
+            bytes.truncate(cut / 4 % bytes.len());
+        }
+        let _ = import(&bytes);
+    }
+
     /// Any number of a sound file may be any number.
     #[test]
     fn changed_numbers_never_make_it_panic(

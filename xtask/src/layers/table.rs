@@ -101,7 +101,7 @@ pub(super) const FENCES: &[Fence] = &[
         purpose: "every draw is keyed, so that worlds and episodes repeat",
     },
     Fence {
-        crates: &["rapier3d", "parry3d", "wgpu", "gltf", "image"],
+        crates: &["rapier3d", "parry3d", "wgpu", "gltf", "gltf-json", "meshopt", "image"],
         rooms: &[ENV],
         test_rooms: &[],
         purpose: "worlds are simulated and drawn",

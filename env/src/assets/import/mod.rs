@@ -4,11 +4,13 @@
 mod accessor;
 mod buffers;
 mod color;
+mod coloring;
 mod container;
 mod document;
 mod fit;
 mod nodes;
 mod palette;
+mod primitive;
 mod simplify;
 mod surface;
 mod texture;
@@ -93,14 +95,17 @@ impl LibraryModel {
         warnings.note_left_out(&root);
         let main = document::main_material(&root, options.main.as_deref())?;
         let buffers = buffers::Buffers::load(&root, container.binary, read)?;
-        let mut textures = texture::Textures::new(&root, &buffers, read);
+        let mut reading = primitive::Reading {
+            root: &root,
+            buffers: &buffers,
+            textures: texture::Textures::new(&root, &buffers, read),
+            warnings,
+        };
         let mut surface = surface::Surface::default();
-        nodes::visit(&root, &mut |mesh, pose| {
-            surface.add(&root, &buffers, &mut textures, mesh, pose, &mut warnings)
-        })?;
+        nodes::visit(&root, &mut |mesh, pose| surface.add(&mut reading, mesh, pose))?;
         surface.stand(options.size)?;
         let groups = palette::groups(&surface, main);
-        finish(options, &surface, groups, warnings)
+        finish(options, &surface, groups, reading.warnings)
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod bytes;
 mod model;
+mod reader;
 
 #[cfg(feature = "import")]
 pub(crate) use model::Detail;

@@ -1,0 +1,59 @@
+//! The colour of a triangle: the mean light of material, texture and corners over it. Which colours are kept is decided in
+//! `palette.rs`.
+
+use super::texture::Pixels;
+
+/// How a triangle is cut into places at which its texture is looked at: along each side.
+const SAMPLES: usize = 5;
+
+/// What colours the triangles of a primitive.
+pub(super) struct Coloring<'a> {
+    pub(super) factor: [f32; 4],
+    pub(super) pixels: Option<&'a Pixels>,
+    /// Texture coordinates of each corner; none without a texture.
+    pub(super) places: Vec<[f32; 3]>,
+    /// Light of each corner; none where corners have no colours.
+    pub(super) colors: Vec<[f32; 3]>,
+}
+
+impl Coloring<'_> {
+    /// The mean light of a triangle: its material's, its texture's and its corners' multiplied.
+    pub(super) fn of(&self, triangle: [u32; 3]) -> [f32; 3] {
+        let [r, g, b, _] = self.factor;
+        let factor = [r, g, b];
+        if self.pixels.is_none() && self.colors.is_empty() {
+            return factor;
+        }
+        let (mut sum, mut weights) = ([0.0; 3], 0.0);
+        for (i, j) in (0..SAMPLES).flat_map(|i| (0..SAMPLES - i).map(move |j| (i, j))) {
+            // The middles of places along both sides, so that no sample lies on an edge.
+            let share = |k: usize| (k as f32 + 1.0 / 3.0) / SAMPLES as f32;
+            let at = [1.0 - share(i) - share(j), share(i), share(j)];
+            let mean = |list: &[[f32; 3]]| {
+                let mut mean = [0.0; 3];
+                for (corner, share) in triangle.iter().zip(at) {
+                    let value = list.get(*corner as usize).copied().unwrap_or([1.0; 3]);
+                    (0..3).for_each(|k| mean[k] += share * value[k]);
+                }
+                mean
+            };
+            let [r, g, b, weight] = self.pixels.map_or([1.0; 4], |pixels| {
+                let [u, v, _] = mean(&self.places);
+                pixels.at([u, v])
+            });
+            let corner = if self.colors.is_empty() {
+                [1.0; 3]
+            } else {
+                mean(&self.colors)
+            };
+            weights += weight;
+            for (sum, (light, own)) in sum.iter_mut().zip([r, g, b].into_iter().zip(corner)) {
+                *sum += weight * light * own.clamp(0.0, 1.0);
+            }
+        }
+        if weights <= 0.0 {
+            return factor;
+        }
+        [0, 1, 2].map(|k| factor[k] * sum[k] / weights)
+    }
+}

@@ -1,0 +1,205 @@
+//! One primitive of a mesh: its corners, its triangles and their colours, read out of the file's accessors. Where it stands is
+//! `surface.rs`'s.
+
+use gltf_json::mesh::{Mode, Primitive, Semantic};
+use gltf_json::validation::Checked;
+use gltf_json::{Root, material, texture};
+
+use super::accessor::{self, Use};
+use super::buffers::{Buffers, one_of};
+use super::coloring::Coloring;
+use super::refuse;
+use super::texture::Textures;
+use super::warning::{ImportWarning, Warnings};
+use crate::EnvError;
+use crate::assets::library::{MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES};
+
+/// A file that is being read, with all that its meshes refer to.
+pub(super) struct Reading<'a, 'b> {
+    pub(super) root: &'a Root,
+    pub(super) buffers: &'a Buffers<'a>,
+    pub(super) textures: Textures<'a, 'b>,
+    pub(super) warnings: Warnings,
+}
+
+/// What a primitive holds, in its mesh's own frame.
+pub(super) struct ReadPrimitive {
+    pub(super) corners: Vec<[f32; 3]>,
+    /// Three corners each, and a colour as light.
+    pub(super) triangles: Vec<([u32; 3], [f32; 3])>,
+    pub(super) material: Option<usize>,
+    pub(super) two_sided: bool,
+}
+
+impl Reading<'_, '_> {
+    /// Reads a primitive; none if it is made of points or lines. `taken`: vertices and triangles of the scene up to here.
+    pub(super) fn primitive(
+        &mut self,
+        primitive: &Primitive,
+        place: &str,
+        taken: [usize; 2],
+    ) -> Result<Option<ReadPrimitive>, EnvError> {
+        let mode = match primitive.mode {
+            Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
+            Checked::Valid(_) => {
+                self.warnings.note(ImportWarning::PointsOrLines);
+                return Ok(None);
+            }
+            Checked::Invalid => return Err(refuse(format!("{place}/mode"), "an unknown mode", "0 to 6")),
+        };
+        if primitive.targets.is_some() {
+            self.warnings.note(ImportWarning::MorphTargets);
+        }
+        let (corners, indices) = self.shape(primitive, mode, place, taken)?;
+        let material = material_of(self.root, primitive, place)?;
+        let opaque = Checked::Valid(material::AlphaMode::Opaque);
+        if material.is_some_and(|material| material.alpha_mode != opaque) {
+            self.warnings.note(ImportWarning::Transparency);
+        }
+        let coloring = self.coloring(primitive, material, corners.len(), place)?;
+        let triangles = triangles(mode, &indices).into_iter();
+        Ok(Some(ReadPrimitive {
+            triangles: triangles.map(|triangle| (triangle, coloring.of(triangle))).collect(),
+            corners,
+            material: primitive.material.map(|material| material.value()),
+            two_sided: material.is_some_and(|material| material.double_sided),
+        }))
+    }
+
+    /// Positions, and indices of them; their numbers are checked before either is read.
+    fn shape(
+        &self,
+        primitive: &Primitive,
+        mode: Mode,
+        place: &str,
+        [vertices, triangles]: [usize; 2],
+    ) -> Result<(Vec<[f32; 3]>, Vec<u32>), EnvError> {
+        let here = format!("{place}/attributes/POSITION");
+        let Some(&positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
+            return Err(refuse(here, "no positions", "an accessor"));
+        };
+        let within = |what: &str, found: usize, most: usize| {
+            if found <= most {
+                return Ok(());
+            }
+            let expected = format!("at most {most} in the whole scene");
+            Err(refuse(place, format!("{found} {what} up to here"), expected))
+        };
+        let count = accessor::count(self.root, positions, Use::Positions, &here)?;
+        within("vertices", vertices + count, MAX_MODEL_VERTICES)?;
+        let of_indices = format!("{place}/indices");
+        let num_indices = match primitive.indices {
+            Some(indices) => accessor::count(self.root, indices, Use::Indices, &of_indices)?,
+            None => count,
+        };
+        let more = match mode {
+            Mode::Triangles => num_indices / 3,
+            _ => num_indices.saturating_sub(2),
+        };
+        within("triangles", triangles + more, MAX_MODEL_TRIANGLES)?;
+        let corners = accessor::vectors(self.root, self.buffers, positions, Use::Positions, &here)?;
+        let indices = match primitive.indices {
+            Some(indices) => accessor::indices(self.root, self.buffers, indices, count, &of_indices)?,
+            None => (0..count as u32).collect(),
+        };
+        Ok((corners, indices))
+    }
+
+    /// One vector for each corner, if the primitive has the attribute.
+    fn attribute(
+        &self,
+        primitive: &Primitive,
+        semantic: Semantic,
+        for_use: Use,
+        num_corners: usize,
+        here: &str,
+    ) -> Result<Vec<[f32; 3]>, EnvError> {
+        let Some(&index) = primitive.attributes.get(&Checked::Valid(semantic)) else {
+            return Ok(Vec::new());
+        };
+        let list = accessor::vectors(self.root, self.buffers, index, for_use, here)?;
+        if list.len() == num_corners {
+            return Ok(list);
+        }
+        let found = format!("{} elements", list.len());
+        Err(refuse(here, found, format!("{num_corners}, as many as positions")))
+    }
+
+    fn coloring(
+        &mut self,
+        primitive: &Primitive,
+        material: Option<&material::Material>,
+        num_corners: usize,
+        place: &str,
+    ) -> Result<Coloring<'_>, EnvError> {
+        let here = |name: &str| format!("{place}/attributes/{name}");
+        let colors = self.attribute(
+            primitive,
+            Semantic::Colors(0),
+            Use::Colors,
+            num_corners,
+            &here("COLOR_0"),
+        )?;
+        let metal = material.map(|material| &material.pbr_metallic_roughness);
+        let (places, pixels) = match metal.and_then(|metal| metal.base_color_texture.as_ref()) {
+            Some(texture::Info { index, tex_coord, .. }) => {
+                let (semantic, name) = (Semantic::TexCoords(*tex_coord), here(&format!("TEXCOORD_{tex_coord}")));
+                let places = self.attribute(primitive, semantic, Use::TexturePlaces, num_corners, &name)?;
+                let pixels = self.textures.pixels(*index, "/materials", &mut self.warnings)?;
+                (places, pixels)
+            }
+            None => (Vec::new(), None),
+        };
+        Ok(Coloring {
+            factor: metal.map_or([1.0; 4], |metal| metal.base_color_factor.0),
+            pixels: pixels.filter(|_| !places.is_empty()),
+            places,
+            colors,
+        })
+    }
+}
+
+/// The material of a primitive, if it has one.
+fn material_of<'a>(
+    root: &'a Root,
+    primitive: &Primitive,
+    place: &str,
+) -> Result<Option<&'a material::Material>, EnvError> {
+    let Some(index) = primitive.material else {
+        return Ok(None);
+    };
+    let Some(material) = root.materials.get(index.value()) else {
+        let found = format!("material {}", index.value());
+        return Err(refuse(format!("{place}/material"), found, one_of(root.materials.len())));
+    };
+    let factor = material.pbr_metallic_roughness.base_color_factor.0;
+    if !factor.iter().all(|channel| (0.0..=1.0).contains(channel)) {
+        let place = format!("/materials/{}/pbrMetallicRoughness/baseColorFactor", index.value());
+        return Err(refuse(place, format!("{factor:?}"), "numbers in 0..1"));
+    }
+    Ok(Some(material))
+}
+
+/// Triangles from a list, a strip or a fan of corners, all wound the same way.
+fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
+    match mode {
+        Mode::TriangleStrip => {
+            let windows = indices.windows(3).enumerate();
+            let turned = |(k, window): (usize, &[u32])| match k % 2 {
+                0 => [window[0], window[1], window[2]],
+                _ => [window[1], window[0], window[2]],
+            };
+            windows.map(turned).collect()
+        }
+        Mode::TriangleFan => {
+            let Some((&hub, rim)) = indices.split_first() else {
+                return Vec::new();
+            };
+            rim.windows(2).map(|pair| [hub, pair[0], pair[1]]).collect()
+        }
+        _ => indices
+            .chunks_exact(3)
+            .map(|three| [three[0], three[1], three[2]])
+            .collect(),
+    }
+}
