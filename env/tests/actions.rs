@@ -278,6 +278,6 @@ fn who_starts_in_a_wall_is_told() {
     );
     assert_eq!(
         warnings[0].to_string(),
-        "/agent_params/coordinates: found a wall, expected free ground; the agent is stuck there"
+        "/agent_params/coordinates: found a wall, expected free ground; it may not get out"
     );
 }

@@ -2,7 +2,7 @@
 
 use driftworld_spec::World;
 use rapier3d::parry::partitioning::Bvh;
-use rapier3d::parry::query::contact;
+use rapier3d::parry::query::{ClosestPoints, closest_points};
 use rapier3d::prelude::*;
 
 use super::casting::{Hit, rank};
@@ -46,6 +46,8 @@ pub(crate) struct Ground {
     /// The agent's own collider, where objects move and may meet it.
     pub(super) agent_handle: Option<ColliderHandle>,
     pub(super) agent: SharedShape,
+    /// The agent's body without its radius: what is pushed out of things.
+    axis: Segment,
     touch: SharedShape,
     radius: f32,
     height: f32,
@@ -77,6 +79,7 @@ impl Ground {
             handles: vec![None; scene.items.len()],
             agent_handle: None,
             agent: capsule(radius),
+            axis: Segment::new(Vector::ZERO, Vector::new(0.0, 0.0, height)),
             touch: capsule(radius + TOUCH),
             radius,
             height,
@@ -334,23 +337,43 @@ impl Ground {
 
     /// The way out of the solid thing that is nearest, if one is nearer than the skin.
     fn deepest_push(&self, at: [f32; 2]) -> Option<Vector> {
-        let pose = Pose::from_translation(Vector::new(at[0], at[1], 0.0));
         let reach = Ball::new(self.radius + SKIN);
         let solid = self.query(SOLID | WALL);
         let mut worst: Option<(f32, u128, Vector)> = None;
         // The slice at the height of the body's middle decides: all shapes stand upright.
         let middle = Pose::from_translation(Vector::new(at[0], at[1], self.height / 2.0));
         for (_, collider) in solid.intersect_shape(middle, &reach) {
-            let found = contact(&pose, &*self.agent, collider.position(), collider.shape(), SKIN);
-            let Ok(Some(found)) = found else { continue };
-            let normal = Vector::new(found.normal2.x, found.normal2.y, 0.0).normalize_or_zero();
+            let Some((distance, normal)) = self.separation(at, collider) else {
+                continue;
+            };
             let key = rank(collider);
-            let deeper = |least: f32, other: u128| found.dist < least || (found.dist == least && key < other);
-            if found.dist < SKIN * 0.9 && worst.is_none_or(|(least, other, _)| deeper(least, other)) {
-                worst = Some((found.dist, key, normal * (SKIN - found.dist).min(0.5)));
+            let deeper = |least: f32, other: u128| distance < least || (distance == least && key < other);
+            if distance < SKIN * 0.9 && worst.is_none_or(|(least, other, _)| deeper(least, other)) {
+                worst = Some((distance, key, normal * (SKIN - distance).min(0.5)));
             }
         }
         worst.map(|(_, _, push)| push)
+    }
+
+    /// How far the agent's body is from another, below 0 if they overlap, and the way out in the plane, of length 1; nothing if
+    /// they are farther apart than the skin.
+    ///
+    /// The engine's contacts would take memory from the heap for shapes that overlap. The axis of the body hardly ever does; if
+    /// it does, the way out is that from the middle of the other.
+    fn separation(&self, at: [f32; 2], collider: &Collider) -> Option<(f32, Vector)> {
+        let pose = Pose::from_translation(Vector::new(at[0], at[1], 0.0));
+        let (other, reach) = (collider.position(), self.radius + SKIN);
+        let (apart, way) = match closest_points(&pose, &self.axis, other, collider.shape(), reach).ok()? {
+            ClosestPoints::Disjoint => return None,
+            // In a wall there is no way out that could not be the wrong side.
+            ClosestPoints::Intersecting if object_of(collider).is_none() => return None,
+            ClosestPoints::Intersecting => (0.0, pose.translation - other.translation),
+            ClosestPoints::WithinMargin(own, others) => {
+                let way = pose * own - *other * others;
+                (way.length(), way)
+            }
+        };
+        Some((apart - self.radius, Vector::new(way.x, way.y, 0.0).normalize_or_zero()))
     }
 
     /// The first solid thing on the agent's way.
@@ -375,8 +398,7 @@ impl Ground {
     }
 
     fn object_of(&self, handle: ColliderHandle) -> Option<u32> {
-        let collider = &self.colliders[handle];
-        (collider.collision_groups().memberships != WALL).then_some(collider.user_data as u32)
+        object_of(&self.colliders[handle])
     }
 
     /// The objects that the agent's body touches, by index in rising order.
@@ -417,6 +439,11 @@ impl Ground {
         );
         found.sort_unstable();
     }
+}
+
+/// The object whose body this is; walls are nobody's.
+fn object_of(collider: &Collider) -> Option<u32> {
+    (collider.collision_groups().memberships != WALL).then_some(collider.user_data as u32)
 }
 
 /// Whether a body shows where it faces: round ones do not.

@@ -99,7 +99,7 @@ impl std::fmt::Display for Warning {
             Self::StartsInside { obstacle } => {
                 write!(
                     f,
-                    "/agent_params/coordinates: found {obstacle}, expected free ground; the agent is stuck there"
+                    "/agent_params/coordinates: found {obstacle}, expected free ground; it may not get out"
                 )
             }
             Self::IsNotPushed { object } => {

@@ -1,0 +1,100 @@
+//! Stepping a batch takes no memory from the heap. A test of its own, because it counts for the whole process.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use driftworld_env::{Action, Autoreset, Batch, BatchOptions};
+use driftworld_spec::{Modality, MotionModel, Stimulus, World};
+
+/// The system's allocator, counting how often it is asked for memory.
+struct Counting;
+
+static TAKEN: AtomicU64 = AtomicU64::new(0);
+
+#[expect(
+    unsafe_code,
+    reason = "an allocator cannot be written without; this one adds to a number and asks the system"
+)]
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        TAKEN.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller's promise is the system's.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: as above.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        TAKEN.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: as above.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// The bench's scene, with something that moves, something that pays by the way, and a hunt without end.
+fn world() -> World {
+    let text = include_str!("../benches/scenes/arena_20.json");
+    let mut world = World::from_json("arena_20.json", text).expect("the bench's scene is sound");
+    world.agent_params.modalities = vec![
+        Modality::Rgb,
+        Modality::Depth,
+        Modality::Segmentation,
+        Modality::Class,
+        Modality::Instance,
+    ];
+    world.agent_params.supersampling = 2;
+    for (index, object) in world.objects.iter_mut().enumerate() {
+        object.tag = Some("group".to_owned());
+        object.reward = 1.0;
+        object.reward_stimulus = vec![Stimulus::AgentCollide, Stimulus::AgentInRange, Stimulus::AgentInteract];
+        object.range_stimulus_distance = 12.0;
+        if index % 4 == 0 {
+            (object.motion_model, object.speed) = (MotionModel::RandomWaypoint, 3.0);
+        }
+    }
+    world
+}
+
+/// How often memory was taken in so many steps of a batch that has warmed up, and what these steps paid in all.
+fn taken(num_threads: usize, steps: usize) -> (u64, f64) {
+    const NUM_ENVS: usize = 8;
+    let world = world();
+    let source = Arc::new(move |_| Ok(world.clone()));
+    let options = BatchOptions {
+        autoreset: Autoreset::NextStep,
+        num_threads,
+        ..BatchOptions::default()
+    };
+    let mut batch = Batch::new(NUM_ENVS, source, options).expect("the scene starts");
+    let actions: [Action; NUM_ENVS] =
+        std::array::from_fn(|env| Action::Continuous([4.0 + env as f64, 20.0 - 3.0 * env as f64, 1.0]));
+    // Lists grow to their size in the first rounds.
+    for _ in 0..300 {
+        batch.step(&actions).expect("the batch goes on");
+    }
+    let before = TAKEN.load(Ordering::Relaxed);
+    let mut paid = 0.0;
+    for _ in 0..steps {
+        batch.step(&actions).expect("the batch goes on");
+        paid += batch.outputs().rewards.iter().sum::<f64>();
+    }
+    (TAKEN.load(Ordering::Relaxed) - before, paid)
+}
+
+#[test]
+fn steps_take_no_memory() {
+    let (taken_alone, paid) = taken(1, 300);
+    assert!(paid > 10.0, "things happen in these steps: {paid}");
+    assert_eq!(taken_alone, 0, "on one thread");
+    // Handing work to other threads takes a block of the pool's queue for every 63 times, whatever the number of environments.
+    let (taken_by_two, _) = taken(2, 300);
+    assert!(taken_by_two <= 10, "on two threads: {taken_by_two} in 300 steps");
+}
