@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use driftworld::env::{Action, Autoreset, Batch, BatchOptions, Environment};
+use driftworld::env::{Action, Autoreset, Batch, BatchOptions, Environment, Renderer, RendererKind};
 use driftworld::spec::{Modality, World};
 use serde_json::json;
 
@@ -26,7 +26,10 @@ const CURVE: Action = Action::Continuous([5.0, 15.0, 0.0]);
 const NUM_MEASURED: usize = 512;
 
 /// Steps, with physics, rewards and pictures, and resets, each second.
-pub(super) fn measure(round: Duration) -> Result<Figures, Failure> {
+pub(super) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures, Failure> {
+    if Renderer::new(renderer)?.kind() == RendererKind::Gpu {
+        return measure_graphics(round);
+    }
     let square = arena(ARENA_20, [84, 84])?;
     let wide = arena(ARENA_20, [160, 120])?;
     let mut small = arena(ARENA_8, [64, 64])?;
@@ -52,6 +55,19 @@ pub(super) fn measure(round: Duration) -> Result<Figures, Failure> {
     Ok(figures)
 }
 
+/// Steps with pictures of a graphics card, each second, in batches; all threads step.
+fn measure_graphics(round: Duration) -> Result<Figures, Failure> {
+    let square = arena(ARENA_20, [84, 84])?;
+    let mut colors = square.clone();
+    colors.agent_params.modalities = vec![Modality::Rgb];
+    let steps = |world: &World, num_envs| steps_of(batch_drawn_by(world, num_envs, 0, RendererKind::Gpu)?, round);
+    Ok(rates([
+        ("gpu_steps_per_second_84_batch_64", steps(&square, NUM_ENVS)?),
+        ("gpu_steps_per_second_84_rgb_batch_64", steps(&colors, NUM_ENVS)?),
+        ("gpu_steps_per_second_84_rgb_batch_256", steps(&colors, 4 * NUM_ENVS)?),
+    ]))
+}
+
 /// A scene with colour, depth and class segmentation at this width and height.
 fn arena(text: &str, [width, height]: [u32; 2]) -> Result<World, Failure> {
     let mut world = World::from_json("arena.json", text)?;
@@ -62,34 +78,40 @@ fn arena(text: &str, [width, height]: [u32; 2]) -> Result<World, Failure> {
 }
 
 fn batch(world: &World, num_envs: usize, num_threads: usize) -> Result<Batch, Failure> {
+    batch_drawn_by(world, num_envs, num_threads, RendererKind::Cpu)
+}
+
+fn batch_drawn_by(
+    world: &World,
+    num_envs: usize,
+    num_threads: usize,
+    renderer: RendererKind,
+) -> Result<Batch, Failure> {
     let world = world.clone();
     let options = BatchOptions {
         autoreset: Autoreset::NextStep,
         num_threads,
-        ..BatchOptions::default()
+        renderer,
     };
     Ok(Batch::new(num_envs, Arc::new(move |_| Ok(world.clone())), options)?)
 }
 
 /// Steps of single environments each second, in a batch on so many threads.
 fn steps(world: &World, num_threads: usize, round: Duration) -> Result<f64, Failure> {
-    let mut batch = batch(world, NUM_ENVS, num_threads)?;
+    steps_of(batch(world, NUM_ENVS, num_threads)?, round)
+}
+
+fn steps_of(mut batch: Batch, round: Duration) -> Result<f64, Failure> {
+    let num_envs = batch.num_envs();
+    let mut actions = vec![Action::Continuous([0.0; 3]); num_envs];
     // Not all at the same place of the circle: the first ones set out, one after the other.
-    for first in 0..NUM_ENVS {
-        let actions: Vec<Action> = (0..NUM_ENVS)
-            .map(|env| {
-                if env <= first {
-                    CURVE
-                } else {
-                    Action::Continuous([0.0; 3])
-                }
-            })
-            .collect();
+    for group in 0..NUM_ENVS {
+        actions[group * num_envs / NUM_ENVS..(group + 1) * num_envs / NUM_ENVS].fill(CURVE);
         for _ in 0..4 {
             batch.step(&actions)?;
         }
     }
-    Ok(rate(round, |_| batch.step(&[CURVE; NUM_ENVS]))? * NUM_ENVS as f64)
+    Ok(rate(round, |_| batch.step(&actions))? * num_envs as f64)
 }
 
 /// Memory that each of many environments adds to the process, images in all modalities of the bench included; where the system

@@ -7,15 +7,13 @@ mod generator;
 use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
+use driftworld::env::RendererKind;
 use serde_json::{Map, Value, json};
 
 use super::{Failure, output};
 
 /// Figures under their names.
 type Figures = Map<String, Value>;
-
-/// Measures in rounds of this length.
-type Measure = fn(Duration) -> Result<Figures, Failure>;
 
 /// How many rounds the median is taken of.
 const ROUNDS: usize = 5;
@@ -35,7 +33,7 @@ enum What {
     Generator(Options),
     /// Steps with pictures, and resets, each second on one core; what a second core adds; memory.
     #[command(after_help = "Example:\n  driftworld bench env --json")]
-    Env(Options),
+    Env(EnvOptions),
 }
 
 #[derive(Args)]
@@ -48,6 +46,15 @@ struct Options {
     seconds: f64,
 }
 
+#[derive(Args)]
+struct EnvOptions {
+    #[command(flatten)]
+    options: Options,
+    /// What draws (cpu, gpu, auto). A graphics card is measured on whole batches, with all cores beside it.
+    #[arg(long, default_value_t, value_name = "RENDERER")]
+    renderer: RendererKind,
+}
+
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if (0.001..=60.0).contains(&seconds) => Ok(seconds),
@@ -57,11 +64,17 @@ fn seconds(text: &str) -> Result<f64, String> {
 
 impl Bench {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let (options, measure) = match self.what {
-            What::Generator(options) => (options, generator::measure as Measure),
-            What::Env(options) => (options, environment::measure as Measure),
+        let round = |options: &Options| Duration::from_secs_f64(options.seconds);
+        let (options, figures) = match self.what {
+            What::Generator(options) => {
+                let figures = generator::measure(round(&options))?;
+                (options, figures)
+            }
+            What::Env(EnvOptions { options, renderer }) => {
+                let figures = environment::measure(round(&options), renderer)?;
+                (options, figures)
+            }
         };
-        let figures = measure(Duration::from_secs_f64(options.seconds))?;
         if options.json {
             return output::json(&figures);
         }

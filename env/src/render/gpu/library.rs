@@ -132,7 +132,9 @@ impl Library {
         self.buffer.get_or_insert_with(|| {
             let usage = wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST;
             // Room for as many again, so that the next few assets need no other buffer.
-            let buffer = device.buffer("vertices", 2 * bytes.len() as u64, usage);
+            let needed = bytes.len() as u64;
+            let size = (2 * needed).min(device.limits.max_buffer_size).max(needed);
+            let buffer = device.buffer("vertices", size, usage);
             device.queue.write_buffer(&buffer, 0, bytes);
             buffer
         })
