@@ -181,13 +181,12 @@ impl Ground {
                     .iter()
                     .map(|point| Vector::new(point[0], point[1], point[2]) * scale)
                     .collect();
-                match SharedShape::convex_hull(&corners) {
-                    Some(shape) => (shape, 0.0, 0.0),
+                if let Some(shape) = SharedShape::convex_hull(&corners) {
+                    (shape, 0.0, 0.0)
+                } else {
                     // Points in one plane hold nothing: the cylinder around them.
-                    None => {
-                        let (radius, half) = (least(item.asset.collider.radius()), least(item.asset.height / 2.0));
-                        (SharedShape::cylinder(half, radius), half, std::f32::consts::FRAC_PI_2)
-                    }
+                    let (radius, half) = (least(item.asset.collider.radius()), least(item.asset.height / 2.0));
+                    (SharedShape::cylinder(half, radius), half, std::f32::consts::FRAC_PI_2)
                 }
             }
         };

@@ -274,7 +274,8 @@ impl Environment {
             let (at, turn) = (moved.translation(), moved.rotation());
             let position = [at.x, at.y];
             let speeds = [moved.linvel().x, moved.linvel().y, moved.angvel().z];
-            let sound = position.iter().chain(&speeds).all(|number| number.is_finite());
+            let [x, y, turn_speed] = speeds;
+            let sound = (at.x + at.y + x + y + turn_speed).is_finite();
             if !sound || self.ground.leads_through(item.position, position, object as u32) {
                 (pushed.velocity, pushed.spin_deg) = ([0.0; 2], 0.0);
                 continue;

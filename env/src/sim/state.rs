@@ -6,6 +6,7 @@ use driftworld_spec::{Object, ObjectProgress, Origin, Progress, World};
 
 use super::environment::Environment;
 use super::episode::wrapped;
+use super::motion::Mover;
 use crate::agents::OnRailsAgent;
 
 /// What a world that was written down says of its course, when the world itself has been taken back to its start.
@@ -93,7 +94,7 @@ impl Environment {
         let mover = self.episode.movers.iter().find(|mover| mover.object == index);
         let pushed = self.episode.pushed.iter().find(|body| body.object == index);
         let returns = self.episode.returning.iter().find(|(other, _)| *other == index);
-        let (waypoint, goal, chance) = mover.map_or((0, None, 0), |mover| mover.progress());
+        let (waypoint, goal, chance) = mover.map_or((0, None, 0), Mover::progress);
         ObjectProgress {
             present: state.present,
             collected: state.collected,

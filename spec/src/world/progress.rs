@@ -88,6 +88,10 @@ pub struct Origin {
 /// How far an object has come.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "four facts that have nothing to do with each other"
+)]
 pub struct ObjectProgress {
     /// Whether it is there.
     #[serde(skip_serializing_if = "is_true")]
