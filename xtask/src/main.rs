@@ -14,6 +14,7 @@ mod error;
 mod examples;
 mod finding;
 mod layers;
+mod peers;
 mod process;
 mod runner;
 mod schemas;
@@ -21,6 +22,7 @@ mod stage;
 mod tidy;
 mod workspace;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use bench::Suite;
@@ -34,7 +36,9 @@ Usage:
   cargo xtask test --list           the stages and what each holds
   cargo xtask STAGE                 the same as `test --only STAGE`, but for `schemas`
   cargo xtask schemas               rewrite schemas/*.json from the Rust types
-  cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator)";
+  cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, env)
+  cargo xtask bench peers PYTHON SCRIPTS
+                                    ours beside the peers that PYTHON has, by the scripts in a folder; draws the README's plot";
 
 /// What the arguments ask for.
 #[derive(Debug, PartialEq)]
@@ -44,6 +48,7 @@ enum Request {
     Run(Vec<Stage>),
     RewriteSchemas,
     Bench(Vec<Suite>),
+    Peers { python: String, scripts: PathBuf },
 }
 
 fn main() -> ExitCode {
@@ -65,6 +70,10 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
         ["-h" | "--help" | "help", ..] => Ok(Request::Help),
         ["schemas"] => Ok(Request::RewriteSchemas),
         ["bench"] => Ok(Request::Bench(Suite::ALL.to_vec())),
+        ["bench", "peers", python, scripts] => Ok(Request::Peers {
+            python: (*python).to_owned(),
+            scripts: scripts.into(),
+        }),
         ["bench", name] => match Suite::from_name(name) {
             Some(suite) => Ok(Request::Bench(vec![suite])),
             None => Err(format!(
@@ -115,6 +124,9 @@ fn execute(request: Request) -> ExitCode {
         }
         Request::Run(stages) => Workspace::load().and_then(|workspace| stage::run_all(&workspace, &stages)),
         Request::RewriteSchemas => Workspace::load().and_then(|workspace| schemas::rewrite(&workspace)),
+        Request::Peers { python, scripts } => {
+            Workspace::load().and_then(|workspace| peers::measure(&workspace, &python, &scripts))
+        }
         Request::Bench(suites) => Workspace::load().and_then(|workspace| bench::measure(&workspace, &suites)),
     };
     match outcome {
