@@ -281,3 +281,59 @@ fn who_starts_in_a_wall_is_told() {
         "/agent_params/coordinates: found a wall, expected free ground; it may not get out"
     );
 }
+
+#[test]
+fn a_place_beyond_all_measure_is_walked_towards() {
+    let mut world = World::default();
+    world.agent_params.action_model = ActionModel::ByWaypoint;
+    let mut environment = start(world);
+    for far in [1e20, 1e39, f64::MAX] {
+        environment
+            .step(Action::Continuous([far, 0.0, 0.0]))
+            .expect("a finite number is a place");
+    }
+    let [x, y] = environment.agent().position;
+    assert!((x - 3.0).abs() < 1e-3 && y.abs() < 1e-3, "{x}, {y}");
+}
+
+#[test]
+fn a_key_that_is_destroyed_opens_the_door_and_a_door_before_its_turn_stays() {
+    let mut key = Object::new("barrel", [0.0, 2.0]);
+    (key.order, key.destroy_stimulus) = (Some(1), vec![Stimulus::AgentCollide]);
+    let mut door = coin([0.0, -2.0], 5.0);
+    (door.order, door.destroy_stimulus) = (Some(2), vec![Stimulus::AgentCollide]);
+    let mut environment = start(World {
+        objects: vec![key, door],
+        ..World::default()
+    });
+    let mut drive = |speed: f64, steps: usize| -> f64 {
+        (0..steps)
+            .map(|_| {
+                let step = environment.step(Action::Continuous([speed, 0.0, 0.0]));
+                step.expect("the episode goes on").reward
+            })
+            .sum()
+    };
+    assert_eq!(drive(-10.0, 3), 0.0, "the door first: nothing, and it stays");
+    assert_eq!(drive(10.0, 6), 0.0, "the key");
+    assert_eq!(drive(-10.0, 6), 5.0, "the door");
+}
+
+#[test]
+fn an_arm_that_did_not_pay_may_pay_later() {
+    let mut arm = coin([0.0, 2.0], 1.0);
+    arm.reward_probability = 0.3;
+    let mut environment = start(World {
+        objects: vec![arm],
+        ..World::default()
+    });
+    let mut paid = 0.0;
+    for step in 0..120 {
+        let speed = if step % 6 < 3 { 10.0 } else { -10.0 };
+        paid += environment
+            .step(Action::Continuous([speed, 0.0, 0.0]))
+            .expect("the episode goes on")
+            .reward;
+    }
+    assert_eq!(paid, 1.0, "once, however often it is touched");
+}

@@ -200,6 +200,11 @@ fn each_environment_may_have_a_task_of_its_own() {
         .set_source(2, Arc::clone(&other), Some(100))
         .expect("there is an environment 2");
     assert!(batch.set_source(5, other, None).is_err());
+    assert_eq!(
+        batch.episode(2),
+        Some(Episode { env: 2, index: 0 }),
+        "the old episode still runs"
+    );
     batch.reset().expect("all sources have worlds");
     assert_eq!(batch.episode(2), Some(Episode { env: 2, index: 100 }));
     batch

@@ -138,3 +138,16 @@ fn a_moment_comes_back_with_what_was_spawned_and_destroyed_since() {
     other.restore(&moment).expect("also in another environment");
     assert_eq!(reward(&mut other, AHEAD), 3.0);
 }
+
+#[test]
+fn an_agent_that_something_was_put_on_walks_out_of_it() {
+    let mut environment = start(Vec::new());
+    let mut cube = Object::new("cube", [0.1, 0.3]);
+    cube.scale = 3.0;
+    environment.spawn(cube).expect("the cube is sound");
+    for _ in 0..30 {
+        reward(&mut environment, AHEAD);
+    }
+    let [_, y] = environment.agent().position;
+    assert!(y > 3.0, "{y}");
+}

@@ -187,3 +187,79 @@ fn what_was_destroyed_comes_back_after_its_delay_and_pays_again() {
         "within a metre of its first place: {first:?}"
     );
 }
+
+#[test]
+fn nothing_that_moves_leaves_the_arena_or_passes_a_wall() {
+    for (number, model) in [MotionModel::Prey, MotionModel::Predator, MotionModel::RandomWaypoint]
+        .into_iter()
+        .cycle()
+        .take(24)
+        .enumerate()
+    {
+        let mut moving = mover(model, [-9.0 + number as f64 * 0.7, 6.0], 4.0 + 2.0 * number as f64);
+        moving.class = if number % 2 == 0 { "barrel" } else { "rock" }.to_owned();
+        let mut world = World {
+            objects: vec![moving],
+            ..World::default()
+        };
+        world.environment_params.map_size = [24.0, 24.0];
+        world.environment_params.walls = vec![Wall {
+            polygon: vec![[-12.0, 0.0], [12.0, 0.0], [12.0, 0.4], [-12.0, 0.4]],
+            height: None,
+            color: None,
+        }];
+        world.agent_params.coordinates = [3.0, -6.0];
+        let mut environment = Environment::new(world).unwrap_or_else(|error| panic!("{error}"));
+        for turn in 0..150 {
+            environment
+                .step(Action::Continuous([5.0, f64::from(turn % 40) * 9.0 - 180.0, 0.0]))
+                .unwrap_or_else(|error| panic!("{error}"));
+            let [x, y] = position(&environment, 0);
+            assert!(x.abs() <= 12.0 && (0.0..=12.0).contains(&y), "{model:?} at {x}, {y}");
+        }
+    }
+}
+
+#[test]
+fn what_comes_back_comes_back_outside_of_regions() {
+    let mut coin = Object::new("geometric", [0.0, 3.0]);
+    coin.destroy_stimulus = vec![Stimulus::AgentCollide];
+    coin.respawn = Some(Respawn {
+        delay: 0.1,
+        radius: 12.0,
+    });
+    for seed in 0..30 {
+        let mut world = World {
+            max_steps: 1000 + seed,
+            objects: vec![coin.clone()],
+            ..World::default()
+        };
+        world.environment_params.walls = vec![Wall {
+            polygon: vec![[4.0, -20.0], [20.0, -20.0], [20.0, 20.0], [4.0, 20.0]],
+            height: None,
+            color: None,
+        }];
+        let mut environment = Environment::new(world).unwrap_or_else(|error| panic!("{error}"));
+        for _ in 0..12 {
+            environment
+                .step(Action::Continuous([10.0, 0.0, 0.0]))
+                .unwrap_or_else(|error| panic!("{error}"));
+        }
+        let [x, _] = position(&environment, 0);
+        assert!(x < 4.0, "in the region at {x}");
+    }
+}
+
+#[test]
+fn a_patrol_that_turns_slowly_arrives() {
+    let mut patrol = mover(MotionModel::Patrol, [0.0, 10.0], 5.0);
+    patrol.turn_rate = Some(45.0);
+    patrol.waypoints = vec![[0.0, 10.0], [3.0, 10.0]];
+    let mut environment = start(vec![patrol]);
+    let mut nearest = f32::INFINITY;
+    for _ in 0..300 {
+        step(&mut environment);
+        nearest = nearest.min(distance(position(&environment, 0), [3.0, 10.0]));
+    }
+    assert!(nearest < 0.5, "{nearest}");
+}

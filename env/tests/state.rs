@@ -208,3 +208,54 @@ fn an_ended_episode_stays_ended() {
     let mut resumed = start(environment.state());
     assert_eq!(resumed.step(Action::Continuous([0.0; 3])), Err(EnvError::Ended));
 }
+
+#[test]
+fn what_stands_far_outside_can_be_written_down_and_read() {
+    let mut prey = Object::new("barrel", [290.0, 0.0]);
+    (prey.motion_model, prey.speed) = (MotionModel::Prey, 50.0);
+    let mut outside = World {
+        objects: vec![prey],
+        ..World::default()
+    };
+    outside.agent_params.coordinates = [280.0, 0.0];
+    outside.agent_params.heading = 90.0;
+    let mut environment = start(outside);
+    for _ in 0..60 {
+        environment
+            .step(Action::Continuous([10.0, 0.0, 0.0]))
+            .expect("the episode goes on");
+    }
+    let read = World::from_json("state", &environment.state().to_json());
+    assert!(read.is_ok(), "{read:?}");
+}
+
+#[test]
+fn counters_at_their_ends_do_not_run_over() {
+    let text = r#"{ "agent_params": { "action_model": "onrails" }, "progress": { "steps": 4294967295, "ticks": 4503599627370496, "rails": { "patience": 4294967295 }, "objects": [] } }"#;
+    let mut environment = start(World::from_json("end", text).expect("the counters are in range"));
+    environment
+        .step(Action::Continuous([0.0; 3]))
+        .expect("no limit of steps is set");
+    assert_eq!(environment.num_steps(), u32::MAX);
+}
+
+#[test]
+fn a_state_without_its_seed_takes_that_of_its_world() {
+    let goal = |name: &str| {
+        let mut wanderer = Object::new("barrel", [3.0, 3.0]);
+        (wanderer.motion_model, wanderer.speed) = (MotionModel::RandomWaypoint, 1.0);
+        wanderer.tag = Some(name.to_owned());
+        let mut environment = start(World {
+            objects: vec![wanderer],
+            ..World::default()
+        });
+        let mut state = environment.state();
+        state.progress.as_mut().expect("a state has progress").seed = None;
+        environment = start(state);
+        environment
+            .step(Action::Continuous([0.0; 3]))
+            .expect("the episode goes on");
+        environment.scene().items[0].heading_deg
+    };
+    assert_ne!(goal("a"), goal("b"));
+}

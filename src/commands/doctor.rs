@@ -102,6 +102,7 @@ fn as_text(report: &RendererReport, missing: &[String]) -> String {
     }
     let why = match (report.auto, report.adapters.is_empty()) {
         (RendererKind::Gpu, _) => "a graphics card that works",
+        _ if !report.has_gpu_feature => "this build has no graphics renderer",
         (_, true) => "there is no graphics adapter",
         (_, false) => "no graphics card works, and software in its place is slower than the processor's own renderer",
     };

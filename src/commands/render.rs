@@ -79,7 +79,7 @@ impl Render {
         let views = Views::with_catalogue(world, catalogue, self.size, self.turn as f32)
             .drawn_by(Renderer::new(self.renderer)?);
         Ok(match self.view {
-            View::Overview => views.overview(self.size * 16 / 9)?,
+            View::Overview => views.overview((self.size * 16 / 9).min(4096))?,
             View::TopDown => views.top_down(),
             View::Rgb => views.first_person()?.rgb,
             View::Depth => views.first_person()?.depth,
@@ -101,7 +101,7 @@ impl Render {
             row(
                 "The world",
                 "from outside, and from above: the arrow is the agent, small things are drawn larger".into(),
-                vec![views.overview(self.size * 16 / 9)?, views.top_down()],
+                vec![views.overview((self.size * 16 / 9).min(4096))?, views.top_down()],
             ),
             row(
                 "What the agent sees",

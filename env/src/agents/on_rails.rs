@@ -132,7 +132,18 @@ impl OnRailsAgent {
 
 impl Agent for OnRailsAgent {
     fn act(&mut self, environment: &Environment) -> Action {
-        self.steps_on_target += 1;
+        in_space(self.steer(environment), environment)
+    }
+
+    fn begin(&mut self, _seed: u64) {
+        *self = Self::new();
+    }
+}
+
+impl OnRailsAgent {
+    /// What it does next, as speed, turn rate and interaction, whatever actions the world takes.
+    pub(crate) fn steer(&mut self, environment: &Environment) -> [f64; 3] {
+        self.steps_on_target = self.steps_on_target.saturating_add(1);
         let wanted = wanted(environment);
         let stale = self
             .target
@@ -146,11 +157,7 @@ impl Agent for OnRailsAgent {
         } else if wanted.is_empty() {
             self.target = None;
         }
-        in_space(self.towards(environment), environment)
-    }
-
-    fn begin(&mut self, _seed: u64) {
-        *self = Self::new();
+        self.towards(environment)
     }
 }
 

@@ -1,6 +1,6 @@
 //! An agent that acts at random: the floor that every learner must rise above.
 
-use driftworld_spec::ActionSpace;
+use driftworld_spec::{ActionModel, ActionSpace};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -36,9 +36,19 @@ impl Agent for RandomAgent {
             let agent = &environment.world().agent_params;
             self.action = match agent.num_actions() {
                 Some(rows) => Action::Discrete(self.chance.random_range(0..rows as u64) as usize),
-                None if agent.actions == ActionSpace::Normalized => {
+                None if agent.actions == ActionSpace::Normalized || agent.action_model == ActionModel::ByWaypoint => {
                     let mut share = || self.chance.random::<f64>() * 2.0 - 1.0;
-                    Action::Continuous([share().abs(), share(), share()])
+                    let shares = [share(), share(), share()];
+                    let [x, y] = environment.world().environment_params.arena_size();
+                    Action::Continuous(match (agent.action_model, &agent.actions) {
+                        (ActionModel::ByWaypoint, ActionSpace::Normalized) => shares,
+                        (ActionModel::ByWaypoint, _) => {
+                            let [a, b, c] = shares;
+                            [a * x / 2.0, b * y / 2.0, c * agent.max_angular_speed]
+                        }
+                        // Mostly ahead, as below.
+                        _ => [shares[0].abs(), shares[1], shares[2]],
+                    })
                 }
                 None => {
                     let speed = self.chance.random::<f64>() * agent.max_linear_speed;

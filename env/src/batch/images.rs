@@ -58,7 +58,11 @@ impl ImageLayout {
 
 impl std::fmt::Display for ImageLayout {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        write!(f, "{} × {} pixels of", self.width, self.height)?;
+        write!(f, "{} × {} pixels", self.width, self.height)?;
+        if self.supersampling > 1 {
+            write!(f, " ({0} × {0} points each)", self.supersampling)?;
+        }
+        f.write_str(" of")?;
         for (k, modality) in self.modalities.iter().enumerate() {
             let comma = if k == 0 { "" } else { "," };
             write!(f, "{comma} {modality:?}")?;

@@ -16,6 +16,8 @@ pub(super) struct Slot {
     pub(super) step: Step,
     source: WorldSource,
     pub(super) layout: Arc<ImageLayout>,
+    /// Number of the episode that runs.
+    current: u64,
     /// Number of the episode that comes next.
     next: u64,
     /// Whether the next episode must begin before anything else happens.
@@ -44,6 +46,7 @@ impl Slot {
             layout,
             step: Step::default(),
             source,
+            current: 0,
             next: 1,
             is_over: false,
         })
@@ -52,7 +55,7 @@ impl Slot {
     pub(super) fn episode(&self) -> Episode {
         Episode {
             env: self.env,
-            index: self.next - 1,
+            index: self.current,
         }
     }
 
@@ -144,7 +147,8 @@ impl Slot {
         })?;
         self.layout.check(self.env, &world)?;
         self.environment.reset(world)?;
-        self.next += 1;
+        self.current = self.next;
+        self.next = self.next.saturating_add(1);
         self.is_over = false;
         Ok(())
     }

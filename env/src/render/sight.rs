@@ -12,8 +12,6 @@ const TOLERANCE: f32 = 0.5;
 pub(super) struct InSight {
     /// Depth of its nearest point in metres.
     pub(super) nearest: f32,
-    /// Depth of its middle.
-    middle: f32,
     pub(super) what: What,
 }
 
@@ -32,7 +30,6 @@ pub(super) fn find(scene: &Scene, view: &View, walls_are_drawn: bool, found: &mu
         if view.sees(middle, radius) {
             found.push(InSight {
                 nearest: middle[2] - radius,
-                middle: middle[2],
                 what,
             });
         }
@@ -62,7 +59,7 @@ pub(super) fn sort(found: &mut [InSight]) {
 
 /// The mesh of an item that is fine enough for how near it is.
 pub(super) fn level<'a>(item: &'a Item, sight: InSight, view: &View) -> &'a [Coat] {
-    let pixels_per_metre = view.scale * item.scale / sight.middle.max(NEAR);
+    let pixels_per_metre = view.scale * item.scale / sight.nearest.max(NEAR);
     item.asset.level(TOLERANCE / pixels_per_metre)
 }
 

@@ -77,7 +77,9 @@ impl Image {
         let steps = along[0].abs().max(along[1].abs()).ceil().clamp(1.0, 10_000.0);
         for k in 0..=steps as i32 {
             let share = k as f32 / steps;
-            let (x, y) = ((from[0] + along[0] * share) as i32, (from[1] + along[1] * share) as i32);
+            // Far outside is far outside: corners may lie anywhere.
+            let pixel = |axis: usize| (from[axis] + along[axis] * share).clamp(-1e6, 1e6) as i32;
+            let (x, y) = (pixel(0), pixel(1));
             for (dx, dy) in (0..=thick).flat_map(|dx| (0..=thick).map(move |dy| (dx, dy))) {
                 self.set(x + dx - thick / 2, y + dy - thick / 2, rgb);
             }

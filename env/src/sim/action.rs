@@ -86,7 +86,10 @@ impl Intent {
             },
             ActionModel::ByWaypoint => Self {
                 turn_deg: turn(c),
-                towards: Some(([a as f32, b as f32], (agent.max_linear_speed * seconds) as f32)),
+                towards: Some((
+                    [a, b].map(|metres| metres.clamp(-1e6, 1e6) as f32),
+                    (agent.max_linear_speed * seconds) as f32,
+                )),
                 ..Self::default()
             },
             ActionModel::None => Self::default(),

@@ -55,20 +55,22 @@ impl Environment {
         let object = &world.objects[index];
         let once = object.reward_once_stimulus.contains(&stimulus);
         let would_pay = once || object.reward_stimulus.contains(&stimulus);
-        let pays = would_pay && self.is_due(object.order);
-        let destroyed = object.destroy_stimulus.contains(&stimulus);
-        let lucky = object.reward_probability >= 1.0
-            || (pays && self.episode.chance.random::<f64>() < object.reward_probability);
-        let reward = if pays && lucky {
+        // Out of its turn an object neither pays nor goes: the sequence could not be finished otherwise.
+        let due = self.is_due(object.order);
+        let destroyed = due && object.destroy_stimulus.contains(&stimulus);
+        let pays = would_pay
+            && due
+            && (object.reward_probability >= 1.0 || self.episode.chance.random::<f64>() < object.reward_probability);
+        let reward = if pays {
             self.episode.objects[index].reward
-        } else if would_pay && !pays {
+        } else if would_pay && !due {
             world.rules.order_penalty
         } else {
             0.0
         };
         step.reward += reward;
         let state = &mut self.episode.objects[index];
-        state.collected |= pays || (destroyed && object.order.is_none());
+        state.collected |= pays || destroyed;
         if pays && once {
             state.reward = 0.0;
             self.scene.items[index].reward = 0.0;
@@ -92,7 +94,7 @@ impl Environment {
     }
 
     /// Whether all objects with a lower place in the sequence have been collected.
-    fn is_due(&self, order: Option<u32>) -> bool {
+    pub(super) fn is_due(&self, order: Option<u32>) -> bool {
         let Some(order) = order else { return true };
         let lower = |object: &Object| object.order.is_some_and(|other| other < order);
         self.world

@@ -15,6 +15,9 @@ pub(super) const SKIN: f32 = 0.01;
 /// Distance at which a touch counts, in metres: a little more than the skin.
 const TOUCH: f32 = 0.03;
 
+/// Where the world ends for what starts outside the arena, in metres from the origin: a document knows no place beyond.
+pub(super) const EDGE: f32 = 300.0;
+
 /// Longest way that is cast at once, in metres.
 const STRETCH: f32 = 1.0;
 
@@ -279,7 +282,7 @@ impl Ground {
     fn slide_stretch(&self, mut left: Vector, motion: &mut Motion<'_>) {
         let mut last_normal: Option<Vector> = None;
         for _ in 0..SLIDES {
-            if left.length() < 1e-5 {
+            if left.length() < 1e-6 {
                 break;
             }
             let start = motion.position;
@@ -315,7 +318,12 @@ impl Ground {
     fn is_crossed(&self, from: [f32; 2], to: [f32; 2]) -> bool {
         let way = Vector::new(to[0] - from[0], to[1] - from[1], 0.0);
         let ray = Ray::new(Vector::new(from[0], from[1], self.height / 2.0), way);
-        self.query(SOLID | WALL).cast_ray(&ray, 1.0, false).is_some()
+        let outside = |_: ColliderHandle, body: &Collider| {
+            object_of(body).is_none() || !body.shape().contains_point(body.position(), ray.origin)
+        };
+        let mut query = self.query(SOLID | WALL);
+        query.filter.predicate = Some(&outside);
+        query.cast_ray(&ray, 1.0, false).is_some()
     }
 
     /// A place moved out of what it touches by the rounding of casts, and back into the arena that it came from.
@@ -330,6 +338,7 @@ impl Ground {
             if from[axis].abs() <= inside + SKIN && inside > 0.0 {
                 place[axis] = place[axis].clamp(-inside, inside);
             }
+            place[axis] = place[axis].clamp(-EDGE, EDGE);
         }
         place
     }

@@ -121,9 +121,8 @@ impl Environment {
         let came = world.progress.is_some().then(|| Came::out_of(&mut world));
         let scene = Scene::from_world_with(&world, catalogue);
         let ground = Ground::new(&world, &scene);
-        let seed = came
-            .as_ref()
-            .map_or_else(|| Seed::of(&world), |came| Seed::known(came.seed()));
+        let written = came.as_ref().and_then(Came::seed);
+        let seed = written.map_or_else(|| Seed::of(&world), |hash| Seed::known(Some(hash)));
         let mut environment = Self {
             episode: Episode::new(&world, &seed),
             had_targets: world.objects.iter().any(Object::is_target),
@@ -193,7 +192,9 @@ impl Environment {
         if self.world.game_mode == GameMode::CollectImages {
             warnings.push(Warning::ForPhotographs);
         }
-        if let Some(obstacle) = self.obstacle(self.world.agent_params.coordinates) {
+        if self.episode.ticks == 0
+            && let Some(obstacle) = self.obstacle(self.world.agent_params.coordinates)
+        {
             warnings.push(Warning::StartsInside { obstacle });
         }
         for (index, (object, item)) in self.world.objects.iter().zip(&self.scene.items).enumerate() {

@@ -56,7 +56,10 @@ impl Environment {
                 [ahead, right, 0.0]
             }
             StateFeature::Goal => self.way_in_own_axes(self.nearest(|object, state| self.is_goal(object, state))),
-            StateFeature::NearestTarget => self.way_in_own_axes(self.nearest(pays_now)),
+            StateFeature::NearestTarget => {
+                let due = |object: &Object, state: &ObjectState| pays_now(object, state) && self.is_due(object.order);
+                self.way_in_own_axes(self.nearest(due))
+            }
             StateFeature::Counts => {
                 let objects = || self.world.objects.iter().zip(&self.episode.objects);
                 let left = objects().filter(|(object, state)| pays_now(object, state)).count();

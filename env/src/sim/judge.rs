@@ -15,7 +15,7 @@ impl Environment {
         };
         let nearest = match &shaping.toward {
             Some(tag) => self.nearest(|object, state| state.present && object.tag.as_ref() == Some(tag)),
-            None => self.nearest(pays_now),
+            None => self.nearest(|object, state| pays_now(object, state) && self.is_due(object.order)),
         };
         nearest.map_or(0.0, |index| {
             let [x, y] = self.way_to(index).map(f64::from);

@@ -93,6 +93,8 @@ impl Mover {
         // Not past a waypoint, so that it is met; who runs or hunts has no such end.
         if matches!(object.motion_model, MotionModel::Patrol | MotionModel::RandomWaypoint) {
             metres = metres.min(length(wanted));
+            // Nor around and around one that it cannot turn to in time: it slows down while it looks elsewhere.
+            metres *= libm::cosf((turn - turn.clamp(-most, most)).to_radians()).max(0.0);
         }
         let heading = heading_deg.to_radians();
         Some(Stride {

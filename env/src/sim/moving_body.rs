@@ -3,7 +3,7 @@
 
 use rapier3d::prelude::*;
 
-use super::body::{AGENT, Ground, SKIN, SOLID, WALL, shows_heading};
+use super::body::{AGENT, EDGE, Ground, SKIN, SOLID, WALL, shows_heading};
 
 impl Ground {
     /// Tells the objects where the agent is: they stop in front of it.
@@ -33,8 +33,9 @@ impl Ground {
             pose = Pose::new(pose.translation, Vector::new(0.0, 0.0, -heading_deg.to_radians()));
         }
         let mut left = Vector::new(by[0], by[1], 0.0);
+        let start = pose.translation;
         for _ in 0..2 {
-            if left.length() < 1e-5 {
+            if left.length() < 1e-6 {
                 break;
             }
             let Some(hit) = self.first_met(SOLID | WALL | AGENT, Some(handle), &*shape, &pose, left) else {
@@ -44,6 +45,17 @@ impl Ground {
             pose.translation += left * hit.share;
             left *= 1.0 - hit.share;
             left -= hit.normal * left.dot(hit.normal).min(0.0);
+        }
+        // What a cast missed by rounding ends here: the body's middle never leaves the arena, nor changes sides of a wall.
+        let from = [start.x, start.y];
+        if self.leads_through(from, [pose.translation.x, pose.translation.y], index) {
+            pose.translation = start;
+        }
+        for axis in 0..2 {
+            if from[axis].abs() <= self.half[axis] {
+                pose.translation[axis] = pose.translation[axis].clamp(-self.half[axis], self.half[axis]);
+            }
+            pose.translation[axis] = pose.translation[axis].clamp(-EDGE, EDGE);
         }
         self.put(handle, pose);
         Some([pose.translation.x, pose.translation.y])

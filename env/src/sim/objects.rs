@@ -4,6 +4,7 @@ use rand::RngExt;
 
 use super::environment::Environment;
 use super::motion::View;
+use super::walls;
 
 impl Environment {
     /// Lets every object that moves by itself go its way.
@@ -69,7 +70,9 @@ impl Environment {
                 first[0] + distance * libm::cosf(angle),
                 first[1] + distance * libm::sinf(angle),
             ];
-            if self.ground.is_free(place, radius) {
+            let in_wall = walls::obstacle(&self.world, place.map(f64::from), f64::from(radius)).is_some();
+            if !in_wall && self.ground.is_free(place, radius) {
+                self.ground.remove(index as u32);
                 let item = &mut self.scene.items[index];
                 item.position = place;
                 item.heading_deg = object.heading as f32;

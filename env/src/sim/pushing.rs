@@ -7,7 +7,7 @@
 use driftworld_spec::{MotionModel, Object, World};
 use rapier3d::prelude::*;
 
-use super::body::{Ground, SOLID, WALL};
+use super::body::{EDGE, Ground, SOLID, WALL};
 use super::casting::rank;
 use super::environment::Environment;
 use super::episode::wrapped;
@@ -272,7 +272,7 @@ impl Environment {
             let item = &mut self.scene.items[object];
             let moved = &physics.bodies[body.handle];
             let (at, turn) = (moved.translation(), moved.rotation());
-            let position = [at.x, at.y];
+            let position = [at.x, at.y].map(|metres| metres.clamp(-EDGE, EDGE));
             let speeds = [moved.linvel().x, moved.linvel().y, moved.angvel().z];
             let [x, y, turn_speed] = speeds;
             let sound = (at.x + at.y + x + y + turn_speed).is_finite();

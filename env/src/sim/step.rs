@@ -8,7 +8,6 @@ use super::environment::Environment;
 use super::episode::wrapped;
 use super::event::Step;
 use crate::EnvError;
-use crate::agents::Agent;
 
 impl Environment {
     /// Lets the agent act for one step: in each of its time steps it turns, moves, and what it meets answers.
@@ -39,7 +38,7 @@ impl Environment {
             }
             intent.interact = false;
         }
-        self.episode.steps += 1;
+        self.episode.steps = self.episode.steps.saturating_add(1);
         self.episode.unshaped += step.reward;
         step.truncated = !step.terminated && self.world.max_steps > 0 && self.episode.steps >= self.world.max_steps;
         if let Some(shaping) = &self.world.rules.shaping {
@@ -73,9 +72,9 @@ impl Environment {
         let Some(mut rails) = self.episode.rails.take() else {
             return Ok(Intent::new(agent.action_model, action.numbers(&self.world)?, agent));
         };
-        let numbers = rails.act(self).numbers(&self.world);
+        let numbers = rails.steer(self);
         self.episode.rails = Some(rails);
-        Ok(Intent::new(ActionModel::ByVelocity, numbers?, &self.world.agent_params))
+        Ok(Intent::new(ActionModel::ByVelocity, numbers, &self.world.agent_params))
     }
 
     /// One time step.

@@ -98,14 +98,16 @@ impl EnvironmentParams {
 /// A polygon on the ground: corners in metres, in order; the last joins the first. It may touch itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
-pub struct Region(#[schemars(length(min = 3, max = 1000))] pub Vec<[f64; 2]>);
+pub struct Region(
+    #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))] pub Vec<[f64; 2]>,
+);
 
 /// A region that cannot be entered: a polygon on the ground, standing up as a wall.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Wall {
     /// Corners in metres, in order; the last joins the first.
-    #[schemars(length(min = 3, max = 1000))]
+    #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
     pub polygon: Vec<[f64; 2]>,
     /// Height in metres; the arena's `wall_height` if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// One named part of the state vector.
 ///
-/// "Ahead" and "right" are the agent's own axes; a *target* is an object that pays a positive reward now; a *goal* is an object
+/// "Ahead" and "right" are the agent's own axes; a *target* is an object that pays a positive reward now, its turn in a sequence included; a *goal* is an object
 /// of the tag that the world's shaping, or else its success by touch, names. Where there is none, numbers are 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

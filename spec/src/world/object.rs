@@ -81,7 +81,7 @@ pub struct Object {
     pub sight_range: Option<f64>,
     /// Points in metres that the object walks along, in order, then back to the first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schemars(length(max = 1000))]
+    #[schemars(length(max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
     pub waypoints: Vec<[f64; 2]>,
     /// Place in a scavenger sequence, from 1: it pays only when all lower places have been collected.
     #[serde(default, skip_serializing_if = "Option::is_none")]

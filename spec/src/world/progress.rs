@@ -22,14 +22,17 @@ pub struct Progress {
     #[schemars(range(min = 0, max = 4_294_967_295_u32))]
     pub steps: u32,
     /// Time steps since the start.
-    #[schemars(range(min = 0, max = MOST))]
+    #[schemars(range(min = 0, max = MOST_TICKS))]
     pub ticks: u64,
     /// The sum of rewards since the start.
+    #[schemars(range(min = -1e15, max = 1e15))]
     pub episode_return: f64,
     /// The same without what shaping paid.
+    #[schemars(range(min = -1e15, max = 1e15))]
     pub unshaped_return: f64,
     /// What the last step paid.
     #[serde(skip_serializing_if = "is_zero")]
+    #[schemars(range(min = -1e15, max = 1e15))]
     pub last_reward: f64,
     /// The last event of the last step.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -38,6 +41,7 @@ pub struct Progress {
     #[serde(skip_serializing_if = "is_false")]
     pub ended: bool,
     /// The agent's velocity over the last time step in metres per second.
+    #[schemars(inner(range(min = -1e6, max = 1e6)))]
     pub velocity: [f64; 2],
     /// Where the agent set out; absent if it is there.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -57,6 +61,9 @@ pub struct Progress {
 /// The largest whole number that every reader of JSON keeps: 2⁵³ − 1.
 const MOST: u64 = (1 << 53) - 1;
 
+/// Leaves room for as many again.
+const MOST_TICKS: u64 = 1 << 52;
+
 /// An event, as the state vector tells it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -64,6 +71,7 @@ pub struct LastEvent {
     /// What set it off.
     pub stimulus: super::Stimulus,
     /// What was paid for it.
+    #[schemars(range(min = -1e15, max = 1e15))]
     pub reward: f64,
     /// Whether it destroyed the object.
     pub destroyed: bool,
@@ -190,6 +198,14 @@ pub(super) fn problems(world: &World) -> Vec<Problem> {
         ));
     }
     for (index, (object, progress)) in world.objects.iter().zip(&progress.objects).enumerate() {
+        if progress.present && progress.returns_at.is_some() {
+            problems.push(Problem::new(
+                "spec/progress",
+                format!("/progress/objects/{index}/returns_at"),
+                "the return of an object that is there",
+                "none, or present false",
+            ));
+        }
         if progress.waypoint as usize >= object.waypoints.len().max(1) {
             problems.push(Problem::new(
                 "spec/progress",

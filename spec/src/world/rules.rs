@@ -37,7 +37,8 @@ pub struct Rules {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Shaping {
-    /// Tag of the objects that draw the agent; if absent, all objects that pay a positive reward now.
+    /// Tag of the objects that draw the agent; if absent, all objects that pay a positive reward
+    /// now, their turn in a sequence included.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 100))]
     pub toward: Option<String>,

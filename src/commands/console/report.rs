@@ -18,7 +18,7 @@ impl Session<'_> {
             "agent at ({x}, {y}) m, heading {}°, velocity ({vx}, {vy}) m/s; step {}, return {}{}",
             short(agent.heading_deg),
             self.environment.num_steps(),
-            short(self.environment.episode_return() as f32),
+            amount(self.environment.episode_return()),
             if self.environment.ended() {
                 "; the episode has ended"
             } else {
@@ -54,13 +54,13 @@ impl Session<'_> {
              actions    {:?}, {} s each\npictures   {width} × {height} pixels: {}\nwatched    {}\nsnapshots  {}",
             world.hash(),
             self.environment.num_steps(),
-            short(self.environment.episode_return() as f32),
+            amount(self.environment.episode_return()),
             if self.environment.ended() { ", ended" } else { "" },
             world.environment_params.arena_size(),
             world.environment_params.predefined_map,
             world.objects.len(),
             agent.action_model,
-            agent.time_step,
+            agent.time_step * f64::from(agent.frame_skip),
             list(modalities.collect()),
             list(self.channels.watched().iter().map(|part| (*part).to_owned()).collect()),
             list(self.snapshots.keys().cloned().collect()),
@@ -85,7 +85,7 @@ impl Session<'_> {
                 x,
                 y,
                 short(item.heading_deg),
-                short(state.reward as f32),
+                amount(state.reward),
                 if state.present { "" } else { "gone" }.to_owned(),
             ]
         });
@@ -110,6 +110,12 @@ pub(super) fn help(command: Option<&str>) -> Result<String, String> {
         let near = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
         format!("found command {command:?}, expected one that help lists{near}")
     })
+}
+
+/// A reward with all that is not noise of it: six places behind the point at most.
+pub(super) fn amount(number: f64) -> String {
+    let rounded = (number * 1e6).round() / 1e6;
+    format!("{}", if rounded == 0.0 { 0.0 } else { rounded })
 }
 
 /// A number with at most two decimals, and without those that say nothing.

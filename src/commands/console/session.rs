@@ -13,7 +13,7 @@ use super::editor::Names;
 use super::line::Line;
 use super::messages::shown;
 use super::place::Folder;
-use super::report::{help, short};
+use super::report::{amount, help};
 use super::screen::Screen;
 
 /// The most moments that are remembered.
@@ -120,7 +120,8 @@ impl<'a> Session<'a> {
 
     /// Simulated time since the start, as a date: a script says the same each time.
     pub(super) fn time(&self) -> String {
-        let seconds = f64::from(self.environment.num_steps()) * self.environment.world().agent_params.time_step;
+        let agent = &self.environment.world().agent_params;
+        let seconds = f64::from(self.environment.num_steps()) * agent.time_step * f64::from(agent.frame_skip);
         jiff::Timestamp::from_microsecond((seconds * 1e6) as i64)
             .unwrap_or(jiff::Timestamp::UNIX_EPOCH)
             .to_string()
@@ -153,7 +154,7 @@ impl<'a> Session<'a> {
             (true, false, false) => ": its last step",
         };
         let plural = if steps == 1 { "" } else { "s" };
-        let (reward, agent) = (short(reward as f32), self.agent());
+        let (reward, agent) = (amount(reward), self.agent());
         lines.push(format!("{steps} step{plural}, reward {reward}; {agent}{how}"));
         Ok(lines.join("\n"))
     }
@@ -163,7 +164,7 @@ impl<'a> Session<'a> {
         let number = self.environment.num_steps();
         let world = self.environment.world();
         let event = |event: &Event| {
-            let (object, reward) = (&world.objects[event.object], short(event.reward as f32));
+            let (object, reward) = (&world.objects[event.object], amount(event.reward));
             let gone = if event.destroyed { ", destroyed" } else { "" };
             let (class, stimulus) = (&object.class, event.stimulus);
             format!(
