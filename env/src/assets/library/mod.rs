@@ -5,7 +5,7 @@ mod bytes;
 mod model;
 mod reader;
 
-#[cfg(feature = "import")]
+#[cfg(any(feature = "import", test))]
 pub(crate) use model::Detail;
 pub use model::LibraryModel;
 pub(crate) use model::MAX_HULL_POINTS;
