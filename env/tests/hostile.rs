@@ -202,6 +202,7 @@ fn documents() -> Vec<(&'static str, Vec<u8>)> {
         ("json_cut.gltf", text(&sound())[..300].to_vec()),
         ("json_nested.gltf", [b"[".repeat(2000), b"]".repeat(2000)].concat()),
         ("json_other.gltf", b"{\"task\": \"find_objects\"}\n".to_vec()),
+        ("json_long_text.gltf", with("/nodes", json!("x".repeat(2000)))),
         (
             "version_1_names.gltf",
             with("/meshes", json!({"box": {"primitives": []}})),
