@@ -61,7 +61,7 @@ impl Library {
         if !self.keys.insert(key(&model.class, &model.name)) {
             return Err(EnvError::BadModel {
                 place: place(),
-                found: "it in the library already".into(),
+                found: "one in the library already".into(),
                 expected: "each class and model once; give another class or model".into(),
             });
         }
