@@ -95,13 +95,11 @@ impl<'a, 'b> Textures<'a, 'b> {
         let Some(sampler) = samplers.get(index) else {
             return Err(refuse(place, format!("sampler {index}"), one_of(samplers.len())));
         };
-        match [sampler.wrap_s, sampler.wrap_t] {
-            [Checked::Valid(across), Checked::Valid(down)] => Ok([across, down]),
-            _ => {
-                let place = format!("/samplers/{index}");
-                Err(refuse(place, "an unknown wrapS or wrapT", "10497, 33071 or 33648"))
-            }
-        }
+        let [Checked::Valid(across), Checked::Valid(down)] = [sampler.wrap_s, sampler.wrap_t] else {
+            let place = format!("/samplers/{index}");
+            return Err(refuse(place, "an unknown wrapS or wrapT", "10497, 33071 or 33648"));
+        };
+        Ok([across, down])
     }
 
     fn load(&mut self, index: usize, from: &str, warnings: &mut Warnings) -> Result<Option<Pixels>, EnvError> {
