@@ -189,7 +189,7 @@ fn what_cannot_be_packed_says_why_and_leaves_no_library() {
         &library,
         "absent.glb: cannot be read",
     );
-    check(folder.path(), &library, "found a folder or a device, expected a file");
+    check(folder.path(), &library, "it is a folder or a device, not a file");
     let hostile = Path::new(env!("CARGO_MANIFEST_DIR")).join("env/tests/hostile");
     check(
         &hostile.join("uri_above.gltf"),
@@ -202,6 +202,41 @@ fn what_cannot_be_packed_says_why_and_leaves_no_library() {
     let error = fail(&["assets", "list", text(&broken)]);
     assert!(error.contains("broken.assets: library, byte"), "{error}");
     assert!(fail(&["assets", "show", "dragon"]).contains("\"dragon\" is not known"));
+}
+
+#[test]
+fn only_libraries_are_written_over() {
+    let folder = scratch();
+    let model = folder.path().join("tower.gltf");
+    std::fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL), &model).expect("the example is committed");
+    let before = std::fs::read(&model).expect("it was copied");
+    for add in [["--class", "tower"].as_slice(), &["--add"]] {
+        let error = fail(&[["assets", "pack", text(&model), "-o", text(&model)].as_slice(), add].concat());
+        let expected = "tower.gltf: found a file that is no library, expected a new name or a library";
+        assert!(error.contains(expected), "{error}");
+        assert_eq!(std::fs::read(&model).expect("it is still there"), before);
+    }
+    let library = folder.path().join("town.assets");
+    std::fs::write(&library, b"").expect("the scratch folder can be written");
+    for _ in 0..2 {
+        succeed(&["assets", "pack", text(&model), "-o", text(&library)]);
+    }
+}
+
+#[test]
+fn what_is_asked_of_a_model_is_read_with_care() {
+    let folder = scratch();
+    let library = folder.path().join("town.assets");
+    let pack = ["assets", "pack", MODEL, "-o", text(&library)];
+    let said = succeed(&[pack.as_slice(), &["--class", " Lamp "]].concat());
+    assert!(said.lines().any(|line| line.starts_with("lamp  ")), "{said}");
+    let error = fail(&[pack.as_slice(), &["--scale", "-1"]].concat());
+    assert!(error.contains("scale: found -1, expected a number above 0"), "{error}");
+    let error = fail(&[pack.as_slice(), &["--height", "-2.5"]].concat());
+    assert!(
+        error.contains("height: found -2.5, expected a number above 0"),
+        "{error}"
+    );
 }
 
 /// A link in the model's folder must not lead to files elsewhere.

@@ -153,6 +153,20 @@ fn textured(png: &[u8]) -> Vec<u8> {
     ])
 }
 
+/// The sound document with texture 1 on it, which is repeated as sampler 0 says, and one place changed.
+fn textured_with(pointer: &str, value: Value) -> Vec<u8> {
+    changed(&[
+        (
+            "/materials/0/pbrMetallicRoughness/baseColorTexture",
+            json!({"index": 1}),
+        ),
+        ("/images", json!([{"uri": "lamp.png"}])),
+        ("/samplers", json!([{}])),
+        ("/textures", json!([{"source": 0}, {"source": 0, "sampler": 0}])),
+        (pointer, value),
+    ])
+}
+
 fn uri(uri: &str) -> Vec<u8> {
     with("/buffers/0/uri", json!(uri))
 }
@@ -202,6 +216,7 @@ fn documents() -> Vec<(&'static str, Vec<u8>)> {
         ("json_cut.gltf", text(&sound())[..300].to_vec()),
         ("json_nested.gltf", [b"[".repeat(2000), b"]".repeat(2000)].concat()),
         ("json_other.gltf", b"{\"task\": \"find_objects\"}\n".to_vec()),
+        ("json_long_text.gltf", with("/nodes", json!("x".repeat(2000)))),
         (
             "version_1_names.gltf",
             with("/meshes", json!({"box": {"primitives": []}})),
@@ -258,6 +273,16 @@ fn references() -> Vec<(&'static str, Vec<u8>)> {
                 ("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(9)),
             ]),
         ),
+        ("missing_base_texture.gltf", textured_with("/textures", json!([]))),
+        (
+            "missing_image.gltf",
+            textured_with("/textures", json!([{"source": 0}, {"source": 9}])),
+        ),
+        (
+            "missing_sampler.gltf",
+            textured_with("/textures", json!([{"source": 0}, {"source": 0, "sampler": 9}])),
+        ),
+        ("wrap_unknown.gltf", textured_with("/samplers", json!([{"wrapT": 1}]))),
         (
             "no_positions.gltf",
             with("/meshes/0/primitives/0/attributes", json!({})),

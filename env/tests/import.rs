@@ -199,8 +199,8 @@ fn colours_are_light_from_the_factor_and_the_corners() {
     assert_eq!(colors(&asset), [[213, 0, 156], [255, 0, 0]]);
 }
 
-#[test]
-fn each_triangle_takes_the_colour_of_its_place_in_the_texture() {
+/// A picture of two pixels side by side.
+fn two_pixels() -> Vec<u8> {
     let mut png = Vec::new();
     let mut encoder = png::Encoder::new(&mut png, 2, 1);
     encoder.set_color(png::ColorType::Rgb);
@@ -209,26 +209,90 @@ fn each_triangle_takes_the_colour_of_its_place_in_the_texture() {
         .write_image_data(&[10, 200, 30, 200, 20, 30])
         .expect("the pixels can be written");
     writer.finish().expect("the picture can be finished");
+    png
+}
+
+/// A quad whose material has a texture of two pixels. The first triangle lies in the left half, the second one in the right
+/// half, corners 0 and 3 on the border; then all of it is moved by so many pictures to the right.
+fn textured(pictures: f32) -> Quad {
     let mut quad = Quad::new();
-    // The first triangle lies in the left half, the second one in the right half: corners 0 and 3 are on the border.
     let places: Vec<u8> = [[0.5_f32, 0.0], [0.0, 0.5], [1.0, 0.5], [0.5, 1.0]]
-        .as_flattened()
         .iter()
-        .flat_map(|number| number.to_le_bytes())
+        .flat_map(|[u, v]| [u + pictures, *v])
+        .flat_map(f32::to_le_bytes)
         .collect();
     let number = quad.add(&places, json!({"componentType": 5126, "count": 4, "type": "VEC2"}));
-    quad.add(&png, json!({"componentType": 5121, "count": 0, "type": "SCALAR"}));
+    quad.add(
+        &two_pixels(),
+        json!({"componentType": 5121, "count": 0, "type": "SCALAR"}),
+    );
     let image = json!([{"bufferView": 3, "mimeType": "image/png"}]);
-    let asset = quad
-        .set("/images", image)
+    quad.set("/images", image)
         .set("/textures", json!([{"source": 0}]))
         .set(
             "/materials/0/pbrMetallicRoughness",
             json!({"baseColorTexture": {"index": 0}}),
         )
         .set("/meshes/0/primitives/0/attributes/TEXCOORD_0", json!(number))
-        .asset();
-    assert_eq!(colors(&asset), [[10, 200, 30], [200, 20, 30]]);
+}
+
+#[test]
+fn each_triangle_takes_the_colour_of_its_place_in_the_texture() {
+    assert_eq!(colors(&textured(0.0).asset()), [[10, 200, 30], [200, 20, 30]]);
+}
+
+#[test]
+fn textures_go_on_beyond_their_sides_as_their_sampler_says() {
+    /// The colour of the first triangle, the only one with glTF's corner (2, 0, 0), then that of the second one.
+    #[track_caller]
+    fn check(wrap: u32, expected: [[i32; 3]; 2]) {
+        let quad = textured(1.0)
+            .set("/textures", json!([{"source": 0, "sampler": 0}]))
+            .set("/samplers", json!([{"wrapS": wrap}]));
+        let imported = quad.import(&options("quad"));
+        assert_eq!(imported.warnings, []);
+        let asset = imported.model.asset();
+        let color_at = |corner: [f32; 3]| {
+            let part = asset.parts.iter().position(|part| part.mesh.corners.contains(&corner));
+            part.map(|part| colors(&asset)[part])
+        };
+        let found = [color_at([-1.0, 0.0, 0.0]), color_at([1.0, 0.0, 1.0])];
+        assert_eq!(found, expected.map(Some), "wrapS {wrap}");
+    }
+    let (left, right) = ([10, 200, 30], [200, 20, 30]);
+    check(10_497, [left, right]);
+    check(33_071, [right, right]);
+    check(33_648, [right, left]);
+}
+
+#[test]
+fn textures_that_cannot_be_kept_are_warned_of() {
+    #[track_caller]
+    fn check(quad: Quad, warning: ImportWarning, place: &str, expected: &[[i32; 3]]) {
+        let imported = quad.import(&options("quad"));
+        assert!(warning.to_string().starts_with(place), "{warning}");
+        assert_eq!(imported.warnings, [warning]);
+        assert_eq!(colors(&imported.model.asset()), expected);
+    }
+    let white = [[255; 3]];
+    check(
+        textured(0.0).set("/textures", json!([{}])),
+        ImportWarning::TextureWithoutImage { texture: 0 },
+        "/textures/0: ",
+        &white,
+    );
+    check(
+        textured(0.0).set("/meshes/0/primitives/0/attributes", json!({"POSITION": 0})),
+        ImportWarning::NoTexturePlaces,
+        "/meshes: ",
+        &white,
+    );
+    check(
+        textured(0.0).set("/extensionsUsed", json!(["KHR_texture_transform"])),
+        ImportWarning::TextureTransform,
+        "/extensionsUsed: ",
+        &[[10, 200, 30], [200, 20, 30]],
+    );
 }
 
 #[test]
@@ -263,7 +327,7 @@ fn libraries_stand_in_front_of_what_is_built_in() {
     let (mut library, catalogue) = catalogue("Tree");
     let again = library.insert(Quad::new().import(&options("tree")).model);
     let said = again.expect_err("capitals do not matter").to_string();
-    assert!(said.contains("it in the library already"), "{said}");
+    assert!(said.contains("found one in the library already"), "{said}");
     let triangles = |class: &str, model: &str| {
         let asset = catalogue.asset(class, &Model(model.into()));
         (asset.known, asset.levels().next().map(|(triangles, _)| triangles))

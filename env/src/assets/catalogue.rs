@@ -2,16 +2,17 @@
 //! in `library` and `builtin.rs`.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use driftworld_spec::Model;
 
-use super::library::Library;
+use super::library::{Library, LibraryModel};
 use super::{Asset, asset};
 
 /// The models that worlds may refer to by class and model: the built-in ones, and in front of them those of libraries.
 ///
-/// Cloning one is cheap: clones share their assets.
+/// Cloning one is cheap: clones share their assets. A library's model becomes an asset, many times its size, when it is first
+/// asked for.
 ///
 /// # Example
 /// ```
@@ -26,7 +27,20 @@ use super::{Asset, asset};
 #[derive(Clone, Debug, Default)]
 pub struct Catalogue {
     /// By class and model as [`key`] writes them.
-    models: Arc<BTreeMap<(String, String), Arc<Asset>>>,
+    models: Arc<BTreeMap<(String, String), Arc<Entry>>>,
+}
+
+/// A library's model, and the asset that it becomes when somebody asks for it.
+#[derive(Debug)]
+struct Entry {
+    model: LibraryModel,
+    asset: OnceLock<Arc<Asset>>,
+}
+
+impl Entry {
+    fn asset(&self) -> Arc<Asset> {
+        Arc::clone(self.asset.get_or_init(|| Arc::new(self.model.asset())))
+    }
 }
 
 impl Catalogue {
@@ -35,7 +49,11 @@ impl Catalogue {
     pub fn with_library(mut self, library: &Library) -> Self {
         let models = Arc::make_mut(&mut self.models);
         for model in library.models() {
-            models.insert(key(&model.class, &model.name), Arc::new(model.asset()));
+            let entry = Entry {
+                model: model.clone(),
+                asset: OnceLock::new(),
+            };
+            models.insert(key(&model.class, &model.name), Arc::new(entry));
         }
         self
     }
@@ -49,7 +67,7 @@ impl Catalogue {
             return asset(class, model);
         }
         let found = self.models.get(&key(class, &model.0));
-        found.map_or_else(|| asset(class, model), Arc::clone)
+        found.map_or_else(|| asset(class, model), |entry| entry.asset())
     }
 }
 
@@ -61,4 +79,44 @@ pub(super) fn key(class: &str, model: &str) -> (String, String) {
         Err(_) => model.to_lowercase(),
     };
     (class.trim().to_lowercase(), model)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::assets::library::Detail;
+    use crate::assets::{ColliderShape, Mesh, Paint};
+
+    fn model(class: &str) -> LibraryModel {
+        let Mesh { corners, triangles } = Mesh::cuboid([1.0; 3], 0.0);
+        let whole = Detail {
+            error: 0.0,
+            triangles: vec![triangles],
+        };
+        let collider = ColliderShape::Ball { radius: 1.0 };
+        let paints = vec![Paint::Fixed([0.5; 3])];
+        LibraryModel::checked(class.into(), "1".into(), collider, corners, paints, vec![whole])
+            .expect("a cube is a sound model")
+    }
+
+    #[test]
+    fn models_become_assets_when_they_are_asked_for_and_then_once() {
+        let mut library = Library::default();
+        for class in ["kiosk", "lamp"] {
+            library.insert(model(class)).expect("there is room");
+        }
+        let catalogue = Catalogue::default().with_library(&library);
+        let made = |catalogue: &Catalogue| {
+            let entries = catalogue.models.values();
+            entries.filter(|entry| entry.asset.get().is_some()).count()
+        };
+        assert_eq!(made(&catalogue), 0, "nobody asked yet");
+        let number = Model("1".into());
+        let first = catalogue.clone().asset("Lamp", &number);
+        assert_eq!(made(&catalogue), 1, "the lamp, and no kiosk");
+        assert!(
+            Arc::ptr_eq(&first, &catalogue.asset("lamp", &number)),
+            "clones share it"
+        );
+    }
 }

@@ -28,10 +28,10 @@ pub(crate) struct Pack {
     #[arg(long, value_name = "NAME")]
     class: Option<String>,
     /// Make each so many metres high.
-    #[arg(long, value_name = "METRES", conflicts_with = "scale")]
+    #[arg(long, value_name = "METRES", conflicts_with = "scale", allow_negative_numbers = true)]
     height: Option<f32>,
     /// Metres for each unit of the files.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
     scale: f32,
     /// What the agent bumps into.
     #[arg(long, value_enum, default_value_t = Body::Auto)]
@@ -60,6 +60,7 @@ enum Body {
 
 impl Pack {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        source::check_output(&self.output)?;
         let mut library = if self.add && self.output.exists() {
             source::library(&self.output)?
         } else {
@@ -83,7 +84,7 @@ impl Pack {
     fn pack(&self, path: &Path, library: &mut Library) -> Result<(), Failure> {
         let in_file = |error: driftworld::env::EnvError| Failure::input(format!("{}: {error}", path.display()));
         let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        let class = self.class.clone().or(stem).unwrap_or_default().to_lowercase();
+        let class = self.class.clone().or(stem).unwrap_or_default().trim().to_lowercase();
         let options = ImportOptions {
             name: free_name(library, &class),
             class,

@@ -42,6 +42,22 @@ pub(super) fn library(path: &Path) -> Result<Library, Failure> {
     Library::from_bytes(&bytes).map_err(|error| Failure::input(format!("{}: {error}", path.display())))
 }
 
+/// Refuses to write a library in place of a file that is something else, such as a model.
+pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
+    // What is not there, or is a pipe or a device, is not opened: there is nothing to lose.
+    if !fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() > 0) {
+        return Ok(());
+    }
+    let mut start = Vec::new();
+    let read = fs::File::open(path).and_then(|file| file.take(16).read_to_end(&mut start));
+    read.map_err(|error| unreadable(path, &error.to_string()))?;
+    if Library::is_meant(&start) {
+        return Ok(());
+    }
+    let found = "found a file that is no library, expected a new name or a library";
+    Err(Failure::input(format!("{}: {found}", path.display())))
+}
+
 /// The bytes of a glTF file.
 pub(super) fn model(path: &Path) -> Result<Vec<u8>, Failure> {
     bytes(path, MAX_IMPORT_BYTES).map_err(|reason| unreadable(path, &reason))
@@ -74,13 +90,13 @@ fn bytes(path: &Path, most: usize) -> Result<Vec<u8>, String> {
     let said = |error: std::io::Error| error.to_string();
     // Looked at before it is opened: opening a pipe would wait for ever.
     if !fs::metadata(path).map_err(said)?.is_file() {
-        return Err("found a folder or a device, expected a file".to_owned());
+        return Err("it is a folder or a device, not a file".to_owned());
     }
     let mut bytes = Vec::new();
     let file = fs::File::open(path).map_err(said)?;
     file.take(most as u64 + 1).read_to_end(&mut bytes).map_err(said)?;
     if bytes.len() > most {
-        return Err(format!("found more than {most} bytes, expected at most that"));
+        return Err(format!("it has more than {most} bytes"));
     }
     Ok(bytes)
 }

@@ -1,7 +1,7 @@
 //! The colour of a triangle: the mean light of material, texture and corners over it. Which colours are kept is decided in
 //! `palette.rs`.
 
-use super::texture::Pixels;
+use super::texture::Texture;
 
 /// How a triangle is cut into places at which its texture is looked at: along each side.
 const SAMPLES: usize = 5;
@@ -9,7 +9,7 @@ const SAMPLES: usize = 5;
 /// What colours the triangles of a primitive.
 pub(super) struct Coloring<'a> {
     pub(super) factor: [f32; 4],
-    pub(super) pixels: Option<&'a Pixels>,
+    pub(super) texture: Option<Texture<'a>>,
     /// Texture coordinates of each corner; none without a texture.
     pub(super) places: Vec<[f32; 3]>,
     /// Light of each corner; none where corners have no colours.
@@ -21,7 +21,7 @@ impl Coloring<'_> {
     pub(super) fn of(&self, triangle: [u32; 3]) -> [f32; 3] {
         let [r, g, b, _] = self.factor;
         let factor = [r, g, b];
-        if self.pixels.is_none() && self.colors.is_empty() {
+        if self.texture.is_none() && self.colors.is_empty() {
             return factor;
         }
         let (mut sum, mut weights) = ([0.0; 3], 0.0);
@@ -37,9 +37,9 @@ impl Coloring<'_> {
                 }
                 mean
             };
-            let [r, g, b, weight] = self.pixels.map_or([1.0; 4], |pixels| {
+            let [r, g, b, weight] = self.texture.map_or([1.0; 4], |texture| {
                 let [u, v, _] = mean(&self.places);
-                pixels.at([u, v])
+                texture.at([u, v])
             });
             let corner = if self.colors.is_empty() {
                 [1.0; 3]

@@ -1,13 +1,20 @@
 //! The JSON of a glTF file: its size is checked before it is parsed, its version and extensions after. Numbers of things in it
 //! are trusted by nobody: whoever follows one looks whether it leads somewhere.
 
+use std::fmt;
+
 use gltf_json::Root;
+use serde::Deserialize;
+use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 
 use super::{MAX_IMPORT_DEPTH, MAX_IMPORT_NODES, refuse};
 use crate::EnvError;
 
 /// The most objects and lists: each may cost some hundred bytes of memory for two of text.
 const MAX_ITEMS: usize = 200_000;
+
+/// The most letters of the parser's own words in a message: it may quote a text as long as the file.
+const MAX_WORDS: usize = 200;
 
 /// Extensions that a file may require and that can be left unread: they change no triangle.
 const HARMLESS: &[&str] = &[
@@ -36,7 +43,11 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
         let said = error.to_string();
         let words = said.split(" at line ").next().unwrap_or(&said);
         let place = format!("line {}, column {}", error.line(), error.column());
-        refuse(place, format!("a fault: {words}"), "glTF 2.0 JSON")
+        refuse(
+            place,
+            format!("a fault: {}", shortened_to(MAX_WORDS, words)),
+            "glTF 2.0 JSON",
+        )
     })?;
     if !root.asset.version.starts_with("2.") {
         let found = format!("{:?}", shortened(&root.asset.version));
@@ -60,10 +71,38 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
     Ok(root)
 }
 
-/// Whether JSON that is no glTF 2.0 is of the version before, where meshes had names in place of numbers.
+/// Whether JSON that is no glTF 2.0 is of the version before, where meshes had names in place of numbers. Nothing of it is kept in
+/// memory.
 fn is_version_1(json: &str) -> bool {
-    let value: Result<gltf_json::Value, _> = gltf_json::deserialize::from_str(json);
-    value.is_ok_and(|value| value.get("meshes").is_some_and(gltf_json::Value::is_object))
+    gltf_json::deserialize::from_str::<Version1>(json).is_ok()
+}
+
+#[derive(Deserialize)]
+struct Version1 {
+    #[serde(rename = "meshes")]
+    _meshes: AnyObject,
+}
+
+/// A JSON object, whatever it holds.
+struct AnyObject;
+
+impl<'de> Deserialize<'de> for AnyObject {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(Self)
+    }
+}
+
+impl<'de> Visitor<'de> for AnyObject {
+    type Value = Self;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self, A::Error> {
+        while map.next_entry::<IgnoredAny, IgnoredAny>()?.is_some() {}
+        Ok(self)
+    }
 }
 
 fn is_compression(extension: &str) -> bool {
@@ -74,10 +113,15 @@ fn is_compression(extension: &str) -> bool {
 
 /// A text of a file as it is quoted in a message: never more than a line of it.
 pub(super) fn shortened(text: &str) -> String {
-    if text.chars().count() <= 60 {
-        return text.to_owned();
+    shortened_to(60, text)
+}
+
+/// The first letters of a text, at most so many.
+fn shortened_to(most: usize, text: &str) -> String {
+    match text.char_indices().nth(most) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
     }
-    text.chars().take(60).chain("…".chars()).collect()
 }
 
 /// Refuses JSON that is nested too deep, or would take many times its length in memory.
@@ -147,5 +191,34 @@ fn shortened_list(names: &[String], count: usize) -> String {
         shown.join(", ")
     } else {
         format!("{} and {more} more", shown.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_version_before_is_known_by_its_meshes() {
+        #[track_caller]
+        fn check(json: &str, expected: bool) {
+            assert_eq!(is_version_1(json), expected, "{json}");
+        }
+        check(
+            r#"{"meshes": {"box": {"primitives": [0, {}]}, "lid": 1}, "nodes": {}}"#,
+            true,
+        );
+        check(r#"{"asset": {}, "meshes": {}}"#, true);
+        check(r#"{"meshes": []}"#, false);
+        check(r#"{"nodes": {}}"#, false);
+        check("[0, 0, 0]", false);
+        check(r#"{"meshes": {}"#, false);
+    }
+
+    #[test]
+    fn texts_are_shortened_between_letters() {
+        assert_eq!(shortened_to(3, "äöü"), "äöü");
+        assert_eq!(shortened_to(3, "äöüß"), "äöü…");
+        assert_eq!(shortened(&"é".repeat(100)).chars().count(), 61);
     }
 }

@@ -102,7 +102,9 @@ impl LibraryModel {
             warnings,
         };
         let mut surface = surface::Surface::default();
-        nodes::visit(&root, &mut |mesh, pose| surface.add(&mut reading, mesh, pose))?;
+        nodes::visit(&root, &mut |mesh, pose, node| {
+            surface.add(&mut reading, mesh, pose, node)
+        })?;
         surface.stand(options.size)?;
         let groups = palette::groups(&surface, main);
         finish(options, &surface, groups, reading.warnings)

@@ -10,9 +10,9 @@ use crate::EnvError;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pose([[f64; 4]; 3]);
 
-type Found<'a> = dyn FnMut(Index<Mesh>, &Pose) -> Result<(), EnvError> + 'a;
+type Found<'a> = dyn FnMut(Index<Mesh>, &Pose, &str) -> Result<(), EnvError> + 'a;
 
-/// Shows every mesh of the default scene with its pose; without scenes, every mesh that hangs in the tree.
+/// Shows every mesh of the default scene with its pose and the place of its node; without scenes, every mesh that hangs in the tree.
 pub(super) fn visit(root: &Root, found: &mut Found) -> Result<(), EnvError> {
     let mut walk = Walk {
         root,
@@ -69,7 +69,7 @@ impl Walk<'_, '_> {
         }
         let pose = parent.then(&own);
         if let Some(mesh) = node.mesh {
-            (self.found)(mesh, &pose)?;
+            (self.found)(mesh, &pose, &place)?;
         }
         for child in node.children.iter().flatten() {
             self.node(*child, &pose, depth + 1, &format!("{place}/children"))?;

@@ -141,18 +141,23 @@ impl Reading<'_, '_> {
             &here("COLOR_0"),
         )?;
         let metal = material.map(|material| &material.pbr_metallic_roughness);
-        let (places, pixels) = match metal.and_then(|metal| metal.base_color_texture.as_ref()) {
+        let (places, texture) = match metal.and_then(|metal| metal.base_color_texture.as_ref()) {
             Some(texture::Info { index, tex_coord, .. }) => {
                 let (semantic, name) = (Semantic::TexCoords(*tex_coord), here(&format!("TEXCOORD_{tex_coord}")));
                 let places = self.attribute(primitive, semantic, Use::TexturePlaces, num_corners, &name)?;
-                let pixels = self.textures.pixels(*index, "/materials", &mut self.warnings)?;
-                (places, pixels)
+                let number = primitive.material.map_or(0, |material| material.value());
+                let from = format!("/materials/{number}/pbrMetallicRoughness/baseColorTexture/index");
+                let texture = self.textures.texture(*index, &from, &mut self.warnings)?;
+                if places.is_empty() && texture.is_some() {
+                    self.warnings.note(ImportWarning::NoTexturePlaces);
+                }
+                (places, texture)
             }
             None => (Vec::new(), None),
         };
         Ok(Coloring {
             factor: metal.map_or([1.0; 4], |metal| metal.base_color_factor.0),
-            pixels: pixels.filter(|_| !places.is_empty()),
+            texture: texture.filter(|_| !places.is_empty()),
             places,
             colors,
         })

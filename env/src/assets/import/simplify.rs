@@ -17,6 +17,9 @@ const KEPT: usize = 4;
 /// The largest error of a level, as a share of the surface's size.
 const MOST_ERROR: f32 = 0.2;
 
+/// The most corners of the whole surface that are measured for a level: with more of them, evenly chosen ones stand for all.
+const MEASURED: usize = 20_000;
+
 /// Up to three coarser levels of a surface, triangles in groups of one colour; each level with at most two thirds of the triangles
 /// of the one before. Groups share no corners.
 pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Detail> {
@@ -40,13 +43,13 @@ pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Deta
         for three in indices.chunks_exact(3) {
             by_group[group_of[three[0] as usize]].push([three[0], three[1], three[2]]);
         }
-        let pairs = groups.iter().zip(&by_group);
-        let error = pairs
-            .map(|(fine, coarse)| distance(corners, fine, coarse))
-            .fold(0.0, f32::max);
-        if indices.len() > before * 2 || error > most_error {
+        // Counted before anything is measured, for what cannot be simplified is what takes longest to measure.
+        if indices.len() > before * 2 {
             break;
         }
+        let Some(error) = error(corners, groups, &by_group, most_error) else {
+            break;
+        };
         before = indices.len() / 3;
         let last = levels.last().map_or(0.0, |level: &Detail| level.error);
         levels.push(Detail {
@@ -72,29 +75,52 @@ fn size<'a, I: Iterator<Item = &'a [f32; 3]>>(points: impl Fn() -> I) -> f32 {
     along(0).max(along(1)).max(along(2)).max(0.0)
 }
 
-/// How far the corners of a group lie from its coarser form at most; its size if nothing is left of it.
-fn distance(corners: &[[f32; 3]], fine: &[[u32; 3]], coarse: &[[u32; 3]]) -> f32 {
-    let used = |triangles: &[[u32; 3]]| {
-        let mut used = triangles.as_flattened().to_vec();
-        used.sort_unstable();
-        used.dedup();
-        used
-    };
-    let at = |corner: &u32| &corners[*corner as usize];
-    let (all, left) = (used(fine), used(coarse));
-    let point = |corner: &u32| {
-        let [x, y, z] = *at(corner);
-        Vector::new(x, y, z)
-    };
+/// How far the corners of groups lie from their coarser forms at most; the size of a group of which nothing is left. None as soon
+/// as that is above `most`.
+fn error(corners: &[[f32; 3]], fine: &[Vec<[u32; 3]>], coarse: &[Vec<[u32; 3]>], most: f32) -> Option<f32> {
+    let used: Vec<Vec<u32>> = fine.iter().map(|triangles| used(triangles)).collect();
+    // Each group has at least one corner measured, which rounding up may add to the most.
+    let (total, at_most) = (
+        used.iter().map(Vec::len).sum(),
+        MEASURED.saturating_sub(used.len()).max(1),
+    );
+    let stride = usize::max(1, usize::div_ceil(total, at_most));
+    let mut error = 0.0_f32;
+    for (used, coarse) in used.iter().zip(coarse) {
+        let surface = mesh(corners, coarse);
+        let Some(surface) = surface else {
+            error = error.max(size(|| used.iter().map(|corner| &corners[*corner as usize])));
+            continue;
+        };
+        for corner in used.iter().step_by(stride) {
+            error = error.max(surface.distance_to_local_point(point(corners, *corner), false));
+            if error > most {
+                return None;
+            }
+        }
+    }
+    (error <= most).then_some(error)
+}
+
+/// The triangles of a group as a surface that distances are measured from; none if nothing is left of them.
+fn mesh(corners: &[[f32; 3]], triangles: &[[u32; 3]]) -> Option<TriMesh> {
+    let left = used(triangles);
     let place = |corner: u32| left.binary_search(&corner).map_or(0, |place| place as u32);
-    let triangles = coarse.iter().map(|triangle| triangle.map(place)).collect();
-    let Ok(mesh) = TriMesh::new(left.iter().map(point).collect(), triangles) else {
-        return size(|| all.iter().map(at));
-    };
-    let far = all
-        .iter()
-        .map(|corner| mesh.distance_to_local_point(point(corner), false));
-    far.fold(0.0, f32::max)
+    let triangles = triangles.iter().map(|triangle| triangle.map(place)).collect();
+    TriMesh::new(left.iter().map(|corner| point(corners, *corner)).collect(), triangles).ok()
+}
+
+/// The corners that triangles have, each once.
+fn used(triangles: &[[u32; 3]]) -> Vec<u32> {
+    let mut used = triangles.as_flattened().to_vec();
+    used.sort_unstable();
+    used.dedup();
+    used
+}
+
+fn point(corners: &[[f32; 3]], corner: u32) -> Vector {
+    let [x, y, z] = corners[corner as usize];
+    Vector::new(x, y, z)
 }
 
 #[cfg(test)]
@@ -130,5 +156,38 @@ mod tests {
         }
         let cube = Mesh::cuboid([1.0; 3], 0.0);
         assert!(levels(&cube.corners, std::slice::from_ref(&cube.triangles)).is_empty());
+    }
+
+    #[test]
+    fn a_level_that_is_too_far_off_is_none() {
+        let ball = Mesh::ball(1.0, 1.0, 48, 32);
+        let fine = [ball.triangles.clone()];
+        let some = [ball.triangles[..ball.triangles.len() / 2].to_vec()];
+        assert_eq!(error(&ball.corners, &fine, &fine, 0.0), Some(0.0), "nothing is missing");
+        assert!(
+            error(&ball.corners, &fine, &some, 0.4).is_none(),
+            "half of it is missing"
+        );
+        assert!(error(&ball.corners, &fine, &some, 4.0).is_some());
+        let nothing = error(&ball.corners, &fine, &[Vec::new()], 4.0);
+        assert!(nothing.is_some_and(|error| (error - 2.0).abs() < 0.01), "{nothing:?}");
+    }
+
+    #[test]
+    fn many_corners_are_measured_at_few_and_almost_as_far_off() {
+        let ball = Mesh::ball(1.0, 1.0, 256, 256);
+        assert!(ball.corners.len() > 3 * MEASURED, "{} corners", ball.corners.len());
+        let coarse = Mesh::ball(1.0, 1.0, 16, 12);
+        let both = ball.clone().with(&coarse);
+        let coarse = [both.triangles[ball.triangles.len()..].to_vec()];
+        let surface = mesh(&both.corners, &coarse[0]).expect("half a thousand triangles are a surface");
+        let far = (0..ball.corners.len() as u32)
+            .map(|corner| surface.distance_to_local_point(point(&both.corners, corner), false));
+        let at_all = far.fold(0.0, f32::max);
+        let found = error(&both.corners, &[ball.triangles], &coarse, 1.0);
+        assert!(
+            found.is_some_and(|found| found <= at_all && found > 0.95 * at_all),
+            "{found:?} m of {at_all} m"
+        );
     }
 }

@@ -33,11 +33,21 @@ pub(super) struct Face {
 }
 
 impl Surface {
-    /// Adds a mesh that stands somewhere.
-    pub(super) fn add(&mut self, reading: &mut Reading, mesh: Index<Mesh>, pose: &Pose) -> Result<(), EnvError> {
+    /// Adds a mesh that stands somewhere; `node` is the place of the one that it hangs on.
+    pub(super) fn add(
+        &mut self,
+        reading: &mut Reading,
+        mesh: Index<Mesh>,
+        pose: &Pose,
+        node: &str,
+    ) -> Result<(), EnvError> {
         let (index, meshes) = (mesh.value(), &reading.root.meshes);
         let Some(mesh) = meshes.get(index) else {
-            return Err(refuse("/nodes", format!("mesh {index}"), one_of(meshes.len())));
+            return Err(refuse(
+                format!("{node}/mesh"),
+                format!("mesh {index}"),
+                one_of(meshes.len()),
+            ));
         };
         for (k, primitive) in mesh.primitives.iter().enumerate() {
             self.primitives += 1;

@@ -4,6 +4,8 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use gltf_json::texture::{Sampler, WrappingMode};
+use gltf_json::validation::Checked;
 use gltf_json::{Index, Root};
 
 use super::buffers::{Buffers, one_of};
@@ -18,6 +20,9 @@ const MAX_PIXELS: usize = 2 * 4096 * 4096;
 /// The most images that are read.
 const MAX_IMAGES: usize = 256;
 
+/// What stands for the image of a texture that names none.
+const NO_SOURCE: usize = u32::MAX as usize;
+
 /// The textures of a file, read when they are first asked for.
 pub(super) struct Textures<'a, 'b> {
     root: &'a Root,
@@ -28,8 +33,16 @@ pub(super) struct Textures<'a, 'b> {
     num_pixels: usize,
 }
 
+/// An image as a texture repeats it.
+#[derive(Clone, Copy)]
+pub(super) struct Texture<'a> {
+    pixels: &'a Pixels,
+    /// What lies beyond its sides: across, and down.
+    wrap: [WrappingMode; 2],
+}
+
 /// An image: 8-bit RGBA, row 0 on top.
-pub(super) struct Pixels {
+struct Pixels {
     width: usize,
     height: usize,
     rgba: Vec<[u8; 4]>,
@@ -46,30 +59,53 @@ impl<'a, 'b> Textures<'a, 'b> {
         }
     }
 
-    /// The pixels of a texture that whoever is at `place` refers to; none where its format is not read.
-    pub(super) fn pixels(
+    /// The texture that whoever is at `place` refers to; none where it has no image, or one whose format is not read.
+    pub(super) fn texture(
         &mut self,
         texture: Index<gltf_json::Texture>,
         place: &str,
         warnings: &mut Warnings,
-    ) -> Result<Option<&Pixels>, EnvError> {
-        let textures = &self.root.textures;
-        let Some(texture) = textures.get(texture.value()) else {
-            let found = format!("texture {}", texture.value());
+    ) -> Result<Option<Texture<'_>>, EnvError> {
+        let (index, textures) = (texture.value(), &self.root.textures);
+        let Some(texture) = textures.get(index) else {
+            let found = format!("texture {index}");
             return Err(refuse(place, found, one_of(textures.len())));
         };
+        let place = format!("/textures/{index}");
+        let wrap = self.wrap(texture.sampler, &format!("{place}/sampler"))?;
         let image = texture.source.value();
+        if image == NO_SOURCE {
+            warnings.note(ImportWarning::TextureWithoutImage { texture: index });
+            return Ok(None);
+        }
         if !self.images.contains_key(&image) {
-            let pixels = self.load(image, warnings)?;
+            let pixels = self.load(image, &format!("{place}/source"), warnings)?;
             self.images.insert(image, pixels);
         }
-        Ok(self.images.get(&image).and_then(Option::as_ref))
+        let pixels = self.images.get(&image).and_then(Option::as_ref);
+        Ok(pixels.map(|pixels| Texture { pixels, wrap }))
     }
 
-    fn load(&mut self, index: usize, warnings: &mut Warnings) -> Result<Option<Pixels>, EnvError> {
+    /// How a texture goes on beyond its image, across and down: without a sampler it is repeated.
+    fn wrap(&self, sampler: Option<Index<Sampler>>, place: &str) -> Result<[WrappingMode; 2], EnvError> {
+        let Some(index) = sampler.map(|sampler| sampler.value()) else {
+            return Ok([WrappingMode::Repeat; 2]);
+        };
+        let samplers = &self.root.samplers;
+        let Some(sampler) = samplers.get(index) else {
+            return Err(refuse(place, format!("sampler {index}"), one_of(samplers.len())));
+        };
+        let [Checked::Valid(across), Checked::Valid(down)] = [sampler.wrap_s, sampler.wrap_t] else {
+            let place = format!("/samplers/{index}");
+            return Err(refuse(place, "an unknown wrapS or wrapT", "10497, 33071 or 33648"));
+        };
+        Ok([across, down])
+    }
+
+    fn load(&mut self, index: usize, from: &str, warnings: &mut Warnings) -> Result<Option<Pixels>, EnvError> {
         let Some(image) = self.root.images.get(index) else {
             let found = format!("image {index}");
-            return Err(refuse("/textures", found, one_of(self.root.images.len())));
+            return Err(refuse(from, found, one_of(self.root.images.len())));
         };
         if self.images.len() >= MAX_IMAGES {
             let found = format!("more than {MAX_IMAGES} images in use");
@@ -143,14 +179,58 @@ fn decoded(bytes: &[u8], place: &str) -> Result<Pixels, EnvError> {
 /// The light of each byte.
 static LIGHT: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|byte| linear(byte as f32 / 255.0)));
 
-impl Pixels {
-    /// Light and opacity at a place in texture coordinates: the nearest pixel, the image repeated for ever.
-    pub(super) fn at(&self, [u, v]: [f32; 2]) -> [f32; 4] {
-        let index =
-            |place: f32, size: usize| ((place.rem_euclid(1.0) * size as f32) as usize).min(size.saturating_sub(1));
-        let at = index(v, self.height) * self.width + index(u, self.width);
-        let [r, g, b, alpha] = self.rgba.get(at).copied().unwrap_or([255; 4]);
+impl Texture<'_> {
+    /// Light and opacity at a place in texture coordinates: the nearest pixel.
+    pub(super) fn at(self, [u, v]: [f32; 2]) -> [f32; 4] {
+        let Self { pixels, wrap } = self;
+        let index = |place: f32, wrap: WrappingMode, size: usize| {
+            ((within(place, wrap) * size as f32) as usize).min(size.saturating_sub(1))
+        };
+        let (column, row) = (index(u, wrap[0], pixels.width), index(v, wrap[1], pixels.height));
+        let [r, g, b, alpha] = pixels
+            .rgba
+            .get(row * pixels.width + column)
+            .copied()
+            .unwrap_or([255; 4]);
         let light = |byte: u8| LIGHT[usize::from(byte)];
         [light(r), light(g), light(b), f32::from(alpha) / 255.0]
+    }
+}
+
+/// Where in the image, 0 to 1, a place is that may lie beyond it.
+fn within(place: f32, wrap: WrappingMode) -> f32 {
+    match wrap {
+        WrappingMode::Repeat => place.rem_euclid(1.0),
+        WrappingMode::ClampToEdge => place.clamp(0.0, 1.0),
+        WrappingMode::MirroredRepeat => {
+            let place = place.rem_euclid(2.0);
+            place.min(2.0 - place)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_beyond_the_image_are_brought_into_it() {
+        #[track_caller]
+        fn check(place: f32, repeated: f32, clamped: f32, mirrored: f32) {
+            let modes = [
+                WrappingMode::Repeat,
+                WrappingMode::ClampToEdge,
+                WrappingMode::MirroredRepeat,
+            ];
+            assert_eq!(
+                modes.map(|wrap| within(place, wrap)),
+                [repeated, clamped, mirrored],
+                "{place}"
+            );
+        }
+        check(0.25, 0.25, 0.25, 0.25);
+        check(1.25, 0.25, 1.0, 0.75);
+        check(-0.25, 0.75, 0.0, 0.25);
+        check(2.25, 0.25, 1.0, 0.25);
     }
 }

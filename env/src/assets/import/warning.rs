@@ -26,6 +26,15 @@ pub enum ImportWarning {
         /// What it is.
         found: String,
     },
+    /// A texture without an image, or with one that only an extension names: the material's plain colour is taken.
+    TextureWithoutImage {
+        /// Number of the texture in the file.
+        texture: usize,
+    },
+    /// Textured surfaces that do not say where on the texture their corners are: the material's plain colour is taken.
+    NoTexturePlaces,
+    /// Textures that are moved, turned or scaled by `KHR_texture_transform`: they are taken as they are.
+    TextureTransform,
 }
 
 impl fmt::Display for ImportWarning {
@@ -42,6 +51,16 @@ impl fmt::Display for ImportWarning {
                     "/images/{image}: {found} is not read; its materials keep their plain colour, or convert it to PNG"
                 )
             }
+            Self::TextureWithoutImage { texture } => write!(
+                f,
+                "/textures/{texture}: it names no image; its materials keep their plain colour, or export it as PNG"
+            ),
+            Self::NoTexturePlaces => f.write_str(
+                "/meshes: textured surfaces without the texture coordinates that their material asks for keep its plain colour",
+            ),
+            Self::TextureTransform => f.write_str(
+                "/extensionsUsed: KHR_texture_transform is left out; textures that it moves or scales give other colours",
+            ),
         }
     }
 }
@@ -62,6 +81,9 @@ impl Warnings {
         }
         if !root.skins.is_empty() {
             self.note(ImportWarning::Skins);
+        }
+        if root.extensions_used.iter().any(|name| name == "KHR_texture_transform") {
+            self.note(ImportWarning::TextureTransform);
         }
     }
 

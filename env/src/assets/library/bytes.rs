@@ -33,6 +33,11 @@ impl Library {
         sealed(&body)
     }
 
+    /// Whether a file that begins with these bytes means to be a library, of any version, whole or not.
+    pub fn is_meant(bytes: &[u8]) -> bool {
+        bytes.starts_with(MAGIC)
+    }
+
     /// Reads what [`Library::to_bytes`] wrote.
     ///
     /// Any bytes may be handed in; memory stays below a fixed multiple of their number.

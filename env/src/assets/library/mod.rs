@@ -5,7 +5,7 @@ mod bytes;
 mod model;
 mod reader;
 
-#[cfg(feature = "import")]
+#[cfg(any(feature = "import", test))]
 pub(crate) use model::Detail;
 pub use model::LibraryModel;
 pub(crate) use model::MAX_HULL_POINTS;
@@ -61,7 +61,7 @@ impl Library {
         if !self.keys.insert(key(&model.class, &model.name)) {
             return Err(EnvError::BadModel {
                 place: place(),
-                found: "it in the library already".into(),
+                found: "one in the library already".into(),
                 expected: "each class and model once; give another class or model".into(),
             });
         }
