@@ -16,8 +16,11 @@ const ARENA_20: &str = include_str!("../../../env/benches/scenes/arena_20.json")
 /// The same with 8 objects.
 const ARENA_8: &str = include_str!("../../../env/benches/scenes/arena_8.json");
 
-/// Environments that step together.
-const NUM_ENVS: usize = 64;
+/// Environments that step together: few enough that their pictures stay near the processor.
+const NUM_ENVS: usize = 16;
+
+/// Environments that two cores share: enough that handing them out does not count.
+const NUM_ENVS_OF_TWO: usize = 256;
 
 /// A circle of 19 m radius, which passes between the objects.
 const CURVE: Action = Action::Continuous([5.0, 15.0, 0.0]);
@@ -34,19 +37,20 @@ pub(super) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
     let wide = arena(ARENA_20, [160, 120])?;
     let mut small = arena(ARENA_8, [64, 64])?;
     small.agent_params.modalities = vec![Modality::Rgb];
-    let one = steps(&square, 1, round)?;
+    let one = steps(&square, NUM_ENVS, 1, round)?;
     let mut environment = Environment::new(square.clone())?;
     let mut figures = rates([
         ("steps_per_second_per_core_84", one),
-        ("steps_per_second_per_core_160x120", steps(&wide, 1, round)?),
-        ("steps_per_second_per_core_64_rgb", steps(&small, 1, round)?),
+        ("steps_per_second_per_core_160x120", steps(&wide, NUM_ENVS, 1, round)?),
+        ("steps_per_second_per_core_64_rgb", steps(&small, NUM_ENVS, 1, round)?),
         (
             "resets_per_second_per_core",
             rate(round, |_| environment.reset(square.clone()))?,
         ),
     ]);
     // One core again, so that both are measured in the same state of the machine.
-    let (two, again) = (steps(&square, 2, round)?, steps(&square, 1, round)?);
+    let [two, again] = [2, 1].map(|num_threads| steps(&square, NUM_ENVS_OF_TWO, num_threads, round));
+    let (two, again) = (two?, again?);
     let speedup = (two / again * 100.0).round() / 100.0;
     figures.insert("two_core_speedup".to_owned(), json!(speedup));
     if let Some(kilobytes) = kilobytes_per_environment(&square)? {
@@ -62,9 +66,10 @@ fn measure_graphics(round: Duration) -> Result<Figures, Failure> {
     colors.agent_params.modalities = vec![Modality::Rgb];
     let steps = |world: &World, num_envs| steps_of(batch_drawn_by(world, num_envs, 0, RendererKind::Gpu)?, round);
     Ok(rates([
-        ("gpu_steps_per_second_84_batch_64", steps(&square, NUM_ENVS)?),
-        ("gpu_steps_per_second_84_rgb_batch_64", steps(&colors, NUM_ENVS)?),
-        ("gpu_steps_per_second_84_rgb_batch_256", steps(&colors, 4 * NUM_ENVS)?),
+        ("gpu_steps_per_second_84_batch_256", steps(&square, 256)?),
+        ("gpu_steps_per_second_84_rgb_batch_256", steps(&colors, 256)?),
+        ("gpu_steps_per_second_84_rgb_batch_1024", steps(&colors, 1024)?),
+        ("gpu_steps_per_second_84_rgb_batch_4096", steps(&colors, 4096)?),
     ]))
 }
 
@@ -97,8 +102,8 @@ fn batch_drawn_by(
 }
 
 /// Steps of single environments each second, in a batch on so many threads.
-fn steps(world: &World, num_threads: usize, round: Duration) -> Result<f64, Failure> {
-    steps_of(batch(world, NUM_ENVS, num_threads)?, round)
+fn steps(world: &World, num_envs: usize, num_threads: usize, round: Duration) -> Result<f64, Failure> {
+    steps_of(batch(world, num_envs, num_threads)?, round)
 }
 
 fn steps_of(mut batch: Batch, round: Duration) -> Result<f64, Failure> {
