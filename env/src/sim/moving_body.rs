@@ -51,11 +51,13 @@ impl Ground {
         if self.leads_through(from, [pose.translation.x, pose.translation.y], index) {
             pose.translation = start;
         }
-        for axis in 0..2 {
-            if from[axis].abs() <= self.half[axis] {
-                pose.translation[axis] = pose.translation[axis].clamp(-self.half[axis], self.half[axis]);
-            }
-            pose.translation[axis] = pose.translation[axis].clamp(-EDGE, EDGE);
+        for (axis, begun) in from.into_iter().enumerate() {
+            let half = if begun.abs() <= self.half[axis] {
+                self.half[axis]
+            } else {
+                EDGE
+            };
+            pose.translation[axis] = pose.translation[axis].clamp(-half, half);
         }
         self.put(handle, pose);
         Some([pose.translation.x, pose.translation.y])
