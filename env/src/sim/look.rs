@@ -21,7 +21,7 @@ impl Environment {
     /// As [`Environment::observe`], but nothing takes the place of a graphics card that fails.
     ///
     /// # Errors
-    /// As [`Renderer::draw_batch`].
+    /// As [`Renderer::draw_batch`](crate::Renderer::draw_batch).
     pub fn try_observe(&mut self) -> Result<&Frame, EnvError> {
         self.draw_observation()?;
         Ok(&self.frame)
@@ -55,7 +55,7 @@ impl Environment {
     /// A picture of any size from any camera.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels; on a graphics card, as [`Renderer::draw_batch`].
+    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels; on a graphics card, as [`Renderer::draw_batch`](crate::Renderer::draw_batch).
     pub fn render(&mut self, camera: &Camera, width: u32, height: u32) -> Result<Frame, EnvError> {
         if !(1..=4096).contains(&width) || !(1..=4096).contains(&height) {
             return Err(EnvError::PictureSize { width, height });
