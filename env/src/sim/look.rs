@@ -55,7 +55,8 @@ impl Environment {
     /// A picture of any size from any camera.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels; on a graphics card, as [`Renderer::draw_batch`](crate::Renderer::draw_batch).
+    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels; on a graphics card, as
+    /// [`Renderer::draw_batch`](crate::Renderer::draw_batch).
     pub fn render(&mut self, camera: &Camera, width: u32, height: u32) -> Result<Frame, EnvError> {
         if !(1..=4096).contains(&width) || !(1..=4096).contains(&height) {
             return Err(EnvError::PictureSize { width, height });
