@@ -251,22 +251,12 @@ fn links_out_of_the_folder_are_not_followed() {
     let json = r#"{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 36, "uri": "lamp.bin"}]}"#;
     let model = inside.join("lamp.gltf");
     std::fs::write(&model, json).expect("the scratch folder can be written");
-    let error = fail(&[
-        "assets",
-        "pack",
-        text(&model),
-        "-o",
-        text(&folder.path().join("x.assets")),
-    ]);
+    let library = folder.path().join("x.assets");
+    let pack = ["assets", "pack", text(&model), "-o", text(&library)];
+    let error = fail(&pack);
     assert!(error.contains("it leads out of the model's folder"), "{error}");
     std::fs::remove_file(inside.join("lamp.bin")).expect("the link is there");
     std::fs::write(inside.join("lamp.bin"), [0; 36]).expect("the scratch folder can be written");
-    let error = fail(&[
-        "assets",
-        "pack",
-        text(&model),
-        "-o",
-        text(&folder.path().join("x.assets")),
-    ]);
+    let error = fail(&pack);
     assert!(error.contains("nothing to draw"), "now the file is read: {error}");
 }

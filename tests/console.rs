@@ -9,7 +9,7 @@ use driftworld::spec::World;
 const WORLD: &str = "examples/console/world.json";
 
 /// Runs the console with lines on its standard input, and `--out` in a folder of the test's own.
-fn console(arguments: &[&str], out: &Path, lines: &str) -> Output {
+fn console(arguments: &[&str], out: &Path, lines: impl AsRef<[u8]>) -> Output {
     let mut child = Command::new(env!("CARGO_BIN_EXE_driftworld"))
         .arg("console")
         .args(arguments)
@@ -23,7 +23,7 @@ fn console(arguments: &[&str], out: &Path, lines: &str) -> Output {
         .expect("the command was built by cargo and starts");
     let mut input = child.stdin.take().expect("standard input is piped");
     // A console that ends early leaves the rest unread.
-    let _ = input.write_all(lines.as_bytes());
+    let _ = input.write_all(lines.as_ref());
     drop(input);
     child.wait_with_output().expect("the command ends")
 }
@@ -242,23 +242,11 @@ fn the_originals_messages_run_through_whole() {
 #[test]
 fn lines_that_are_no_text_are_an_error_and_no_panic() {
     let folder = scratch();
-    let mut child = Command::new(env!("CARGO_BIN_EXE_driftworld"))
-        .args(["console", "find_objects"])
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the command was built by cargo and starts");
-    let mut input = child.stdin.take().expect("standard input is piped");
-    input.write_all(b"info\n\xff\xfe\n").expect("the console reads");
-    drop(input);
-    let output = child.wait_with_output().expect("the command ends");
+    let output = console(&["find_objects"], folder.path(), b"info\n\xff\xfe\n");
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1));
     assert!(
         error.contains("standard input:2: the line is not UTF-8 text"),
         "{error}"
     );
-    drop(folder);
 }

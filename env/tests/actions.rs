@@ -14,6 +14,21 @@ fn coin(at: [f64; 2], reward: f64) -> Object {
     coin
 }
 
+/// What pays 1 for each interaction, right in front of the agent.
+fn button() -> Object {
+    Object {
+        reward: 1.0,
+        reward_stimulus: vec![Stimulus::AgentInteract],
+        ..Object::new("barrel", [0.0, 1.2])
+    }
+}
+
+/// What so many steps ahead, or back below 0, pay in all.
+fn drive(environment: &mut Environment, speed: f64, steps: usize) -> f64 {
+    let mut step = || environment.step(Action::Continuous([speed, 0.0, 0.0]));
+    (0..steps).map(|_| step().expect("the episode goes on").reward).sum()
+}
+
 fn with_actions(actions: ActionSpace) -> World {
     let mut world = World::default();
     world.agent_params.actions = actions;
@@ -78,11 +93,7 @@ fn the_default_table_has_six_moves_and_interact() {
 fn without_interact_the_third_number_does_nothing() {
     let paid = |interact: bool| {
         let mut world = World {
-            objects: vec![Object {
-                reward: 1.0,
-                reward_stimulus: vec![Stimulus::AgentInteract],
-                ..Object::new("barrel", [0.0, 1.2])
-            }],
+            objects: vec![button()],
             ..World::default()
         };
         world.agent_params.interact = interact;
@@ -129,11 +140,7 @@ fn a_held_action_lasts_several_time_steps_and_is_one_step() {
 #[test]
 fn who_interacts_while_an_action_is_held_interacts_once() {
     let mut world = World {
-        objects: vec![Object {
-            reward: 1.0,
-            reward_stimulus: vec![Stimulus::AgentInteract],
-            ..Object::new("barrel", [0.0, 1.2])
-        }],
+        objects: vec![button()],
         ..World::default()
     };
     world.agent_params.frame_skip = 5;
@@ -155,17 +162,9 @@ fn what_is_touched_before_its_turn_costs_the_penalty() {
     };
     world.rules.order_penalty = -3.0;
     let mut environment = start(world);
-    let mut drive = |speed: f64, steps: usize| -> f64 {
-        (0..steps)
-            .map(|_| {
-                let step = environment.step(Action::Continuous([speed, 0.0, 0.0]));
-                step.expect("the episode goes on").reward
-            })
-            .sum()
-    };
-    assert_eq!(drive(10.0, 3), -3.0, "the second before the first");
-    assert_eq!(drive(-10.0, 6), 5.0);
-    assert_eq!(drive(10.0, 6), 5.0);
+    assert_eq!(drive(&mut environment, 10.0, 3), -3.0, "the second before the first");
+    assert_eq!(drive(&mut environment, -10.0, 6), 5.0);
+    assert_eq!(drive(&mut environment, 10.0, 6), 5.0);
 }
 
 #[test]
@@ -306,17 +305,13 @@ fn a_key_that_is_destroyed_opens_the_door_and_a_door_before_its_turn_stays() {
         objects: vec![key, door],
         ..World::default()
     });
-    let mut drive = |speed: f64, steps: usize| -> f64 {
-        (0..steps)
-            .map(|_| {
-                let step = environment.step(Action::Continuous([speed, 0.0, 0.0]));
-                step.expect("the episode goes on").reward
-            })
-            .sum()
-    };
-    assert_eq!(drive(-10.0, 3), 0.0, "the door first: nothing, and it stays");
-    assert_eq!(drive(10.0, 6), 0.0, "the key");
-    assert_eq!(drive(-10.0, 6), 5.0, "the door");
+    assert_eq!(
+        drive(&mut environment, -10.0, 3),
+        0.0,
+        "the door first: nothing, and it stays"
+    );
+    assert_eq!(drive(&mut environment, 10.0, 6), 0.0, "the key");
+    assert_eq!(drive(&mut environment, -10.0, 6), 5.0, "the door");
 }
 
 #[test]

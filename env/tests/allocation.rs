@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use driftworld_env::{Action, Autoreset, Batch, BatchOptions};
-use driftworld_spec::{Modality, MotionModel, Stimulus, World};
+use driftworld_spec::{Modality, MotionModel, Object, Pushable, Stimulus, World};
 
 /// The system's allocator, counting how often it is asked for memory.
 struct Counting;
@@ -63,10 +63,22 @@ fn world() -> World {
     world
 }
 
+/// The bench's scene, with something that could be pushed, at rest and out of reach.
+fn world_with_a_far_body() -> World {
+    let text = include_str!("../benches/scenes/arena_20.json");
+    let mut world = World::from_json("arena_20.json", text).expect("the bench's scene is sound");
+    let mut far = Object::new("cube", [45.0, 45.0]);
+    far.pushable = Some(Pushable {
+        mass: 10.0,
+        friction: 0.5,
+    });
+    world.objects.push(far);
+    world
+}
+
 /// How often memory was taken in so many steps of a batch that has warmed up, and what these steps paid in all.
-fn taken(num_threads: usize, steps: usize) -> (u64, f64) {
+fn taken(world: World, num_threads: usize, steps: usize) -> (u64, f64) {
     const NUM_ENVS: usize = 8;
-    let world = world();
     let source = Arc::new(move |_| Ok(world.clone()));
     let options = BatchOptions {
         autoreset: Autoreset::NextStep,
@@ -91,10 +103,12 @@ fn taken(num_threads: usize, steps: usize) -> (u64, f64) {
 
 #[test]
 fn steps_take_no_memory() {
-    let (taken_alone, paid) = taken(1, 300);
+    let (taken_alone, paid) = taken(world(), 1, 300);
     assert!(paid > 10.0, "things happen in these steps: {paid}");
     assert_eq!(taken_alone, 0, "on one thread");
+    let (taken_beside_a_body, _) = taken(world_with_a_far_body(), 1, 300);
+    assert_eq!(taken_beside_a_body, 0, "what can be pushed costs nothing until it is");
     // Handing work to other threads takes a block of the pool's queue for every 63 times, whatever the number of environments.
-    let (taken_by_two, _) = taken(2, 300);
+    let (taken_by_two, _) = taken(world(), 2, 300);
     assert!(taken_by_two <= 10, "on two threads: {taken_by_two} in 300 steps");
 }

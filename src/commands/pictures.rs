@@ -114,6 +114,12 @@ impl Picture {
         output::write(path, &self.to_png()?)
     }
 
+    /// Writes the picture as a PNG file, and says so with its size.
+    pub(crate) fn write_and_tell(&self, path: &Path) -> Result<(), Failure> {
+        self.write(path)?;
+        output::line(format!("{}: {} × {} pixels", path.display(), self.width, self.height))
+    }
+
     /// Draws texts.
     fn label(&mut self, labels: &[Label]) -> Result<(), Failure> {
         self.draw(|area| {

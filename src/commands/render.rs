@@ -65,14 +65,7 @@ impl Render {
         let world = self.choice.world()?;
         let catalogue = self.libraries.catalogue()?;
         warn(&world, &catalogue)?;
-        let picture = self.picture(&world, &catalogue)?;
-        picture.write(&self.output)?;
-        output::line(format!(
-            "{}: {} × {} pixels",
-            self.output.display(),
-            picture.width,
-            picture.height
-        ))
+        self.picture(&world, &catalogue)?.write_and_tell(&self.output)
     }
 
     fn picture(&self, world: &World, catalogue: &Catalogue) -> Result<Picture, Failure> {

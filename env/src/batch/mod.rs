@@ -64,8 +64,8 @@ pub struct BatchOptions {
 /// `num_envs` environments that step together.
 ///
 /// Each behaves exactly as an [`Environment`] alone would, whatever the number of threads. A step in which no episode begins
-/// allocates nothing, but that the pool's queue takes a block of memory once in about sixty steps if there are several threads. Worlds take memory in steps in which
-/// something is pushed, comes back, or an agent on rails chooses where to go.
+/// allocates nothing, but that the pool's queue takes a block of memory once in about sixty steps if there are several threads. Worlds
+/// take memory in steps in which something is pushed or comes back, bodies overlap, or an agent on rails chooses where to go.
 ///
 /// # Example
 /// ```

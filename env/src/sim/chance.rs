@@ -22,8 +22,8 @@ impl Seed {
     }
 
     /// A seed that was written down.
-    pub(super) fn known(hash: Option<String>) -> Self {
-        Self(hash)
+    pub(super) fn known(hash: String) -> Self {
+        Self(Some(hash))
     }
 
     /// The hash, if it is known.

@@ -122,7 +122,7 @@ impl Environment {
         let scene = Scene::from_world_with(&world, catalogue);
         let ground = Ground::new(&world, &scene);
         let written = came.as_ref().and_then(Came::seed);
-        let seed = written.map_or_else(|| Seed::of(&world), |hash| Seed::known(Some(hash)));
+        let seed = written.map_or_else(|| Seed::of(&world), Seed::known);
         let mut environment = Self {
             episode: Episode::new(&world, &seed),
             had_targets: world.objects.iter().any(Object::is_target),

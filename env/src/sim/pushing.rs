@@ -78,16 +78,16 @@ impl Environment {
     /// Lets the agent push what is in its way, and what was pushed slide on. Hands back how far the agent's own way leads when
     /// what it pushes holds it up; notes in `scratch.met` what it pushed.
     pub(super) fn push_bodies(&mut self, by: [f32; 2]) -> [f32; 2] {
-        if self.episode.pushed.is_empty() {
+        let present = |body: &Pushed| self.episode.objects[body.object].present;
+        let may_move = |body: &Pushed| present(body) && (body.moves() || self.may_meet_agent(body, by));
+        if !self.episode.pushed.iter().any(may_move) {
             return by;
         }
         let seconds = self.world.agent_params.time_step as f32;
-        let near_agent = self.may_meet_agent(by);
-        let chosen = self.choose(&near_agent, seconds);
-        if chosen.is_empty() {
-            return by;
-        }
-        let agent_pushes = near_agent.iter().any(|near| *near);
+        let pushed = || self.episode.pushed.iter();
+        let agent_pushes = pushed().any(|body| present(body) && self.may_meet_agent(body, by));
+        let first = (0..).zip(pushed()).filter(|(_, body)| may_move(body));
+        let chosen = self.with_neighbours(first.map(|(index, _)| index).collect(), seconds);
         let mut physics = PhysicsWorld {
             gravity: Vector::ZERO,
             ..PhysicsWorld::default()
@@ -114,27 +114,18 @@ impl Environment {
         [end.x - start[0], end.y - start[1]]
     }
 
-    /// Which pushed bodies the agent's way may lead to.
-    fn may_meet_agent(&self, by: [f32; 2]) -> Vec<bool> {
+    /// Whether the agent's way may lead to a pushed body.
+    fn may_meet_agent(&self, body: &Pushed, by: [f32; 2]) -> bool {
         let reach = (by[0] * by[0] + by[1] * by[1]).sqrt() + self.world.agent_params.agent_width as f32 / 2.0;
-        let near = |index: usize| {
-            let [x, y] = self.way_to(index);
-            reach > 0.0 && (x * x + y * y).sqrt() < reach + self.body_radius(index) + MARGIN
-        };
-        let pushed = self.episode.pushed.iter();
-        pushed
-            .map(|body| self.episode.objects[body.object].present && near(body.object))
-            .collect()
+        let [x, y] = self.way_to(body.object);
+        (x * x + y * y).sqrt() < reach + self.body_radius(body.object) + MARGIN
     }
 
-    /// The pushed bodies that may move in this time step: those that do, those that the agent may meet, and what these may meet.
-    fn choose(&self, near_agent: &[bool], seconds: f32) -> Vec<usize> {
+    /// The pushed bodies that may move in a time step: the chosen ones, and what these may meet.
+    fn with_neighbours(&self, mut chosen: Vec<usize>, seconds: f32) -> Vec<usize> {
         let pushed = &self.episode.pushed;
         let present = |index: usize| self.episode.objects[pushed[index].object].present;
         let agent_speed = self.world.agent_params.max_linear_speed as f32;
-        let mut chosen: Vec<usize> = (0..pushed.len())
-            .filter(|&index| present(index) && (near_agent[index] || pushed[index].moves()))
-            .collect();
         let mut next = 0;
         while let Some(&index) = chosen.get(next) {
             next += 1;

@@ -25,9 +25,9 @@ impl Environment {
     /// # Errors
     /// Those of [`Environment::step`]; `step` is as it was then.
     pub fn step_into(&mut self, action: Action, step: &mut Step) -> Result<(), EnvError> {
-        self.check(action)?;
+        let numbers = self.numbers(action)?;
+        let mut intent = self.intent(numbers);
         step.clear();
-        let mut intent = self.intent(action)?;
         let potential_before = self.potential();
         step.reward = self.world.rules.step_reward;
         for _ in 0..self.world.agent_params.frame_skip.max(1) {
@@ -61,20 +61,25 @@ impl Environment {
     /// # Errors
     /// Those of [`Environment::step`].
     pub fn check(&self, action: Action) -> Result<(), EnvError> {
+        self.numbers(action).map(drop)
+    }
+
+    /// What the action says, if it can be carried out now.
+    fn numbers(&self, action: Action) -> Result<[f64; 3], EnvError> {
         if self.episode.ended {
             return Err(EnvError::Ended);
         }
-        action.numbers(&self.world).map(drop)
+        action.numbers(&self.world)
     }
 
-    fn intent(&mut self, action: Action) -> Result<Intent, EnvError> {
+    fn intent(&mut self, numbers: [f64; 3]) -> Intent {
         let agent = &self.world.agent_params;
         let Some(mut rails) = self.episode.rails.take() else {
-            return Ok(Intent::new(agent.action_model, action.numbers(&self.world)?, agent));
+            return Intent::new(agent.action_model, numbers, agent);
         };
         let numbers = rails.steer(self);
         self.episode.rails = Some(rails);
-        Ok(Intent::new(ActionModel::ByVelocity, numbers, &self.world.agent_params))
+        Intent::new(ActionModel::ByVelocity, numbers, &self.world.agent_params)
     }
 
     /// One time step.

@@ -54,14 +54,7 @@ impl Show {
             }
             None => self.models(&class, &names)?,
         };
-        let picture = sheet(&rows, 1)?;
-        picture.write(&self.output)?;
-        output::line(format!(
-            "{}: {} × {} pixels",
-            self.output.display(),
-            picture.width,
-            picture.height
-        ))
+        sheet(&rows, 1)?.write_and_tell(&self.output)
     }
 
     /// All models of a class, some in each row.
