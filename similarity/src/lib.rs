@@ -4,21 +4,23 @@
 //! is in them; both explain themselves part by part. [`DistanceMatrix`] holds all distances among many, [`order`] puts the
 //! many into a path. The measures that they are made of stand alone, too. Nothing here draws worlds or pictures.
 
-mod distance;
+mod color;
+mod combined;
+mod distribution;
 mod error;
 mod matrix;
-mod measure;
+mod nature;
+mod occupancy;
 mod order;
-mod variant;
-mod world;
 
-pub use distance::{Distance, Part, Weights};
+pub use color::{ciede2000, oklab_distance, srgb_distance};
+pub use combined::variant::variant_distance;
+pub use combined::world::{world_distance, world_sets_distance};
+pub use combined::{Distance, Part, Weights};
+pub use distribution::planar::bures_wasserstein;
+pub use distribution::wasserstein::{total_variation, wasserstein_1};
 pub use error::SimilarityError;
 pub use matrix::{DistanceMatrix, MAX_ITEMS};
-pub use measure::color::{ciede2000, oklab_distance, srgb_distance};
-pub use measure::occupancy::{Classes, Occupancy, hamming_distance, jaccard_distance};
-pub use measure::planar::bures_wasserstein;
-pub use measure::wasserstein::{total_variation, wasserstein_1};
+pub use nature::Nature;
+pub use occupancy::{Classes, Occupancy, hamming_distance, jaccard_distance};
 pub use order::{MAX_EXACT, Method, Ordering, order};
-pub use variant::variant_distance;
-pub use world::{world_distance, world_sets_distance};

@@ -3,10 +3,10 @@
 use driftworld_spec::{Distribution, Domain, Parameter, ParameterType, Role, Value, Variant};
 
 use crate::SimilarityError;
-use crate::distance::{Distance, Part, Weights};
-use crate::measure::color::oklab_distance;
-use crate::measure::planar::{bures_wasserstein, spread};
-use crate::measure::wasserstein::{total_variation, wasserstein_1, width};
+use crate::color::oklab_distance;
+use crate::combined::{Distance, Part, Weights};
+use crate::distribution::planar::{bures_wasserstein, spread};
+use crate::distribution::wasserstein::{total_variation, wasserstein_1, width};
 
 /// How one parameter differs: measure, raw number, number in 0..=1.
 type Difference = (&'static str, f64, f64);

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use driftworld_spec::{Element, Object, World};
 
-use crate::distance::{Distance, Part, Weights};
-use crate::measure::color::oklab_distance;
-use crate::measure::occupancy::{Classes, Occupancy, jaccard_distance};
+use crate::color::oklab_distance;
+use crate::combined::{Distance, Part, Weights};
+use crate::occupancy::{Classes, Occupancy, jaccard_distance};
 
 /// Side of the cells in which places are compared, in metres: what the original's placement grid has.
 const CELL: f64 = 2.0;
