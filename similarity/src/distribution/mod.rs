@@ -1,4 +1,4 @@
 //! Distances between distributions: of numbers, words and points. How those of many parameters combine is in `combined/`.
 
-pub mod planar;
-pub mod wasserstein;
+pub(crate) mod planar;
+pub(crate) mod wasserstein;
