@@ -26,8 +26,8 @@ pub use error::SimilarityError;
 pub use matrix::{DistanceMatrix, MAX_ITEMS};
 pub use nature::Nature;
 pub use occupancy::{
-    BitGrid, Classes, Extent, Grid, GridShape, MAX_CELLS, Occupancy, Raster, grid_chamfer_distance, grid_dice_distance,
-    grid_earth_movers_distance, grid_earth_movers_hat, grid_hamming_distance, grid_hausdorff_95,
+    BitGrid, Classes, Extent, Grid, GridShape, MAX_CELLS, Occupancy, OccupancyWorkload, Raster, grid_chamfer_distance,
+    grid_dice_distance, grid_earth_movers_distance, grid_earth_movers_hat, grid_hamming_distance, grid_hausdorff_95,
     grid_hausdorff_distance, grid_jaccard_distance, grid_ruzicka_distance, grid_sinkhorn, grid_sliced_wasserstein,
     hamming_distance, jaccard_distance,
 };

@@ -16,6 +16,7 @@ mod raster;
 mod ruzicka;
 mod sinkhorn;
 mod sliced;
+mod workload;
 
 pub use bit_grid::BitGrid;
 pub use cells::{Classes, Occupancy, hamming_distance, jaccard_distance};
@@ -32,3 +33,4 @@ pub use raster::{Extent, Raster};
 pub use ruzicka::grid_ruzicka_distance;
 pub use sinkhorn::grid_sinkhorn;
 pub use sliced::grid_sliced_wasserstein;
+pub use workload::OccupancyWorkload;

@@ -103,10 +103,10 @@ impl SpanningTree {
             self.push(source, apex, blocking.flow);
             self.push(sink, apex, blocking.flow);
         }
-        let (inner, outer, change) = if blocking.below_sink {
-            (sink, source, reduced_cost)
+        let (inner, outer) = if blocking.below_sink {
+            (sink, source)
         } else {
-            (source, sink, -reduced_cost)
+            (source, sink)
         };
         self.rehang(inner, outer, blocking);
         // The price at `inner` takes up the reduced cost; below, signs alternate with the kind of node.
@@ -114,7 +114,11 @@ impl SpanningTree {
         let kind = inner < sources;
         self.walk(inner, |node, index, above| {
             node.depth = above.depth + 1;
-            node.price += if (index < sources) == kind { change } else { -change };
+            node.price += if (index < sources) == kind {
+                reduced_cost
+            } else {
+                -reduced_cost
+            };
         });
     }
 

@@ -1,0 +1,223 @@
+//! Distances of grids against what SciPy, scikit-image and POT find, and their laws.
+
+use driftworld_similarity::{
+    BitGrid, Grid, GridShape, SimilarityError, SinkhornSettings, grid_chamfer_distance, grid_dice_distance,
+    grid_earth_movers_distance, grid_earth_movers_hat, grid_hamming_distance, grid_hausdorff_95,
+    grid_hausdorff_distance, grid_jaccard_distance, grid_ruzicka_distance, grid_sinkhorn, grid_sliced_wasserstein,
+};
+use proptest::prelude::*;
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+struct Oracle {
+    directions: usize,
+    penalty: f64,
+    taken: Vec<Taken>,
+    masses: Vec<Masses>,
+}
+
+#[derive(Deserialize)]
+struct Taken {
+    rows: usize,
+    columns: usize,
+    cell: f64,
+    a: Vec<usize>,
+    b: Vec<usize>,
+    hamming: usize,
+    jaccard: f64,
+    dice: Option<f64>,
+    chamfer: Option<f64>,
+    hausdorff: Option<f64>,
+    hausdorff_95: Option<f64>,
+}
+
+#[derive(Deserialize)]
+struct Masses {
+    rows: usize,
+    columns: usize,
+    cell: f64,
+    a: Vec<f64>,
+    b: Vec<f64>,
+    ruzicka: f64,
+    earth_movers: f64,
+    earth_movers_hat: f64,
+    sliced: f64,
+}
+
+fn oracle() -> Oracle {
+    serde_json::from_str(include_str!("oracle/occupancy.json")).expect("the oracle is sound")
+}
+
+#[track_caller]
+fn check(what: &str, found: Result<f64, SimilarityError>, expected: f64) {
+    let found = found.expect("the grids are of one shape");
+    let off = (found - expected).abs() / expected.abs().max(1.0);
+    assert!(off <= 1e-11, "{what}: {found}, oracle {expected}");
+}
+
+#[test]
+fn taken_cells_are_as_far_apart_as_scipy_and_scikit_image_say() {
+    for case in oracle().taken {
+        let shape = GridShape::new(case.columns, case.rows, 1, case.cell).expect("the shape is sound");
+        let grid = |taken: &[usize]| BitGrid::new(shape, (0..shape.num_cells()).map(|cell| taken.contains(&cell)));
+        let (a, b) = (grid(&case.a), grid(&case.b));
+        assert_eq!(grid_hamming_distance(&a, &b).expect("one shape"), case.hamming);
+        check("jaccard", grid_jaccard_distance(&a, &b), case.jaccard);
+        check("dice", grid_dice_distance(&a, &b), case.dice.unwrap_or(0.0));
+        // Where there is no oracle: no ways where nothing stands, the diameter where one grid is empty.
+        let otherwise = if case.a.is_empty() && case.b.is_empty() {
+            0.0
+        } else {
+            shape.diameter()
+        };
+        check(
+            "chamfer",
+            grid_chamfer_distance(&a, &b),
+            case.chamfer.unwrap_or(otherwise),
+        );
+        check(
+            "hausdorff",
+            grid_hausdorff_distance(&a, &b),
+            case.hausdorff.unwrap_or(otherwise),
+        );
+        check("95%", grid_hausdorff_95(&a, &b), case.hausdorff_95.unwrap_or(otherwise));
+    }
+}
+
+#[test]
+fn masses_are_as_far_apart_as_scipy_and_pot_say() {
+    let oracle = oracle();
+    for case in oracle.masses {
+        let shape = GridShape::new(case.columns, case.rows, 1, case.cell).expect("the shape is sound");
+        let grid = |masses: Vec<f64>| Grid::new(shape, masses).expect("the masses are sound");
+        let (a, b) = (grid(case.a), grid(case.b));
+        check("ruzicka", grid_ruzicka_distance(&a, &b), case.ruzicka);
+        check(
+            "hat",
+            grid_earth_movers_hat(&a, &b, oracle.penalty),
+            case.earth_movers_hat,
+        );
+        let (a, b) = (a.normalised(), b.normalised());
+        check("earth mover's", grid_earth_movers_distance(&a, &b), case.earth_movers);
+        check(
+            "sliced",
+            grid_sliced_wasserstein(&a, &b, oracle.directions),
+            case.sliced,
+        );
+        let entropic = grid_sinkhorn(&a, &b, &SinkhornSettings::new(0.1)).expect("the settings are sound");
+        assert!(
+            entropic.lower <= case.earth_movers + 1e-9 && case.earth_movers <= entropic.upper + 1e-9,
+            "{entropic:?}"
+        );
+    }
+}
+
+#[test]
+fn grids_of_different_shapes_and_masses_are_refused() {
+    let grid = |columns, mass| {
+        let shape = GridShape::new(columns, 1, 1, 1.0).expect("the shape is sound");
+        Grid::new(shape, vec![mass; columns]).expect("the mass is sound")
+    };
+    let differs = grid_jaccard_distance(&grid(2, 1.0).taken(), &grid(3, 1.0).taken()).expect_err("shapes differ");
+    assert_eq!(
+        differs.to_string(),
+        "grids: found 2 × 1 × 1 cells of 1 m and 3 × 1 × 1 cells of 1 m, expected equal shapes; make both with one raster"
+    );
+    let (light, heavy) = (grid(2, 1.0), grid(2, 1.5));
+    let unequal = grid_earth_movers_distance(&light, &heavy).expect_err("masses differ");
+    assert_eq!(
+        unequal.to_string(),
+        "masses: found sums of 2 and 3, expected equal sums; divide each mass by its sum, or use a distance for unequal masses"
+    );
+    // The advice, taken.
+    assert_eq!(
+        grid_earth_movers_distance(&light.normalised(), &heavy.normalised()),
+        Ok(0.0)
+    );
+    assert_eq!(grid_earth_movers_hat(&light, &heavy, 1.0), Ok(1.0));
+    assert!(grid_earth_movers_hat(&light, &heavy, 0.4).is_err());
+}
+
+/// Grids of 4 × 3 cells in two planes, often with an empty one.
+fn grid() -> impl Strategy<Value = Grid> {
+    let shape = GridShape::new(4, 3, 2, 2.0).expect("the shape is sound");
+    let plane = || prop_oneof![1 => Just(vec![0u8; 12]), 4 => prop::collection::vec(0u8..4, 12)];
+    (plane(), plane()).prop_map(move |(a, b)| {
+        let masses = a.into_iter().chain(b).map(f64::from).collect();
+        Grid::new(shape, masses).expect("the masses are sound")
+    })
+}
+
+/// Grids that hold 1 in each plane.
+fn full_grid() -> impl Strategy<Value = Grid> {
+    let shape = GridShape::new(4, 3, 2, 2.0).expect("the shape is sound");
+    prop::collection::vec(0u8..4, 24).prop_map(move |masses| {
+        let mut masses: Vec<f64> = masses.into_iter().map(f64::from).collect();
+        masses[0] += 1.0;
+        masses[12] += 1.0;
+        Grid::new(shape, masses).expect("the masses are sound").normalised()
+    })
+}
+
+type Measure<'a, T> = (&'a str, f64, fn(&T, &T) -> Result<f64, SimilarityError>);
+
+/// 0 for equals, as far there as back, never beyond the bound; with `c`, no detour is shorter.
+fn laws<T>((name, bound, measure): Measure<T>, a: &T, b: &T, c: Option<&T>) -> Result<(), TestCaseError> {
+    let d = |a: &T, b: &T| measure(a, b).map_err(|error| TestCaseError::fail(error.to_string()));
+    prop_assert!(d(a, a)?.abs() < 1e-12, "{} of equals: {}", name, d(a, a)?);
+    prop_assert!(
+        (d(a, b)? - d(b, a)?).abs() < 1e-12,
+        "{}: {} and back {}",
+        name,
+        d(a, b)?,
+        d(b, a)?
+    );
+    prop_assert!((0.0..=bound + 1e-12).contains(&d(a, b)?), "{}: {}", name, d(a, b)?);
+    if let Some(c) = c {
+        prop_assert!(d(a, c)? <= d(a, b)? + d(b, c)? + 1e-12, "{}: a detour is shorter", name);
+    }
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn metrics_of_taken_cells_keep_the_axioms(a in grid(), b in grid(), c in grid()) {
+        let (a, b, c) = (a.taken(), b.taken(), c.taken());
+        let diameter = a.shape().diameter();
+        let metrics: [Measure<BitGrid>; 3] = [
+            ("hamming", 24.0, |a, b| grid_hamming_distance(a, b).map(|cells| cells as f64)),
+            ("jaccard", 1.0, grid_jaccard_distance),
+            ("hausdorff", diameter, grid_hausdorff_distance),
+        ];
+        for metric in metrics {
+            laws(metric, &a, &b, Some(&c))?;
+            prop_assert_eq!(metric.2(&a, &b) == Ok(0.0), a == b, "{}", metric.0);
+        }
+        let distances: [Measure<BitGrid>; 3] = [
+            ("dice", 1.0, grid_dice_distance),
+            ("chamfer", diameter, grid_chamfer_distance),
+            ("95%", diameter, grid_hausdorff_95),
+        ];
+        for distance in distances {
+            laws(distance, &a, &b, None)?;
+        }
+        prop_assert!(grid_hausdorff_95(&a, &b)? <= grid_hausdorff_distance(&a, &b)?);
+    }
+
+    #[test]
+    fn metrics_of_masses_keep_the_axioms(a in grid(), b in grid(), c in grid()) {
+        laws(("ruzicka", 1.0, grid_ruzicka_distance), &a, &b, Some(&c))?;
+        let most = 2.0 * a.shape().diameter() * a.total().max(b.total());
+        laws(("hat", most, |a, b| grid_earth_movers_hat(a, b, 0.5)), &a, &b, Some(&c))?;
+    }
+
+    #[test]
+    fn metrics_of_equal_masses_keep_the_axioms(a in full_grid(), b in full_grid(), c in full_grid()) {
+        let most = 2.0 * a.shape().diameter();
+        laws(("earth mover's", most, grid_earth_movers_distance), &a, &b, Some(&c))?;
+        laws(("sliced", most, |a, b| grid_sliced_wasserstein(a, b, 8)), &a, &b, Some(&c))?;
+        let exact = grid_earth_movers_distance(&a, &b)?;
+        prop_assert!(grid_sliced_wasserstein(&a, &b, 8)? <= exact + 1e-12);
+        prop_assert!((grid_earth_movers_hat(&a, &b, 1.0)? - exact).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,86 @@
+"""Writes occupancy.json: what SciPy, scikit-image and POT say of grids. Run: python make_occupancy.py"""
+import json
+from pathlib import Path
+
+import numpy as np
+import ot
+import scipy
+import skimage
+from scipy.spatial.distance import braycurtis, cdist, dice, hamming, jaccard
+from skimage.metrics import hausdorff_distance
+
+rng = np.random.default_rng(11)
+directions = 24
+angles = (np.arange(directions) + 0.5) * np.pi / directions
+lines = np.stack([np.cos(angles), np.sin(angles)])
+
+
+def centres(shape):
+    rows, columns = np.indices(shape)
+    return np.stack([columns.ravel(), rows.ravel()], 1).astype(float)
+
+
+taken = []
+for shape in [(1, 1), (1, 9), (3, 4), (8, 8), (9, 15), (50, 50)]:
+    for share in [0.02, 0.1, 0.5, 0.9]:
+        cell = float(rng.choice([0.5, 1.0, 2.0]))
+        a, b = (rng.random(shape) < share for _ in range(2))
+        case = {
+            "rows": shape[0],
+            "columns": shape[1],
+            "cell": cell,
+            "a": np.flatnonzero(a).tolist(),
+            "b": np.flatnonzero(b).tolist(),
+            "hamming": int(round(hamming(a.ravel(), b.ravel()) * a.size)),
+            "jaccard": float(jaccard(a.ravel(), b.ravel())),
+        }
+        if a.any() or b.any():
+            case["dice"] = float(dice(a.ravel(), b.ravel()))
+        if a.any() and b.any():
+            apart = cdist(np.argwhere(a), np.argwhere(b)) * cell
+            there, back = apart.min(1), apart.min(0)
+            case["chamfer"] = float((there.mean() + back.mean()) / 2)
+            case["hausdorff"] = float(hausdorff_distance(a, b) * cell)
+            case["hausdorff_95"] = float(max(np.percentile(there, 95), np.percentile(back, 95)))
+        taken.append(case)
+
+masses = []
+for shape, holes in [((1, 5), 0.0), ((4, 3), 0.3), ((6, 6), 0.0), ((8, 5), 0.7), ((12, 12), 0.5), ((25, 25), 0.0), ((25, 25), 0.9)]:
+    cell = float(rng.choice([0.5, 1.0, 2.0]))
+    a, b = (np.where(rng.random(shape) < holes, 0.0, rng.random(shape)).ravel().round(6) for _ in range(2))
+    a[0] += 1e-3
+    b[-1] += 1e-3
+    places = centres(shape) * cell
+    cost = ot.dist(places, metric="euclidean")
+    p, q = a / a.sum(), b / b.sum()
+    # Unequal masses: one more place takes what is left over, for nothing.
+    padded = np.zeros((a.size + 1, a.size + 1))
+    padded[:-1, :-1] = cost
+    excess = a.sum() - b.sum()
+    least = ot.emd2(np.append(a, max(-excess, 0)), np.append(b, max(excess, 0)), padded, numItermax=10**7)
+    bray = braycurtis(a, b)
+    masses.append({
+        "rows": shape[0],
+        "columns": shape[1],
+        "cell": cell,
+        "a": a.tolist(),
+        "b": b.tolist(),
+        "ruzicka": float(2 * bray / (1 + bray)),
+        "earth_movers": float(ot.emd2(p, q, cost, numItermax=10**7)),
+        "earth_movers_hat": float(least + abs(excess) * 0.75 * cost.max()),
+        "sliced": float(ot.sliced_wasserstein_distance(places, places, p, q, p=1, projections=lines)),
+    })
+
+document = {
+    "made_by": {
+        "numpy": np.__version__,
+        "scipy": scipy.__version__,
+        "scikit-image": skimage.__version__,
+        "pot": ot.__version__,
+    },
+    "directions": directions,
+    "penalty": 0.75,
+    "taken": taken,
+    "masses": masses,
+}
+Path(__file__).with_name("occupancy.json").write_text(json.dumps(document) + "\n")

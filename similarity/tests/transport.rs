@@ -1,0 +1,96 @@
+//! Moving masses and points against what POT finds. The laws are tested beside the code.
+
+use driftworld_similarity::{SinkhornSettings, earth_movers_distance, optimal_transport, sinkhorn, sliced_wasserstein};
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+struct Oracle {
+    directions: usize,
+    plans: Vec<Masses>,
+    points: Vec<Points>,
+    sinkhorn: Vec<Masses>,
+}
+
+#[derive(Deserialize)]
+struct Masses {
+    #[serde(default)]
+    description: String,
+    from: Vec<f64>,
+    to: Vec<f64>,
+    costs: Vec<f64>,
+    regularisation: Option<f64>,
+    cost: f64,
+}
+
+#[derive(Deserialize)]
+struct Points {
+    a: Vec<[f64; 2]>,
+    b: Vec<[f64; 2]>,
+    earth_movers: f64,
+    sliced: f64,
+}
+
+fn oracle() -> Oracle {
+    serde_json::from_str(include_str!("oracle/transport.json")).expect("the oracle is sound")
+}
+
+#[track_caller]
+fn check(what: &str, found: f64, expected: f64, within: f64) {
+    let off = (found - expected).abs() / expected.abs().max(1.0);
+    assert!(off <= within, "{what}: {found}, oracle {expected}");
+}
+
+#[test]
+fn plans_cost_what_pot_says_and_prove_it() {
+    let plans = oracle().plans;
+    assert!(plans.len() > 30);
+    for case in plans {
+        let plan = optimal_transport(&case.from, &case.to, &case.costs).expect("the masses are sound");
+        check(&case.description, plan.cost, case.cost, 1e-12);
+        assert!(plan.gap.abs() < 1e-12, "{}: gap {}", case.description, plan.gap);
+        let width = case.to.len();
+        for (origin, from) in plan.from_prices.iter().enumerate() {
+            for (destination, to) in plan.to_prices.iter().enumerate() {
+                let slack = case.costs[origin * width + destination] - from - to;
+                assert!(slack > -1e-12, "{}: prices exceed a cost", case.description);
+            }
+        }
+        for step in &plan.moves {
+            let slack = case.costs[step.from * width + step.to] - plan.from_prices[step.from] - plan.to_prices[step.to];
+            assert!(slack.abs() < 1e-12, "{}: a move has slack {slack}", case.description);
+        }
+    }
+}
+
+#[test]
+fn points_are_as_far_apart_as_pot_says() {
+    let oracle = oracle();
+    for case in oracle.points {
+        let found = earth_movers_distance(&case.a, &case.b).expect("the points are sound");
+        check("earth mover's", found, case.earth_movers, 1e-12);
+        let found = sliced_wasserstein(&case.a, &case.b, oracle.directions).expect("the points are sound");
+        check("sliced", found, case.sliced, 1e-12);
+    }
+}
+
+/// POT stops at a marginal error of 1e-13, we at 1e-12: what is left between them is that times the condition of the problem.
+#[test]
+fn entropic_plans_cost_what_pot_says() {
+    for case in oracle().sinkhorn {
+        let settings = SinkhornSettings {
+            tolerance: 1e-12,
+            max_steps: 200_000,
+            ..SinkhornSettings::new(case.regularisation.expect("each has one"))
+        };
+        let found = sinkhorn(&case.from, &case.to, &case.costs, &settings).expect("the masses are sound");
+        assert!(found.marginal_error <= 2e-12, "{found:?}");
+        check("sinkhorn", found.cost, case.cost, 1e-9);
+        let exact = optimal_transport(&case.from, &case.to, &case.costs)
+            .expect("the masses are sound")
+            .cost;
+        assert!(
+            found.lower <= exact + 1e-12 && exact <= found.upper + 1e-12,
+            "{found:?}, exact {exact}"
+        );
+    }
+}
