@@ -82,7 +82,8 @@ fn plan(
     let width = to_prices.len();
     for (origin, price) in from_prices.iter_mut().enumerate() {
         let row = costs[origin * width..][..width].iter().zip(&to_prices);
-        let least = row.map(|(cost, at)| cost - at).fold(f64::INFINITY, f64::min);
+        let priced = row.filter(|(_, at)| at.is_finite());
+        let least = priced.map(|(cost, at)| cost - at).fold(f64::INFINITY, f64::min);
         *price = if least.is_finite() { least } else { 0.0 };
     }
     for (destination, price) in to_prices.iter_mut().enumerate() {
