@@ -1,4 +1,4 @@
-//! Distances of grids against what SciPy, scikit-image and POT find, and their laws.
+//! Distances of grids against what scipy, scikit-image and POT find, and their laws.
 
 use driftworld_similarity::{
     BitGrid, Grid, GridShape, SimilarityError, SinkhornSettings, grid_chamfer_distance, grid_dice_distance,

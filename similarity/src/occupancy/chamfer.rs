@@ -24,7 +24,7 @@ use crate::SimilarityError;
 /// assert_eq!(grid_chamfer_distance(&a, &b)?, 1.5);
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
 /// ```
-/// Source: Barrow et al. 1977, symmetric as in Fan, Su and Guibas 2017 but not squared. Checked with SciPy's `cdist`, see
+/// Source: Barrow et al. 1977, symmetric as in Fan, Su and Guibas 2017 but not squared. Checked with scipy's `cdist`, see
 /// `tests/oracle/occupancy.json`.
 pub fn grid_chamfer_distance(a: &BitGrid, b: &BitGrid) -> Result<f64, SimilarityError> {
     Ok(f64::midpoint(mean(&ways(a, b)?), mean(&ways(b, a)?)))

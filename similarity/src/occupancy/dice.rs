@@ -22,7 +22,7 @@ use crate::SimilarityError;
 /// assert!((grid_dice_distance(&west, &both)? + grid_dice_distance(&both, &east)? - 2.0 / 3.0).abs() < 1e-15);
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
 /// ```
-/// Source: Dice 1945. Same numbers as SciPy's `dice`, see `tests/oracle/occupancy.json`.
+/// Source: Dice 1945. Same numbers as scipy's `dice`, see `tests/oracle/occupancy.json`.
 pub fn grid_dice_distance(a: &BitGrid, b: &BitGrid) -> Result<f64, SimilarityError> {
     let (common, both) = (a.common(b)?, a.count() + b.count());
     Ok(if both == 0 {

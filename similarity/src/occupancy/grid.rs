@@ -150,7 +150,9 @@ impl Grid {
         for plane in masses.chunks_mut(self.plane_len().max(1)) {
             let sum: f64 = plane.iter().sum();
             if sum > 0.0 {
-                plane.iter_mut().for_each(|mass| *mass /= sum);
+                for mass in plane {
+                    *mass /= sum;
+                }
             }
         }
         Self { masses, ..*self }

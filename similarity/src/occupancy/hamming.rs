@@ -18,7 +18,7 @@ use crate::SimilarityError;
 /// assert_eq!(grid_hamming_distance(&a, &b)?, 2);
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
 /// ```
-/// Source: Hamming 1950. SciPy's `hamming` is this over the number of cells; see `tests/oracle/occupancy.json`.
+/// Source: Hamming 1950. scipy's `hamming` is this over the number of cells; see `tests/oracle/occupancy.json`.
 pub fn grid_hamming_distance(a: &BitGrid, b: &BitGrid) -> Result<usize, SimilarityError> {
     Ok(a.count() + b.count() - 2 * a.common(b)?)
 }

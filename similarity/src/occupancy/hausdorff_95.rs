@@ -6,7 +6,7 @@ use crate::SimilarityError;
 
 /// The 95th percentile instead of the largest distance in metres: max(P95 over A of d(a, B), P95 over B of d(b, A)).
 ///
-/// The percentile lies between two distances as they do in NumPy (linear). A distance in `0..=` the grid's diameter, not a metric:
+/// The percentile lies between two distances as they do in numpy (linear). A distance in `0..=` the grid's diameter, not a metric:
 /// sets that differ in few cells can be 0 apart, and a detour can be shorter. Empty planes as in
 /// [`grid_hausdorff_distance`](crate::grid_hausdorff_distance); with several planes the percentile is that of all cells together.
 ///
@@ -23,7 +23,7 @@ use crate::SimilarityError;
 /// assert!((grid_hausdorff_95(&a, &b)? - 0.95 * 6.0).abs() < 1e-12);
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
 /// ```
-/// Source: Huttenlocher, Klanderman and Rucklidge 1993. Checked with NumPy's `percentile`, see `tests/oracle/occupancy.json`.
+/// Source: Huttenlocher, Klanderman and Rucklidge 1993. Checked with numpy's `percentile`, see `tests/oracle/occupancy.json`.
 pub fn grid_hausdorff_95(a: &BitGrid, b: &BitGrid) -> Result<f64, SimilarityError> {
     Ok(percentile_95(ways(a, b)?).max(percentile_95(ways(b, a)?)))
 }

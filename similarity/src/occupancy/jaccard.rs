@@ -19,7 +19,7 @@ use crate::SimilarityError;
 /// assert_eq!(grid_jaccard_distance(&a, &b)?, 0.5);
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
 /// ```
-/// Sources: Jaccard 1912; Kosub 2019 for the triangle inequality. Same numbers as SciPy's `jaccard`, see
+/// Sources: Jaccard 1912; Kosub 2019 for the triangle inequality. Same numbers as scipy's `jaccard`, see
 /// `tests/oracle/occupancy.json`.
 pub fn grid_jaccard_distance(a: &BitGrid, b: &BitGrid) -> Result<f64, SimilarityError> {
     let common = a.common(b)?;

@@ -18,7 +18,7 @@ use crate::SimilarityError;
 /// assert_eq!(grid_ruzicka_distance(&a, &b)?, 0.75);
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
 /// ```
-/// Sources: Ružička 1958; Charikar 2002 for the triangle inequality. Same numbers as Bray–Curtis B of SciPy by 2B / (1 + B), see
+/// Sources: Ružička 1958; Charikar 2002 for the triangle inequality. Same numbers as Bray–Curtis B of scipy by 2B / (1 + B), see
 /// `tests/oracle/occupancy.json`.
 pub fn grid_ruzicka_distance(a: &Grid, b: &Grid) -> Result<f64, SimilarityError> {
     a.shape().check(b.shape())?;

@@ -74,7 +74,7 @@ mod tests {
         assert_eq!(code(&[], &[[0.0, 0.0]]), "similarity/unequal-masses");
         assert_eq!(code(&[[f64::NAN, 0.0]], &[[0.0, 0.0]]), "similarity/bad-point");
         assert_eq!(code(&[[f64::INFINITY, 0.0]], &[[0.0, 0.0]; 2]), "similarity/bad-point");
-        assert_eq!(code(&[[0.0; 2]; 4097], &[[0.0; 2]]), "similarity/too-many");
+        assert_eq!(code(&vec![[0.0; 2]; 4097], &[[0.0; 2]]), "similarity/too-many");
     }
 
     proptest! {

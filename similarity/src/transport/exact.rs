@@ -180,7 +180,10 @@ mod tests {
         assert_eq!(code(&[1.0], &[1.0], &[f64::NAN]), "similarity/bad-cost");
         assert_eq!(code(&[1.0], &[2.0], &[1.0]), "similarity/unequal-masses");
         assert_eq!(code(&[-1.0], &[1.0], &[1.0]), "similarity/bad-mass");
-        assert_eq!(code(&[1.0; 4097], &[4097.0], &[1.0; 4097]), "similarity/too-many");
+        assert_eq!(
+            code(&vec![1.0; 4097], &[4097.0], &vec![1.0; 4097]),
+            "similarity/too-many"
+        );
     }
 
     proptest! {

@@ -38,7 +38,7 @@ pub(crate) fn solve(sources: &[i64], sinks: &[i64], costs: &[f64]) -> Solution {
         while let Some((arc, reduced_cost)) = search.entering(&arcs, &tree, sources.len()) {
             tree.pivot(arc.source as usize, arc.sink as usize, reduced_cost);
             search.pivots += 1;
-            if search.pivots % search.round == 0 {
+            if search.pivots.is_multiple_of(search.round) {
                 tree.reprice(cost);
                 search.tolerance *= 2.0;
             }

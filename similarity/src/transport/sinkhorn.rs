@@ -258,7 +258,9 @@ impl<'a> Scaling<'a> {
         // Too full rows are thinned, then too full columns; what is missing is spread over all pairs in proportion.
         for (entries, (sum, mass)) in plan.chunks_exact_mut(width).zip(rows.iter().zip(&self.a)) {
             let thinner = if sum > mass { mass / sum } else { 1.0 };
-            entries.iter_mut().for_each(|entry| *entry *= thinner);
+            for entry in entries {
+                *entry *= thinner;
+            }
         }
         times_transposed(&plan, &ones_a, &mut columns);
         let thinner: Vec<f64> = columns
