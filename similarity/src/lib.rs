@@ -6,7 +6,7 @@
 
 mod color;
 mod combined;
-mod distribution;
+pub mod distribution;
 mod error;
 mod matrix;
 mod nature;
