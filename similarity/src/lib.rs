@@ -7,7 +7,7 @@
 mod assignment;
 mod color;
 mod combined;
-mod distribution;
+pub mod distribution;
 mod error;
 mod matrix;
 mod nature;
