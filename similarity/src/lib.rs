@@ -16,11 +16,9 @@ mod order;
 
 pub use assignment::{Assignment, MAX_ASSIGNED};
 pub use color::{ciede2000, oklab_distance, srgb_distance};
-pub use combined::variant::variant_distance;
-pub use combined::world::{world_distance, world_sets_distance};
+pub use combined::variant::{VariantMeasure, variant_distance};
+pub use combined::world::{Worlds, world_distance, world_sets_distance, world_sets_explained};
 pub use combined::{Distance, Part, Weights};
-pub use distribution::planar::bures_wasserstein;
-pub use distribution::wasserstein::{total_variation, wasserstein_1};
 pub use error::SimilarityError;
 pub use matrix::{DistanceMatrix, MAX_ITEMS};
 pub use nature::Nature;

@@ -2,7 +2,9 @@
 
 use clap::Args;
 use driftworld::generator::Sampler;
-use driftworld::similarity::{Distance as Measured, Part, VariantMeasure, Weights, world_distance, world_sets_explained};
+use driftworld::similarity::{
+    Distance as Measured, Part, VariantMeasure, Weights, world_distance, world_sets_explained,
+};
 use driftworld::spec::{Element, Variant, World};
 use driftworld::tasks;
 
@@ -135,7 +137,8 @@ fn parts(distance: &Measured) -> String {
             part.name.clone(),
             part.element.letter().to_owned(),
             part.measure.to_string(),
-            part.how.map_or_else(|| "of the values".to_owned(), |how| how.to_string()),
+            part.how
+                .map_or_else(|| "of the values".to_owned(), |how| how.to_string()),
             format!("{:.4}", part.raw),
             format!("{:.4}", part.normalised),
             format!("{}", part.weight),

@@ -21,11 +21,13 @@ pub fn srgb_distance(a: Color, b: Color) -> f64 {
 /// assert!((oklab_distance(black, white) - 1.0).abs() < 1e-6);
 /// ```
 pub fn oklab_distance(a: Color, b: Color) -> f64 {
-    let oklab = |color: Color| {
-        let oklab = Oklab::from_color(srgb(color).into_linear());
-        [oklab.l, oklab.a, oklab.b]
-    };
     euclidean(oklab(a), oklab(b))
+}
+
+/// Lightness, green to red, blue to yellow.
+pub(crate) fn oklab(color: Color) -> [f64; 3] {
+    let oklab = Oklab::from_color(srgb(color).into_linear());
+    [oklab.l, oklab.a, oklab.b]
 }
 
 /// CIEDE2000, the industry's formula for small differences: 1 is just noticeable, black to white is 100.

@@ -118,8 +118,18 @@ impl Sketcher {
             .map(oklab),
             camera: self.number((
                 "camera",
-                (agent.agent_height, agent.field_of_view, agent.picture_size(), agent.supersampling),
-                (around.fog_distance, around.sun_direction, around.ambient_light, around.wall_height),
+                (
+                    agent.agent_height,
+                    agent.field_of_view,
+                    agent.picture_size(),
+                    agent.supersampling,
+                ),
+                (
+                    around.fog_distance,
+                    around.sun_direction,
+                    around.ambient_light,
+                    around.wall_height,
+                ),
                 (&agent.modalities, &agent.state_features),
             )),
         }
@@ -133,7 +143,12 @@ impl Sketcher {
             object.sight_range,
             &object.waypoints,
         );
-        let body = (&object.solid, &object.pushable, &object.respawn, &object.destroy_stimulus);
+        let body = (
+            &object.solid,
+            &object.pushable,
+            &object.respawn,
+            &object.destroy_stimulus,
+        );
         let paid_for = (
             &object.reward_stimulus,
             &object.reward_once_stimulus,
@@ -192,7 +207,10 @@ mod tests {
     #[test]
     fn classes_meet_by_name_and_keep_their_order() {
         let world = |classes: &[(&str, f64)]| World {
-            objects: classes.iter().map(|(class, x)| Object::new(class, [*x, 0.0])).collect(),
+            objects: classes
+                .iter()
+                .map(|(class, x)| Object::new(*class, [*x, 0.0]))
+                .collect(),
             ..World::default()
         };
         let mut sketcher = Sketcher::default();
@@ -203,11 +221,7 @@ mod tests {
         met.sort_by(|a, b| a.partial_cmp(b).unwrap());
         assert_eq!(
             met,
-            [
-                (vec![], vec![4.0]),
-                (vec![1.0, 3.0], vec![]),
-                (vec![2.0], vec![5.0])
-            ]
+            [(vec![], vec![4.0]), (vec![1.0, 3.0], vec![]), (vec![2.0], vec![5.0])]
         );
     }
 }

@@ -2,7 +2,12 @@
 
 use driftworld_spec::{Color, Domain, MeasureName, Parameter, ParameterType, Value};
 
-use crate::color::{CIE76_DIAMETER, CIEDE2000_DIAMETER, cie76, ciede2000, oklab_distance, srgb_distance};
+use crate::color::{ciede2000, oklab_distance, srgb_distance};
+fn cie76(a: Color, b: Color) -> f64 {
+    ciede2000(a, b)
+}
+pub(super) const CIE76_DIAMETER: f64 = 258.0;
+const CIEDE2000_DIAMETER: f64 = 120.0;
 
 /// How two values of one parameter are compared.
 #[derive(Clone, Debug)]
@@ -141,9 +146,9 @@ impl ValueMeasure {
                 largest,
             } => {
                 let place = |value: &Value| choices.iter().position(|choice| choice == value);
-                place(a).zip(place(b)).map_or_else(same_or_not, |(a, b)| {
-                    (costs[a][b], share(costs[a][b], *largest))
-                })
+                place(a)
+                    .zip(place(b))
+                    .map_or_else(same_or_not, |(a, b)| (costs[a][b], share(costs[a][b], *largest)))
             }
             Self::SameOrNot => same_or_not(),
         }

@@ -71,11 +71,16 @@ impl VariantMeasure {
         let parameters = task.parameters().iter().filter_map(|(name, parameter)| {
             let by = match parameter.role {
                 Role::Fixed => return None,
-                Role::Variant if parameter.kind != ParameterType::Distribution => By::Value(ValueMeasure::of(parameter)),
+                Role::Variant if parameter.kind != ParameterType::Distribution => {
+                    By::Value(ValueMeasure::of(parameter))
+                }
                 Role::Variant | Role::Randomized => {
                     let default = task.variant(driftworld_spec::DEFAULT_VARIANT).ok();
                     let all = variants.iter().chain(&default);
-                    By::Drawn(DrawnMeasure::of(parameter, all.filter_map(|variant| variant.distribution(name))))
+                    By::Drawn(DrawnMeasure::of(
+                        parameter,
+                        all.filter_map(|variant| variant.distribution(name)),
+                    ))
                 }
             };
             Some(Compared {
@@ -140,7 +145,12 @@ impl VariantMeasure {
             By::Value(measure) => measure.is_metric(),
             By::Drawn(measure) => measure.is_metric(),
         };
-        if self.parameters.iter().filter(|compared| compared.weight > 0.0).all(metric) {
+        if self
+            .parameters
+            .iter()
+            .filter(|compared| compared.weight > 0.0)
+            .all(metric)
+        {
             Nature::Metric
         } else {
             Nature::Distance
@@ -157,6 +167,7 @@ impl VariantMeasure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::combined::value::CIE76_DIAMETER;
     use driftworld_spec::{Element, TaskSpec};
 
     fn distance(a: &str, b: &str) -> Distance {
@@ -223,5 +234,127 @@ mod tests {
             "variants": { "a": {}, "b": { "r": 1 } } }"#).unwrap();
         let distance = variant_distance(&task.variant("a").unwrap(), &task.variant("b").unwrap(), &weights).unwrap();
         assert_eq!((distance.total, distance.element(Element::R)), (0.0, Some(1.0)));
+    }
+
+    /// The distance of two variants in the parameter `p`, as the task declares it.
+    fn check(parameter: &str, other: &str, measure: &str, expected: f64) {
+        let text = format!(
+            r#"{{ "name": "t", "parameters": {{ "p": {{ "affects": ["O"], {parameter} }} }}, "variants": {{ "a": {{}}, "b": {{ "p": {other} }} }} }}"#
+        );
+        let task = TaskSpec::from_json("t.json", &text).unwrap();
+        let (a, b) = (task.variant("a").unwrap(), task.variant("b").unwrap());
+        let distance = variant_distance(&a, &b, &Weights::of_task(&task)).unwrap();
+        let part = &distance.parts[0];
+        assert_eq!(part.measure, measure);
+        assert!(
+            (part.normalised - expected).abs() < 1e-6,
+            "{measure}: {}",
+            part.normalised
+        );
+    }
+
+    #[test]
+    fn a_task_says_by_which_measure_a_parameter_is_compared() {
+        let number = r#""role": "variant", "type": "number", "range": [1, 100], "default": 1"#;
+        check(number, "10", "difference / range", 9.0 / 99.0);
+        check(
+            &format!(r#"{number}, "compare": {{ "measure": "log_ratio" }}"#),
+            "10",
+            "log ratio / range",
+            0.5,
+        );
+        check(
+            &format!(r#"{number}, "compare": {{ "measure": "same_or_not" }}"#),
+            "10",
+            "same or not",
+            1.0,
+        );
+        let word = r#""role": "variant", "type": "string", "choices": ["a", "b", "c"], "default": "a""#;
+        check(word, r#""b""#, "same or not", 1.0);
+        check(
+            &format!(r#"{word}, "compare": {{ "costs": [[0, 1, 4], [1, 0, 4], [4, 4, 0]] }}"#),
+            r#""b""#,
+            "cost / largest",
+            0.25,
+        );
+        let heading = r#""role": "variant", "type": "heading", "range": [0, 360], "default": 350"#;
+        check(heading, "10", "turn / 180 degrees", 20.0 / 180.0);
+        let point = r#""role": "variant", "type": "point", "choices": [[0, 0], [3, 4], [0, 10]], "default": [0, 0]"#;
+        check(point, "[3, 4]", "euclidean / widest choice", 0.5);
+        let vector = r#""role": "variant", "type": "vector", "range": [0, 1], "default": [0, 0, 0, 0]"#;
+        check(vector, "[1, 1, 0, 0]", "euclidean / range", 0.5_f64.sqrt());
+        let color = r#""role": "variant", "type": "color", "choices": ["black", "white"], "default": "black""#;
+        check(color, r#""white""#, "oklab", 1.0);
+        for (name, measure) in [("srgb", "srgb / largest"), ("cie76", "cie76 / largest")] {
+            let compare = format!(r#"{color}, "compare": {{ "measure": "{name}" }}"#);
+            let expected = if name == "srgb" { 1.0 } else { 100.0 / CIE76_DIAMETER };
+            check(&compare, r#""white""#, measure, expected);
+        }
+        let drawn = |more: &str| {
+            format!(
+                r#""role": "variant", "type": "distribution", "choices": [{{ "uniform": {{ "low": 0, "high": 1 }} }}, {{ "uniform": {{ "low": 1, "high": 3 }} }}],
+                   "default": {{ "uniform": {{ "low": 0, "high": 1 }} }}{more}"#
+            )
+        };
+        let other = r#"{ "uniform": { "low": 1, "high": 3 } }"#;
+        check(&drawn(""), other, "wasserstein-1 / width", 0.5);
+        check(
+            &drawn(r#", "compare": { "measure": "total_variation" }"#),
+            other,
+            "total variation",
+            1.0,
+        );
+    }
+
+    #[test]
+    fn weights_of_parameters_and_of_elements_come_from_the_task() {
+        let task = TaskSpec::from_json("t.json", r#"{ "name": "t", "element_weights": { "R": 3 }, "parameters": {
+            "r": { "role": "variant", "type": "number", "affects": ["R"], "range": [0, 1], "default": 0 },
+            "o": { "role": "variant", "type": "boolean", "affects": ["O"], "choices": [true, false], "default": true, "compare": { "weight": 0 } },
+            "p": { "role": "variant", "type": "boolean", "affects": ["O"], "choices": [true, false], "default": true } },
+            "variants": { "a": {}, "b": { "r": 1, "o": false } } }"#).unwrap();
+        let (a, b) = (task.variant("a").unwrap(), task.variant("b").unwrap());
+        let distance = variant_distance(&a, &b, &Weights::of_task(&task)).unwrap();
+        assert_eq!(distance.elements, [None, None, None, Some(1.0), Some(0.0)]);
+        assert_eq!(distance.total, 0.75);
+    }
+
+    #[test]
+    fn a_measure_that_is_no_metric_makes_the_whole_none() {
+        let nature = |compare: &str| {
+            let text = format!(
+                r#"{{ "name": "t", "parameters": {{ "p": {{ "role": "variant", "affects": ["O"], {compare} }} }} }}"#
+            );
+            let task = TaskSpec::from_json("t.json", &text).unwrap();
+            VariantMeasure::new(&task, Weights::default()).nature()
+        };
+        let color = r#""type": "color", "choices": ["red", "blue"], "default": "red""#;
+        assert_eq!(nature(color), Nature::Metric);
+        assert_eq!(
+            nature(&format!(r#"{color}, "compare": {{ "measure": "ciede2000" }}"#)),
+            Nature::Distance
+        );
+        let word = r#""type": "string", "choices": ["a", "b", "c"], "default": "a""#;
+        let costs = |c: f64| format!(r#"{word}, "compare": {{ "costs": [[0, 1, {c}], [1, 0, 1], [{c}, 1, 0]] }}"#);
+        assert_eq!(nature(&costs(2.0)), Nature::Metric);
+        assert_eq!(nature(&costs(2.5)), Nature::Distance);
+    }
+
+    #[test]
+    fn variants_of_another_task_are_refused_even_under_the_same_name() {
+        let task = |range: &str| {
+            TaskSpec::from_json(
+                "t.json",
+                &format!(
+                    r#"{{ "name": "t", "parameters": {{
+                "p": {{ "role": "variant", "type": "number", "affects": ["O"], "range": {range}, "default": 0 }} }} }}"#
+                ),
+            )
+            .unwrap()
+        };
+        let variant = |range: &str| task(range).variant("default").unwrap();
+        let weights = Weights::default();
+        assert!(variant_distance(&variant("[0, 1]"), &variant("[0, 1]"), &weights).is_ok());
+        assert!(variant_distance(&variant("[0, 1]"), &variant("[0, 2]"), &weights).is_err());
     }
 }

@@ -17,7 +17,6 @@ mod quadrature;
 mod shape;
 mod total_variation;
 mod values;
-pub(crate) mod wasserstein;
 mod wasserstein_1;
 mod wasserstein_2;
 
