@@ -63,6 +63,28 @@ pub enum SimilarityError {
         /// The weight.
         found: f64,
     },
+    /// Numbers that do not fill the table they are for, or fill more.
+    #[error("{of}: found {found} numbers, expected {expected}")]
+    Shape {
+        /// What the numbers are.
+        of: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// A cost that cannot be added up.
+    #[error(
+        "cost in row {row}, column {column}: found {found}, expected a number from -1e200 to 1e200; use a large cost to keep two apart"
+    )]
+    BadCost {
+        /// The row, from 0.
+        row: usize,
+        /// The column, from 0.
+        column: usize,
+        /// The cost.
+        found: f64,
+    },
 }
 
 impl SimilarityError {
@@ -77,6 +99,8 @@ impl SimilarityError {
             Self::Empty => "similarity/empty",
             Self::UnknownMethod { .. } => "similarity/unknown-method",
             Self::BadWeight { .. } => "similarity/bad-weight",
+            Self::Shape { .. } => "similarity/shape",
+            Self::BadCost { .. } => "similarity/bad-cost",
         }
     }
 }
@@ -111,6 +135,16 @@ mod tests {
             SimilarityError::BadWeight {
                 name: "reward".into(),
                 found: f64::NAN,
+            },
+            SimilarityError::Shape {
+                of: "costs",
+                found: 5,
+                expected: 6,
+            },
+            SimilarityError::BadCost {
+                row: 1,
+                column: 2,
+                found: f64::INFINITY,
             },
         ];
         let said: Vec<String> = errors

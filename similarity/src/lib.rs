@@ -4,6 +4,7 @@
 //! is in them; both explain themselves part by part. [`DistanceMatrix`] holds all distances among many, [`order`] puts the
 //! many into a path. The measures that they are made of stand alone, too. Nothing here draws worlds or pictures.
 
+mod assignment;
 mod color;
 mod combined;
 pub mod distribution;
@@ -13,6 +14,7 @@ mod nature;
 mod occupancy;
 mod order;
 
+pub use assignment::{Assignment, MAX_ASSIGNED};
 pub use color::{ciede2000, oklab_distance, srgb_distance};
 pub use combined::variant::variant_distance;
 pub use combined::world::{world_distance, world_sets_distance};
