@@ -46,6 +46,17 @@ pub enum SimilarityError {
         /// The last index there is.
         last: usize,
     },
+    /// There are no samples to compare.
+    #[error("samples: found none, expected at least 1")]
+    NoSamples,
+    /// A sample is not a number.
+    #[error("sample {index}: found {found}, expected a finite number")]
+    NotASample {
+        /// Its place in the list, from 0 on.
+        index: usize,
+        /// What was found.
+        found: f64,
+    },
     /// There is nothing to order.
     #[error("order: found no items, expected at least 1")]
     Empty,
@@ -96,6 +107,8 @@ impl SimilarityError {
             Self::TooMany { .. } => "similarity/too-many",
             Self::TooManyForExact { .. } => "similarity/too-many-for-exact",
             Self::NoSuchStart { .. } => "similarity/no-such-start",
+            Self::NoSamples => "similarity/no-samples",
+            Self::NotASample { .. } => "similarity/not-a-sample",
             Self::Empty => "similarity/empty",
             Self::UnknownMethod { .. } => "similarity/unknown-method",
             Self::BadWeight { .. } => "similarity/bad-weight",
@@ -128,6 +141,11 @@ mod tests {
             },
             SimilarityError::TooManyForExact { found: 14, limit: 13 },
             SimilarityError::NoSuchStart { found: 3, last: 2 },
+            SimilarityError::NoSamples,
+            SimilarityError::NotASample {
+                index: 3,
+                found: f64::NAN,
+            },
             SimilarityError::Empty,
             SimilarityError::UnknownMethod {
                 found: "shortest".into(),

@@ -114,7 +114,7 @@ fn over_atoms(a: &Law, b: &Law, term: &impl Fn(f64, f64) -> f64) -> f64 {
             (Some(only), None) | (None, Some(only)) => only.0,
             (None, None) => break,
         };
-        let mut take = |law: &Law, next: &mut usize| {
+        let take = |law: &Law, next: &mut usize| {
             let mut mass = in_runs(&law.runs, x);
             if let Some(atom) = law.atoms.get(*next).filter(|atom| atom.0 == x) {
                 mass += atom.1;

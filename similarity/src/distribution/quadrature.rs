@@ -130,16 +130,32 @@ pub(crate) fn rule([low, high]: [f64; 2], steps: usize) -> Vec<(Spot, f64)> {
     each.flatten().collect()
 }
 
-/// The knots, and between them the places where a function changes its sign, as far as seven looks per stretch show.
+/// Where a stretch is looked at for a change of sign, as shares of it: closer near the ends.
+const LOOKS: [f64; 13] = [
+    1e-7,
+    1e-3,
+    0.02,
+    0.1,
+    0.22,
+    0.36,
+    0.5,
+    0.64,
+    0.78,
+    0.9,
+    0.98,
+    0.999,
+    1.0 - 1e-7,
+];
+
+/// The knots, and between them the places where a function changes its sign, as far as thirteen looks per stretch show.
 pub(crate) fn split_at_signs(knots: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> {
-    const LOOKS: i32 = 8;
     let mut found = Vec::with_capacity(2 * knots.len());
     found.extend(knots.first());
     for ends in knots.windows(2) {
-        let at = |k: i32| ends[0] + (ends[1] - ends[0]) * f64::from(k) / f64::from(LOOKS);
-        let mut before = (at(1), f(at(1)));
-        for k in 2..LOOKS {
-            let here = (at(k), f(at(k)));
+        let mut before = (ends[0], 0.0);
+        for share in LOOKS {
+            let x = ends[0] + (ends[1] - ends[0]) * share;
+            let here = (x, f(x));
             if before.1 * here.1 < 0.0 {
                 found.push(root(before, here, &f));
             }

@@ -55,7 +55,7 @@ impl Shape {
 /// transport goes one way, and the difference of the means is its length.
 pub(super) fn one_is_never_less(a: &Distribution, b: &Distribution) -> bool {
     use Distribution::{Bernoulli, Beta, Binomial, Geometric, IntegerUniform, Poisson, TruncatedNormal};
-    let agree = |x: f64, y: f64| x * y >= 0.0;
+    let agree = |x: f64, y: f64| !(x < 0.0 && y > 0.0 || x > 0.0 && y < 0.0);
     match (a, b) {
         (Bernoulli { .. }, Bernoulli { .. })
         | (Poisson { .. }, Poisson { .. })
