@@ -13,6 +13,7 @@ mod matrix;
 mod nature;
 mod occupancy;
 mod order;
+mod transport;
 
 pub use assignment::{Assignment, MAX_ASSIGNED};
 pub use color::{ciede2000, oklab_distance, srgb_distance};
@@ -22,5 +23,14 @@ pub use combined::{Distance, Part, Weights};
 pub use error::SimilarityError;
 pub use matrix::{DistanceMatrix, MAX_ITEMS};
 pub use nature::Nature;
-pub use occupancy::{Classes, Occupancy, hamming_distance, jaccard_distance};
+pub use occupancy::{
+    BitGrid, Classes, Extent, Grid, GridShape, MAX_CELLS, Occupancy, Raster, grid_chamfer_distance, grid_dice_distance,
+    grid_earth_movers_distance, grid_earth_movers_hat, grid_hamming_distance, grid_hausdorff_95,
+    grid_hausdorff_distance, grid_jaccard_distance, grid_ruzicka_distance, grid_sinkhorn, grid_sliced_wasserstein,
+    hamming_distance, jaccard_distance,
+};
 pub use order::{MAX_EXACT, Method, Ordering, order};
+pub use transport::{
+    MAX_DIRECTIONS, MAX_SINKHORN_STEPS, MAX_TRANSPORTED, Move, Sinkhorn, SinkhornSettings, TransportPlan,
+    earth_movers_distance, optimal_transport, sinkhorn, sliced_wasserstein,
+};
