@@ -22,7 +22,8 @@ pub(crate) fn largest(
     multiply: &impl Fn(&[f64], &mut [f64]),
     against: &[Vec<f64>],
 ) -> Option<(f64, Vec<f64>)> {
-    let mut chance = SplitMix64(0);
+    // Another start each time: the old one has no part left in an eigenspace that it has led into before.
+    let mut chance = SplitMix64(against.len() as u64);
     let mut start: Vec<f64> = (0..n).map(|_| chance.unit() - 0.5).collect();
     let mut best = None;
     for _ in 0..MAX_RESTARTS {
