@@ -57,6 +57,10 @@ fn some(matrix: &DistanceMatrix) -> String {
     const MOST: usize = 20;
     let shown = &matrix.labels()[..matrix.len().min(MOST)];
     let rest = matrix.len() - shown.len();
-    let more = if rest > 0 { format!(" and {rest} more") } else { String::new() };
+    let more = if rest > 0 {
+        format!(" and {rest} more")
+    } else {
+        String::new()
+    };
     shown.join(", ") + &more
 }
