@@ -15,7 +15,14 @@ mod occupancy;
 mod order;
 
 pub use assignment::{Assignment, MAX_ASSIGNED};
-pub use color::{ciede2000, oklab_distance, srgb_distance};
+pub use color::cie76::cie76;
+pub use color::ciede2000::{ciede2000, ciede2000_to_each};
+pub use color::hyab::hyab;
+pub use color::lab::{Lab, LabTable};
+pub use color::measure::ColorMeasure;
+pub use color::oklab::{Oklab, oklab_distance};
+pub use color::sets::color_sets_distance;
+pub use color::srgb::srgb_distance;
 pub use combined::variant::variant_distance;
 pub use combined::world::{world_distance, world_sets_distance};
 pub use combined::{Distance, Part, Weights};
