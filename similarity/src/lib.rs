@@ -13,6 +13,8 @@ mod matrix;
 mod nature;
 mod occupancy;
 mod order;
+pub mod picture;
+pub mod scalar;
 
 pub use assignment::{Assignment, MAX_ASSIGNED};
 pub use color::cie76::cie76;
@@ -31,5 +33,6 @@ pub use distribution::wasserstein::{total_variation, wasserstein_1};
 pub use error::SimilarityError;
 pub use matrix::{DistanceMatrix, MAX_ITEMS};
 pub use nature::Nature;
+pub use occupancy::ospa::Ospa;
 pub use occupancy::{Classes, Occupancy, hamming_distance, jaccard_distance};
 pub use order::{MAX_EXACT, Method, Ordering, order};

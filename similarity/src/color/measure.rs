@@ -3,13 +3,13 @@
 
 use driftworld_spec::Color;
 
+use crate::Nature;
 use crate::color::cie76::cie76;
 use crate::color::ciede2000::ciede2000;
 use crate::color::hyab::hyab;
 use crate::color::lab::Lab;
 use crate::color::oklab::Oklab;
-use crate::color::{oklab_distance, srgb::srgb_distance};
-use crate::Nature;
+use crate::color::srgb::srgb_distance;
 
 /// A way to say how far two colours are apart.
 ///
@@ -30,7 +30,7 @@ pub enum ColorMeasure {
     Cie76,
     /// [`ciede2000`]. Not a metric.
     Ciede2000,
-    /// [`oklab_distance`]: the default, a metric that follows the eye.
+    /// [`oklab_distance`](crate::oklab_distance): the default, a metric that follows the eye.
     #[default]
     Oklab,
     /// [`hyab`].
@@ -127,10 +127,18 @@ mod tests {
             (ColorMeasure::Oklab, named("black"), named("white")),
             (ColorMeasure::Cie76, named("blue"), named("lime")),
             (ColorMeasure::Hyab, named("blue"), named("lime")),
-            (ColorMeasure::Ciede2000, Color([0.0, 0.0, 0.430_3]), Color([0.558_93, 1.0, 0.0])),
+            (
+                ColorMeasure::Ciede2000,
+                Color([0.0, 0.0, 0.430_3]),
+                Color([0.558_93, 1.0, 0.0]),
+            ),
         ] {
             let share = measure.between(a, b) / measure.diameter();
-            assert!((1.0 - 1e-7..=1.0 + 1e-12).contains(&share), "{}: {share}", measure.name());
+            assert!(
+                (1.0 - 1e-7..=1.0 + 1e-12).contains(&share),
+                "{}: {share}",
+                measure.name()
+            );
         }
     }
 
@@ -144,9 +152,16 @@ mod tests {
 
     #[test]
     fn a_detour_by_ciede2000_may_be_shorter() {
-        let [a, b, c] = [[1.0, 0.0, 0.0], [0.6, 0.0, 0.4], [0.0, 0.0, 1.0]].map(Color);
+        let [a, b, c] = [[0.0, 1.0, 0.4], [0.6, 0.8, 0.8], [1.0, 0.0, 1.0]].map(Color);
         let d = |a, b| ColorMeasure::Ciede2000.between(a, b);
-        assert!(d(a, b) + d(b, c) < d(a, c) - 1.0, "{} {} {}", d(a, b), d(b, c), d(a, c));
+        // By scikit-image: 30.3 and 32.0 instead of 108.4.
+        assert!(
+            d(a, b) + d(b, c) < 0.58 * d(a, c),
+            "{} {} {}",
+            d(a, b),
+            d(b, c),
+            d(a, c)
+        );
     }
 
     proptest! {

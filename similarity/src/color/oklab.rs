@@ -36,10 +36,7 @@ impl From<Color> for Oklab {
 impl Oklab {
     /// From amounts of light, each in 0..=1.
     pub(crate) fn from_linear(rgb: [f64; 3]) -> Self {
-        Self(times(
-            &OKLAB_FROM_ROOTS,
-            times(&CONES_FROM_RGB, rgb).map(libm::cbrt),
-        ))
+        Self(times(&OKLAB_FROM_ROOTS, times(&CONES_FROM_RGB, rgb).map(libm::cbrt)))
     }
 
     /// Euclidean distance to another colour.

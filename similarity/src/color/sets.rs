@@ -48,7 +48,10 @@ pub fn color_sets_distance(a: &[Color], b: &[Color], measure: ColorMeasure) -> R
         // Comparisons, not `min`, which would turn what is not a number into 1.
         if share > 1.0 { 1.0 } else { share }
     };
-    let costs: Vec<f64> = from.iter().flat_map(|&a| to.iter().map(move |&b| share(a, b))).collect();
+    let costs: Vec<f64> = from
+        .iter()
+        .flat_map(|&a| to.iter().map(move |&b| share(a, b)))
+        .collect();
     let total = Assignment::new().solve(&costs, a.len(), b.len())?;
     Ok((total + (longer - shorter) as f64) / longer as f64)
 }
