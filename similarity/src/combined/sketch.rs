@@ -197,7 +197,7 @@ impl Sketch {
 }
 
 fn oklab(color: Color) -> [f64; 3] {
-    crate::color::oklab(color)
+    crate::color::oklab::Oklab::from(color).0
 }
 
 #[cfg(test)]

@@ -2,12 +2,7 @@
 
 use driftworld_spec::{Color, Domain, MeasureName, Parameter, ParameterType, Value};
 
-use crate::color::{ciede2000, oklab_distance, srgb_distance};
-fn cie76(a: Color, b: Color) -> f64 {
-    ciede2000(a, b)
-}
-pub(super) const CIE76_DIAMETER: f64 = 258.0;
-const CIEDE2000_DIAMETER: f64 = 120.0;
+use crate::color::{CIE76_DIAMETER, CIEDE2000_DIAMETER, cie76, ciede2000, oklab_distance, srgb_distance};
 
 /// How two values of one parameter are compared.
 #[derive(Clone, Debug)]

@@ -167,7 +167,7 @@ impl VariantMeasure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::combined::value::CIE76_DIAMETER;
+    use crate::color::CIE76_DIAMETER;
     use driftworld_spec::{Element, TaskSpec};
 
     fn distance(a: &str, b: &str) -> Distance {
