@@ -1,32 +1,88 @@
-//! How many pairs of grids and of points are measured a second: `cargo bench -p driftworld-similarity --bench occupancy`. The inputs are
-//! those of [`OccupancyWorkload`], so that `driftworld bench` counts the same.
+//! How many pairs of grids and of points are measured a second: `cargo bench -p driftworld-similarity --bench occupancy`. Inputs by a
+//! fixed chance, as many and as large as those on which the Python tools are measured. Beside them, `driftworld bench` runs.
 
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use driftworld_similarity::OccupancyWorkload;
+use driftworld_similarity::{
+    BitGrid, Grid, GridShape, SinkhornSettings, earth_movers_distance, grid_earth_movers_distance,
+    grid_jaccard_distance, grid_sinkhorn, grid_sliced_wasserstein,
+};
 
-type Job = fn(&OccupancyWorkload) -> (usize, f64);
+/// Numbers in 0..1 that are the same every time: splitmix64 of Vigna.
+struct Chance(u64);
 
-fn pairs(c: &mut Criterion) {
-    let work = OccupancyWorkload::new();
-    let jobs: [(&str, Job); 5] = [
-        ("Jaccard, grids of 50 × 50", OccupancyWorkload::jaccard_50x50),
-        (
-            "exact earth mover's, 20 and 20 points",
-            OccupancyWorkload::emd_20_points,
-        ),
-        ("exact earth mover's, grids of 25 × 25", OccupancyWorkload::emd_25x25),
-        ("Sinkhorn, grids of 25 × 25", OccupancyWorkload::sinkhorn_25x25),
-        ("sliced Wasserstein, grids of 25 × 25", OccupancyWorkload::sliced_25x25),
-    ];
-    let mut group = c.benchmark_group("pairs");
-    for (name, job) in jobs {
-        group.throughput(Throughput::Elements(job(&work).0 as u64));
-        group.bench_function(name, |bench| bench.iter(|| black_box(job(&work))));
+impl Chance {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut bits = self.0;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((bits ^ (bits >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
+}
+
+fn shape(side: usize) -> GridShape {
+    GridShape::new(side, side, 1, 1.0).expect("a small grid of cells of 1 m is sound")
+}
+
+/// Measures every pair of the items once in each round.
+fn pairs<T>(c: &mut Criterion, name: &str, items: &[T], measure: impl Fn(&T, &T) -> f64) {
+    let mut group = c.benchmark_group("pairs");
+    group.throughput(Throughput::Elements((items.len() * (items.len() - 1) / 2) as u64));
+    group.bench_function(name, |bench| {
+        bench.iter(|| {
+            for (index, a) in items.iter().enumerate() {
+                for b in &items[..index] {
+                    black_box(measure(a, b));
+                }
+            }
+        });
+    });
     group.finish();
 }
 
-criterion_group!(benches, pairs);
+fn taken(c: &mut Criterion) {
+    let mut chance = Chance(0);
+    let mut cells = || (0..2500).map(|_| chance.next() < 0.1).collect::<Vec<bool>>();
+    let grids: Vec<BitGrid> = (0..200).map(|_| BitGrid::new(shape(50), cells())).collect();
+    pairs(c, "Jaccard, grids of 50 × 50", &grids, |a, b| {
+        grid_jaccard_distance(a, b).expect("the grids are of one shape")
+    });
+}
+
+fn points(c: &mut Criterion) {
+    let mut chance = Chance(1);
+    let mut set = || (0..20).map(|_| [chance.next(), chance.next()]).collect();
+    let sets: Vec<Vec<[f64; 2]>> = (0..40).map(|_| set()).collect();
+    pairs(c, "exact earth mover's, 20 and 20 points", &sets, |a, b| {
+        earth_movers_distance(a, b).expect("the points are finite")
+    });
+}
+
+fn masses(c: &mut Criterion) {
+    let mut chance = Chance(2);
+    let mut masses = || (0..625).map(|_| chance.next()).collect();
+    let grid = |masses| {
+        Grid::new(shape(25), masses)
+            .expect("numbers from 0 to 1 are masses")
+            .normalised()
+    };
+    let grids: Vec<Grid> = (0..6).map(|_| grid(masses())).collect();
+    pairs(c, "exact earth mover's, grids of 25 × 25", &grids, |a, b| {
+        grid_earth_movers_distance(a, b).expect("the masses are equal")
+    });
+    let settings = SinkhornSettings::new(0.5);
+    pairs(c, "Sinkhorn at half a metre, grids of 25 × 25", &grids[..2], |a, b| {
+        grid_sinkhorn(a, b, &settings).expect("the masses are equal").cost
+    });
+    pairs(
+        c,
+        "sliced Wasserstein in 32 directions, grids of 25 × 25",
+        &grids,
+        |a, b| grid_sliced_wasserstein(a, b, 32).expect("the masses are equal"),
+    );
+}
+
+criterion_group!(benches, taken, points, masses);
 criterion_main!(benches);
