@@ -30,7 +30,7 @@ pub use combined::variant::{VariantMeasure, variant_distance};
 pub use combined::world::{Worlds, world_distance, world_sets_distance, world_sets_explained};
 pub use combined::{Distance, Part, Weights};
 pub use error::SimilarityError;
-pub use matrix::{DistanceMatrix, MAX_ITEMS};
+pub use matrix::{DistanceMatrix, MAX_ITEMS, Triangles, Violation};
 pub use nature::Nature;
 pub use occupancy::{
     BitGrid, Classes, Extent, Grid, GridShape, MAX_CELLS, Occupancy, Ospa, Raster, grid_chamfer_distance,
@@ -38,7 +38,7 @@ pub use occupancy::{
     grid_hausdorff_distance, grid_jaccard_distance, grid_ruzicka_distance, grid_sinkhorn, grid_sliced_wasserstein,
     hamming_distance, jaccard_distance,
 };
-pub use order::{MAX_EXACT, Method, Ordering, order};
+pub use order::{MAX_EXACT, MAX_LEAVES, Method, OrderOptions, Ordering, order};
 pub use transport::{
     MAX_DIRECTIONS, MAX_SINKHORN_STEPS, MAX_TRANSPORTED, Move, Sinkhorn, SinkhornSettings, TransportPlan,
     earth_movers_distance, optimal_transport, sinkhorn, sliced_wasserstein,

@@ -1,8 +1,8 @@
 //! [`ValueMeasure`]: how two values of a parameter are compared, and what the number is divided by. Distributions are in `drawn.rs`.
 
-use driftworld_spec::{Color, Domain, MeasureName, Parameter, ParameterType, Value};
+use driftworld_spec::{Domain, MeasureName, Parameter, ParameterType, Value};
 
-use crate::color::{CIE76_DIAMETER, CIEDE2000_DIAMETER, cie76, ciede2000, oklab_distance, srgb_distance};
+use crate::ColorMeasure;
 
 /// How two values of one parameter are compared.
 #[derive(Clone, Debug)]
@@ -14,11 +14,7 @@ pub(super) enum ValueMeasure {
     /// Turn over half a circle.
     Turn,
     /// A distance of colours over the largest there is.
-    Color {
-        measure: &'static str,
-        of: fn(Color, Color) -> f64,
-        largest: f64,
-    },
+    Color { measure: &'static str, of: ColorMeasure },
     /// A table of costs over the largest of them.
     Costs {
         choices: Vec<Value>,
@@ -45,15 +41,15 @@ impl ValueMeasure {
                 largest,
             };
         }
-        let color = |measure, of, largest| Self::Color { measure, of, largest };
+        let color = |measure, of| Self::Color { measure, of };
         match compare.and_then(|compare| compare.measure) {
             Some(MeasureName::SameOrNot) => Self::SameOrNot,
             Some(MeasureName::LogRatio) => Self::LogRatio {
                 width: range(parameter, f64::ln),
             },
-            Some(MeasureName::Srgb) => color("srgb / largest", srgb_distance, 3.0_f64.sqrt()),
-            Some(MeasureName::Cie76) => color("cie76 / largest", cie76, CIE76_DIAMETER),
-            Some(MeasureName::Ciede2000) => color("ciede2000 / largest", ciede2000, CIEDE2000_DIAMETER),
+            Some(MeasureName::Srgb) => color("srgb / largest", ColorMeasure::Srgb),
+            Some(MeasureName::Cie76) => color("cie76 / largest", ColorMeasure::Cie76),
+            Some(MeasureName::Ciede2000) => color("ciede2000 / largest", ColorMeasure::Ciede2000),
             _ => Self::of_type(parameter),
         }
     }
@@ -75,8 +71,7 @@ impl ValueMeasure {
             ParameterType::Heading => Self::Turn,
             ParameterType::Color => Self::Color {
                 measure: "oklab",
-                of: oklab_distance,
-                largest: 1.0,
+                of: ColorMeasure::Oklab,
             },
             ParameterType::Boolean | ParameterType::String | ParameterType::Distribution => Self::SameOrNot,
         }
@@ -96,7 +91,7 @@ impl ValueMeasure {
     /// Whether the triangle inequality holds.
     pub(super) fn is_metric(&self) -> bool {
         match self {
-            Self::Color { measure, .. } => *measure != "ciede2000 / largest",
+            Self::Color { of, .. } => of.nature().is_metric(),
             Self::Costs { choices, costs, .. } => {
                 let all = 0..choices.len();
                 all.clone().all(|a| {
@@ -128,11 +123,8 @@ impl ValueMeasure {
                 let raw = turn.min(360.0 - turn);
                 (raw, raw / 180.0)
             }),
-            Self::Color { of, largest, .. } => match (a, b) {
-                (Value::Color(a), Value::Color(b)) => {
-                    let raw = of(*a, *b);
-                    (raw, raw / largest)
-                }
+            Self::Color { of, .. } => match (a, b) {
+                (Value::Color(a), Value::Color(b)) => (of.between(*a, *b), of.normalised(*a, *b)),
                 _ => same_or_not(),
             },
             Self::Costs {

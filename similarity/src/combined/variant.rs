@@ -167,7 +167,7 @@ impl VariantMeasure {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::CIE76_DIAMETER;
+    use crate::ColorMeasure;
     use driftworld_spec::{Element, TaskSpec};
 
     fn distance(a: &str, b: &str) -> Distance {
@@ -287,7 +287,11 @@ mod tests {
         check(color, r#""white""#, "oklab", 1.0);
         for (name, measure) in [("srgb", "srgb / largest"), ("cie76", "cie76 / largest")] {
             let compare = format!(r#"{color}, "compare": {{ "measure": "{name}" }}"#);
-            let expected = if name == "srgb" { 1.0 } else { 100.0 / CIE76_DIAMETER };
+            let expected = if name == "srgb" {
+                1.0
+            } else {
+                100.0 / ColorMeasure::Cie76.diameter()
+            };
             check(&compare, r#""white""#, measure, expected);
         }
         let drawn = |more: &str| {
