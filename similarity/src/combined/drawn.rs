@@ -1,11 +1,13 @@
 //! [`DrawnMeasure`]: how two distributions of a parameter are compared, and what the number is divided by. Values are in `value.rs`, the
 //! measures in `distribution/`.
 
+use std::collections::BTreeSet;
+
 use driftworld_spec::{Distribution, MeasureName, Parameter, ParameterType};
 
 use crate::combined::value::share;
 use crate::distribution::{
-    How, Measured, bures_wasserstein, circular_wasserstein_1, extent, hellinger, jensen_shannon, total_variation,
+    How, Measured, circular_wasserstein_1, extent, hellinger, jensen_shannon, planar_wasserstein_2, total_variation,
     wasserstein_1, wasserstein_2,
 };
 
@@ -16,6 +18,8 @@ pub(super) struct DrawnMeasure {
     headings: bool,
     /// Width of the numbers, or diagonal of the points, that all declared variants together draw.
     width: Option<f64>,
+    /// Whether points are drawn by different families, between which there are only samples.
+    mixed: bool,
 }
 
 /// A comparison: the measure's name, how its number was found, the number, and the one that counts, which may be above 1.
@@ -25,7 +29,9 @@ impl DrawnMeasure {
     /// What the parameter asks for, or what its type has; `all` are its distributions in the declared variants.
     pub(super) fn of(parameter: &Parameter, all: impl Iterator<Item = Distribution>) -> Self {
         let mut corners: Option<[[f64; 2]; 2]> = None;
+        let mut families = BTreeSet::new();
         for distribution in all {
+            families.insert(distribution.planar_moments().map(|_| distribution.name()));
             if let Some([low, high]) = bounds(&distribution) {
                 let [least, most] = corners.unwrap_or([low, high]);
                 let join = |axis: usize| [least[axis].min(low[axis]), most[axis].max(high[axis])];
@@ -37,13 +43,13 @@ impl DrawnMeasure {
             measure: parameter.compare.as_ref().and_then(|compare| compare.measure),
             headings: parameter.kind == ParameterType::Heading,
             width: corners.map(|[low, high]| (high[0] - low[0]).hypot(high[1] - low[1])),
+            mixed: families.iter().flatten().count() > 1,
         }
     }
 
-    /// Whether the triangle inequality holds.
+    /// Whether the triangle inequality holds. Between points of different families it may fail by what samples are off.
     pub(super) fn is_metric(&self) -> bool {
-        // Each is one, Bures and Wasserstein's up to distributions with the same mean and spread.
-        true
+        !self.mixed
     }
 
     /// How far two distributions are apart.
@@ -78,7 +84,7 @@ impl DrawnMeasure {
             }
         }
         found("wasserstein-1 / width", wasserstein_1(a, b), &over_width)
-            .or_else(|| found("bures-wasserstein / width", planar(a, b), &over_width))
+            .or_else(|| found("planar wasserstein-2 / width", planar_wasserstein_2(a, b), &over_width))
             .or_else(|| found("total variation", total_variation(a, b), &as_it_is))
             .or_else(|| found("total variation of mean shares", shares(a, b), &as_it_is))
             .unwrap_or_else(same_or_not)
@@ -94,14 +100,6 @@ fn bounds(distribution: &Distribution) -> Option<[[f64; 2]; 2]> {
     let reach = [0, 1].map(|axis| 3.0 * moments.covariance[axis][axis].max(0.0).sqrt());
     let corner = |sign: f64| [0, 1].map(|axis| moments.mean[axis] + sign * reach[axis]);
     Some([corner(-1.0), corner(1.0)])
-}
-
-fn planar(a: &Distribution, b: &Distribution) -> Option<Measured> {
-    let value = bures_wasserstein(a, b)?;
-    Some(Measured {
-        value,
-        how: How::Closed,
-    })
 }
 
 /// Half of the sum of the differences of the mean shares.

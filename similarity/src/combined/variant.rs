@@ -15,7 +15,7 @@ use crate::{Nature, SimilarityError};
 /// `compare`, or else at weight 1 and by what its type has: numbers by difference over the declared range, headings by the
 /// turn, colours in Oklab, points over the widest pair of choices, vectors by Euclidean length over the range, anything else
 /// as the same or not. Randomized ones are compared by distribution: Wasserstein-1 over the width of all declared variants
-/// together, round the circle for headings, total variation for words, Bures–Wasserstein for points. What is alike in both
+/// together, round the circle for headings, Wasserstein-2 over the diagonal for points, total variation for words. What is alike in both
 /// contributes exactly 0, so variants that differ in what they pay are 0 apart in all elements but the reward. Fixed
 /// parameters cannot differ and are left out.
 ///
