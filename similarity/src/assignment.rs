@@ -2,7 +2,8 @@
 //! said by the measures that use it.
 //!
 //! Own code, for want of a crate that fits: `lapjv` takes square matrices only, compares costs with one absolute tolerance
-//! and is kept as it is; `pathfinding::kuhn_munkres` wants costs that are `Ord`, which `f64` is not, and takes new memory for every row.
+//! and is kept as it is; `pathfinding::kuhn_munkres` wants costs that are `Ord`, which `f64` is not, panics where rows are more than
+//! columns, and takes new memory for every matrix.
 
 use crate::SimilarityError;
 
