@@ -7,6 +7,7 @@ mod masses;
 mod network_simplex;
 mod plan;
 mod points;
+mod scaling;
 mod sinkhorn;
 mod sliced;
 mod spanning_tree;
