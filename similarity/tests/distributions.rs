@@ -75,7 +75,9 @@ fn distances_are_those_of_scipy_and_pot() {
             // The oracle's own quadrature is good to 1e-8 or so; roots of small sums to less.
             let slack = 1e-7 * expected.max(1.0) + tolerance(found);
             let near = found.value == expected || (found.value - expected).abs() <= slack;
-            if !near || tolerance(found) > 2e-4 {
+            // As the docs say, in degrees and otherwise.
+            let most = if name == "circular_wasserstein_1" { 1e-3 } else { 1e-5 };
+            if !near || tolerance(found) > most {
                 wrong.push(format!("{name} of {a} and {b}: {found:?}, expected {expected}"));
             }
         }

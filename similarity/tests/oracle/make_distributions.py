@@ -107,7 +107,8 @@ def densities(a, b):
     f, g = a.pdf, b.pdf
 
     def js(x):
-        p, q = f(x), g(x)
+        # Densities that underflow would give 0 times an infinite logarithm.
+        p, q = (np.where(density > 1e-250, density, 0.0) for density in (f(x), g(x)))
         m = np.where(p + q > 0, (p + q) / 2, 1.0)
         return 0.5 * (xlogy(p, p / m) + xlogy(q, q / m)) / np.log(2)
 
