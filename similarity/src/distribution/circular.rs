@@ -51,7 +51,9 @@ type Stretch = (f64, f64, f64);
 /// The difference along the circle in stretches: from knot to knot, or no wider than so many degrees.
 fn stretches(a: &Law, b: &Law, widest: Option<f64>) -> Vec<Stretch> {
     let mut knots: Vec<f64> = a.knots().into_iter().chain(b.knots()).collect();
-    knots.iter_mut().for_each(|x| *x = x.rem_euclid(360.0));
+    for x in &mut knots {
+        *x = x.rem_euclid(360.0);
+    }
     knots.extend(a.atoms.iter().chain(&b.atoms).map(|atom| atom.0));
     knots.extend([0.0, 360.0]);
     let knots = rising(knots);

@@ -67,7 +67,7 @@ impl SortedSamples {
     /// numbers as `scipy.stats.wasserstein_distance`.
     pub fn wasserstein_1(&self, other: &Self) -> f64 {
         if self.numbers.len() == other.numbers.len() {
-            return mean_of_pairs(&self.numbers, &other.numbers, |gap| gap.abs());
+            return mean_of_pairs(&self.numbers, &other.numbers, f64::abs);
         }
         over_ranks(&self.numbers, &other.numbers, f64::abs)
     }

@@ -57,7 +57,7 @@ fn closed(a: &Distribution, b: &Distribution) -> Option<f64> {
         // E (X − Y)² = (E X − E Y)² + Var X + Var Y − 2 Cov, with the covariance of one chance.
         let (of_m, of_n) = (a.mean()?, b.mean()?);
         let spread = libm::expm1(s * s) * of_m * of_m + libm::expm1(t * t) * of_n * of_n;
-        let both = libm::expm1(s * t) * libm::exp(m + n + (s * s + t * t) / 2.0);
+        let both = libm::expm1(s * t) * libm::exp(m + n + f64::midpoint(s * s, t * t));
         return Some((of_m - of_n).hypot((spread - 2.0 * both).max(0.0).sqrt()));
     }
     let (of_a, of_b) = (Shape::of(a), Shape::of(b));
