@@ -229,8 +229,7 @@ fn check(costs: &[f64], rows: usize, columns: usize) -> Result<(), SimilarityErr
             expected: rows * columns,
         });
     }
-    // NaN is not within either.
-    let bad = |cost: &f64| !(cost.abs() <= MAX_COST);
+    let bad = |cost: &f64| cost.is_nan() || cost.abs() > MAX_COST;
     costs.iter().position(bad).map_or(Ok(()), |index| {
         Err(SimilarityError::BadCost {
             row: index / columns,

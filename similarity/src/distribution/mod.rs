@@ -21,7 +21,6 @@ mod scatter;
 mod shape;
 mod total_variation;
 mod values;
-pub(crate) mod wasserstein;
 mod wasserstein_1;
 mod wasserstein_2;
 
