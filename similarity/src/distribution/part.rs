@@ -112,7 +112,7 @@ impl Part {
                 let width = high - low;
                 let [left, right] = [spot.above(low), -spot.above(high)].map(|x| {
                     // Only a part that was moved can be off by rounding.
-                    if self.shift != 0.0 && x.abs() < 1e-12 * width {
+                    if self.shift != 0.0 && x <= 0.0 && x > -1e-12 * width {
                         1e-12
                     } else {
                         x / width
