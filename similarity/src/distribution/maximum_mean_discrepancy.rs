@@ -20,7 +20,7 @@ const STEPS: usize = 8;
 /// Bernoulli counts as 0 and 1. `None` if either draws no numbers, draws headings or too many different ones (about 8,000
 /// together, also of those that stand for a density far wider than the bandwidth), or if the bandwidth is not a finite number above 0. Closed for normal and flat distributions and single numbers
 /// and for mixtures of them, within about 1e-8 where the two are close; otherwise by quadrature, mostly within 1e-6, in
-/// milliseconds.
+/// time that grows with the square of the places.
 ///
 /// Source: Gretton et al. 2012, "A kernel two-sample test", lemma 6.
 ///

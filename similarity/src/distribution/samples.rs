@@ -22,7 +22,7 @@ pub struct SortedSamples {
 }
 
 impl SortedSamples {
-    /// Sorts a copy. Time `O(n log n)`: about a microsecond for 256.
+    /// Sorts a copy. Time `O(n log n)`.
     ///
     /// # Errors
     /// [`SimilarityError::NoSamples`] and [`SimilarityError::NotASample`].

@@ -14,7 +14,7 @@ use super::shape::Shape;
 /// headings, or has more different counts than 65,536. Closed for two that are one another moved and stretched (normal,
 /// uniform, exponential, triangular, beta and truncated normal of one shape): the hypotenuse of the differences of mean and
 /// standard deviation; for two log-normals, for anything beside a constant, and for all that is flat or in steps. Otherwise
-/// by quadrature over the quantiles, mostly within 1e-7, in about a millisecond. Whole numbers out of more than 4,096 count
+/// by quadrature over the quantiles, mostly within 1e-7, at 13 to 700 places between neighbouring knots. Whole numbers out of more than 4,096 count
 /// as evenly spread.
 ///
 /// Source: Peyré & Cuturi 2019, "Computational Optimal Transport", remarks 2.30 and 2.31. `ot.wasserstein_1d(p=2)` is the
