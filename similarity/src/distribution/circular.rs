@@ -6,15 +6,15 @@ use super::gap::Power;
 use super::law::{Law, rising};
 use super::measured::Measured;
 
-/// Widest stretch, in degrees, over which a curved cumulative function is taken as straight.
-const FINE: f64 = 0.25;
+/// Widest stretch, in degrees, over which a curved cumulative function is taken as straight at first; then over half of it.
+const COARSE: f64 = 0.5;
 
 /// Least work, in degrees, that turns one distribution of headings into the other, each the shorter way round.
 ///
 /// min over c of ∫ |F − G − c| over one turn; the best c is the median of F − G. A metric in `0..=180` degrees. Numbers are
 /// taken as headings in degrees, whatever turn they lie in. `None` if either draws no numbers, or strews them over more than
-/// 200 turns. Exact for constants, choices and uniform headings; otherwise by the trapezium rule, mostly within 1e-3 degrees,
-/// in a millisecond.
+/// 200 turns. Exact for constants, choices and uniform headings; otherwise by the trapezium rule at two widths, mostly
+/// within 1e-3 degrees, at some two thousand places.
 ///
 /// Source: Rabin, Delon & Gousseau 2011, "Transportation distances on the circle"; the same numbers as
 /// `ot.wasserstein_circle`, which counts in turns.
@@ -32,24 +32,28 @@ pub fn circular_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Meas
         return Some(Measured::closed(0.0));
     }
     if p.is_flat() && q.is_flat() {
-        let value = around(&stretches(&p, &q, 360.0));
+        let value = around(&stretches(&p, &q, None));
         return Some(if p.parts.is_empty() && q.parts.is_empty() {
             Measured::atoms(value)
         } else {
             Measured::closed(value)
         });
     }
-    let (coarse, fine) = (around(&stretches(&p, &q, 2.0 * FINE)), around(&stretches(&p, &q, FINE)));
-    // Twice as many stretches leave a quarter of the error.
-    Some(Measured::quadrature(fine, (coarse - fine).abs().max(1e-9)))
+    let [coarse, fine] = [COARSE, COARSE / 2.0].map(|widest| around(&stretches(&p, &q, Some(widest))));
+    // Half the width leaves a quarter of the error, so a third of the difference is what is left.
+    let left = (fine - coarse) / 3.0;
+    Some(Measured::quadrature((fine + left).max(0.0), left.abs().max(1e-9)))
 }
 
 /// A stretch of the circle: how wide, and the difference of the cumulative functions at its ends.
 type Stretch = (f64, f64, f64);
 
-fn stretches(a: &Law, b: &Law, widest: f64) -> Vec<Stretch> {
+/// The difference along the circle in stretches: from knot to knot, or no wider than so many degrees.
+fn stretches(a: &Law, b: &Law, widest: Option<f64>) -> Vec<Stretch> {
     let mut knots: Vec<f64> = a.knots().into_iter().chain(b.knots()).collect();
-    knots.iter_mut().for_each(|x| *x = x.rem_euclid(360.0));
+    for x in &mut knots {
+        *x = x.rem_euclid(360.0);
+    }
     knots.extend(a.atoms.iter().chain(&b.atoms).map(|atom| atom.0));
     knots.extend([0.0, 360.0]);
     let knots = rising(knots);
@@ -61,12 +65,10 @@ fn stretches(a: &Law, b: &Law, widest: f64) -> Vec<Stretch> {
     let mut found = Vec::new();
     for ends in knots.windows(2) {
         let step = steps(a, ends[0]) - steps(b, ends[0]);
-        // Where no stretch may be as wide as the circle, curves get at least eight pieces between knots.
-        let count = if widest < 360.0 {
-            ((ends[1] - ends[0]) / widest).ceil().max(4.0 / widest.min(1.0))
-        } else {
-            1.0
-        };
+        // Eight pieces at least between the knots of curves, and twice as many at half the width.
+        let count = widest.map_or(1.0, |widest| {
+            ((ends[1] - ends[0]) / COARSE).ceil().max(8.0) * (COARSE / widest)
+        });
         let width = (ends[1] - ends[0]) / count;
         let mut before = gap(ends[0]);
         for k in 1..=count as u32 {

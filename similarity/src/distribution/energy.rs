@@ -12,8 +12,8 @@ use super::wasserstein_1::folded;
 /// √(2 E|X − Y| − E|X − X′| − E|Y − Y′|), which on the line is √(2 ∫ (F − G)²): in roots of the numbers' unit.
 ///
 /// A metric in `0..` (its square is none). A Bernoulli counts as 0 and 1. `None` if either draws no numbers, or headings.
-/// Closed for two normals and for all that is flat or in steps; otherwise by quadrature, mostly within 1e-6, in a fraction of
-/// a millisecond. Whole numbers out of more than 4,096 count as evenly spread.
+/// Closed for two normals and for all that is flat or in steps; otherwise by quadrature, mostly within 1e-6, at 13 to
+/// 700 places between neighbouring knots. Whole numbers out of more than 4,096 count as evenly spread.
 ///
 /// Source: Székely & Rizzo 2013, "Energy statistics"; the same numbers as `scipy.stats.energy_distance`, which returns the
 /// root, too.

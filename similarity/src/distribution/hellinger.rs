@@ -11,7 +11,8 @@ use super::part::log_beta;
 /// A metric in `0..=1`. Takes what [`total_variation`](super::total_variation()) takes, and two `gaussian`s of the plane or
 /// two `dirichlet`s of one length. Closed for normal, log-normal, exponential, beta (with the same ends), Poisson, geometric,
 /// gaussian and Dirichlet pairs and for all that is flat or in steps; otherwise by quadrature, mostly within 1e-6 (the root
-/// of a sum known within 1e-9 or better), in tens of microseconds.
+/// of a sum known within 1e-9 or better), at 13 to 700
+/// places between neighbouring knots.
 ///
 /// Source: Pardo 2006, "Statistical Inference Based on Divergence Measures"; √(1 − BC) with BC the Bhattacharyya coefficient.
 ///

@@ -28,7 +28,8 @@ pub fn jensen_shannon(a: &Distribution, b: &Distribution) -> Option<Measured> {
 /// ½ KL(P ‖ M) + ½ KL(Q ‖ M) in bits, M being the even mixture of the two: what a draw tells about which of them it is from.
 ///
 /// In `0..=1` bits; symmetric, but not a metric. Takes what [`total_variation`](super::total_variation()) takes. Exact for
-/// all that is flat or in steps, otherwise by quadrature, mostly within 1e-9, in tens of microseconds.
+/// all that is flat or in steps, otherwise by quadrature, mostly within 1e-9, at 13 to 700 places between
+/// neighbouring knots.
 ///
 /// Source: Lin 1991, "Divergence measures based on the Shannon entropy".
 pub fn jensen_shannon_divergence(a: &Distribution, b: &Distribution) -> Option<Measured> {

@@ -13,7 +13,8 @@ use super::part::log_beta;
 /// for parity with methods that use it (self-paced curricula). Takes what [`total_variation`](super::total_variation())
 /// takes, and two `gaussian`s of the plane or two `dirichlet`s of one length. Closed for normal, log-normal, exponential,
 /// beta (with the same ends), Poisson, geometric, gaussian and Dirichlet pairs and for all that is flat or in steps;
-/// otherwise by quadrature, mostly within 1e-9 of its size, in tens of microseconds.
+/// otherwise by quadrature, mostly within 1e-9 of its size, at 13 to 700 places between neighbouring
+/// knots.
 ///
 /// Source: Kullback & Leibler 1951, "On information and sufficiency".
 ///

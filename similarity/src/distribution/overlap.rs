@@ -27,7 +27,7 @@ fn over_numbers(a: &Law, b: &Law, circle: bool, term: impl Fn(f64, f64) -> f64) 
     let mut knots = a.knots();
     knots.extend(b.knots());
     if circle {
-        knots = knots.into_iter().flat_map(onto_the_circle).collect();
+        knots = knots.into_iter().filter_map(onto_the_circle).collect();
         knots.extend([0.0, 360.0]);
     }
     let mut tolerance = 0.0;

@@ -110,9 +110,18 @@ impl Part {
             Distribution::Beta { alpha, beta, low, high } => {
                 let (low, high) = (low.unwrap_or(0.0), high.unwrap_or(1.0));
                 let width = high - low;
-                let [left, right] = [spot.above(low), -spot.above(high)].map(|x| (x / width).max(f64::MIN_POSITIVE));
-                let log = (alpha - 1.0) * libm::log(left) + (beta - 1.0) * libm::log(right);
-                inside(low, high, log)
+                let [left, right] = [spot.above(low), -spot.above(high)].map(|x| {
+                    // Only a part that was moved can be off by rounding.
+                    if self.shift != 0.0 && x <= 0.0 && x > -1e-12 * width {
+                        1e-12
+                    } else {
+                        x / width
+                    }
+                });
+                if left <= 0.0 || right <= 0.0 {
+                    return f64::NEG_INFINITY;
+                }
+                (alpha - 1.0) * libm::log(left) + (beta - 1.0) * libm::log(right)
             }
             Distribution::Triangular { low, mode, high } => {
                 let (left, right) = (spot.above(*low), -spot.above(*high));
@@ -135,8 +144,11 @@ impl Part {
         if let Distribution::VonMises { mean, .. } = self.family {
             let turns = ((x - mean + 180.0) / 360.0).floor();
             let turned = x - mean - 360.0 * turns;
-            let within = if turned <= -180.0 {
+            // Beside the start of a turn rounding would take the end of one for it.
+            let within = if turned <= -180.0 + 1e-9 {
                 0.0
+            } else if turned >= 180.0 - 1e-9 {
+                1.0
             } else {
                 self.family.cdf(mean + turned).unwrap_or(0.0)
             };

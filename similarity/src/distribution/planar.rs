@@ -23,12 +23,6 @@ pub fn bures_wasserstein(a: &Distribution, b: &Distribution) -> Option<f64> {
     Some((apart + trace(a) + trace(b) - 2.0 * both).max(0.0).sqrt())
 }
 
-/// Root mean square distance of a distribution's points from their mean, in metres.
-pub(crate) fn spread(distribution: &Distribution) -> Option<f64> {
-    let covariance = distribution.planar_moments()?.covariance;
-    Some((covariance[0][0] + covariance[1][1]).sqrt())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

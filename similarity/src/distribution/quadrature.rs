@@ -158,6 +158,8 @@ pub(crate) fn split_at_signs(knots: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> 
             let here = (x, f(x));
             if before.1 * here.1 < 0.0 {
                 found.push(root(before, here, &f));
+            } else if here.1 == 0.0 && before.1 != 0.0 {
+                found.push(x);
             }
             before = here;
         }
@@ -217,5 +219,6 @@ mod tests {
         let split = split_at_signs(&[0.0, 1.0, 3.0], |x| x * x - 2.0);
         assert_eq!(split.len(), 4);
         assert!((split[2] - 2.0_f64.sqrt()).abs() < 1e-12);
+        assert_eq!(split_at_signs(&[0.0, 1.0], |x| x - 0.5), [0.0, 0.5, 1.0]);
     }
 }

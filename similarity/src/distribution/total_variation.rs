@@ -9,10 +9,10 @@ use super::overlap;
 
 /// Largest difference of the probabilities that two distributions give to any event: ½ Σ |p − q|, ½ ∫ |f − g|.
 ///
-/// A metric in `0..=1`; 1 exactly when nothing can be drawn by both. Takes distributions of numbers, of headings (on the
-/// circle), and of single values of any type; `None` for one of numbers beside one of words, for points with a density and
+/// A metric in `0..=1`; 1 exactly when nothing can be drawn by both. Takes distributions of numbers, of headings (both on the
+/// circle as soon as either draws such; keep to one turn for a metric), and of single values of any type; `None` for one of numbers beside one of words, for points with a density and
 /// for shares. Closed for normal, log-normal and exponential pairs and for all that is flat or in steps; otherwise by
-/// quadrature, mostly within 1e-9, in tens of microseconds.
+/// quadrature, mostly within 1e-9, at 13 to 700 places between neighbouring knots.
 ///
 /// Source: Levin, Peres & Wilmer 2017, "Markov Chains and Mixing Times", section 4.1.
 ///

@@ -18,7 +18,8 @@ use super::shape::one_is_never_less;
 /// and of log-normal distributions, for all that is flat or in steps, and wherever one of the two draws, chance for chance,
 /// never less than the other (two betas that lean to different sides, two Poissons, exponentials …): then it is the
 /// difference of the means. Otherwise by quadrature, mostly within 1e-9 of its size. Whole numbers out of more than 4,096
-/// count as evenly spread. A closed form takes tens of nanoseconds, a quadrature a fraction of a millisecond.
+/// count as evenly spread. Looks for a closed form first and takes no memory then; a
+/// quadrature takes 13 to 700 places between neighbouring knots.
 ///
 /// Source: Vallender 1974; the same numbers as `scipy.stats.wasserstein_distance` on large samples.
 ///

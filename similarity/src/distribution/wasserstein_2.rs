@@ -14,7 +14,7 @@ use super::shape::Shape;
 /// headings, or has more different counts than 65,536. Closed for two that are one another moved and stretched (normal,
 /// uniform, exponential, triangular, beta and truncated normal of one shape): the hypotenuse of the differences of mean and
 /// standard deviation; for two log-normals, for anything beside a constant, and for all that is flat or in steps. Otherwise
-/// by quadrature over the quantiles, mostly within 1e-7, in about a millisecond. Whole numbers out of more than 4,096 count
+/// by quadrature over the quantiles, mostly within 1e-7, at 13 to 700 places between neighbouring knots. Whole numbers out of more than 4,096 count
 /// as evenly spread.
 ///
 /// Source: Peyré & Cuturi 2019, "Computational Optimal Transport", remarks 2.30 and 2.31. `ot.wasserstein_1d(p=2)` is the
@@ -57,7 +57,7 @@ fn closed(a: &Distribution, b: &Distribution) -> Option<f64> {
         // E (X − Y)² = (E X − E Y)² + Var X + Var Y − 2 Cov, with the covariance of one chance.
         let (of_m, of_n) = (a.mean()?, b.mean()?);
         let spread = libm::expm1(s * s) * of_m * of_m + libm::expm1(t * t) * of_n * of_n;
-        let both = libm::expm1(s * t) * libm::exp(m + n + (s * s + t * t) / 2.0);
+        let both = libm::expm1(s * t) * libm::exp(m + n + f64::midpoint(s * s, t * t));
         return Some((of_m - of_n).hypot((spread - 2.0 * both).max(0.0).sqrt()));
     }
     let (of_a, of_b) = (Shape::of(a), Shape::of(b));
