@@ -20,9 +20,7 @@ pub use combined::{Distance, Part, Weights};
 pub use distribution::planar::bures_wasserstein;
 pub use distribution::wasserstein::{total_variation, wasserstein_1};
 pub use error::SimilarityError;
-pub use matrix::{
-    DistanceMatrix, Embedding, MAX_FEATURES, MAX_ITEMS, PlanarMap, Triangles, Violation, classical_map,
-};
+pub use matrix::{DistanceMatrix, Embedding, MAX_FEATURES, MAX_ITEMS, PlanarMap, Triangles, Violation, classical_map};
 pub use nature::Nature;
 pub use occupancy::{Classes, Occupancy, hamming_distance, jaccard_distance};
 pub use order::{MAX_EXACT, MAX_LEAVES, Method, OrderOptions, Ordering, order};

@@ -124,7 +124,11 @@ mod tests {
     use proptest::prelude::*;
 
     fn check_error(text: &str, expected: &str) {
-        assert_eq!(DistanceMatrix::from_csv(text).unwrap_err().to_string(), expected, "{text:?}");
+        assert_eq!(
+            DistanceMatrix::from_csv(text).unwrap_err().to_string(),
+            expected,
+            "{text:?}"
+        );
     }
 
     #[test]
@@ -177,6 +181,9 @@ mod tests {
             ",a,b\na,0,far\nb,1,0\n",
             "matrix, line 2: found \"far\", expected a number",
         );
-        check_error(",\"a\n", "matrix, line 1: found quotes that do not end, expected a second quote");
+        check_error(
+            ",\"a\n",
+            "matrix, line 1: found quotes that do not end, expected a second quote",
+        );
     }
 }

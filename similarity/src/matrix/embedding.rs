@@ -60,7 +60,9 @@ impl Embedding {
         for (label, row) in labels.iter().zip(points.rows()) {
             check_finite(&format!("item {label:?}"), row)?;
         }
-        let mean = points.mean_axis(Axis(0)).unwrap_or_else(|| Array1::zeros(points.ncols()));
+        let mean = points
+            .mean_axis(Axis(0))
+            .unwrap_or_else(|| Array1::zeros(points.ncols()));
         points -= &mean;
         let squares = points.rows().into_iter().map(|row| row.dot(&row)).collect();
         Ok(Self {
@@ -121,7 +123,10 @@ impl Embedding {
         check_finite("point", ArrayView1::from(point))?;
         let point = &ArrayView1::from(point) - &self.mean;
         let rows: Vec<ArrayView1<f64>> = self.points.rows().into_iter().collect();
-        let squares = rows.into_par_iter().map(|row| square_between(row, point.view())).collect();
+        let squares = rows
+            .into_par_iter()
+            .map(|row| square_between(row, point.view()))
+            .collect();
         Ok(least(squares, None, k))
     }
 
@@ -135,12 +140,21 @@ impl Embedding {
             let products = self.points.slice(s![begin..end, ..]).dot(&self.points.t());
             let of = |(row, products): (usize, ArrayView1<f64>)| {
                 let a = begin + row;
-                let squares = products.iter().enumerate().map(|(b, product)| self.square(a, b, *product));
+                let squares = products
+                    .iter()
+                    .enumerate()
+                    .map(|(b, product)| self.square(a, b, *product));
                 least(squares.collect(), Some(a), k)
             };
             products.rows().into_iter().enumerate().map(of).collect()
         };
-        blocks.into_par_iter().map(block).collect::<Vec<_>>().into_iter().flatten().collect()
+        blocks
+            .into_par_iter()
+            .map(block)
+            .collect::<Vec<_>>()
+            .into_iter()
+            .flatten()
+            .collect()
     }
 }
 
@@ -161,7 +175,11 @@ fn square_between(a: ArrayView1<f64>, b: ArrayView1<f64>) -> f64 {
 
 /// The `k` least of some squares, but for one, with their roots.
 fn least(squares: Vec<f64>, but: Option<usize>, k: usize) -> Vec<(usize, f64)> {
-    let mut all: Vec<(usize, f64)> = squares.into_iter().enumerate().filter(|(index, _)| Some(*index) != but).collect();
+    let mut all: Vec<(usize, f64)> = squares
+        .into_iter()
+        .enumerate()
+        .filter(|(index, _)| Some(*index) != but)
+        .collect();
     let order = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0));
     if k < all.len() {
         all.select_nth_unstable_by(k, order);

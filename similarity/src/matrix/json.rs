@@ -69,14 +69,20 @@ mod tests {
     use super::*;
 
     fn check_error(text: &str, expected: &str) {
-        assert_eq!(DistanceMatrix::from_json(text).unwrap_err().to_string(), expected, "{text}");
+        assert_eq!(
+            DistanceMatrix::from_json(text).unwrap_err().to_string(),
+            expected,
+            "{text}"
+        );
     }
 
     #[test]
     fn what_is_written_reads_back_the_same() {
         let names = ["a", "say \"x\"", "é"].map(String::from).to_vec();
         let measure = |a: usize, b: usize| Ok::<_, SimilarityError>(((a + 3 * b) as f64).sqrt());
-        let matrix = DistanceMatrix::measure(names, measure).unwrap().with_nature(Nature::Metric);
+        let matrix = DistanceMatrix::measure(names, measure)
+            .unwrap()
+            .with_nature(Nature::Metric);
         assert_eq!(DistanceMatrix::from_json(&matrix.to_json()).unwrap(), matrix);
     }
 

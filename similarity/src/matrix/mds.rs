@@ -53,7 +53,10 @@ pub fn classical_map(matrix: &DistanceMatrix) -> PlanarMap {
             break;
         };
         let length = value.max(0.0).sqrt();
-        points.iter_mut().zip(&vector).for_each(|(point, part)| point[axis] = part * length);
+        points
+            .iter_mut()
+            .zip(&vector)
+            .for_each(|(point, part)| point[axis] = part * length);
         shown += value.max(0.0).powi(2);
         axes.push(vector);
     }
@@ -90,14 +93,25 @@ mod tests {
             let values = Array2::from_shape_fn((n, n), |(a, b)| golden.distances[a][b]);
             let labels = (0..n).map(|k| k.to_string()).collect();
             let map = classical_map(&DistanceMatrix::from_values(labels, values).unwrap());
-            assert!((map.explained - golden.explained).abs() < 1e-9, "{case}: {}", map.explained);
+            assert!(
+                (map.explained - golden.explained).abs() < 1e-9,
+                "{case}: {}",
+                map.explained
+            );
             for (point, sizes) in map.points.iter().zip(&golden.sizes) {
                 for axis in 0..2 {
-                    assert!((point[axis].abs() - sizes[axis]).abs() < 1e-9, "{case}: {point:?} for {sizes:?}");
+                    assert!(
+                        (point[axis].abs() - sizes[axis]).abs() < 1e-9,
+                        "{case}: {point:?} for {sizes:?}"
+                    );
                 }
             }
             for axis in 0..2 {
-                let out = map.points.iter().map(|point| point[axis]).fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
+                let out = map
+                    .points
+                    .iter()
+                    .map(|point| point[axis])
+                    .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a });
                 assert!(out > 0.0, "{case}: the farthest is on the positive side");
             }
         }
@@ -124,7 +138,8 @@ mod tests {
 
     #[test]
     fn items_that_are_all_equal_stand_in_one_place() {
-        let matrix = DistanceMatrix::measure(vec!["a".into(), "b".into()], |_, _| Ok::<_, SimilarityError>(0.0)).unwrap();
+        let matrix =
+            DistanceMatrix::measure(vec!["a".into(), "b".into()], |_, _| Ok::<_, SimilarityError>(0.0)).unwrap();
         let map = classical_map(&matrix);
         assert_eq!((map.points, map.explained), (vec![[0.0; 2]; 2], 1.0));
         let none = DistanceMatrix::measure(Vec::new(), |_, _| Ok::<_, SimilarityError>(0.0)).unwrap();

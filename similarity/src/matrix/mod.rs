@@ -85,7 +85,8 @@ impl DistanceMatrix {
     /// [`SimilarityError::NotADistance`] for a number that is none; [`SimilarityError::TooMany`] for more than [`MAX_ITEMS`].
     pub fn from_values(labels: Vec<String>, values: Array2<f64>) -> Result<Self, SimilarityError> {
         let n = Self::bounded(labels.len())?;
-        let bad = |place: String, found: String, expected: String| SimilarityError::BadMatrix { place, found, expected };
+        let bad =
+            |place: String, found: String, expected: String| SimilarityError::BadMatrix { place, found, expected };
         if values.dim() != (n, n) {
             let found = format!("{} × {}", values.nrows(), values.ncols());
             return Err(bad("size".to_owned(), found, format!("{n} × {n}, one for each label")));

@@ -55,7 +55,9 @@ impl DistanceMatrix {
             let bytes = &data[k * header.width..(k + 1) * header.width];
             match bytes.try_into() {
                 Ok(wide) => f64::from_le_bytes(wide),
-                Err(_) => bytes.try_into().map_or(f64::NAN, |narrow| f64::from(f32::from_le_bytes(narrow))),
+                Err(_) => bytes
+                    .try_into()
+                    .map_or(f64::NAN, |narrow| f64::from(f32::from_le_bytes(narrow))),
             }
         };
         let values = Array2::from_shape_fn((n, n), |(a, b)| number(a * n + b));
@@ -80,16 +82,24 @@ struct Header {
 
 impl Header {
     fn read(bytes: &[u8]) -> Result<Self, SimilarityError> {
-        let start = bytes.get(..MAGIC.len() + 2).filter(|start| start.starts_with(&MAGIC[..6]));
+        let start = bytes
+            .get(..MAGIC.len() + 2)
+            .filter(|start| start.starts_with(&MAGIC[..6]));
         let Some(start) = start else {
             return Err(bad("beginning", "no mark of numpy's format", "a .npy file"));
         };
         if start[6] != 1 {
             let found = format!("version {}.{} of numpy's format", start[6], start[7]);
-            return Err(bad("beginning", found, "version 1.0, which numpy.save writes for plain arrays"));
+            return Err(bad(
+                "beginning",
+                found,
+                "version 1.0, which numpy.save writes for plain arrays",
+            ));
         }
         let data = start.len() + usize::from(u16::from_le_bytes([start[8], start[9]]));
-        let header = bytes.get(start.len()..data).and_then(|header| std::str::from_utf8(header).ok());
+        let header = bytes
+            .get(start.len()..data)
+            .and_then(|header| std::str::from_utf8(header).ok());
         let header = header.ok_or_else(|| bad("heading", "fewer bytes than announced", "a whole heading"))?;
         let width = match value_of(header, "descr").map(|value| value.trim_matches(['\'', '"'])) {
             Some("<f8") => 8,
@@ -108,7 +118,11 @@ impl Header {
             .map(|size| size.parse().ok())
             .collect();
         match sizes.as_deref() {
-            Some([rows, columns]) if rows == columns => Ok(Self { items: *rows, width, data }),
+            Some([rows, columns]) if rows == columns => Ok(Self {
+                items: *rows,
+                width,
+                data,
+            }),
             _ => Err(bad("heading", format!("the shape {shape}"), "a square array")),
         }
     }
@@ -117,7 +131,11 @@ impl Header {
 /// The text of a value in the heading, which is a dictionary in Python's notation.
 fn value_of<'a>(header: &'a str, key: &str) -> Option<&'a str> {
     let after = header.split_once(&format!("'{key}':"))?.1.trim_start();
-    let end = if after.starts_with('(') { after.find(')')? + 1 } else { after.find([',', '}'])? };
+    let end = if after.starts_with('(') {
+        after.find(')')? + 1
+    } else {
+        after.find([',', '}'])?
+    };
     Some(after[..end].trim())
 }
 
