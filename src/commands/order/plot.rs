@@ -140,6 +140,7 @@ struct Name {
 fn names(matrix: &DistanceMatrix, ordering: &Ordering, path: &[(i32, i32)], ends_only: bool) -> Vec<Name> {
     // What is taken: left, top, right, bottom.
     let mut taken: Vec<[i32; 4]> = path.iter().map(|(x, y)| [x - 12, y - 12, x + 12, y + 12]).collect();
+    taken.extend(path.windows(2).flat_map(|pair| along_step(pair[0], pair[1])));
     let last = path.len().saturating_sub(1);
     let mut names = Vec::new();
     for (place, (x, y)) in path.iter().enumerate() {
@@ -184,6 +185,16 @@ fn names(matrix: &DistanceMatrix, ordering: &Ordering, path: &[(i32, i32)], ends
         }
     }
     names
+}
+
+/// Small squares along a step, which names had better not cover.
+fn along_step(from: (i32, i32), to: (i32, i32)) -> impl Iterator<Item = [i32; 4]> {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let parts = (dx.abs().max(dy.abs()) / 24).max(1);
+    (0..=parts).map(move |part| {
+        let (x, y) = (from.0 + dx * part / parts, from.1 + dy * part / parts);
+        [x - 5, y - 5, x + 5, y + 5]
+    })
 }
 
 /// How many pixels two rectangles share.
