@@ -58,7 +58,7 @@ impl Embedding {
             });
         }
         for (label, row) in labels.iter().zip(points.rows()) {
-            check_finite(&format!("item {label:?}"), row)?;
+            check_finite(&format!("item {label:?}"), &row)?;
         }
         let mean = points
             .mean_axis(Axis(0))
@@ -104,7 +104,7 @@ impl Embedding {
         if square > CANCELLED * lengths {
             square
         } else {
-            square_between(self.points.row(a), self.points.row(b))
+            square_between(&self.points.row(a), &self.points.row(b))
         }
     }
 
@@ -120,12 +120,12 @@ impl Embedding {
                 expected: format!("{}, as the items have", self.points.ncols()),
             });
         }
-        check_finite("point", ArrayView1::from(point))?;
+        check_finite("point", &ArrayView1::from(point))?;
         let point = &ArrayView1::from(point) - &self.mean;
         let rows: Vec<ArrayView1<f64>> = self.points.rows().into_iter().collect();
         let squares = rows
             .into_par_iter()
-            .map(|row| square_between(row, point.view()))
+            .map(|row| square_between(&row, &point.view()))
             .collect();
         Ok(least(squares, None, k))
     }
@@ -158,7 +158,7 @@ impl Embedding {
     }
 }
 
-fn check_finite(whose: &str, row: ArrayView1<f64>) -> Result<(), SimilarityError> {
+fn check_finite(whose: &str, row: &ArrayView1<f64>) -> Result<(), SimilarityError> {
     match row.iter().position(|value| !value.is_finite()) {
         None => Ok(()),
         Some(index) => Err(SimilarityError::BadFeatures {
@@ -169,7 +169,7 @@ fn check_finite(whose: &str, row: ArrayView1<f64>) -> Result<(), SimilarityError
     }
 }
 
-fn square_between(a: ArrayView1<f64>, b: ArrayView1<f64>) -> f64 {
+fn square_between(a: &ArrayView1<f64>, b: &ArrayView1<f64>) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 

@@ -265,7 +265,7 @@ fn golden() -> serde_json::Value {
 }
 
 #[test]
-fn leaves_stand_as_in_scipy() {
+fn leaves_are_turned_as_well_as_scipys_tree_allows() {
     for case in golden()["leaves"].as_array().unwrap() {
         let found = order(
             &drawn(case["seed"].as_u64().unwrap(), 20),
@@ -273,10 +273,12 @@ fn leaves_stand_as_in_scipy() {
             &OrderOptions::default(),
         )
         .unwrap();
-        let expected: Vec<usize> = serde_json::from_value(case["order"].clone()).unwrap();
-        let backwards: Vec<usize> = expected.iter().rev().copied().collect();
-        assert!(found.indices == expected || found.indices == backwards, "{case}");
-        assert!((found.length - case["length"].as_f64().unwrap()).abs() < 1e-9);
+        assert!(
+            (found.length - case["least"].as_f64().unwrap()).abs() < 1e-9,
+            "{case}: {}",
+            found.length
+        );
+        assert!(found.length <= case["scipy"].as_f64().unwrap() + 1e-9, "{case}");
     }
 }
 
