@@ -172,8 +172,11 @@ fn names(matrix: &DistanceMatrix, ordering: &Ordering, path: &[(i32, i32)], ends
         };
         let covered = |spot: &(i32, i32, HPos)| -> i64 {
             let mine = boxed(spot);
-            let outside = i64::from((-mine[0]).max(0) + (mine[2] - SIZE.0).max(0) + (130 - mine[1]).max(0)) * 100;
-            outside + taken.iter().map(|other| overlap(&mine, other)).sum::<i64>()
+            let beyond = [-mine[0], mine[2] - SIZE.0, 130 - mine[1], mine[3] - SIZE.1];
+            let outside = i64::from(beyond.map(|pixels| pixels.max(0)).iter().sum::<i32>()) * 100;
+            // A little overlap is better than a name far from its point.
+            let off = i64::from((spot.1 - y).abs()) * 3;
+            outside + off + taken.iter().map(|other| overlap(&mine, other)).sum::<i64>()
         };
         if let Some(best) = spots.min_by_key(covered) {
             taken.push(boxed(&best));
