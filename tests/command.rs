@@ -279,6 +279,65 @@ fn photographs_are_where_their_manifest_says() {
 }
 
 #[test]
+fn a_matrix_is_the_same_in_every_file_and_gives_the_same_order() {
+    let folder = scratch();
+    let at = |name: &str| folder.path().join(name);
+    let ends = ["--start", "find_objects#red", "--end", "find_objects#blue"];
+    let plain = succeed(&[&["order", "find_objects"][..], &ends].concat());
+    for name in ["matrix.csv", "matrix.json", "matrix.npy"] {
+        let path = at(name);
+        succeed(&["order", "find_objects", "--matrix", text(&path)]);
+        let again = succeed(&[&["order", "--from-matrix", text(&path)][..], &ends].concat());
+        assert_eq!(again, plain, "{name}");
+    }
+    let picture = at("path.png");
+    succeed(&["order", "find_objects", "--plot", text(&picture)]);
+    assert!(std::fs::metadata(&picture).is_ok_and(|file| file.len() > 5_000));
+    let compared = succeed(&["order", "find_objects", "--compare", "--target-step", "0.1"]);
+    for method in [
+        "nearest",
+        "exact",
+        "two-opt",
+        "spectral",
+        "typical-last",
+        "target-step",
+        "given",
+    ] {
+        assert!(compared.contains(&format!("\n{method} ")), "{compared}");
+    }
+
+    let refused = fail(2, &["order", "find_objects", "--matrix", text(&at("matrix.txt"))]);
+    assert!(refused.contains("ends with .csv, .json or .npy"), "{refused}");
+    std::fs::write(at("broken.csv"), ",a,b\na,0,1\nb,2,0\n").expect("the scratch folder can be written");
+    let refused = fail(1, &["order", "--from-matrix", text(&at("broken.csv"))]);
+    assert!(
+        refused.contains("broken.csv: matrix, distance of \"a\" to \"b\": found 1 there and 2 back"),
+        "{refused}"
+    );
+    assert!(fail(2, &["order", "find_objects", "--method", "target-step"]).contains("--target-step"));
+    assert!(fail(2, &["order", "find_objects", "--method", "shortest"]).contains("typical-last"));
+    assert!(
+        fail(1, &["order", "find_objects", "--end", "pink"])
+            .contains("--end: found \"pink\", expected one of find_objects#")
+    );
+    assert!(
+        fail(
+            1,
+            &[
+                "order",
+                "find_objects",
+                "--method",
+                "spectral",
+                "--start",
+                "find_objects#red"
+            ]
+        )
+        .contains("two-opt")
+    );
+    fail(2, &["order"]);
+}
+
+#[test]
 fn from_variants_to_scores_step_by_step() {
     let folder = scratch();
     let at = |name: &str| folder.path().join(name);

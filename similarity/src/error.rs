@@ -164,6 +164,26 @@ pub enum SimilarityError {
         /// How many would be checked.
         limit: usize,
     },
+    /// What was read, or handed in, is no matrix of distances.
+    #[error("matrix, {place}: found {found}, expected {expected}")]
+    BadMatrix {
+        /// Where in the text or the matrix.
+        place: String,
+        /// What is there.
+        found: String,
+        /// What should be.
+        expected: String,
+    },
+    /// Features from which no distance follows.
+    #[error("features, {place}: found {found}, expected {expected}")]
+    BadFeatures {
+        /// Whose, and which.
+        place: String,
+        /// What is there.
+        found: String,
+        /// What should be.
+        expected: String,
+    },
     /// The wanted step is missing or no length.
     #[error("method target-step: found {found} as the wanted step, expected a finite number of at least 0")]
     BadTargetStep {
@@ -303,6 +323,8 @@ impl SimilarityError {
             Self::CannotFixEnds { .. } => "similarity/cannot-fix-ends",
             Self::NotAMetric { .. } => "similarity/not-a-metric",
             Self::NotCheckedAsMetric { .. } => "similarity/not-checked-as-metric",
+            Self::BadMatrix { .. } => "similarity/bad-matrix",
+            Self::BadFeatures { .. } => "similarity/bad-features",
             Self::BadTargetStep { .. } => "similarity/bad-target-step",
             Self::Empty => "similarity/empty",
             Self::UnknownMethod { .. } => "similarity/unknown-method",
@@ -403,6 +425,16 @@ mod tests {
                 method: "tree",
                 found: 3000,
                 limit: 2000,
+            },
+            SimilarityError::BadMatrix {
+                place: "line 2".into(),
+                found: "\"far\"".into(),
+                expected: "a number".into(),
+            },
+            SimilarityError::BadFeatures {
+                place: "item \"one\", number 2".into(),
+                found: "NaN".into(),
+                expected: "a finite number".into(),
             },
             SimilarityError::BadTargetStep { found: "none".into() },
             SimilarityError::Empty,

@@ -30,7 +30,7 @@ pub use combined::variant::{VariantMeasure, variant_distance};
 pub use combined::world::{Worlds, world_distance, world_sets_distance, world_sets_explained};
 pub use combined::{Distance, Part, Weights};
 pub use error::SimilarityError;
-pub use matrix::{DistanceMatrix, MAX_ITEMS, Triangles, Violation};
+pub use matrix::{DistanceMatrix, Embedding, MAX_FEATURES, MAX_ITEMS, PlanarMap, Triangles, Violation, classical_map};
 pub use nature::Nature;
 pub use occupancy::{
     BitGrid, Classes, Extent, Grid, GridShape, MAX_CELLS, Occupancy, Ospa, Raster, grid_chamfer_distance,

@@ -9,8 +9,8 @@ use plotters::style::{FontStyle, register_font};
 
 use super::{Failure, output};
 
-const INK: RGBColor = RGBColor(38, 42, 48);
-const FAINT: RGBColor = RGBColor(110, 116, 124);
+pub(super) const INK: RGBColor = RGBColor(38, 42, 48);
+pub(super) const FAINT: RGBColor = RGBColor(110, 116, 124);
 
 /// A picture in memory: 8-bit RGB, row 0 on top.
 #[derive(Clone)]
@@ -53,12 +53,12 @@ fn png_of(size: [u32; 2], color: png::ColorType, depth: png::BitDepth, data: &[u
 }
 
 /// A text in a picture: where its anchor is, how large in pixels, in which colour.
-struct Label<'a> {
-    text: &'a str,
-    at: (i32, i32),
-    size: u32,
-    color: RGBColor,
-    anchor: Pos,
+pub(super) struct Label<'a> {
+    pub(super) text: &'a str,
+    pub(super) at: (i32, i32),
+    pub(super) size: u32,
+    pub(super) color: RGBColor,
+    pub(super) anchor: Pos,
 }
 
 impl Picture {
@@ -121,7 +121,7 @@ impl Picture {
     }
 
     /// Draws texts.
-    fn label(&mut self, labels: &[Label]) -> Result<(), Failure> {
+    pub(super) fn label(&mut self, labels: &[Label]) -> Result<(), Failure> {
         self.draw(|area| {
             for label in labels {
                 let style = ("sans-serif", label.size)
@@ -135,7 +135,7 @@ impl Picture {
     }
 
     /// Draws with the plotting library onto this picture.
-    fn draw(
+    pub(super) fn draw(
         &mut self,
         job: impl FnOnce(&DrawingArea<BitMapBackend, plotters::coord::Shift>) -> Result<(), Box<dyn std::error::Error>>,
     ) -> Result<(), Failure> {

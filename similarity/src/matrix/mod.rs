@@ -1,7 +1,12 @@
 //! [`DistanceMatrix`]: every distance among some items. What is measured is handed in; files of it are in `csv.rs`, `json.rs`
 //! and `npy.rs`, orders of it in `order/`.
 
+mod csv;
 pub(crate) mod eigen;
+mod embedding;
+mod json;
+mod mds;
+mod npy;
 mod triangles;
 
 use ndarray::{Array2, Axis};
@@ -10,6 +15,8 @@ use serde::Serialize;
 
 use crate::{Nature, SimilarityError};
 
+pub use embedding::{Embedding, MAX_FEATURES};
+pub use mds::{PlanarMap, classical_map};
 pub use triangles::{Triangles, Violation};
 
 /// The most items that a matrix holds.
@@ -67,6 +74,38 @@ impl DistanceMatrix {
             .map(row)
             .collect();
         outcomes.into_iter().collect::<Result<(), E>>()?;
+        Ok(Self::mirrored(labels, values))
+    }
+
+    /// A matrix of distances that are there already: `(items, items)`, symmetric up to rounding, 0 on the diagonal. Where two
+    /// halves differ by less than a thousand-millionth, the upper one is kept.
+    ///
+    /// # Errors
+    /// [`SimilarityError::BadMatrix`] for another shape, a diagonal that is not 0, halves that differ;
+    /// [`SimilarityError::NotADistance`] for a number that is none; [`SimilarityError::TooMany`] for more than [`MAX_ITEMS`].
+    pub fn from_values(labels: Vec<String>, values: Array2<f64>) -> Result<Self, SimilarityError> {
+        let n = Self::bounded(labels.len())?;
+        let bad =
+            |place: String, found: String, expected: String| SimilarityError::BadMatrix { place, found, expected };
+        if values.dim() != (n, n) {
+            let found = format!("{} × {}", values.nrows(), values.ncols());
+            return Err(bad("size".to_owned(), found, format!("{n} × {n}, one for each label")));
+        }
+        for a in 0..n {
+            if values[[a, a]] != 0.0 {
+                let place = format!("distance of {:?} to itself", labels[a]);
+                return Err(bad(place, values[[a, a]].to_string(), "0".to_owned()));
+            }
+            for b in a + 1..n {
+                let there = Self::sound(&labels, a, b, values[[a, b]])?;
+                let back = Self::sound(&labels, b, a, values[[b, a]])?;
+                if (there - back).abs() > 1e-9 * there.max(back) {
+                    let place = format!("distance of {:?} to {:?}", labels[a], labels[b]);
+                    let found = format!("{there} there and {back} back");
+                    return Err(bad(place, found, "one number for both".to_owned()));
+                }
+            }
+        }
         Ok(Self::mirrored(labels, values))
     }
 
@@ -137,24 +176,6 @@ impl DistanceMatrix {
     pub fn get(&self, a: usize, b: usize) -> f64 {
         self.values[[a, b]]
     }
-
-    /// The matrix as CSV: a line of labels behind an empty cell, then a line for each item, its label first.
-    pub fn to_csv(&self) -> String {
-        let cell = |text: &str| {
-            if text.contains([',', '"', '\n', '\r']) {
-                format!("\"{}\"", text.replace('"', "\"\""))
-            } else {
-                text.to_owned()
-            }
-        };
-        let names: Vec<String> = self.labels.iter().map(|label| cell(label)).collect();
-        let mut text = format!(",{}\n", names.join(","));
-        for (name, row) in names.iter().zip(self.values.rows()) {
-            let numbers: Vec<String> = row.iter().map(f64::to_string).collect();
-            text.extend([name, ",", &numbers.join(","), "\n"]);
-        }
-        text
-    }
 }
 
 #[cfg(test)]
@@ -194,12 +215,29 @@ mod tests {
     }
 
     #[test]
-    fn csv_quotes_what_needs_it() {
-        let names = vec!["a,b".to_owned(), "say \"x\"".to_owned()];
-        let matrix = DistanceMatrix::measure(names, |_, _| Ok::<_, SimilarityError>(0.5)).unwrap();
+    fn values_that_are_no_matrix_of_distances_are_refused() {
+        let said = |numbers: [f64; 4]| {
+            let values = Array2::from_shape_vec((2, 2), numbers.to_vec()).unwrap();
+            DistanceMatrix::from_values(labels(2), values).map_err(|error| error.to_string())
+        };
+        assert_eq!(said([0.0, 3.0, 3.0, 0.0]).unwrap().get(1, 0), 3.0);
+        assert_eq!(said([0.0, 3.0, 3.0 + 1e-12, 0.0]).unwrap().get(1, 0), 3.0);
         assert_eq!(
-            matrix.to_csv(),
-            ",\"a,b\",\"say \"\"x\"\"\"\n\"a,b\",0,0.5\n\"say \"\"x\"\"\",0.5,0\n"
+            said([0.0, 3.0, 2.0, 0.0]).unwrap_err(),
+            "matrix, distance of \"item 0\" to \"item 1\": found 3 there and 2 back, expected one number for both"
+        );
+        assert_eq!(
+            said([0.0, 3.0, 3.0, 1.0]).unwrap_err(),
+            "matrix, distance of \"item 1\" to itself: found 1, expected 0"
+        );
+        assert_eq!(
+            said([0.0, f64::INFINITY, 3.0, 0.0]).unwrap_err(),
+            "distance of \"item 0\" to \"item 1\": found inf, expected a finite number of at least 0"
+        );
+        let narrow = DistanceMatrix::from_values(labels(2), Array2::zeros((2, 3)));
+        assert_eq!(
+            narrow.unwrap_err().to_string(),
+            "matrix, size: found 2 × 3, expected 2 × 2, one for each label"
         );
     }
 }

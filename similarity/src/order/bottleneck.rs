@@ -6,7 +6,7 @@ use super::two_opt::{self, from_the_lower_end};
 use super::{local_search, tree};
 
 /// How many times the path is shaken in each round of the search, for each item.
-const SHAKES_PER_ITEM: usize = 5;
+const SHAKES_PER_ITEM: usize = 2;
 /// How many bounds are tried.
 const ROUNDS: usize = 12;
 

@@ -6,7 +6,7 @@ use super::two_opt::from_the_lower_end;
 use super::{local_search, nearest};
 
 /// How many times the path is shaken, for each item.
-const SHAKES_PER_ITEM: usize = 20;
+const SHAKES_PER_ITEM: usize = 1;
 
 pub(super) fn order(items: &Items) -> Vec<usize> {
     let (n, largest) = (items.len(), items.largest_gap());

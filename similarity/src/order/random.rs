@@ -12,7 +12,7 @@ pub(super) fn order(items: &Items, seed: u64) -> Vec<usize> {
     items.with_ends_outside(ranks)
 }
 
-/// SplitMix64 (Steele, Lea and Flood 2014): 64 bits of state, the same numbers on every machine.
+/// `SplitMix64` (Steele, Lea and Flood 2014): 64 bits of state, the same numbers on every machine.
 pub(crate) struct SplitMix64(pub(crate) u64);
 
 impl SplitMix64 {
@@ -27,7 +27,7 @@ impl SplitMix64 {
 
     /// A whole number below `bound`, by the high half of a product: biased by less than `bound / 2⁶⁴`.
     pub(crate) fn below(&mut self, bound: u64) -> u64 {
-        (u128::from(self.next()) * u128::from(bound) >> 64) as u64
+        ((u128::from(self.next()) * u128::from(bound)) >> 64) as u64
     }
 
     /// A number in `0..1`, of 53 bits.

@@ -39,6 +39,8 @@ pub(super) fn order(items: &Items) -> Result<Vec<usize>, SimilarityError> {
         return Ok(ranks);
     }
     // The vector may as well point the other way: let the order begin with the name that comes first.
-    axis.iter_mut().for_each(|value| *value = -*value);
+    for value in &mut axis {
+        *value = -*value;
+    }
     Ok(by_rising(&axis))
 }

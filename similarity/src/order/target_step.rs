@@ -7,7 +7,7 @@ use super::{local_search, nearest};
 use crate::SimilarityError;
 
 /// How many times the path is shaken, for each item.
-const SHAKES_PER_ITEM: usize = 20;
+const SHAKES_PER_ITEM: usize = 4;
 
 /// Minimises the sum of `|step - wanted|`.
 pub(super) fn order(items: &Items, wanted: Option<f64>) -> Result<Vec<usize>, SimilarityError> {

@@ -252,3 +252,40 @@ fn what_cannot_be_ordered_says_why() {
     assert!(order(&squared, Method::TwoOpt, &free).is_ok());
     assert!(order(&squared.with_nature(crate::Nature::Metric), Method::Tree, &free).is_ok());
 }
+
+/// Points of the unit square, as `tests/oracle/make_orders.py` makes them.
+fn drawn(seed: u64, count: usize) -> DistanceMatrix {
+    let mut chance = SplitMix64(seed);
+    let points: Vec<[f64; 2]> = (0..count).map(|_| [chance.unit(), chance.unit()]).collect();
+    matrix(&points)
+}
+
+fn golden() -> serde_json::Value {
+    serde_json::from_str(include_str!("../../tests/oracle/orders.json")).unwrap()
+}
+
+#[test]
+fn leaves_are_turned_as_well_as_scipys_tree_allows() {
+    for case in golden()["leaves"].as_array().unwrap() {
+        let found = order(
+            &drawn(case["seed"].as_u64().unwrap(), 20),
+            Method::Leaf,
+            &OrderOptions::default(),
+        )
+        .unwrap();
+        assert!(
+            (found.length - case["least"].as_f64().unwrap()).abs() < 1e-9,
+            "{case}: {}",
+            found.length
+        );
+        assert!(found.length <= case["scipy"].as_f64().unwrap() + 1e-9, "{case}");
+    }
+}
+
+/// What OR-Tools' routing found in half a minute and more is the mark; the search has to come within 6 % of it.
+#[test]
+fn a_thousand_items_come_within_six_percent_of_a_routing_library() {
+    let golden = golden()["routing"]["length"].as_f64().unwrap();
+    let found = order(&drawn(1, 1000), Method::TwoOpt, &OrderOptions::default()).unwrap();
+    assert!(found.length <= 1.06 * golden, "{} for {golden}", found.length);
+}

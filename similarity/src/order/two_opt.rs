@@ -4,7 +4,7 @@ use super::items::Items;
 use super::{local_search, nearest};
 
 /// How many times the path is shaken, for each item.
-const SHAKES_PER_ITEM: usize = 20;
+const SHAKES_PER_ITEM: usize = 8;
 
 pub(super) fn order(items: &Items) -> Vec<usize> {
     let cost = |a: usize, b: usize| items.gap(a, b);

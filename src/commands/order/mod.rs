@@ -1,21 +1,25 @@
 //! `driftworld order`: variants in an order by their distances. Distances and orders are `similarity`'s.
 
 mod arguments;
+mod compare;
+mod files;
+mod plot;
 
 use std::path::PathBuf;
 
 use clap::Args;
 use driftworld::generator::Sampler;
 use driftworld::similarity::{
-    DistanceMatrix, Ordering, SimilarityError, Weights, variant_distance, world_sets_distance,
+    DistanceMatrix, Method, Ordering, SimilarityError, Weights, variant_distance, world_sets_distance,
 };
 use driftworld::spec::Variant;
-use serde_json::json;
+use serde_json::{Value, json};
 
 pub(crate) use arguments::OrderArgs;
+use compare::Comparison;
 
 use super::table::table;
-use super::{Failure, input, output};
+use super::{Failure, input, output, pictures};
 
 /// How many worlds of each variant are compared where variants of different tasks meet.
 const WORLDS: u64 = 16;
@@ -26,19 +30,30 @@ const WORLDS: u64 = 16;
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld order find_objects
-  driftworld order find_objects get_to_goal#plain --start find_objects#blue --matrix matrix.csv")]
+  driftworld order find_objects --start find_objects#blue --end find_objects#dusk --plot path.png
+  driftworld order find_objects get_to_goal#plain --matrix matrix.npy
+  driftworld order --from-matrix matrix.npy --compare")]
 pub(crate) struct Order {
     /// Variants, or tasks, which stand for all their variants.
-    #[arg(required = true, value_name = "TASK")]
+    #[arg(required_unless_present = "from_matrix", value_name = "TASK")]
     tasks: Vec<String>,
+    /// Take the distances from this file (.csv, .json or .npy) instead of measuring variants.
+    #[arg(long, value_name = "FILE", conflicts_with = "tasks")]
+    from_matrix: Option<PathBuf>,
     #[command(flatten)]
     ordering: OrderArgs,
-    /// Write the distance matrix into this CSV file.
-    #[arg(long, value_name = "FILE")]
-    matrix: Option<PathBuf>,
     /// What the method random draws from.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Show every method side by side.
+    #[arg(long, conflicts_with_all = ["method", "plot"])]
+    compare: bool,
+    /// Write the distance matrix into this file: .csv, .json, or .npy with the labels in a .labels.json beside it.
+    #[arg(long, value_name = "FILE")]
+    matrix: Option<PathBuf>,
+    /// Draw the path over a map of the distances into this PNG file.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
@@ -46,28 +61,55 @@ pub(crate) struct Order {
 
 impl Order {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let variants = input::variants(&self.tasks)?;
-        let matrix = matrix(&variants)?;
-        let (method, ordering) = self.ordering.order(&matrix, self.seed)?;
+        let matrix = match &self.from_matrix {
+            Some(path) => files::read("--from-matrix", path)?,
+            None => matrix(&input::variants(&self.tasks)?)?,
+        };
         if let Some(path) = &self.matrix {
-            output::write(path, matrix.to_csv().as_bytes())?;
+            files::write("--matrix", path, &matrix)?;
         }
-        let names: Vec<&String> = ordering.indices.iter().map(|index| &matrix.labels()[*index]).collect();
+        if self.compare {
+            return self.compare(&matrix);
+        }
+        let (method, ordering) = self.ordering.order(&matrix, self.seed)?;
+        if let Some(path) = &self.plot {
+            plot::path_map(&matrix, method, &ordering)?.write(path)?;
+        }
         if self.json {
-            return output::json(&json!({
-                "method": method, "order": names, "steps": ordering.steps, "length": ordering.length,
-                "largest_step": ordering.largest_step(), "mean_step": ordering.mean_step(), "matrix": matrix,
-            }));
+            let mut found = json_of(&matrix, method, &ordering);
+            found["matrix"] = json!(matrix);
+            return output::json(&found);
         }
         output::line(path_table(&matrix, &ordering))?;
+        let steadily = ordering.anchor_correlation.map_or_else(String::new, |rho| {
+            format!(", correlation with the distance from the first {rho:.2}")
+        });
         output::line(format!(
-            "\n{}: length {:.4}, largest step {:.4}, mean step {:.4}",
+            "\n{}: length {:.4}, largest step {:.4}, mean step {:.4}{steadily}",
             method.name(),
             ordering.length,
             ordering.largest_step(),
             ordering.mean_step()
         ))
     }
+
+    fn compare(&self, matrix: &DistanceMatrix) -> Result<(), Failure> {
+        let comparison = Comparison::new(matrix, &self.ordering.options(matrix, self.seed)?);
+        if self.json {
+            return output::json(&comparison.json(matrix));
+        }
+        output::line(comparison.table())
+    }
+}
+
+/// An order as JSON.
+fn json_of(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) -> Value {
+    let names: Vec<&String> = ordering.indices.iter().map(|index| &matrix.labels()[*index]).collect();
+    json!({
+        "method": method, "order": names, "steps": ordering.steps, "length": ordering.length,
+        "largest_step": ordering.largest_step(), "mean_step": ordering.mean_step(),
+        "anchor_correlation": ordering.anchor_correlation,
+    })
 }
 
 /// Every distance among variants: parameter by parameter within one task, by sampled worlds otherwise.

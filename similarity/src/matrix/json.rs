@@ -1,0 +1,109 @@
+//! Distance matrices as JSON: `labels`, `nature` and `values` row by row. Files are the callers'.
+
+use ndarray::Array2;
+use serde::Deserialize;
+
+use super::DistanceMatrix;
+use crate::{Nature, SimilarityError};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    labels: Vec<String>,
+    #[serde(default)]
+    nature: Nature,
+    values: Vec<Vec<f64>>,
+}
+
+impl DistanceMatrix {
+    /// The matrix as JSON. Every number reads back as the same one.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(self).expect("labels and finite numbers have a form in JSON")
+    }
+
+    /// Reads what [`DistanceMatrix::to_json`] writes; `nature` may be left out.
+    ///
+    /// # Errors
+    /// [`SimilarityError::BadMatrix`] where the text is no such document; whatever [`DistanceMatrix::from_values`] says.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_similarity::{DistanceMatrix, Nature};
+    /// let text = r#"{"labels": ["a", "b"], "nature": "metric", "values": [[0, 2.5], [2.5, 0]]}"#;
+    /// let matrix = DistanceMatrix::from_json(text)?;
+    /// assert_eq!((matrix.get(0, 1), matrix.nature()), (2.5, Nature::Metric));
+    /// # Ok::<(), driftworld_similarity::SimilarityError>(())
+    /// ```
+    pub fn from_json(text: &str) -> Result<Self, SimilarityError> {
+        let document: Document = serde_json::from_str(text).map_err(|error| SimilarityError::BadMatrix {
+            place: format!("line {} column {}", error.line(), error.column()),
+            found: without_place(&error),
+            expected: "an object with labels, nature and values".to_owned(),
+        })?;
+        let n = Self::bounded(document.labels.len())?;
+        let bad = |place: String, found: usize| SimilarityError::BadMatrix {
+            place,
+            found: found.to_string(),
+            expected: format!("{n}, one for each label"),
+        };
+        if document.values.len() != n {
+            return Err(bad("number of rows".to_owned(), document.values.len()));
+        }
+        if let Some((index, row)) = document.values.iter().enumerate().find(|(_, row)| row.len() != n) {
+            return Err(bad(format!("length of row {}", index + 1), row.len()));
+        }
+        let values = Array2::from_shape_fn((n, n), |(a, b)| document.values[a][b]);
+        Ok(Self::from_values(document.labels, values)?.with_nature(document.nature))
+    }
+}
+
+/// What the JSON reader says, without the place, which stands elsewhere in the message.
+fn without_place(error: &serde_json::Error) -> String {
+    let said = error.to_string();
+    let end = said.rfind(" at line ").unwrap_or(said.len());
+    said[..end].to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check_error(text: &str, expected: &str) {
+        assert_eq!(
+            DistanceMatrix::from_json(text).unwrap_err().to_string(),
+            expected,
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn what_is_written_reads_back_the_same() {
+        let names = ["a", "say \"x\"", "é"].map(String::from).to_vec();
+        let measure = |a: usize, b: usize| Ok::<_, SimilarityError>(((a + 3 * b) as f64).sqrt());
+        let matrix = DistanceMatrix::measure(names, measure)
+            .unwrap()
+            .with_nature(Nature::Metric);
+        assert_eq!(DistanceMatrix::from_json(&matrix.to_json()).unwrap(), matrix);
+    }
+
+    #[test]
+    fn what_is_no_matrix_says_where() {
+        check_error(
+            "{\"labels\": [\"a\"],\n \"rows\": []}",
+            "matrix, line 2 column 7: found unknown field `rows`, expected one of `labels`, `nature`, `values`, \
+             expected an object with labels, nature and values",
+        );
+        check_error(
+            r#"{"labels": ["a", "b"], "values": [[0, 1]]}"#,
+            "matrix, number of rows: found 1, expected 2, one for each label",
+        );
+        check_error(
+            r#"{"labels": ["a", "b"], "values": [[0, 1], [1]]}"#,
+            "matrix, length of row 2: found 1, expected 2, one for each label",
+        );
+        check_error(
+            r#"{"labels": ["a", "b"], "values": [[0, -1], [-1, 0]]}"#,
+            "distance of \"a\" to \"b\": found -1, expected a finite number of at least 0",
+        );
+    }
+}

@@ -1,0 +1,67 @@
+//! Every method on one matrix, side by side. What the columns mean is `similarity`'s.
+
+use driftworld::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
+use serde_json::{Value, json};
+
+use super::table;
+
+/// Each method with what it found, or why it found nothing.
+pub(super) struct Comparison {
+    outcomes: Vec<(Method, Result<Ordering, String>)>,
+}
+
+impl Comparison {
+    pub(super) fn new(matrix: &DistanceMatrix, options: &OrderOptions) -> Self {
+        let outcome = |method: Method| {
+            let found = order(matrix, method, options).map_err(|error| error.to_string());
+            (method, found)
+        };
+        Self {
+            outcomes: Method::ALL.map(outcome).into(),
+        }
+    }
+
+    /// A line for each method, and below it why some have no numbers.
+    pub(super) fn table(&self) -> String {
+        let mut refusals = String::new();
+        let mut rows = Vec::new();
+        for (method, outcome) in &self.outcomes {
+            match outcome {
+                Ok(found) => rows.push([
+                    method.name().to_owned(),
+                    format!("{:.4}", found.length),
+                    format!("{:.4}", found.largest_step()),
+                    format!("{:.4}", found.mean_step()),
+                    found
+                        .anchor_correlation
+                        .map_or_else(|| "-".to_owned(), |rho| format!("{rho:.2}")),
+                ]),
+                Err(error) => {
+                    rows.push([method.name(), "-", "-", "-", "-"].map(str::to_owned));
+                    refusals = format!("{refusals}\n{error}");
+                }
+            }
+        }
+        let headings = [
+            "method",
+            "length",
+            "largest step",
+            "mean step",
+            "correlation with the first",
+        ];
+        let table = table(headings, rows, &[1, 2, 3, 4]);
+        if refusals.is_empty() {
+            table
+        } else {
+            format!("{table}\n{refusals}")
+        }
+    }
+
+    pub(super) fn json(&self, matrix: &DistanceMatrix) -> Value {
+        let one = |(method, outcome): &(Method, Result<Ordering, String>)| match outcome {
+            Ok(found) => super::json_of(matrix, *method, found),
+            Err(error) => json!({"method": method, "error": error}),
+        };
+        self.outcomes.iter().map(one).collect()
+    }
+}

@@ -1,0 +1,65 @@
+//! Distance matrices as files: CSV, JSON or numpy's, by the name's ending. The formats themselves are `similarity`'s.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use driftworld::similarity::{DistanceMatrix, SimilarityError};
+
+use super::{Failure, input, output};
+
+/// What a file's name says it holds.
+enum Format {
+    Csv,
+    Json,
+    Npy,
+}
+
+fn format(option: &str, path: &Path) -> Result<Format, Failure> {
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("csv") => Ok(Format::Csv),
+        Some("json") => Ok(Format::Json),
+        Some("npy") => Ok(Format::Npy),
+        _ => Err(Failure::usage(format!(
+            "{option}: found {}, expected a name that ends with .csv, .json or .npy",
+            path.display()
+        ))),
+    }
+}
+
+/// Writes a matrix. The labels, for which numpy's format has no place, come into a JSON file beside it.
+pub(super) fn write(option: &str, path: &Path, matrix: &DistanceMatrix) -> Result<(), Failure> {
+    match format(option, path)? {
+        Format::Csv => output::write(path, matrix.to_csv().as_bytes()),
+        Format::Json => output::write(path, matrix.to_json().as_bytes()),
+        Format::Npy => {
+            output::write(path, &matrix.to_npy())?;
+            output::write(&labels_beside(path), &serde_json::to_vec_pretty(matrix.labels())?)
+        }
+    }
+}
+
+/// Reads a matrix. Without a file of labels beside it, the items of an array are called by their numbers.
+pub(super) fn read(option: &str, path: &Path) -> Result<DistanceMatrix, Failure> {
+    let named = |error: SimilarityError| Failure::input(format!("{}: {error}", path.display()));
+    match format(option, path)? {
+        Format::Csv => DistanceMatrix::from_csv(&input::text(path)?).map_err(named),
+        Format::Json => DistanceMatrix::from_json(&input::text(path)?).map_err(named),
+        Format::Npy => {
+            let bytes = fs::read(path)
+                .map_err(|error| Failure::input(format!("{}: cannot be read: {error}", path.display())))?;
+            let beside = labels_beside(path);
+            let labels = if beside.exists() { Some(labels(&beside)?) } else { None };
+            DistanceMatrix::from_npy(&bytes, labels).map_err(named)
+        }
+    }
+}
+
+fn labels(path: &Path) -> Result<Vec<String>, Failure> {
+    serde_json::from_str(&input::text(path)?)
+        .map_err(|error| Failure::input(format!("{}: {error}, expected a list of labels", path.display())))
+}
+
+/// `matrix.labels.json` for `matrix.npy`.
+fn labels_beside(path: &Path) -> PathBuf {
+    path.with_extension("labels.json")
+}
