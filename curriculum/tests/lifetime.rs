@@ -294,13 +294,21 @@ fn a_log_cut_at_any_byte_is_completed_to_what_it_would_have_been() {
             }
             let (torn, part) = (left < bytes.len(), &bytes[..left.min(bytes.len())]);
             // The two info files are written under another name until they are whole.
-            let name = if torn && !file.contains('/') { format!(".{file}.tmp") } else { file.clone() };
+            let name = if torn && !file.contains('/') {
+                format!(".{file}.tmp")
+            } else {
+                file.clone()
+            };
             let path = log.join(name);
             std::fs::create_dir_all(path.parent().expect("a file in a folder")).expect("the folder is writable");
             std::fs::write(path, part).expect("the folder is writable");
             left -= part.len();
         }
-        let again = Living { resume: true, jobs: 2, ..WHOLE };
+        let again = Living {
+            resume: true,
+            jobs: 2,
+            ..WHOLE
+        };
         let resumed = live_by(&scenario, &mut RandomAgent::new(0), &log, &again);
         assert_eq!(resumed.unwrap_or_else(|error| panic!("cut at {cut}: {error}")), summary);
         assert_eq!(everything(&log), everything(&whole), "cut at {cut}");
@@ -320,10 +328,18 @@ fn a_log_is_taken_up_only_by_the_run_that_it_was_begun_with() {
         assert!(error.contains(expected), "{error}");
         assert_eq!(everything(&log), before);
     };
-    check(&scenario, "other", "/agent: found \"test\", expected \"other\" as in this run; go on with what");
+    check(
+        &scenario,
+        "other",
+        "/agent: found \"test\", expected \"other\" as in this run; go on with what",
+    );
     let mut longer = scenario.clone();
     longer.blocks[3].regimes[0].count = 9;
-    check(&longer, "test", "/scenario/blocks/3/regimes/0/count: found 2, expected 9 as in this run");
+    check(
+        &longer,
+        "test",
+        "/scenario/blocks/3/regimes/0/count: found 2, expected 9 as in this run",
+    );
     // A row that somebody took out.
     let path = log.join("worker-default/0-train/data-log.tsv");
     let text = std::fs::read_to_string(&path).expect("the log has this file");
@@ -332,7 +348,10 @@ fn a_log_is_taken_up_only_by_the_run_that_it_was_begun_with() {
     let error = Journal::resume(&log, &plan(&scenario).unwrap_or_else(|error| panic!("{error}")), "test");
     let error = error.expect_err("a row is gone");
     assert_eq!(error.code(), "curriculum/other-row");
-    assert!(error.to_string().contains("row 1: found experience 2 in block 1-test"), "{error}");
+    assert!(
+        error.to_string().contains("row 1: found experience 2 in block 1-test"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -343,18 +362,35 @@ fn every_row_says_how_far_its_variant_is_from_what_was_learned_last() {
     let rows = rows(&log);
     let distance = |row: usize, element: &str| rows[row].metrics[&format!("distance{element}")];
     // Experiences: 0-1 blue before deployment, 2-3 blue, 4-5 yard, 6-7 red, 8-10 red to dusk, 11-12 blue, 13-14 yard.
-    assert!((0..2).all(|row| distance(row, "").is_nan()), "nothing was learned before");
+    assert!(
+        (0..2).all(|row| distance(row, "").is_nan()),
+        "nothing was learned before"
+    );
     assert!((2..4).all(|row| distance(row, "") == 0.0), "the same variant");
-    assert!((4..6).all(|row| distance(row, "") > 0.0 && distance(row, "_reward") > 0.0), "another world");
+    assert!(
+        (4..6).all(|row| distance(row, "") > 0.0 && distance(row, "_reward") > 0.0),
+        "another world"
+    );
     for row in 6..8 {
         assert!(distance(row, "_observation") > 0.0, "red is not blue");
         assert_eq!([distance(row, "_reward"), distance(row, "_action")], [0.0, 0.0]);
     }
     assert_eq!(distance(8, ""), 0.0, "the drift begins at what was learned last");
     assert!(distance(8, "") < distance(9, "") && distance(9, "") < distance(10, ""));
-    assert!(distance(11, "_observation") > 0.0, "from dusk, the end of the drift, to blue");
+    assert!(
+        distance(11, "_observation") > 0.0,
+        "from dusk, the end of the drift, to blue"
+    );
     let names: Vec<&str> = [0, 4, 6, 8].map(|row| rows[row].task_name.as_str()).to_vec();
-    assert_eq!(names, ["findobjects_blue", "task1_yard", "findobjects_red", "findobjects_redtodusk"]);
+    assert_eq!(
+        names,
+        [
+            "findobjects_blue",
+            "task1_yard",
+            "findobjects_red",
+            "findobjects_redtodusk"
+        ]
+    );
     assert_eq!(rows[9].task_params["progress"], 0.5);
     assert_eq!(rows[0].task_params["phase"], "pre_deployment");
 }
@@ -390,8 +426,13 @@ fn what_a_limit_cuts_off_is_truncated_and_the_end_of_a_block_is_no_end() {
     assert_eq!(steps, [7.0, 9.0, 7.0, 9.0]);
     assert!(rows.iter().all(|row| row.metrics["truncated"] == 1.0));
     let log = folder.path().join("ended");
-    live(&self::scenario(&["blue"]), &mut OnRailsAgent::new(), &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
-    assert!(self::rows(&log).iter().all(|row| row.metrics["truncated"] == 0.0 && row.metrics["success"] == 1.0));
+    live(&self::scenario(&["blue"]), &mut OnRailsAgent::new(), &log, u64::MAX)
+        .unwrap_or_else(|error| panic!("{error}"));
+    assert!(
+        self::rows(&log)
+            .iter()
+            .all(|row| row.metrics["truncated"] == 0.0 && row.metrics["success"] == 1.0)
+    );
 }
 
 /// Writes down what it is told; learns, and can be copied.
@@ -432,7 +473,11 @@ fn a_learner_learns_in_order_and_is_evaluated_as_it_is_by_several_copies() {
     };
     let (log, learned) = lived(1);
     assert_eq!((log, learned), lived(4));
-    assert_eq!(learned, 7 * 60, "seven experiences of learning, each cut off after 60 steps");
+    assert_eq!(
+        learned,
+        7 * 60,
+        "seven experiences of learning, each cut off after 60 steps"
+    );
 }
 
 #[test]
@@ -450,8 +495,14 @@ fn a_label_is_told_only_where_the_scenario_says_so() {
     assert!(told(TaskLabel::None).iter().all(|(_, label)| label.is_none()));
     for wanted in [TaskLabel::Info, TaskLabel::Observation] {
         let told: Vec<Label> = told(wanted).into_iter().filter_map(|(_, label)| label).collect();
-        assert_eq!((told.len(), told[8].name.as_str(), told[8].number), (15, "find_objects#red..dusk", 3));
-        assert!(told.iter().all(|label| label.of == 4 && label.observed == (wanted == TaskLabel::Observation)));
+        assert_eq!(
+            (told.len(), told[8].name.as_str(), told[8].number),
+            (15, "find_objects#red..dusk", 3)
+        );
+        assert!(
+            told.iter()
+                .all(|label| label.of == 4 && label.observed == (wanted == TaskLabel::Observation))
+        );
     }
 }
 
@@ -464,7 +515,10 @@ fn a_world_file_that_is_nowhere_is_known_before_anything_is_lived() {
     let folder = scratch();
     let log = folder.path().join("log");
     live(&varied(), &mut RandomAgent::new(0), &log, 1).unwrap_or_else(|error| panic!("{error}"));
-    let info = read_log(&log).unwrap_or_else(|error| panic!("{error}")).scenario_info.extra;
+    let info = read_log(&log)
+        .unwrap_or_else(|error| panic!("{error}"))
+        .scenario_info
+        .extra;
     assert_eq!(info["notes"]["yard.json"], "made up");
     assert_eq!(info["made_from"]["Task 1#yard"], yard().hash());
 }

@@ -59,7 +59,11 @@ pub(crate) fn draw_maps(scenario: &mut Scenario, plan: &Plan, file: &Path) -> Re
     for lost in &maps.lost {
         output::note(format!("warning: {lost}"));
     }
-    output::note(format!("{} maps in {}", maps.written.len(), maps.beside.join(&maps.folder).display()));
+    output::note(format!(
+        "{} maps in {}",
+        maps.written.len(),
+        maps.beside.join(&maps.folder).display()
+    ));
     Ok(())
 }
 

@@ -142,7 +142,9 @@ impl Life<'_> {
         let done = journal.num_experiences();
         let finished = journal.finish();
         match lived {
-            Ok(summary) if summary.finished => finished.map(|()| summary).map_err(|error| self.stopped(&error.to_string(), done)),
+            Ok(summary) if summary.finished => finished
+                .map(|()| summary)
+                .map_err(|error| self.stopped(&error.to_string(), done)),
             Ok(_) => Err(self.stopped("interrupted", done)),
             Err(error) => Err(self.stopped(&error.to_string(), done)),
         }

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use driftworld_metrics::{LogWriter, LoggerInfo, MetricsError, Record, ScenarioInfo, ScenarioType, begun_log, read_log};
+use driftworld_metrics::{
+    LogWriter, LoggerInfo, MetricsError, Record, ScenarioInfo, ScenarioType, begun_log, read_log,
+};
 use driftworld_spec::ScenarioForm;
 use serde_json::{Map, Value, json};
 
@@ -49,7 +51,11 @@ impl Journal {
             expected: shown(expected),
         };
         if columns.metrics_columns() != COLUMNS {
-            return Err(other("metrics_columns", &json!(columns.metrics_columns()), &json!(COLUMNS)));
+            return Err(other(
+                "metrics_columns",
+                &json!(columns.metrics_columns()),
+                &json!(COLUMNS),
+            ));
         }
         let expected = json!(scenario_info(plan, agent).extra);
         let found = Value::Object(found.extra);
@@ -92,7 +98,10 @@ impl Journal {
 /// Counts a row of an earlier run, if it is the one that the plan has there; else says what it is, and what the plan has.
 fn take(plan: &Plan, summary: &mut Summary, number: u64, record: &Record) -> Result<(), (String, String)> {
     if number >= plan.num_experiences() {
-        return Err(("one row more".to_owned(), format!("{} experiences", plan.num_experiences())));
+        return Err((
+            "one row more".to_owned(),
+            format!("{} experiences", plan.num_experiences()),
+        ));
     }
     let planned = &plan.regimes[plan.regime_of(number)];
     let told = |block: u64, experience: u64, kind, name: &str, params: &Value| {
@@ -102,13 +111,25 @@ fn take(plan: &Plan, summary: &mut Summary, number: u64, record: &Record) -> Res
     let kind = block_type(planned.kind);
     let expected = told(planned.block as u64, number, kind, &planned.log_name, &params);
     let params = Value::Object(Map::clone(&record.task_params));
-    let found = told(record.block_num, record.exp_num, record.block_type, &record.task_name, &params);
+    let found = told(
+        record.block_num,
+        record.exp_num,
+        record.block_type,
+        &record.task_name,
+        &params,
+    );
     if found != expected {
         return Err((found, expected));
     }
     let value = |name: &str| record.metrics.get(name).copied().unwrap_or(f64::NAN);
     let steps = value("episode_step_count") as u64;
-    summary.count(planned, number == planned.first, value("reward"), value("success"), steps);
+    summary.count(
+        planned,
+        number == planned.first,
+        value("reward"),
+        value("success"),
+        steps,
+    );
     Ok(())
 }
 
@@ -184,7 +205,11 @@ mod tests {
         };
         check(json!({ "a": [1, 2.5] }), json!({ "a": [1, 2.5] }), None);
         check(json!({ "a": [1, 2] }), json!({ "a": [1, 3] }), Some(("/a/1", "2", "3")));
-        check(json!({ "a": [1] }), json!({ "a": [1, 3] }), Some(("/a/1", "nothing", "3")));
+        check(
+            json!({ "a": [1] }),
+            json!({ "a": [1, 3] }),
+            Some(("/a/1", "nothing", "3")),
+        );
         check(json!({ "b": 1 }), json!({}), Some(("/b", "1", "nothing")));
         let (old, new) = (json!({ "count": 1, "name": "x" }), json!({ "count": 2, "name": "y" }));
         check(old, new, Some(("/name", "\"x\"", "\"y\"")));

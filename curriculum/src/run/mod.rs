@@ -79,7 +79,8 @@ pub fn run(
             .flatten();
         let flow = match copies {
             Some(copies) => {
-                let work = |(agent, desk): &mut (Box<dyn Agent + Send>, Desk), number| desk.live(agent.as_mut(), number);
+                let work =
+                    |(agent, desk): &mut (Box<dyn Agent + Send>, Desk), number| desk.live(agent.as_mut(), number);
                 in_order::in_order(next..end, copies, work, |number, lived| life.take(number, &lived?))?
             }
             None => life.one_by_one(next..end, agent, &mut desk)?,
@@ -137,9 +138,7 @@ impl<'a> Desk<'a> {
                 environment.reset(assignment.world).map_err(failed)?;
                 environment
             }
-            none => none.insert(
-                Environment::with_catalogue(assignment.world, self.catalogue.clone()).map_err(failed)?,
-            ),
+            none => none.insert(Environment::with_catalogue(assignment.world, self.catalogue.clone()).map_err(failed)?),
         };
         let briefing = Briefing {
             seed: number,

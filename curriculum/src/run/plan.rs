@@ -6,9 +6,7 @@ use std::sync::Arc;
 use driftworld_env::Label;
 use driftworld_generator::{Drift, GeneratorError, Sampler};
 use driftworld_metrics::TaskParams;
-use driftworld_spec::{
-    Block, BlockKind, Phase, Regime, RegimeDrift, Scenario, TaskLabel, TaskSpec, Variant, World,
-};
+use driftworld_spec::{Block, BlockKind, Phase, Regime, RegimeDrift, Scenario, TaskLabel, TaskSpec, Variant, World};
 use serde_json::{Map, Value, json};
 
 use super::gap::Subject;
@@ -71,7 +69,10 @@ enum Source {
         way: Drift,
         drift: RegimeDrift,
     },
-    World { world: Arc<World>, path: String },
+    World {
+        world: Arc<World>,
+        path: String,
+    },
 }
 
 /// What one experience is made of.
@@ -423,7 +424,10 @@ impl Finder<'_, '_> {
 
 /// What a regime's variant is called in the scenario.
 fn called(regime: &Regime) -> String {
-    let to = regime.drift.as_ref().map_or_else(String::new, |drift| format!("..{}", drift.to));
+    let to = regime
+        .drift
+        .as_ref()
+        .map_or_else(String::new, |drift| format!("..{}", drift.to));
     format!("{}#{}{to}", regime.task, regime.variant_name())
 }
 
@@ -434,7 +438,11 @@ fn called(regime: &Regime) -> String {
 pub fn log_name(task: &str, variant: &str) -> String {
     let plain = |text: &str| {
         let plain: String = text.chars().filter(char::is_ascii_alphanumeric).collect();
-        if plain.is_empty() { "x".to_owned() } else { plain.to_lowercase() }
+        if plain.is_empty() {
+            "x".to_owned()
+        } else {
+            plain.to_lowercase()
+        }
     };
     format!("{}_{}", plain(task), plain(variant))
 }

@@ -91,7 +91,10 @@ impl Reader {
     fn name(&mut self, found: Option<&Json>) -> String {
         let fits = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '_' | '.' | '-');
         let Some(text) = found.and_then(Json::as_str).filter(|text| !text.is_empty()) else {
-            self.warn("", "without the key \"logging_base_dir\" the scenario is called \"scenario\"");
+            self.warn(
+                "",
+                "without the key \"logging_base_dir\" the scenario is called \"scenario\"",
+            );
             return "scenario".to_owned();
         };
         let name: String = text
@@ -206,7 +209,12 @@ impl Reader {
     fn wrong(&mut self, at: &str, map: &Map<String, Json>, key: &str, expected: &str) {
         let problem = match map.get(key) {
             Some(value) => Problem::new("spec/value", format!("{at}/{key}"), describe(value), expected),
-            None => Problem::new("spec/missing-key", at, "nothing", format!("the key {key:?} with {expected}")),
+            None => Problem::new(
+                "spec/missing-key",
+                at,
+                "nothing",
+                format!("the key {key:?} with {expected}"),
+            ),
         };
         self.problems.push(problem);
     }
@@ -282,7 +290,10 @@ impl Writer {
         };
         if stem(world) != regime.variant && !self.renamed.contains(&regime.variant) {
             self.renamed.push(regime.variant.clone());
-            self.lost(&format!("{at}/variant"), &format!("the variant's name {:?}", regime.variant));
+            self.lost(
+                &format!("{at}/variant"),
+                &format!("the variant's name {:?}", regime.variant),
+            );
         }
         let mut params = Map::new();
         params.insert("map".into(), json!(world));
@@ -309,9 +320,7 @@ mod tests {
 
     /// A file of the original with one regime of these entries.
     fn file(regime: &str) -> String {
-        format!(
-            r#"{{ "logging_base_dir": "logs", "scenario": [{{ "type": "train", "regimes": [{{ {regime} }}] }}] }}"#
-        )
+        format!(r#"{{ "logging_base_dir": "logs", "scenario": [{{ "type": "train", "regimes": [{{ {regime} }}] }}] }}"#)
     }
 
     fn refused(text: &str) -> String {
@@ -343,12 +352,17 @@ mod tests {
         );
         assert!(refused("[1]").ends_with("expected the key \"scenario\" with a list of 1 to 100000 blocks"));
         let wake = file("").replace("train", "wake");
-        assert!(refused(&wake).contains("found \"wake\", expected \"train\" or \"test\""), "{}", refused(&wake));
+        assert!(
+            refused(&wake).contains("found \"wake\", expected \"train\" or \"test\""),
+            "{}",
+            refused(&wake)
+        );
     }
 
     #[test]
     fn what_has_no_meaning_here_is_warned_about() {
-        let text = file(r#""task": "a", "count": 2.0, "params": { "map": "m.json", "fog": 1 }"#).replace("\"logs\"", "\"my logs\"");
+        let text = file(r#""task": "a", "count": 2.0, "params": { "map": "m.json", "fog": 1 }"#)
+            .replace("\"logs\"", "\"my logs\"");
         let (scenario, warnings) = Scenario::from_l2explorer("s.json", &text).unwrap();
         assert_eq!((scenario.name.as_str(), scenario.num_experiences()), ("my_logs", 2));
         let said: Vec<&str> = warnings.iter().map(|warning| warning.text.as_str()).collect();
@@ -363,23 +377,40 @@ mod tests {
     fn maps_of_one_name_become_variants_of_two() {
         let one = |map: &str| format!(r#"{{ "task": "a", "count": 1, "params": {{ "map": "{map}" }} }}"#);
         let regimes = ["x/m_1.json", "y/m_1.json", "x/m_1.json", "m1"].map(one).join(", ");
-        let text = format!(r#"{{ "logging_base_dir": "l", "scenario": [{{ "type": "TEST", "regimes": [{regimes}] }}] }}"#);
+        let text =
+            format!(r#"{{ "logging_base_dir": "l", "scenario": [{{ "type": "TEST", "regimes": [{regimes}] }}] }}"#);
         let (scenario, _) = Scenario::from_l2explorer("s.json", &text).unwrap();
-        let names: Vec<&str> = scenario.blocks[0].regimes.iter().map(|regime| regime.variant.as_str()).collect();
+        let names: Vec<&str> = scenario.blocks[0]
+            .regimes
+            .iter()
+            .map(|regime| regime.variant.as_str())
+            .collect();
         assert_eq!(names, ["m_1", "m_1-v2", "m_1", "m1-v3"]);
-        assert_eq!(Scenario::from_json("s.json", &scenario.to_json_pretty()).unwrap(), scenario);
+        assert_eq!(
+            Scenario::from_json("s.json", &scenario.to_json_pretty()).unwrap(),
+            scenario
+        );
     }
 
     #[test]
     fn what_the_original_cannot_say_is_told() {
-        let mut scenario = Scenario::new("s", vec![Block::new(BlockKind::Learning, vec![Regime::new("find", "red", 3)])]);
+        let mut scenario = Scenario::new(
+            "s",
+            vec![Block::new(BlockKind::Learning, vec![Regime::new("find", "red", 3)])],
+        );
         let error = scenario.to_l2explorer().unwrap_err().to_string();
-        assert!(error.contains("(/blocks/0/regimes/0): found worlds drawn from find#red, expected the key \"world\""), "{error}");
+        assert!(
+            error.contains("(/blocks/0/regimes/0): found worlds drawn from find#red, expected the key \"world\""),
+            "{error}"
+        );
         scenario.blocks[0].regimes[0].world = Some("maps/yard.json".into());
         scenario.description = "Long.".into();
         scenario.blocks[0].phase = Phase::PreDeployment;
         let (_, warnings) = scenario.to_l2explorer().unwrap();
         let pointers: Vec<&str> = warnings.iter().map(|warning| warning.pointer.as_str()).collect();
-        assert_eq!(pointers, ["/description", "/blocks/0/phase", "/blocks/0/regimes/0/variant"]);
+        assert_eq!(
+            pointers,
+            ["/description", "/blocks/0/phase", "/blocks/0/regimes/0/variant"]
+        );
     }
 }
