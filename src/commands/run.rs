@@ -3,27 +3,28 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use driftworld::curriculum::{Progress, Summary, Surroundings, logger_info, run, scenario_info};
-use driftworld::env::{Agent, Catalogue, OnRailsAgent, RandomAgent};
+use driftworld::env::Catalogue;
 use driftworld::metrics::{LogWriter, MetricsError, Timestamp};
 use driftworld::spec::{BlockKind, Scenario, Variant};
 use driftworld::tasks;
 
 use super::assets::LibraryChoice;
 use super::table::table;
+use super::who::Who;
 use super::{Failure, input, output};
 
 /// Live a curriculum with an agent and log every experience.
 #[derive(Args)]
 #[command(after_help = "Example:
   driftworld run scenario.json --agent onrails --logs logs/first
+  driftworld run scenario.json --agent scripted:keep_away.txt --logs logs/second
   driftworld metrics logs/first")]
 pub(crate) struct Run {
     /// The scenario file.
     scenario: PathBuf,
-    /// Who lives it.
-    #[arg(long, value_enum, default_value_t = Who::Onrails)]
+    #[arg(long, default_value = "onrails", value_name = "AGENT", help = Who::HELP)]
     agent: Who,
     /// A folder for the log; it must not hold anything yet.
     #[arg(long, default_value = "logs/run", value_name = "DIR")]
@@ -35,20 +36,11 @@ pub(crate) struct Run {
     json: bool,
 }
 
-/// The built-in agents.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Who {
-    /// Acts at random.
-    Random,
-    /// Knows the map and tours what pays.
-    Onrails,
-}
-
 impl Run {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let text = input::text(&self.scenario)?;
         let scenario = Scenario::from_json(&self.scenario.display().to_string(), &text)?;
-        let summary = live(&scenario, self.agent, &self.logs, self.libraries.catalogue()?)?;
+        let summary = live(&scenario, &self.agent, &self.logs, self.libraries.catalogue()?)?;
         if self.json {
             return output::json(&summary);
         }
@@ -63,20 +55,18 @@ impl Run {
 }
 
 /// Lives a scenario into a new log, with a bar on a terminal.
-pub(crate) fn live(scenario: &Scenario, who: Who, logs: &Path, catalogue: Catalogue) -> Result<Summary, Failure> {
-    let name = if who == Who::Random { "random" } else { "onrails" };
-    let mut agent: Box<dyn Agent> = match who {
-        Who::Random => Box::new(RandomAgent::new(0)),
-        Who::Onrails => Box::new(OnRailsAgent::new()),
-    };
+pub(crate) fn live(scenario: &Scenario, who: &Who, logs: &Path, catalogue: Catalogue) -> Result<Summary, Failure> {
+    let mut agent = who.agent()?;
     let mut log =
-        LogWriter::create(logs, &logger_info()?, &scenario_info(scenario, name)).map_err(|error| match error {
-            MetricsError::LogExists { path } => Failure::input(format!(
-                "{}: holds something already; choose a new folder with --logs",
-                path.display()
-            )),
-            other => other.into(),
-        })?;
+        LogWriter::create(logs, &logger_info()?, &scenario_info(scenario, &who.name())).map_err(
+            |error| match error {
+                MetricsError::LogExists { path } => Failure::input(format!(
+                    "{}: holds something already; choose a new folder with --logs",
+                    path.display()
+                )),
+                other => other.into(),
+            },
+        )?;
     let bar = output::progress(scenario.num_experiences(), "living");
     let mut around = Surroundings {
         find: &mut find,
