@@ -14,7 +14,7 @@ const PATIENCE: u32 = 150;
 /// How far from the edge of an object that will come back the agent waits for it, in metres.
 const ASIDE: f32 = 1.5;
 
-/// Tours all objects that pay, nearest first by the way around obstacles, and then goes where the world's success lies.
+/// Tours all objects that pay, nearest first by the way around obstacles and surest first where chance has a say, and then goes where the world's success lies.
 ///
 /// It reads the world's state, not its pictures.
 #[derive(Clone, Debug, Default)]
@@ -70,7 +70,10 @@ impl OnRailsAgent {
         }
         wanted.retain(|index| !self.given_up.contains(index));
         let targets = wanted.into_iter().map(|index| Target::at(index, environment));
-        self.target = targets.min_by(|a, b| a.route.length(here).total_cmp(&b.route.length(here)));
+        // What pays with a chance of a half is as good as what is twice as far.
+        let chance = |target: &Target| environment.world().objects[target.object].reward_probability.max(0.01) as f32;
+        let cost = |target: &Target| target.route.length(here) / chance(target);
+        self.target = targets.min_by(|a, b| cost(a).total_cmp(&cost(b)));
         self.steps_on_target = 0;
     }
 
@@ -164,17 +167,13 @@ fn wanted(environment: &Environment) -> Vec<usize> {
 fn stands_in_the_way(environment: &Environment) -> bool {
     let here = environment.agent().position;
     let items = &environment.scene().items;
-    let objects = environment
-        .world()
-        .objects
-        .iter()
-        .zip(environment.objects())
-        .enumerate();
-    let mut gone =
-        objects.filter(|(_, (object, state))| !state.present && object.respawn.is_some() && object.is_target());
-    gone.any(|(index, _)| {
-        let item = &items[index];
-        distance(here, item.position) < ASIDE + item.asset.collider.radius() * item.scale
+    let objects = environment.world().objects.iter().zip(environment.objects());
+    let mut gone = objects
+        .zip(items)
+        .filter(|((object, state), _)| !state.present && object.respawn.is_some() && object.is_target());
+    gone.any(|((object, _), item)| {
+        let first_place = object.coordinates.map(|metres| metres as f32);
+        distance(here, first_place) < ASIDE + item.asset.collider.radius() * item.scale
     })
 }
 
