@@ -25,6 +25,9 @@ use super::{Failure, output};
 /// The task that the demo is about.
 const TASK: &str = "find_objects";
 
+/// Its variants that the demo shows.
+const VARIANTS: [&str; 6] = ["blue", "red", "green", "dusk", "huddle", "penalty"];
+
 /// Go the whole way once: worlds, pictures, distances, a curriculum, a lifetime, its scores.
 #[derive(Args)]
 #[command(after_help = "Example:\n  driftworld demo -o demo-out")]
@@ -46,10 +49,9 @@ struct Shown {
 impl Demo {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let folder = &self.output;
-        let variants: Vec<(String, Variant)> = tasks::variants(TASK)?
-            .into_iter()
-            .map(|variant| (TASK.to_owned(), variant))
-            .collect();
+        let task = tasks::task(TASK)?;
+        let variant = |name| Ok::<_, Failure>((TASK.to_owned(), task.variant(name)?));
+        let variants: Vec<(String, Variant)> = VARIANTS.into_iter().map(variant).collect::<Result<_, _>>()?;
 
         heading(
             "1",

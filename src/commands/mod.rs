@@ -22,6 +22,7 @@ mod run;
 mod sample;
 mod scenario_file;
 mod schema;
+mod sheet;
 mod table;
 mod tasks;
 mod validate;
@@ -50,6 +51,8 @@ pub(crate) enum Command {
     Convert(convert::Convert),
     /// Draw what an agent sees of a world, and the world from above.
     Render(render::Render),
+    /// Draw one world of each of many variants: what the agent sees, and the world from above.
+    Sheet(sheet::Sheet),
     /// Turn glTF models into libraries that worlds can use, and look at what there is.
     Assets(assets::Assets),
     /// Step through a world by hand: act, look, change it, send it messages.
@@ -85,6 +88,7 @@ impl Command {
             Self::Vary(command) => command.run(),
             Self::Convert(command) => command.run(),
             Self::Render(command) => command.run(),
+            Self::Sheet(command) => command.run(),
             Self::Assets(command) => command.run(),
             Self::Console(command) => command.run(),
             Self::Photograph(command) => command.run(),

@@ -28,6 +28,7 @@ const MAX_JOBS: usize = 256;
 #[command(after_help = "Example:
   driftworld run scenario.json --agent onrails --logs logs/first
   driftworld run scenario.json --agent onrails --logs logs/first --resume
+  driftworld run scenario.json --agent scripted:keep_away.txt --logs logs/second
   driftworld metrics logs/first")]
 pub(crate) struct Run {
     /// The scenario file.

@@ -1,13 +1,17 @@
-//! Agents that come with the environment: one that acts at random and one that knows the map. Neither learns.
+//! Agents that come with the environment: one acts at random, one knows the map, one follows a script. None learns.
 
 mod on_rails;
 mod random;
 mod route;
+mod script;
+mod scripted;
+mod steering;
 
 use crate::sim::{Action, Environment, Step};
 
 pub use on_rails::OnRailsAgent;
 pub use random::RandomAgent;
+pub use scripted::ScriptedAgent;
 
 /// Something that acts in an environment.
 pub trait Agent {
