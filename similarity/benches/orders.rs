@@ -9,7 +9,9 @@ use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, SimilarityErro
 fn points(n: usize) -> DistanceMatrix {
     let mut state = 1_u64;
     let mut unit = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     let at: Vec<[f64; 2]> = (0..n).map(|_| [unit(), unit()]).collect();

@@ -57,7 +57,9 @@ pub enum SimilarityError {
         label: String,
     },
     /// A method chooses its ends by itself.
-    #[error("method {method}: found {label:?} as the {end} item, which this method cannot keep there; leave that end free or use the method two-opt")]
+    #[error(
+        "method {method}: found {label:?} as the {end} item, which this method cannot keep there; leave that end free or use the method two-opt"
+    )]
     CannotFixEnds {
         /// The method.
         method: &'static str,
@@ -67,7 +69,9 @@ pub enum SimilarityError {
         label: String,
     },
     /// A method whose promise needs the triangle inequality got distances that break it.
-    #[error("method {method}: found {a:?} and {b:?} {straight} apart but by way of {by:?} only {detour}, expected a metric; use the method two-opt")]
+    #[error(
+        "method {method}: found {a:?} and {b:?} {straight} apart but by way of {by:?} only {detour}, expected a metric; use the method two-opt"
+    )]
     NotAMetric {
         /// The method.
         method: &'static str,
@@ -83,7 +87,9 @@ pub enum SimilarityError {
         detour: f64,
     },
     /// A method whose promise needs a metric got more items than can be checked for it.
-    #[error("method {method}: found {found} items whose measure is not known to be a metric, expected at most {limit} to check; declare the matrix's nature or use the method two-opt")]
+    #[error(
+        "method {method}: found {found} items whose measure is not known to be a metric, expected at most {limit} to check; declare the matrix's nature or use the method two-opt"
+    )]
     NotCheckedAsMetric {
         /// The method.
         method: &'static str,

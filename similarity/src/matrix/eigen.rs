@@ -22,7 +22,8 @@ pub(crate) fn largest(
     multiply: &impl Fn(&[f64], &mut [f64]),
     against: &[Vec<f64>],
 ) -> Option<(f64, Vec<f64>)> {
-    let mut chance = SplitMix64(0);
+    // Another start each time: the old one has no part left in an eigenspace that it has led into before.
+    let mut chance = SplitMix64(against.len() as u64);
     let mut start: Vec<f64> = (0..n).map(|_| chance.unit() - 0.5).collect();
     let mut best = None;
     for _ in 0..MAX_RESTARTS {
@@ -69,7 +70,10 @@ fn climb(n: usize, multiply: &impl Fn(&[f64], &mut [f64]), against: &[Vec<f64>],
         }
         let rest = dot(&next, &next).sqrt();
         let steps = basis.len();
-        let scale = diagonal.iter().chain(&beside).fold(0.0_f64, |a, b: &f64| a.max(b.abs()));
+        let scale = diagonal
+            .iter()
+            .chain(&beside)
+            .fold(0.0_f64, |a, b: &f64| a.max(b.abs()));
         let ended = steps == most || rest <= 1e-14 * scale;
         if ended || steps % 8 == 0 {
             // Of each eigenvector of the small matrix only the last entry is needed to judge the error.
@@ -84,7 +88,10 @@ fn climb(n: usize, multiply: &impl Fn(&[f64], &mut [f64]), against: &[Vec<f64>],
                 let top = top_of(&values);
                 let mut vector = vec![0.0; n];
                 for (direction, row) in basis.iter().zip(&rows) {
-                    vector.iter_mut().zip(direction).for_each(|(to, from)| *to += row[top] * from);
+                    vector
+                        .iter_mut()
+                        .zip(direction)
+                        .for_each(|(to, from)| *to += row[top] * from);
                 }
                 let length = dot(&vector, &vector).sqrt();
                 return Some(Climb {
@@ -183,7 +190,10 @@ fn scaled(vector: &[f64], by: f64) -> Vec<f64> {
 fn remove(vector: &mut [f64], directions: &[Vec<f64>]) {
     for direction in directions {
         let part = dot(vector, direction);
-        vector.iter_mut().zip(direction).for_each(|(to, from)| *to -= part * from);
+        vector
+            .iter_mut()
+            .zip(direction)
+            .for_each(|(to, from)| *to -= part * from);
     }
 }
 
@@ -224,8 +234,14 @@ mod tests {
     #[test]
     fn eigenvalues_come_from_the_top_each_as_often_as_it_is_there() {
         check(&[&[2.0, 0.0], &[0.0, 3.0]], &[3.0, 2.0]);
-        check(&[&[0.0, 1.0, 1.0], &[1.0, 0.0, 1.0], &[1.0, 1.0, 0.0]], &[2.0, -1.0, -1.0]);
-        check(&[&[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0], &[0.0, 0.0, 1.0]], &[1.0, 1.0, 1.0]);
+        check(
+            &[&[0.0, 1.0, 1.0], &[1.0, 0.0, 1.0], &[1.0, 1.0, 0.0]],
+            &[2.0, -1.0, -1.0],
+        );
+        check(
+            &[&[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0], &[0.0, 0.0, 1.0]],
+            &[1.0, 1.0, 1.0],
+        );
         check(&[&[0.0, 0.0], &[0.0, 0.0]], &[0.0, 0.0]);
         check(&[&[-4.0]], &[-4.0]);
     }

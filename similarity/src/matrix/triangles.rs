@@ -56,7 +56,10 @@ impl DistanceMatrix {
     /// # Ok::<(), SimilarityError>(())
     /// ```
     pub fn triangle_violations(&self) -> Triangles {
-        let rows: Vec<Triangles> = (0..self.len()).into_par_iter().map(|a| self.triangles_from(a)).collect();
+        let rows: Vec<Triangles> = (0..self.len())
+            .into_par_iter()
+            .map(|a| self.triangles_from(a))
+            .collect();
         rows.into_iter().fold(Triangles::default(), |all, row| Triangles {
             compared: all.compared + row.compared,
             broken: all.broken + row.broken,
@@ -77,7 +80,13 @@ impl DistanceMatrix {
                 // Neither end lies between: by way of them it is never shorter.
                 if detour < bound {
                     found.broken += 1;
-                    let violation = Violation { a, b, by, straight, detour };
+                    let violation = Violation {
+                        a,
+                        b,
+                        by,
+                        straight,
+                        detour,
+                    };
                     found.worst = worse(found.worst, Some(violation));
                 }
             }

@@ -44,7 +44,11 @@ fn search(items: &Items) -> Vec<usize> {
         // Any step beyond the bound costs more than all that it could save, and the more the farther it goes.
         let cost = |a: usize, b: usize| {
             let gap = items.gap(a, b);
-            if gap <= bound { gap } else { gap + 4.0 * largest + 10.0 * (gap - bound) }
+            if gap <= bound {
+                gap
+            } else {
+                gap + 4.0 * largest + 10.0 * (gap - bound)
+            }
         };
         let path = local_search::improve(best.clone(), &cost, items.ends, SHAKES_PER_ITEM * items.len());
         let found = largest_step(&path, items);
@@ -62,7 +66,9 @@ fn search(items: &Items) -> Vec<usize> {
 }
 
 fn largest_step(path: &[usize], items: &Items) -> f64 {
-    path.windows(2).map(|pair| items.gap(pair[0], pair[1])).fold(0.0, f64::max)
+    path.windows(2)
+        .map(|pair| items.gap(pair[0], pair[1]))
+        .fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -41,12 +41,18 @@ pub(super) fn best_path(n: usize, cost: &impl Fn(usize, usize) -> f64, ends: End
     debug_assert!(n <= MAX_EXACT, "larger sets are refused before");
     let costs: Vec<f64> = (0..n * n).map(|k| cost(k / n, k % n)).collect();
     let rest = rests(n, &costs, ends.last, total);
-    let largest = costs.iter().filter(|cost| cost.is_finite()).fold(0.0_f64, |a, b| a.max(b.abs()));
+    let largest = costs
+        .iter()
+        .filter(|cost| cost.is_finite())
+        .fold(0.0_f64, |a, b| a.max(b.abs()));
     let slack = 1e-12 * largest * n as f64;
     // Rounding must not decide between equal paths: whoever comes within it, and has the lowest number, is taken.
     let lowest = |values: &[(usize, f64)]| {
         let least = values.iter().map(|(_, value)| *value).fold(f64::INFINITY, f64::min);
-        values.iter().find(|(_, value)| *value <= least + slack).map(|(item, _)| *item)
+        values
+            .iter()
+            .find(|(_, value)| *value <= least + slack)
+            .map(|(item, _)| *item)
     };
     let full = (1_usize << n) - 1;
     let starts: Vec<(usize, f64)> = (0..n)

@@ -27,7 +27,11 @@ impl<'a> Items<'a> {
         }
         for (end, item) in [("first", options.first), ("last", options.last)] {
             if let Some(found) = item.filter(|item| *item >= n) {
-                return Err(SimilarityError::NoSuchEnd { end, found, most: n - 1 });
+                return Err(SimilarityError::NoSuchEnd {
+                    end,
+                    found,
+                    most: n - 1,
+                });
             }
         }
         if let (Some(first), Some(last)) = (options.first, options.last)

@@ -90,7 +90,9 @@ impl Tree {
             groups[group][1] = middle;
             (groups[left][0], groups[right][0]) = (begin, middle);
         }
-        let gaps = (0..n * n).map(|k| items.gap(leaf_items[k / n], leaf_items[k % n])).collect();
+        let gaps = (0..n * n)
+            .map(|k| items.gap(leaf_items[k / n], leaf_items[k % n]))
+            .collect();
         Self {
             items: leaf_items,
             groups,
@@ -176,7 +178,11 @@ impl Tree {
                 continue;
             }
             let [left, right] = self.parts[group];
-            let (a, b) = if self.halves(group).0.contains(&start) { (left, right) } else { (right, left) };
+            let (a, b) = if self.halves(group).0.contains(&start) {
+                (left, right)
+            } else {
+                (right, left)
+            };
             let mut joint = (f64::INFINITY, start, end);
             for k in self.opposite(b, end) {
                 let (length, m) = self.over(best, a, start, k);

@@ -199,8 +199,8 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
         for _ in 0..shakes {
             let start = chance.below(round as u64) as usize;
             let (first, second) = (1 + chance.below(most) as usize, 1 + chance.below(most) as usize);
-            let [a, b, c, d, e, f] = [0, 1, first, first + 1, first + second, first + second + 1]
-                .map(|step| self.tour.at(start + step));
+            let [a, b, c, d, e, f] =
+                [0, 1, first, first + 1, first + second, first + second + 1].map(|step| self.tour.at(start + step));
             let lost = self.cost(a, d) + self.cost(e, b) + self.cost(c, f)
                 - self.cost(a, b)
                 - self.cost(c, d)

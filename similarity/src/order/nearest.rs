@@ -15,7 +15,10 @@ pub(super) fn order(items: &Items) -> Vec<usize> {
 pub(super) fn walk(n: usize, cost: &(impl Fn(usize, usize) -> f64 + Sync), ends: Ends) -> Vec<usize> {
     let starts: Vec<usize> = match ends.first {
         Some(first) => vec![first],
-        None => (0..n).filter(|item| Some(*item) != ends.last).take(MAX_STARTS).collect(),
+        None => (0..n)
+            .filter(|item| Some(*item) != ends.last)
+            .take(MAX_STARTS)
+            .collect(),
     };
     let walks: Vec<(f64, Vec<usize>)> = starts
         .into_par_iter()

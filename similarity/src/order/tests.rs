@@ -152,7 +152,10 @@ fn methods_for_similar_neighbours_find_the_line() {
     ] {
         let found = order(&matrix, method, &OrderOptions::default()).unwrap();
         let backwards: Vec<usize> = found.indices.iter().rev().copied().collect();
-        assert!(found.indices == expected || backwards == expected, "{method:?}: {found:?}");
+        assert!(
+            found.indices == expected || backwards == expected,
+            "{method:?}: {found:?}"
+        );
         assert_eq!(found.length, 14.0);
     }
 }
@@ -178,21 +181,30 @@ fn farthest_first_always_takes_what_is_newest() {
 fn chance_follows_its_seed_and_given_keeps_the_order() {
     let matrix = matrix(&[[0.0, 0.0]; 9]);
     let random = |seed| {
-        let options = OrderOptions { seed, ..OrderOptions::default() };
+        let options = OrderOptions {
+            seed,
+            ..OrderOptions::default()
+        };
         order(&matrix, Method::Random, &options).unwrap().indices
     };
     assert_eq!(random(7), random(7));
     assert_ne!(random(7), random(8));
     let given = |options: OrderOptions| order(&matrix, Method::Given, &options).unwrap().indices;
     assert_eq!(given(OrderOptions::default()), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
-    assert_eq!(given(OrderOptions::default().with_first(4).with_last(0)), [4, 1, 2, 3, 5, 6, 7, 8, 0]);
+    assert_eq!(
+        given(OrderOptions::default().with_first(4).with_last(0)),
+        [4, 1, 2, 3, 5, 6, 7, 8, 0]
+    );
 }
 
 /// Equal items leave every path equal: then the names decide.
 #[test]
 fn ties_fall_to_the_first_names() {
     let matrix = matrix(&[[0.0, 0.0]; 9]);
-    let options = OrderOptions { target_step: Some(1.0), ..OrderOptions::default() };
+    let options = OrderOptions {
+        target_step: Some(1.0),
+        ..OrderOptions::default()
+    };
     for method in Method::ALL.into_iter().filter(|method| *method != Method::Random) {
         let found = order(&matrix, method, &options).unwrap();
         if !matches!(method, Method::Leaf) {

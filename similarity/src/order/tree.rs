@@ -32,7 +32,9 @@ pub(super) fn order(items: &Items) -> Result<Vec<usize>, SimilarityError> {
 /// The largest distance in the minimum spanning tree; 0 for a single item.
 pub(super) fn largest_branch(items: &Items) -> f64 {
     let parents = parents(items);
-    (1..items.len()).map(|item| items.gap(parents[item], item)).fold(0.0, f64::max)
+    (1..items.len())
+        .map(|item| items.gap(parents[item], item))
+        .fold(0.0, f64::max)
 }
 
 fn require_metric(items: &Items) -> Result<(), SimilarityError> {

@@ -45,8 +45,8 @@ impl Curriculum {
             let picked = probe(&task, &pool, &anchor, element, self.variants)?;
             let matrix = distances(&picked, Some(element))?;
             // A method that was asked for, or the order of a hypothesis: by default the gradual one.
-            let order = if self.ordering.has_method() {
-                self.ordering.order(&matrix)?.1.indices
+            let order = if self.ordering.method.is_some() {
+                self.ordering.order(&matrix, self.seed)?.1.indices
             } else {
                 arrange(&matrix, self.order.map_or(Hypothesis::Gradual, Hypothesis::from), 0)?
             };
@@ -57,10 +57,10 @@ impl Curriculum {
         let matrix = matrix(&named)?;
         let order = match self.order {
             Some(order) => {
-                let first = self.ordering.first(&matrix)?.unwrap_or(0);
+                let first = self.ordering.options(&matrix, self.seed)?.first.unwrap_or(0);
                 arrange(&matrix, order.into(), first)?
             }
-            None => self.ordering.order(&matrix)?.1.indices,
+            None => self.ordering.order(&matrix, self.seed)?.1.indices,
         };
         let variants = named
             .iter()
@@ -83,7 +83,7 @@ impl Curriculum {
             )));
         }
         let pool: Vec<Variant> = named.iter().map(|(_, variant)| variant.clone()).collect();
-        let anchor = match self.ordering.start() {
+        let anchor = match &self.ordering.start {
             Some(start) => {
                 let own = pool
                     .iter()
@@ -91,7 +91,10 @@ impl Curriculum {
                 let names = || pool.iter().map(|variant| format!("{task}#{}", variant.name()));
                 own.cloned().ok_or_else(|| {
                     let names: Vec<String> = names().collect();
-                    Failure::input(format!("--start: found {start:?}, expected one of {}", names.join(", ")))
+                    Failure::input(format!(
+                        "--start: found {start:?}, expected one of {}",
+                        names.join(", ")
+                    ))
                 })?
             }
             None if pool.len() == 1 => first.clone(),

@@ -43,10 +43,10 @@ pub(crate) struct Curriculum {
     #[arg(long, requires = "probe", conflicts_with = "step_distance", value_name = "N")]
     variants: Option<usize>,
     /// The order of the variants, from --start on.
-    #[arg(long, value_enum, conflicts_with_all = ["method", "step_distance"])]
+    #[arg(long, value_enum, conflicts_with_all = ["method", "step_distance", "end"])]
     order: Option<Order>,
     /// Make a sequence of variants of which each is this far from the one before: in the probed element, or in all.
-    #[arg(long, value_name = "DISTANCE", conflicts_with = "method")]
+    #[arg(long, value_name = "DISTANCE", conflicts_with_all = ["method", "end"])]
     step_distance: Option<f64>,
     /// How far off each step may be.
     #[arg(long, requires = "step_distance", default_value_t = 0.001)]
@@ -161,12 +161,12 @@ impl Curriculum {
         self.check_arguments(several)?;
         let chosen = self.choose()?;
         // What is printed beside a scenario on standard output would spoil it.
-        let say = |text: String| match self.output.as_os_str() == "-" {
-            true => {
+        let say = |text: String| {
+            if self.output.as_os_str() == "-" {
                 output::note(text);
-                Ok(())
+                return Ok(());
             }
-            false => output::line(text),
+            output::line(text)
         };
         if let Some(proof) = &chosen.proof {
             say(proof.clone())?;
@@ -202,10 +202,14 @@ impl Curriculum {
 
     fn check_arguments(&self, several: bool) -> Result<(), Failure> {
         if self.lifetimes.is_some() && self.form != Some(Form::Permuted) {
-            return Err(Failure::usage("--lifetimes are of the permuted form: add --form permuted"));
+            return Err(Failure::usage(
+                "--lifetimes are of the permuted form: add --form permuted",
+            ));
         }
         if several && self.output.as_os_str() == "-" {
-            return Err(Failure::usage("several scenarios are written: name a folder with --output"));
+            return Err(Failure::usage(
+                "several scenarios are written: name a folder with --output",
+            ));
         }
         if several && (self.plot.is_some() || self.controls.is_some()) {
             return Err(Failure::usage(
@@ -240,7 +244,11 @@ impl Curriculum {
             lifetime: 0,
             drifting: self.drift.map(|schedule| Drifting {
                 schedule,
-                switch: if self.mix { DriftSwitch::Mixture } else { DriftSwitch::AtPoint },
+                switch: if self.mix {
+                    DriftSwitch::Mixture
+                } else {
+                    DriftSwitch::AtPoint
+                },
             }),
             pre_deployment: self.pre_deployment,
             task_label: match self.task_label {

@@ -62,7 +62,10 @@ fn headings() -> Vec<String> {
 fn row(picked: &Picked, apart: &Distance) -> Vec<String> {
     let is = if picked.is_made() { "made" } else { "declared" };
     let elements = Element::ALL.map(|element| apart.element(element).map_or_else(|| "-".to_owned(), exact));
-    [picked.choice.id(), is.to_owned()].into_iter().chain(elements).collect()
+    [picked.choice.id(), is.to_owned()]
+        .into_iter()
+        .chain(elements)
+        .collect()
 }
 
 /// A distance to four places; 0 without places only where it is nothing else.
@@ -100,7 +103,10 @@ pub(crate) fn blocks(scenario: &Scenario, matrix: Option<&DistanceMatrix>) -> St
         if block.kind == BlockKind::Learning
             && let Some(matrix) = matrix
         {
-            let first = block.regimes.first().map(|r| format!("{}#{}", r.task, r.variant_name()));
+            let first = block
+                .regimes
+                .first()
+                .map(|r| format!("{}#{}", r.task, r.variant_name()));
             let here = matrix.labels().iter().position(|label| first.as_ref() == Some(label));
             if let (Some(a), Some(b)) = (before, here) {
                 step = format!("{:.4}", matrix.get(a, b));

@@ -53,10 +53,17 @@ pub(super) fn picture(scenario: &Scenario) -> Result<Picture, Failure> {
         };
         let from_left = Pos::new(HPos::Left, VPos::Top);
         write(&scenario.name, (16, 12), 24, &INK, from_left)?;
-        legend(left, |text, at| write(text, at, 15, &FAINT, from_left), |shape, style| area.draw(&Rectangle::new(shape, style)))?;
+        legend(
+            left,
+            |text, at| write(text, at, 15, &FAINT, from_left),
+            |shape, style| area.draw(&Rectangle::new(shape, style)),
+        )?;
         for (index, row) in rows.iter().enumerate() {
             let middle = y(index as f64);
-            area.draw(&PathElement::new([(left, middle), (WIDTH, middle)], RGBColor(228, 230, 233)))?;
+            area.draw(&PathElement::new(
+                [(left, middle), (WIDTH, middle)],
+                RGBColor(228, 230, 233),
+            ))?;
             write(row, (left - 12, middle), 16, &INK, Pos::new(HPos::Right, VPos::Center))?;
         }
         for stretch in &stretches {
@@ -68,18 +75,38 @@ pub(super) fn picture(scenario: &Scenario) -> Result<Picture, Failure> {
                 None => y(stretch.row as f64),
             };
             let [first, last] = stretch.drift.map_or([0.0, 0.0], |(_, ends)| ends);
-            let thick = if stretch.kind == BlockKind::Evaluation { BAR / 4 } else { BAR / 2 };
+            let thick = if stretch.kind == BlockKind::Evaluation {
+                BAR / 4
+            } else {
+                BAR / 2
+            };
             let (a, b) = (along(first), along(last));
-            let shape = vec![(start, a - thick), (end, b - thick), (end, b + thick), (start, a + thick)];
+            let shape = vec![
+                (start, a - thick),
+                (end, b - thick),
+                (end, b + thick),
+                (start, a + thick),
+            ];
             match (stretch.kind, stretch.phase) {
                 (BlockKind::Evaluation, _) => area.draw(&Polygon::new(shape, RGBColor(150, 154, 160).filled()))?,
                 (BlockKind::Learning, Phase::Deployment) => area.draw(&Polygon::new(shape.clone(), color.filled()))?,
-                (BlockKind::Learning, Phase::PreDeployment) => area.draw(&Polygon::new(shape.clone(), color.mix(0.3).filled()))?,
+                (BlockKind::Learning, Phase::PreDeployment) => {
+                    area.draw(&Polygon::new(shape.clone(), color.mix(0.3).filled()))?
+                }
             }
             if stretch.kind == BlockKind::Learning {
-                let mut rim = vec![(start, a - thick), (end, b - thick), (end, b + thick), (start, a + thick)];
+                let mut rim = vec![
+                    (start, a - thick),
+                    (end, b - thick),
+                    (end, b + thick),
+                    (start, a + thick),
+                ];
                 rim.push(rim[0]);
-                let rim_color = if stretch.phase == Phase::PreDeployment { color } else { WHITE };
+                let rim_color = if stretch.phase == Phase::PreDeployment {
+                    color
+                } else {
+                    WHITE
+                };
                 area.draw(&PathElement::new(rim, rim_color))?;
             }
         }
@@ -87,7 +114,13 @@ pub(super) fn picture(scenario: &Scenario) -> Result<Picture, Failure> {
         for tick in ticks(total) {
             let at = x(tick);
             area.draw(&PathElement::new([(at, bottom), (at, bottom + 5)], INK))?;
-            write(&format!("{tick}"), (at, bottom + 8), 14, &FAINT, Pos::new(HPos::Center, VPos::Top))?;
+            write(
+                &format!("{tick}"),
+                (at, bottom + 8),
+                14,
+                &FAINT,
+                Pos::new(HPos::Center, VPos::Top),
+            )?;
         }
         write("experiences", (left, bottom + 28), 15, &FAINT, from_left)?;
         Ok(())
