@@ -23,6 +23,7 @@ mod table;
 mod tasks;
 mod validate;
 mod vary;
+mod weights;
 
 use std::process::ExitCode;
 
