@@ -13,8 +13,7 @@ use super::{Failure, input, output};
 /// Check task specs, worlds, scenarios and maps files, and name every problem with its place.
 ///
 /// What a file is, is seen from its keys: "blocks" make a scenario, "scenario" one of L2Explorer's, "maps" a maps file, "name" a
-/// task spec, anything else a world. The variants that a
-/// scenario names are checked against its tasks, where those can be found.
+/// task spec, anything else a world. The variants that a scenario names are checked against its tasks, where those can be found.
 #[derive(Args)]
 #[command(after_help = "Example:\n  driftworld validate examples/tasks\n  driftworld validate --l2explorer map.json")]
 pub(crate) struct Validate {

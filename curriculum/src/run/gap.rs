@@ -70,7 +70,7 @@ pub(super) struct Gaps {
 impl Gaps {
     /// The gap between two subjects; equal names mean equal subjects.
     ///
-    /// Variants of one task are compared by what they declare. Others are compared by their first 16 worlds under seed 0, in
+    /// Variants of one task are compared by what they declare, with the task's own weights. Others are compared by their first 16 worlds under seed 0, in
     /// pairs; where there is one world only, it is compared with each.
     pub(super) fn between(&mut self, a: (&str, Subject), b: (&str, Subject)) -> Result<Gap, GeneratorError> {
         if a.0 == b.0 {
@@ -89,10 +89,9 @@ impl Gaps {
     }
 
     fn measure(&mut self, a: (&str, Subject), b: (&str, Subject)) -> Result<Gap, GeneratorError> {
-        let weights = Weights::default();
         // What cannot be compared by what is declared, such as variants of two tasks, is compared by worlds.
         if let (Subject::Variant(a), Subject::Variant(b)) = (a.1, b.1)
-            && let Ok(distance) = variant_distance(a, b, &weights)
+            && let Ok(distance) = variant_distance(a, b, &Weights::of_task(a.task()))
         {
             return Ok(Gap::of(&distance));
         }
@@ -102,7 +101,7 @@ impl Gaps {
         self.draw(a)?;
         self.draw(b)?;
         let (a, b) = (&self.drawn[a.0], &self.drawn[b.0]);
-        let pairs = a.len().max(b.len());
+        let (weights, pairs) = (Weights::default(), a.len().max(b.len()));
         // A list of one world is as long as the other.
         let pair = |place: usize| (&a[place % a.len()], &b[place % b.len()]);
         let gaps: Vec<Gap> = (0..pairs)
