@@ -390,6 +390,9 @@ fn every_row_says_how_far_its_variant_is_from_what_was_learned_last() {
     );
     assert_eq!(rows[9].task_params["progress"], 0.5);
     assert_eq!(rows[0].task_params["phase"], "pre_deployment");
+    let read = read_log(&log).unwrap_or_else(|error| panic!("{error}"));
+    let scores = score(&read, &[], &Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!((scores.num_lx, scores.num_ex), (5, 8), "what is before deployment is not scored");
 }
 
 #[test]
