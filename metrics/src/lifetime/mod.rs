@@ -151,7 +151,12 @@ impl Lifetime {
     }
 }
 
-/// The rows that count, with their performance: complete, and with a number in the performance column.
+/// Parameter of a task by which a row says which part of the life it belongs to, and the part that is not scored.
+const PHASE: (&str, &str) = ("phase", "pre_deployment");
+
+/// The rows that count, with their performance: complete, with a number in the performance column, and not of the time before
+/// deployment, which prepares a lifetime and is no part of it. Rows of that time have the task parameter `phase`,
+/// `pre_deployment`.
 pub(crate) fn usable_rows<'a>(log: &'a Log, column: &str) -> Result<Vec<(&'a Record, f64)>, MetricsError> {
     if !log.logger_info.metrics_columns().iter().any(|name| name == column) {
         let (run_id, available) = (log.run_id.clone(), log.logger_info.metrics_columns().join(", "));
@@ -164,7 +169,8 @@ pub(crate) fn usable_rows<'a>(log: &'a Log, column: &str) -> Result<Vec<(&'a Rec
     let complete = log
         .records
         .iter()
-        .filter(|record| record.exp_status == ExpStatus::Complete);
+        .filter(|record| record.exp_status == ExpStatus::Complete)
+        .filter(|record| record.task_params.get(PHASE.0).is_none_or(|phase| phase != PHASE.1));
     let rows: Vec<_> = complete
         .filter_map(|record| Some((record, *record.metrics.get(column)?)))
         .filter(|(_, performance)| !performance.is_nan())
