@@ -6,7 +6,9 @@
 mod design;
 mod error;
 mod run;
+mod transfer;
 
 pub use design::{Choice, Design, Evaluate, MAX_SEED, design};
 pub use error::CurriculumError;
 pub use run::{COLUMNS, Progress, RegimeSummary, Summary, Surroundings, log_name, logger_info, run, scenario_info};
+pub use transfer::{DirectionReport, PairTransfer, TransferOptions, TransferReport, transfer_report};

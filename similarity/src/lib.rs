@@ -6,6 +6,7 @@
 
 mod color;
 mod combined;
+mod correlation;
 mod distribution;
 mod error;
 mod matrix;
@@ -17,6 +18,10 @@ pub use color::{ciede2000, oklab_distance, srgb_distance};
 pub use combined::variant::variant_distance;
 pub use combined::world::{world_distance, world_sets_distance};
 pub use combined::{Distance, Part, Weights};
+pub use correlation::{
+    Correlation, MAX_MANTEL_ITEMS, MAX_RELABELLINGS, MIN_CORRELATED, MantelTest, PairValue, mantel, pearson, ranks,
+    spearman,
+};
 pub use distribution::planar::bures_wasserstein;
 pub use distribution::wasserstein::{total_variation, wasserstein_1};
 pub use error::SimilarityError;
