@@ -71,6 +71,7 @@ fn every_subcommand_has_help_with_an_example() {
         "curriculum",
         "run",
         "metrics",
+        "transfer-report",
         "schema",
         "bench",
         "doctor",

@@ -81,7 +81,7 @@ def exact_cases():
 def drawn_cases():
     for size in [9, 12]:
         a = matrix(size)
-        noise = random.normal(size=(size, size)) * 0.9
+        noise = random.normal(size=(size, size)) * 3.5
         b = numpy.abs(a + (noise + noise.T) / 2)
         numpy.fill_diagonal(b, 0)
         for name in CORRELATIONS:
