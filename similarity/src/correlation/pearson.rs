@@ -44,15 +44,18 @@ fn cosine(a: &[f64], b: &[f64]) -> f64 {
     (sum(a, b) / (sum(a, a).sqrt() * sum(b, b).sqrt())).clamp(-1.0, 1.0)
 }
 
-/// The numbers less their mean, scaled so that the largest is 1: squares neither overflow nor vanish.
+/// The numbers less their mean, scaled so that the largest is 1: squares neither overflow nor vanish. Nothing where all are one
+/// number.
 fn centred(values: &[f64]) -> Option<Vec<f64>> {
     let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
     if largest == 0.0 {
         return None;
     }
-    let count = values.len() as f64;
-    let mean = values.iter().map(|value| value / largest).sum::<f64>() / count;
-    let mut offsets: Vec<f64> = values.iter().map(|value| value / largest - mean).collect();
+    // By a power of two, so that no digit is lost: those of numbers far from 0 are in their differences.
+    let exponent = libm::ilogb(largest);
+    let scaled: Vec<f64> = values.iter().map(|value| libm::scalbn(*value, -exponent)).collect();
+    let mean = scaled.iter().sum::<f64>() / scaled.len() as f64;
+    let mut offsets: Vec<f64> = scaled.iter().map(|value| value - mean).collect();
     let widest = offsets.iter().fold(0.0, |widest: f64, offset| widest.max(offset.abs()));
     if widest == 0.0 || values.iter().all(|value| *value == values[0]) {
         return None;
