@@ -1,5 +1,7 @@
 //! `driftworld distance`: how far apart two variants or two worlds are, element by element. The measures are `similarity`'s.
 
+mod pictures;
+
 use clap::Args;
 use driftworld::similarity::{Distance as Measured, Weights, variant_distance, world_distance};
 use driftworld::spec::Element;
@@ -15,12 +17,16 @@ use super::{Failure, input, output};
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld distance find_objects#blue find_objects#dusk --explain
+  driftworld distance find_objects#blue find_objects#dusk --pictures
   driftworld distance a.json b.json --json")]
 pub(crate) struct Distance {
     /// A task's variant, or a world file.
     a: String,
     /// Another.
     b: String,
+    /// Compare how worlds look to an agent in them, by pictures from the same places.
+    #[arg(long, conflicts_with = "explain")]
+    pictures: bool,
     /// Show every part: what was compared, how, and its share.
     #[arg(long)]
     explain: bool,
@@ -40,6 +46,11 @@ pub(crate) struct Distance {
 
 impl Distance {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        if self.pictures {
+            let world = |name: &str| input::world(name, self.seed, self.index, false);
+            let (a, b) = (world(&self.a)?, world(&self.b)?);
+            return pictures::run([&self.a, &self.b], [&a, &b], self.json);
+        }
         let (distance, how) = self.measure()?;
         if self.json {
             return output::json(&distance);
