@@ -130,6 +130,87 @@ pub enum SimilarityError {
         /// The weight.
         found: f64,
     },
+    /// Numbers that do not fill the table they are for, or fill more.
+    #[error("{of}: found {found} numbers, expected {expected}")]
+    Shape {
+        /// What the numbers are.
+        of: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// A cost that cannot be added up.
+    #[error(
+        "cost in row {row}, column {column}: found {found}, expected a number from -1e200 to 1e200; use a large cost to keep two apart"
+    )]
+    BadCost {
+        /// The row, from 0.
+        row: usize,
+        /// The column, from 0.
+        column: usize,
+        /// The cost.
+        found: f64,
+    },
+    /// A number that is not what it is taken for.
+    #[error("{of}: found {found}, expected {expected}")]
+    BadNumber {
+        /// What the number is.
+        of: &'static str,
+        /// The number.
+        found: f64,
+        /// What would do.
+        expected: &'static str,
+    },
+    /// A table of costs in which one is not a distance.
+    #[error("cost of {a:?} to {b:?}: found {found}, expected {expected}")]
+    BadTable {
+        /// The first choice.
+        a: String,
+        /// The second choice.
+        b: String,
+        /// The cost.
+        found: f64,
+        /// What would do.
+        expected: String,
+    },
+    /// A name that is there more than once.
+    #[error("choices: found {name:?} more than once, expected each once; remove one")]
+    TwiceNamed {
+        /// The name.
+        name: String,
+    },
+    /// A choice that a table of costs does not have.
+    #[error("choice: found {found:?}, expected one of {expected}; add it to the cost table")]
+    UnknownChoice {
+        /// The choice.
+        found: String,
+        /// Those that it has.
+        expected: String,
+    },
+    /// Pictures that do not lie on each other.
+    #[error(
+        "picture: found {found} pixels (height × width), expected {expected} as in the other; render both at one size"
+    )]
+    PictureSizes {
+        /// The second picture's height and width.
+        found: String,
+        /// The first picture's.
+        expected: String,
+    },
+    /// Sets of pictures without any.
+    #[error("pictures: found none, expected at least 1 of each world; render from at least one pose")]
+    NoPictures,
+    /// A picture with a side that is too short or too long.
+    #[error("picture: found a side of {found} pixels, expected {least} to {most}")]
+    PictureSide {
+        /// The side.
+        found: usize,
+        /// The least.
+        least: usize,
+        /// The most.
+        most: usize,
+    },
 }
 
 impl SimilarityError {
@@ -151,6 +232,15 @@ impl SimilarityError {
             Self::MantelPair { .. } => "similarity/mantel-pair",
             Self::MantelCount { .. } => "similarity/mantel-count",
             Self::BadWeight { .. } => "similarity/bad-weight",
+            Self::Shape { .. } => "similarity/shape",
+            Self::BadCost { .. } => "similarity/bad-cost",
+            Self::BadNumber { .. } => "similarity/bad-number",
+            Self::BadTable { .. } => "similarity/bad-table",
+            Self::TwiceNamed { .. } => "similarity/twice-named",
+            Self::UnknownChoice { .. } => "similarity/unknown-choice",
+            Self::PictureSizes { .. } => "similarity/picture-sizes",
+            Self::NoPictures => "similarity/no-pictures",
+            Self::PictureSide { .. } => "similarity/picture-side",
         }
     }
 }
@@ -210,6 +300,42 @@ mod tests {
             SimilarityError::BadWeight {
                 name: "reward".into(),
                 found: f64::NAN,
+            },
+            SimilarityError::Shape {
+                of: "costs",
+                found: 5,
+                expected: 6,
+            },
+            SimilarityError::BadCost {
+                row: 1,
+                column: 2,
+                found: f64::INFINITY,
+            },
+            SimilarityError::BadNumber {
+                of: "a scale",
+                found: -2.0,
+                expected: "a finite number above 0",
+            },
+            SimilarityError::BadTable {
+                a: "walk".into(),
+                b: "run".into(),
+                found: 2.0,
+                expected: "1 as on the way back".into(),
+            },
+            SimilarityError::TwiceNamed { name: "walk".into() },
+            SimilarityError::UnknownChoice {
+                found: "swim".into(),
+                expected: "fly, run, walk".into(),
+            },
+            SimilarityError::PictureSizes {
+                found: "64 × 64".into(),
+                expected: "84 × 84".into(),
+            },
+            SimilarityError::NoPictures,
+            SimilarityError::PictureSide {
+                found: 8,
+                least: 11,
+                most: 4096,
             },
         ];
         let said: Vec<String> = errors

@@ -1,5 +1,7 @@
 //! Distances between what stands where: worlds as sets of taken cells.
 
+pub(crate) mod ospa;
+
 use std::collections::BTreeSet;
 
 use driftworld_spec::World;
