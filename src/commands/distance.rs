@@ -19,6 +19,7 @@ use super::{Failure, input, output};
   driftworld distance find_objects#blue find_objects#dusk --explain
   driftworld distance find_objects#blue find_objects#dusk --pictures
   driftworld distance a.json b.json --json")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct Distance {
     /// A task's variant, or a world file.
     a: String,
