@@ -52,6 +52,8 @@ fn plain(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use driftworld_spec::TaskSpec;
+    use std::sync::Arc;
 
     #[test]
     fn a_label_is_found_by_the_name_that_logs_give_it() {
@@ -63,10 +65,9 @@ mod tests {
             assert_eq!(log_name_of_label(label), name);
         }
         let text = r#"{ "name": "find_objects", "parameters": {}, "variants": { "deep-red": {} } }"#;
-        if let Ok(task) = driftworld_spec::TaskSpec::from_json("t.json", text) {
-            let variant = std::sync::Arc::new(task).variant("deep-red").expect("it is declared");
-            assert_eq!(log_name_of_label("find_objects#deep-red"), crate::log_name(&variant));
-        }
+        let task = TaskSpec::from_json("t.json", text).expect("a sound task");
+        let variant = Arc::new(task).variant("deep-red").expect("it is declared");
+        assert_eq!(log_name_of_label("find_objects#deep-red"), crate::log_name(&variant));
         let names = Names::of(&["a#b".to_owned(), "a#c".to_owned()]).expect("they differ");
         assert_eq!((names.index("A_C"), names.index("a_d")), (Some(1), None));
     }

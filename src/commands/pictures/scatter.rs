@@ -28,9 +28,9 @@ pub(crate) struct Panel {
 }
 
 const WIDTH: u32 = 720;
-const HEIGHT: u32 = 560;
+const HEIGHT: u32 = 580;
 /// Room around the axes: left, right, above, below.
-const ROOM: [i32; 4] = [84, 24, 78, 58];
+const ROOM: [i32; 4] = [84, 24, 104, 58];
 const LABEL_PX: u32 = 14;
 const DOT: RGBColor = RGBColor(22, 72, 130);
 const RIM: RGBColor = RGBColor(205, 209, 214);

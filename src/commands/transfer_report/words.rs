@@ -194,9 +194,9 @@ pub(super) fn panels(report: &TransferReport) -> Vec<Panel> {
 fn summary(direction: &DirectionReport) -> String {
     match &direction.spearman {
         Some(test) => format!(
-            "Spearman {}, p = {} that nearer is more by chance labels; {} pairs of {} variants",
+            "Spearman {}; chance labels do as well with p = {} (nearer → more); {} pairs of {} variants",
             signed(test.correlation),
-            share(test.p_less, test).trim_start_matches("≤ "),
+            share(test.p_less, test),
             test.pairs,
             test.items
         ),
