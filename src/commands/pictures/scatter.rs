@@ -132,7 +132,8 @@ impl Panel {
         for dot in &dots {
             area.draw(&Circle::new(*dot, 4, DOT.filled()))?;
         }
-        let unnamed = self.name(area, &dots, [x0, y0, x1, y1])?;
+        let line = [x0, y(self.neutral) - 2, x1, y(self.neutral) + 2];
+        let unnamed = self.name(area, &dots, line, [x0, y0, x1, y1])?;
         if unnamed > 0 {
             let told = format!("{unnamed} of {} without room for a name", dots.len());
             write(area, &told, (x1, y0 - 20), 14, FAINT, HPos::Right)?;
@@ -140,9 +141,16 @@ impl Panel {
         Ok(())
     }
 
-    /// Writes each name at the first free place around its dot; returns how many found none.
-    fn name(&self, area: &Area<'_>, dots: &[(i32, i32)], rim: Box4) -> Result<usize, Box<dyn std::error::Error>> {
-        let mut taken: Vec<Box4> = dots.iter().map(|(x, y)| [x - 5, y - 5, x + 5, y + 5]).collect();
+    /// Writes each name at the first free place around its dot, off the line; returns how many found none.
+    fn name(
+        &self,
+        area: &Area<'_>,
+        dots: &[(i32, i32)],
+        line: Box4,
+        rim: Box4,
+    ) -> Result<usize, Box<dyn std::error::Error>> {
+        let boxes = dots.iter().map(|(x, y)| [x - 5, y - 5, x + 5, y + 5]);
+        let mut taken: Vec<Box4> = boxes.chain([line]).collect();
         let mut unnamed = 0;
         for (point, dot) in self.points.iter().zip(dots) {
             let style = ("sans-serif", LABEL_PX).into_font().color(&INK);

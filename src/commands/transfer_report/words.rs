@@ -114,7 +114,10 @@ fn notes(report: &TransferReport) -> Vec<String> {
              many variants could not show it, not that there is nothing to show.{}",
             relabellings(&test),
             if test.exact {
-                format!(" With {} variants it cannot be below {:.2e}.", test.items, 1.0 / test.relabellings as f64)
+                format!(
+                    " With {} variants it cannot be below 1/{}.",
+                    test.items, test.relabellings
+                )
             } else {
                 String::new()
             }
