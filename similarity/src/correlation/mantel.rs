@@ -276,7 +276,9 @@ fn place_among_equals(numbers: &mut [f64]) -> usize {
 fn rank_places(numbers: &mut [f64], places: usize) {
     let mut counts = vec![0_u32; places + 1];
     // Places are whole numbers below `places`.
-    numbers.iter().for_each(|place| counts[*place as usize + 1] += 1);
+    for place in numbers.iter() {
+        counts[*place as usize + 1] += 1;
+    }
     for place in 0..places {
         counts[place + 1] += counts[place];
     }

@@ -60,7 +60,9 @@ fn centred(values: &[f64]) -> Option<Vec<f64>> {
     if widest == 0.0 || values.iter().all(|value| *value == values[0]) {
         return None;
     }
-    offsets.iter_mut().for_each(|offset| *offset /= widest);
+    for offset in &mut offsets {
+        *offset /= widest;
+    }
     Some(offsets)
 }
 

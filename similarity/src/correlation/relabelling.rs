@@ -40,7 +40,9 @@ impl Relabellings {
 
     /// Puts relabelling `number` into `labels`, which holds one place for each item.
     pub(super) fn write(self, number: u64, labels: &mut [usize]) {
-        labels.iter_mut().enumerate().for_each(|(k, label)| *label = k);
+        for (k, label) in labels.iter_mut().enumerate() {
+            *label = k;
+        }
         match self {
             Self::All { .. } => {
                 // The digits of the number in the factorial number system choose who changes places.
@@ -61,7 +63,7 @@ impl Relabellings {
     }
 }
 
-/// SplitMix64 (Steele, Lea and Flood 2014), a stream for each key: the same on every platform.
+/// `SplitMix64` (Steele, Lea and Flood 2014), a stream for each key: the same on every platform.
 struct SplitMix(u64);
 
 impl SplitMix {

@@ -45,7 +45,9 @@ pub fn ranks(values: &[f64]) -> Vec<f64> {
     // `==` and not the total order: 0 and −0 are equal numbers.
     for equal in order.chunk_by(|a, b| values[*a] == values[*b]) {
         let rank = below as f64 + (equal.len() + 1) as f64 / 2.0;
-        equal.iter().for_each(|item| ranks[*item] = rank);
+        for item in equal {
+            ranks[*item] = rank;
+        }
         below += equal.len();
     }
     ranks
