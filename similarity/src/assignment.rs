@@ -2,7 +2,8 @@
 //! said by the measures that use it.
 //!
 //! Own code, for want of a crate that fits: `lapjv` takes square matrices only, compares costs with one absolute tolerance
-//! and is kept as it is; `pathfinding::kuhn_munkres` wants costs that are `Ord`, which `f64` is not, and takes new memory for every row.
+//! and is kept as it is; `pathfinding::kuhn_munkres` wants costs that are `Ord`, which `f64` is not, panics where rows are more than
+//! columns, and takes new memory for every matrix.
 
 use crate::SimilarityError;
 
@@ -229,8 +230,7 @@ fn check(costs: &[f64], rows: usize, columns: usize) -> Result<(), SimilarityErr
             expected: rows * columns,
         });
     }
-    // NaN is not within either.
-    let bad = |cost: &f64| !(cost.abs() <= MAX_COST);
+    let bad = |cost: &f64| cost.is_nan() || cost.abs() > MAX_COST;
     costs.iter().position(bad).map_or(Ok(()), |index| {
         Err(SimilarityError::BadCost {
             row: index / columns,

@@ -22,8 +22,9 @@ pub use error::{Problem, SpecError, nearest};
 pub use l2explorer::Warning;
 pub use scenario::{Block, BlockKind, MAX_EXPERIENCES, Regime, Scenario};
 pub use task::{
-    Count, DEFAULT_VARIANT, Domain, Element, Facing, Group, Hole, KeepOut, Parameter, ParameterType, PlacedGroup,
-    Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template, Value, Variant, VariantSpec,
+    Compare, Count, DEFAULT_VARIANT, Domain, Element, ElementWeights, Facing, Group, Hole, KeepOut, MeasureName,
+    Parameter, ParameterType, PlacedGroup, Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template,
+    Value, Variant, VariantSpec,
 };
 pub use version::{SCENARIO_VERSION, TASK_VERSION, WORLD_VERSION};
 pub use world::{

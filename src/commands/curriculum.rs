@@ -55,7 +55,7 @@ impl Curriculum {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let variants = input::variants(&self.tasks)?;
         let matrix = matrix(&variants)?;
-        let (_, ordering) = self.ordering.order(&matrix)?;
+        let (_, ordering) = self.ordering.order(&matrix, self.seed)?;
         let options = Design {
             name: self.name,
             learn: self.learn,

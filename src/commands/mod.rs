@@ -24,6 +24,7 @@ mod tasks;
 mod transfer_report;
 mod validate;
 mod vary;
+mod weights;
 
 use std::process::ExitCode;
 

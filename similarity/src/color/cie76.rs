@@ -3,6 +3,9 @@
 use crate::color::euclidean;
 use crate::color::lab::Lab;
 
+/// The farthest apart that two sRGB colours are: blue and green, where the last is the strong one that CSS calls lime; rounded up.
+pub(crate) const CIE76_DIAMETER: f64 = 258.680_21;
+
 /// Euclidean distance in CIE L*a*b*: √(ΔL² + Δa² + Δb²). About 2.3 is just noticeable.
 ///
 /// A metric, from 0 to 258.68 within sRGB (blue to green), no unit. Exaggerates differences between strong colours; [`ciede2000`] mends

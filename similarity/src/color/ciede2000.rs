@@ -7,6 +7,9 @@
 use crate::SimilarityError;
 use crate::color::lab::{Lab, LabTable};
 
+/// The farthest apart that two sRGB colours are: a dark blue (0, 0, 0.4303) and a yellowish green (0.5589, 1, 0); rounded up.
+pub(crate) const CIEDE2000_DIAMETER: f64 = 119.484_76;
+
 /// 25 to the 7th.
 const POW_25_7: f64 = 6_103_515_625.0;
 
@@ -21,12 +24,12 @@ const TURN_275: [f64; 2] = [0.087_155_742_747_658_18, -0.996_194_698_091_745_5];
 
 /// How different two colours look, by CIEDE2000 with all weights 1: about 1 is just noticeable, black to white is 100.
 ///
-/// A distance, *not a metric*: for about one triple of sRGB colours in 30 a detour is shorter than the straight way, at worst by
-/// half. From 0 to
-/// 119.48 within sRGB. Where the hues of two colours are exactly opposite the formula jumps; the hue of a grey counts as its partner's.
+/// A distance, *not a metric*: for about one triple of sRGB colours in 30 a detour is shorter than the straight way, in the worst seen by
+/// half. From 0 to 119.49 within sRGB, no unit. Where the hues of two colours are exactly opposite the formula jumps; the hue of
+/// a grey counts as its partner's.
 ///
-/// Without trigonometric functions, because hues enter through their cosines and sines only: a pair takes about a tenth
-/// of the time of the formula as it is written.
+/// Hues enter through their cosines and sines only, so that no trigonometric function is needed and whole vectors can be taken at once:
+/// [`ciede2000_to_each`] takes about a fifth of the time of the formula as it is written.
 ///
 /// Source: Sharma, Wu and Dalal 2005, "The CIEDE2000 color-difference formula: implementation notes, supplementary test data,
 /// and mathematical observations"; their 34 pairs within 1e-4, `skimage.color.deltaE_ciede2000` within 1e-9, see
@@ -260,7 +263,7 @@ mod tests {
         let hue = match h1 + h2 {
             sum if grey => sum,
             sum if gap.abs() <= 180.0 => sum / 2.0,
-            sum if sum < 360.0 => (sum + 360.0) / 2.0,
+            sum if sum < 360.0 => f64::midpoint(sum, 360.0),
             sum => (sum - 360.0) / 2.0,
         };
         let t = 1.0 - 0.17 * cos(hue - 30.0) + 0.24 * cos(2.0 * hue) + 0.32 * cos(3.0 * hue + 6.0)

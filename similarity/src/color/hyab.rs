@@ -1,4 +1,4 @@
-//! HyAB: lightness and the rest of a colour, apart, in L*a*b*. How a colour becomes L*a*b* is in `lab.rs`.
+//! `HyAB`: lightness and the rest of a colour, each for itself, in L*a*b*. How a colour becomes L*a*b* is in `lab.rs`.
 
 use crate::color::lab::Lab;
 

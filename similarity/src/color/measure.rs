@@ -4,8 +4,8 @@
 use driftworld_spec::Color;
 
 use crate::Nature;
-use crate::color::cie76::cie76;
-use crate::color::ciede2000::ciede2000;
+use crate::color::cie76::{CIE76_DIAMETER, cie76};
+use crate::color::ciede2000::{CIEDE2000_DIAMETER, ciede2000};
 use crate::color::hyab::hyab;
 use crate::color::lab::Lab;
 use crate::color::oklab::Oklab;
@@ -73,11 +73,10 @@ impl ColorMeasure {
             // Black to white.
             Self::Srgb => 1.732_050_807_568_877_2,
             Self::Oklab => 1.0,
-            // Blue to green, where the last is strong, too.
-            Self::Cie76 => 258.680_21,
+            Self::Cie76 => CIE76_DIAMETER,
+            Self::Ciede2000 => CIEDE2000_DIAMETER,
+            // Blue to lime.
             Self::Hyab => 308.109_02,
-            // From a dark blue (0, 0, 0.4303) to a yellowish green (0.5589, 1, 0).
-            Self::Ciede2000 => 119.484_76,
         }
     }
 

@@ -9,8 +9,6 @@ pub(crate) mod oklab;
 pub(crate) mod sets;
 pub(crate) mod srgb;
 
-pub(crate) use oklab::oklab_distance;
-
 fn euclidean(a: [f64; 3], b: [f64; 3]) -> f64 {
     let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     (x * x + y * y + z * z).sqrt()

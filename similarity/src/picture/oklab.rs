@@ -61,7 +61,7 @@ impl Last {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::oklab_distance;
+    use crate::oklab_distance;
     use driftworld_spec::Color;
     use proptest::prelude::*;
 

@@ -16,9 +16,10 @@ const STEADY_SPREAD: f64 = 58.5225;
 /// Mean structural similarity (SSIM) of two pictures: mean, contrast and structure of the brightness around each pixel, channel by channel.
 ///
 /// Mean over the channels red, green and blue and over all places of a Gaussian window (11 × 11 pixels, standard deviation 1.5) of
-/// (2 μₐμ_b + C₁)(2 σₐ_b + C₂) / ((μₐ² + μ_b² + C₁)(σₐ² + σ_b² + C₂)). 1 for equal pictures, about 0 for unrelated ones, at
+/// (2 μν + C₁)(2 κ + C₂) / ((μ² + ν² + C₁)(σ² + τ² + C₂)), with the means μ and ν, the variances σ² and τ², the covariance κ and
+/// C₁ = 6.5025, C₂ = 58.5225. 1 for equal pictures, about 0 for unrelated ones, at
 /// least −1. Symmetric. A similarity; `(1 − SSIM) / 2` is a distance but not a metric. Time in proportion to the number of
-/// pixels: about 140 multiplications for each of a channel.
+/// pixels: about 130 multiplications for each of a channel.
 ///
 /// Source: Wang, Bovik, Sheikh and Simoncelli 2004, "Image quality assessment: from error visibility to structural similarity"; the same numbers as
 /// `skimage.metrics.structural_similarity(a, b, channel_axis=2, gaussian_weights=True, sigma=1.5, use_sample_covariance=False,
