@@ -31,7 +31,7 @@ pub(crate) struct Distance {
     /// Another.
     b: String,
     /// Compare how worlds look to an agent in them, by pictures from the same places.
-    #[arg(long, conflicts_with = "explain")]
+    #[arg(long, conflicts_with_all = ["explain", "worlds", "WeightArgs"])]
     pictures: bool,
     /// Show every part: what was compared, by which measure and how, its number, what it weighs, its share of the whole.
     #[arg(long)]
