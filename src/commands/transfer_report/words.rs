@@ -197,7 +197,7 @@ pub(super) fn panels(report: &TransferReport) -> Vec<Panel> {
 fn summary(direction: &DirectionReport) -> String {
     match &direction.spearman {
         Some(test) => format!(
-            "Spearman {}; chance labels do as well with p = {} (nearer → more); {} pairs of {} variants",
+            "Spearman {}; chance labels do as well with p = {} (the nearer, the more); {} pairs of {} variants",
             signed(test.correlation),
             share(test.p_less, test),
             test.pairs,
