@@ -231,6 +231,49 @@ pub enum CurriculumError {
         /// What the environment says.
         source: EnvError,
     },
+    /// Transfer is measured by evaluations, and there are none.
+    #[error(
+        "transfer: found no evaluation in {logs} logs, expected every variant evaluated before and after another is \
+         learned; design the curriculum with --evaluate every"
+    )]
+    NoEvaluations {
+        /// How many logs there are.
+        logs: usize,
+    },
+    /// Logs and distances speak of different variants.
+    #[error(
+        "transfer: found {found} variants that are both in the logs ({logs}) and in the distance matrix ({matrix}), \
+         expected at least 2; measure the distances of the variants that were lived: task#variant there is task_variant \
+         in a log, letters and digits alone"
+    )]
+    NoCommonNames {
+        /// How many are in both.
+        found: usize,
+        /// Names in the logs.
+        logs: String,
+        /// Names in the matrix.
+        matrix: String,
+    },
+    /// Too few pairs of variants with a transfer.
+    #[error(
+        "transfer: found {forward} forward and {backward} backward pairs of variants with a transfer, expected at least \
+         {needed} in one direction; log a lifetime of 3 or more variants of the matrix, all evaluated before and after \
+         each is learned, or add lifetimes in other orders"
+    )]
+    TooFewTransfers {
+        /// Pairs whose second variant was not yet learned.
+        forward: usize,
+        /// Pairs whose second variant had been learned.
+        backward: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// The test cannot be run as asked.
+    #[error("transfer: {source}")]
+    Relabelling {
+        /// What the test says.
+        source: SimilarityError,
+    },
     /// The log cannot be written.
     #[error(transparent)]
     Log(#[from] MetricsError),
@@ -266,6 +309,10 @@ impl CurriculumError {
             Self::OtherRow { .. } => "curriculum/other-row",
             Self::World { .. } => "curriculum/world",
             Self::Episode { .. } => "curriculum/episode",
+            Self::NoEvaluations { .. } => "curriculum/no-evaluations",
+            Self::NoCommonNames { .. } => "curriculum/no-common-names",
+            Self::TooFewTransfers { .. } => "curriculum/too-few-transfers",
+            Self::Relabelling { .. } => "curriculum/relabelling",
             Self::Log(_) => "curriculum/log",
         }
     }
@@ -374,6 +421,24 @@ mod tests {
                 regime: 0,
                 experience: 5,
                 source: EnvError::Ended,
+            },
+            CurriculumError::NoEvaluations { logs: 2 },
+            CurriculumError::NoCommonNames {
+                found: 0,
+                logs: "t_x, t_y".into(),
+                matrix: "t#a, t#b".into(),
+            },
+            CurriculumError::TooFewTransfers {
+                forward: 1,
+                backward: 0,
+                needed: 3,
+            },
+            CurriculumError::Relabelling {
+                source: SimilarityError::MantelCount {
+                    what: "relabellings",
+                    found: 0,
+                    limit: 9,
+                },
             },
             CurriculumError::Log(MetricsError::LogExists {
                 path: "logs/run".into(),

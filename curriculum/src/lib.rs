@@ -7,6 +7,7 @@
 mod design;
 mod error;
 mod run;
+mod transfer;
 
 pub use design::{
     Choice, Control, Design, Drifting, Evaluate, Hypothesis, MAX_BLOCKS, MAX_SEED, MAX_STEPS, Picked, Steps, arrange,
@@ -16,3 +17,4 @@ pub use error::CurriculumError;
 pub use run::{
     COLUMNS, FoundWorld, Journal, Plan, Progress, RegimeSummary, Sources, Summary, Surroundings, log_name, run,
 };
+pub use transfer::{DirectionReport, PairTransfer, TransferOptions, TransferReport, transfer_report};

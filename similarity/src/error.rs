@@ -210,6 +210,73 @@ pub enum SimilarityError {
         /// The word.
         found: String,
     },
+    /// Lists that are to be correlated are not of one length.
+    #[error("correlation: found lists of {a} and {b} numbers, expected as many in both")]
+    CorrelationLengths {
+        /// Numbers in the first list.
+        a: usize,
+        /// Numbers in the second list.
+        b: usize,
+    },
+    /// Too few pairs to be correlated.
+    #[error(
+        "correlation: found {found} pairs, expected at least {needed}: two always lie on a straight line; measure more"
+    )]
+    CorrelationTooFew {
+        /// How many there are.
+        found: usize,
+        /// How many are needed.
+        needed: usize,
+    },
+    /// A number to be correlated is none.
+    #[error("correlation: found {found} at place {place} of the {list} list, expected a finite number")]
+    CorrelationNotFinite {
+        /// First or second.
+        list: &'static str,
+        /// The place in it, from 0.
+        place: usize,
+        /// What was found.
+        found: f64,
+    },
+    /// A list to be correlated is all one number.
+    #[error(
+        "correlation: found {found} everywhere in the {list} list, expected numbers that differ: what never changes goes \
+         together with nothing"
+    )]
+    CorrelationConstant {
+        /// First or second.
+        list: &'static str,
+        /// The number.
+        found: f64,
+    },
+    /// A word that names no correlation.
+    #[error("correlation: found {found:?}, expected spearman or pearson")]
+    UnknownCorrelation {
+        /// The word.
+        found: String,
+    },
+    /// A pair that a Mantel test cannot take.
+    #[error("mantel test: found a value for the pair {from} to {to} {found}, expected {expected}")]
+    MantelPair {
+        /// The first item's index.
+        from: usize,
+        /// The second item's index.
+        to: usize,
+        /// What is wrong with it.
+        found: &'static str,
+        /// What it should be.
+        expected: &'static str,
+    },
+    /// More or fewer of something than a Mantel test can take.
+    #[error("mantel test: found {found} {what}, expected 1 to {limit}")]
+    MantelCount {
+        /// What is counted.
+        what: &'static str,
+        /// How many there are.
+        found: u64,
+        /// How many are possible.
+        limit: u64,
+    },
     /// A weight that cannot be one.
     #[error("weight of {name}: found {found}, expected a finite number of at least 0")]
     BadWeight {
@@ -328,6 +395,13 @@ impl SimilarityError {
             Self::BadTargetStep { .. } => "similarity/bad-target-step",
             Self::Empty => "similarity/empty",
             Self::UnknownMethod { .. } => "similarity/unknown-method",
+            Self::CorrelationLengths { .. } => "similarity/correlation-lengths",
+            Self::CorrelationTooFew { .. } => "similarity/correlation-too-few",
+            Self::CorrelationNotFinite { .. } => "similarity/correlation-not-finite",
+            Self::CorrelationConstant { .. } => "similarity/correlation-constant",
+            Self::UnknownCorrelation { .. } => "similarity/unknown-correlation",
+            Self::MantelPair { .. } => "similarity/mantel-pair",
+            Self::MantelCount { .. } => "similarity/mantel-count",
             Self::BadWeight { .. } => "similarity/bad-weight",
             Self::Shape { .. } => "similarity/shape",
             Self::BadCost { .. } => "similarity/bad-cost",
@@ -440,6 +514,31 @@ mod tests {
             SimilarityError::Empty,
             SimilarityError::UnknownMethod {
                 found: "shortest".into(),
+            },
+            SimilarityError::CorrelationLengths { a: 3, b: 2 },
+            SimilarityError::CorrelationTooFew { found: 2, needed: 3 },
+            SimilarityError::CorrelationNotFinite {
+                list: "second",
+                place: 1,
+                found: f64::NAN,
+            },
+            SimilarityError::CorrelationConstant {
+                list: "first",
+                found: 2.0,
+            },
+            SimilarityError::UnknownCorrelation {
+                found: "kendall".into(),
+            },
+            SimilarityError::MantelPair {
+                from: 0,
+                to: 9,
+                found: "that the matrix does not have",
+                expected: "indices of its items",
+            },
+            SimilarityError::MantelCount {
+                what: "relabellings",
+                found: 0,
+                limit: 10,
             },
             SimilarityError::BadWeight {
                 name: "reward".into(),

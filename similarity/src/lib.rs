@@ -7,6 +7,7 @@
 mod assignment;
 mod color;
 mod combined;
+mod correlation;
 pub mod distribution;
 mod error;
 mod matrix;
@@ -29,6 +30,10 @@ pub use color::srgb::srgb_distance;
 pub use combined::variant::{VariantMeasure, variant_distance};
 pub use combined::world::{Worlds, world_distance, world_sets_distance, world_sets_explained};
 pub use combined::{Distance, Part, Weights};
+pub use correlation::{
+    Correlation, MAX_MANTEL_ITEMS, MAX_RELABELLINGS, MIN_CORRELATED, MantelTest, PairValue, mantel, pearson, ranks,
+    spearman,
+};
 pub use error::SimilarityError;
 pub use matrix::{DistanceMatrix, Embedding, MAX_FEATURES, MAX_ITEMS, PlanarMap, Triangles, Violation, classical_map};
 pub use nature::Nature;

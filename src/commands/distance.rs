@@ -1,5 +1,7 @@
 //! `driftworld distance`: how far apart two variants or two worlds are, element by element. The measures are `similarity`'s.
 
+mod pictures;
+
 use clap::Args;
 use driftworld::generator::Sampler;
 use driftworld::similarity::{
@@ -20,6 +22,7 @@ use super::{Failure, input, output};
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld distance find_objects#blue find_objects#dusk --explain
+  driftworld distance find_objects#blue find_objects#dusk --pictures
   driftworld distance find_objects#blue get_to_goal#plain --explain --worlds 64
   driftworld distance a.json b.json --json")]
 pub(crate) struct Distance {
@@ -27,6 +30,9 @@ pub(crate) struct Distance {
     a: String,
     /// Another.
     b: String,
+    /// Compare how worlds look to an agent in them, by pictures from the same places.
+    #[arg(long, conflicts_with_all = ["explain", "worlds", "WeightArgs"])]
+    pictures: bool,
     /// Show every part: what was compared, by which measure and how, its number, what it weighs, its share of the whole.
     #[arg(long)]
     explain: bool,
@@ -57,6 +63,11 @@ enum Side {
 
 impl Distance {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        if self.pictures {
+            let world = |name: &str| input::world(name, self.seed, self.index, false);
+            let (a, b) = (world(&self.a)?, world(&self.b)?);
+            return pictures::run([&self.a, &self.b], [&a, &b], self.json);
+        }
         let (distance, how) = self.measure()?;
         if self.json {
             return output::json(&distance);

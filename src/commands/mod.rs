@@ -25,6 +25,7 @@ mod schema;
 mod sheet;
 mod table;
 mod tasks;
+mod transfer_report;
 mod validate;
 mod vary;
 mod weights;
@@ -70,6 +71,8 @@ pub(crate) enum Command {
     Run(run::Run),
     /// Score the log of a lifetime.
     Metrics(metrics::Metrics),
+    /// Ask whether similar variants transferred more, by logs and distances.
+    TransferReport(transfer_report::TransferReport),
     /// Write or check the JSON Schemas of the documents.
     Schema(schema::Schema),
     /// Measure how fast this build is on this machine.
@@ -98,6 +101,7 @@ impl Command {
             Self::Curriculum(command) => command.run(),
             Self::Run(command) => command.run(),
             Self::Metrics(command) => command.run(),
+            Self::TransferReport(command) => command.run(),
             Self::Schema(command) => command.run(),
             Self::Bench(command) => command.run(),
             Self::Doctor(command) => command.run(),

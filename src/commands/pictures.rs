@@ -1,11 +1,15 @@
 //! Pictures with words: sheets of views and heat maps. The views themselves are rendered by `env`.
 
+mod scatter;
+
 use std::path::Path;
 use std::sync::Once;
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, register_font};
+
+pub(crate) use scatter::{Panel, Point, scatter};
 
 use super::{Failure, output};
 

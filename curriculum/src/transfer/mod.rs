@@ -1,0 +1,291 @@
+//! [`transfer_report`]: whether similar variants transfer more, by the logs of lifetimes and a distance matrix. Transfer is
+//! measured by `metrics`, the correlation and its test by `similarity`; logs and matrices are handed in.
+
+mod names;
+mod pooling;
+
+use std::collections::BTreeSet;
+
+use driftworld_metrics::{LifetimeMetrics, TransferMethod};
+use driftworld_similarity::{Correlation, DistanceMatrix, MantelTest, PairValue, mantel};
+use serde::Serialize;
+
+use crate::CurriculumError;
+use names::Names;
+use pooling::{Direction, pooled};
+
+/// How transfer is compared with distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TransferOptions {
+    /// Which measure of transfer; the lifetimes must have been scored by it. `Both` is as `Contrast`.
+    pub measure: TransferMethod,
+    /// The most relabellings that the test goes through, 1 to [`MAX_RELABELLINGS`](driftworld_similarity::MAX_RELABELLINGS).
+    pub relabellings: u64,
+    /// What relabellings are drawn from, where there are more.
+    pub seed: u64,
+}
+
+impl Default for TransferOptions {
+    /// Contrast, 9,999 relabellings, seed 0.
+    fn default() -> Self {
+        Self {
+            measure: TransferMethod::Contrast,
+            relabellings: 9_999,
+            seed: 0,
+        }
+    }
+}
+
+/// Whether similar variants transfer more.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TransferReport {
+    /// How many lifetimes were pooled.
+    pub lifetimes: usize,
+    /// In how many different orders they learned the matrix's variants.
+    pub learning_orders: usize,
+    /// The measure of transfer.
+    pub measure: TransferMethod,
+    /// Variants of the matrix that no log has.
+    pub not_in_logs: Vec<String>,
+    /// Names in the logs that the matrix does not have.
+    pub not_in_matrix: Vec<String>,
+    /// To variants that were not yet learned.
+    pub forward: DirectionReport,
+    /// To variants that had been learned before.
+    pub backward: DirectionReport,
+}
+
+/// Whether similar variants transfer more, in one direction of time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DirectionReport {
+    /// Every pair with a transfer, by the matrix's order of the learned variant, then of the other.
+    pub pairs: Vec<PairTransfer>,
+    /// The test by ranks: the one to look at.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spearman: Option<MantelTest>,
+    /// The test by values.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pearson: Option<MantelTest>,
+    /// Why there is no test.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub untested: Option<String>,
+}
+
+/// A variant that was learned, another that was evaluated before and after, and what the first did to the second.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PairTransfer {
+    /// The variant that was learned.
+    pub from: String,
+    /// The variant that was evaluated.
+    pub to: String,
+    /// How far apart they are.
+    pub distance: f64,
+    /// Mean over lifetimes of the pair's first transfer in each.
+    pub transfer: f64,
+    /// In how many lifetimes it was measured.
+    pub lifetimes: usize,
+}
+
+/// Correlates the transfer that lifetimes measured with distances.
+///
+/// For each pair of variants the first transfer of each lifetime counts, as in the lifetime's own mean, and the mean over
+/// lifetimes is taken; forward and backward apart. Names in logs, `task_variant`, are matched with the matrix's
+/// `task#variant` by [`log_name`](crate::log_name)'s rule. Correlations are tested by relabelling the variants, see [`mantel`].
+///
+/// What it cannot see: lifetimes that all learn in one order mix up how near a variant is with how early it comes, which
+/// `learning_orders` shows; a variant that is as good as it can be has nothing left to gain.
+///
+/// # Errors
+/// [`CurriculumError::NoEvaluations`] if no lifetime evaluates, [`CurriculumError::NoCommonNames`] if logs and matrix speak of
+/// different variants, [`CurriculumError::TooFewTransfers`] if neither direction has 3 pairs,
+/// [`CurriculumError::SameLogName`], [`CurriculumError::Relabelling`] for a number of relabellings that cannot be.
+pub fn transfer_report(
+    lifetimes: &[LifetimeMetrics],
+    distances: &DistanceMatrix,
+    options: &TransferOptions,
+) -> Result<TransferReport, CurriculumError> {
+    if lifetimes.iter().all(|lifetime| lifetime.num_ex == 0) {
+        return Err(CurriculumError::NoEvaluations { logs: lifetimes.len() });
+    }
+    let names = Names::of(distances.labels())?;
+    let logged: BTreeSet<&str> = lifetimes
+        .iter()
+        .flat_map(|lifetime| lifetime.task_metrics.keys().map(String::as_str))
+        .collect();
+    let known: BTreeSet<usize> = logged.iter().filter_map(|name| names.index(name)).collect();
+    if known.len() < 2 {
+        return Err(CurriculumError::NoCommonNames {
+            found: known.len(),
+            logs: shown(logged.iter().copied()),
+            matrix: shown(distances.labels().iter().map(String::as_str)),
+        });
+    }
+    let direction = |direction| {
+        let pairs = pooled(lifetimes, &names, direction, options.measure);
+        tested(pairs, distances, options)
+    };
+    let (forward, backward) = (direction(Direction::Forward)?, direction(Direction::Backward)?);
+    let most = forward.pairs.len().max(backward.pairs.len());
+    if most < driftworld_similarity::MIN_CORRELATED {
+        return Err(CurriculumError::TooFewTransfers {
+            forward: forward.pairs.len(),
+            backward: backward.pairs.len(),
+            needed: driftworld_similarity::MIN_CORRELATED,
+        });
+    }
+    let labels = distances.labels().iter().enumerate();
+    Ok(TransferReport {
+        lifetimes: lifetimes.len(),
+        learning_orders: learning_orders(lifetimes, &names),
+        measure: options.measure,
+        not_in_logs: labels
+            .filter(|(index, _)| !known.contains(index))
+            .map(|(_, label)| label.clone())
+            .collect(),
+        not_in_matrix: logged
+            .into_iter()
+            .filter(|name| names.index(name).is_none())
+            .map(str::to_owned)
+            .collect(),
+        forward,
+        backward,
+    })
+}
+
+fn tested(
+    values: Vec<(PairValue, usize)>,
+    distances: &DistanceMatrix,
+    options: &TransferOptions,
+) -> Result<DirectionReport, CurriculumError> {
+    let label = |index: usize| distances.labels()[index].clone();
+    let pairs = values.iter().map(|(pair, lifetimes)| PairTransfer {
+        from: label(pair.from),
+        to: label(pair.to),
+        distance: distances.get(pair.from, pair.to),
+        transfer: pair.value,
+        lifetimes: *lifetimes,
+    });
+    let pairs: Vec<PairTransfer> = pairs.collect();
+    let values: Vec<PairValue> = values.into_iter().map(|(pair, _)| pair).collect();
+    let test = |method| mantel(distances, &values, method, options.relabellings, options.seed);
+    let (spearman, pearson, untested) = match (test(Correlation::Spearman), test(Correlation::Pearson)) {
+        (Ok(spearman), Ok(pearson)) => (Some(spearman), Some(pearson), None),
+        // Wrong whatever was measured.
+        (Err(source), _) if source.code() == "similarity/mantel-count" => {
+            return Err(CurriculumError::Relabelling { source });
+        }
+        (Err(reason), _) | (_, Err(reason)) => (None, None, Some(reason.to_string())),
+    };
+    Ok(DirectionReport {
+        pairs,
+        spearman,
+        pearson,
+        untested,
+    })
+}
+
+/// In how many different orders the variants that a matrix has were learned first.
+fn learning_orders(lifetimes: &[LifetimeMetrics], names: &Names) -> usize {
+    let order = |lifetime: &LifetimeMetrics| -> Vec<usize> {
+        let learned = lifetime.task_metrics.iter().filter(|(_, task)| task.num_lx > 0);
+        learned.filter_map(|(name, _)| names.index(name)).collect()
+    };
+    lifetimes.iter().map(order).collect::<BTreeSet<_>>().len()
+}
+
+/// A few names for a message.
+fn shown<'a>(names: impl ExactSizeIterator<Item = &'a str>) -> String {
+    const MOST: usize = 4;
+    let more = names.len().saturating_sub(MOST);
+    let first = names.take(MOST).collect::<Vec<_>>().join(", ");
+    match (first.is_empty(), more) {
+        (true, _) => "none".to_owned(),
+        (false, 0) => first,
+        (false, more) => format!("{first} and {more} more"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    /// A lifetime that learned the tasks in this order, with these transfers forward.
+    fn lifetime(order: &[&str], forward: &[(&str, &str, f64)], evaluations: usize) -> LifetimeMetrics {
+        let mut tasks = serde_json::Map::new();
+        for name in order {
+            let mut to = serde_json::Map::new();
+            for (_, other, value) in forward.iter().filter(|(from, _, _)| from == name) {
+                to.insert((*other).to_owned(), json!([value, 99.0]));
+            }
+            let task = json!({ "num_lx": 5, "num_ex": evaluations, "forward_transfer_contrast": to });
+            tasks.insert((*name).to_owned(), task);
+        }
+        serde_json::from_value(json!({
+            "run_id": "run", "complexity": "", "difficulty": "", "scenario_type": "", "metrics_column": "reward",
+            "min": 1.0, "max": 101.0, "num_lx": 10, "num_ex": evaluations, "runtime": 0.0,
+            "normalization_data_range": null, "task_metrics": tasks,
+        }))
+        .expect("these are a lifetime's fields")
+    }
+
+    fn matrix(labels: &[&str]) -> DistanceMatrix {
+        let labels = labels.iter().map(|label| (*label).to_owned()).collect();
+        DistanceMatrix::measure(labels, |a, b| {
+            Ok::<_, driftworld_similarity::SimilarityError>((b - a) as f64)
+        })
+        .expect("these are distances")
+    }
+
+    fn said(lifetimes: &[LifetimeMetrics], labels: &[&str]) -> String {
+        let found = transfer_report(lifetimes, &matrix(labels), &TransferOptions::default());
+        found.expect_err("there is nothing to correlate").to_string()
+    }
+
+    #[test]
+    fn lifetimes_are_pooled_pair_by_pair() {
+        let one = lifetime(&["t_a", "t_b", "t_c"], &[("t_a", "t_b", 0.4), ("t_a", "t_c", 0.1)], 9);
+        let two = lifetime(&["t_b", "t_a", "t_x"], &[("t_b", "t_c", 0.2), ("t_a", "t_b", 0.2)], 9);
+        let found = transfer_report(
+            &[one.clone(), two, one],
+            &matrix(&["t#a", "t#b", "t#c", "t#d"]),
+            &TransferOptions::default(),
+        )
+        .expect("three pairs are enough");
+        let pairs: Vec<_> = found
+            .forward
+            .pairs
+            .iter()
+            .map(|pair| (pair.from.as_str(), pair.to.as_str(), pair.distance, pair.lifetimes))
+            .collect();
+        assert_eq!(
+            pairs,
+            [("t#a", "t#b", 1.0, 3), ("t#a", "t#c", 2.0, 2), ("t#b", "t#c", 1.0, 1)]
+        );
+        assert!((found.forward.pairs[0].transfer - 1.0 / 3.0).abs() < 1e-12);
+        assert_eq!((found.lifetimes, found.learning_orders), (3, 2));
+        assert_eq!(found.not_in_logs, ["t#d"]);
+        assert_eq!(found.not_in_matrix, ["t_x"]);
+        let test = found.forward.spearman.expect("three pairs with different numbers");
+        assert_eq!((test.pairs, test.items, test.exact), (3, 3, true));
+        assert!(found.backward.untested.is_some_and(|why| why.contains("found 0 pairs")));
+    }
+
+    #[test]
+    fn what_cannot_be_correlated_says_why() {
+        let none = lifetime(&["t_a"], &[], 0);
+        assert!(said(&[none], &["t#a", "t#b"]).contains("no evaluation"));
+        let strangers = lifetime(&["t_x", "t_y"], &[], 3);
+        let error = said(&[strangers], &["t#a", "t#b"]);
+        assert!(error.contains("t_x, t_y") && error.contains("t#a, t#b"), "{error}");
+        let few = lifetime(&["t_a", "t_b"], &[("t_a", "t_b", 0.5)], 3);
+        assert!(said(&[few], &["t#a", "t#b"]).contains("1 forward and 0 backward"));
+        let one = lifetime(&["t_a", "t_b", "t_c"], &[("t_a", "t_b", 0.4)], 9);
+        let options = TransferOptions {
+            relabellings: 0,
+            ..TransferOptions::default()
+        };
+        let error = transfer_report(&[one], &matrix(&["t#a", "t#b"]), &options).expect_err("0 relabellings");
+        assert_eq!(error.code(), "curriculum/relabelling");
+    }
+}

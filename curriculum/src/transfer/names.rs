@@ -1,0 +1,80 @@
+//! Which variant of a distance matrix a name in a log means. How logs name variants is decided in `run.rs`.
+
+use std::collections::BTreeMap;
+
+use crate::CurriculumError;
+
+/// Indices of a matrix's labels by the names that logs give them.
+#[derive(Debug)]
+pub(super) struct Names(BTreeMap<String, usize>);
+
+impl Names {
+    /// # Errors
+    /// [`CurriculumError::SameLogName`] where two labels have one name in a log.
+    pub(super) fn of(labels: &[String]) -> Result<Self, CurriculumError> {
+        let mut names: BTreeMap<String, usize> = BTreeMap::new();
+        for (index, label) in labels.iter().enumerate() {
+            let name = log_name_of_label(label);
+            if let Some(other) = names.insert(name.clone(), index) {
+                let (a, b) = (labels[other].clone(), label.clone());
+                return Err(CurriculumError::SameLogName { a, b, name });
+            }
+        }
+        Ok(Self(names))
+    }
+
+    /// The index of the label that a log calls by this name.
+    pub(super) fn index(&self, log_name: &str) -> Option<usize> {
+        self.0.get(&log_name.to_lowercase()).copied()
+    }
+}
+
+/// The name in a log of what a matrix calls `task#variant`; of a task that is a file, the file's name counts. A label without
+/// `#` is taken for a log's name already.
+fn log_name_of_label(label: &str) -> String {
+    let Some((task, variant)) = label.rsplit_once('#') else {
+        return label.to_lowercase();
+    };
+    let file = task.rsplit(['/', '\\']).next().unwrap_or(task);
+    format!(
+        "{}_{}",
+        plain(file.strip_suffix(".json").unwrap_or(file)),
+        plain(variant)
+    )
+}
+
+/// Letters and digits alone, small: see [`log_name`](crate::log_name).
+fn plain(text: &str) -> String {
+    let kept = text.chars().filter(char::is_ascii_alphanumeric);
+    kept.collect::<String>().to_lowercase()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use driftworld_spec::TaskSpec;
+    use std::sync::Arc;
+
+    #[test]
+    fn a_label_is_found_by_the_name_that_logs_give_it() {
+        for (label, name) in [
+            ("find_objects#deep-red", "findobjects_deepred"),
+            ("examples/tasks/find_objects.json#Red", "findobjects_red"),
+            ("findobjects_red", "findobjects_red"),
+        ] {
+            assert_eq!(log_name_of_label(label), name);
+        }
+        let text = r#"{ "name": "find_objects", "parameters": {}, "variants": { "deep-red": {} } }"#;
+        let task = TaskSpec::from_json("t.json", text).expect("a sound task");
+        let variant = Arc::new(task).variant("deep-red").expect("it is declared");
+        assert_eq!(log_name_of_label("find_objects#deep-red"), crate::log_name(&variant));
+        let names = Names::of(&["a#b".to_owned(), "a#c".to_owned()]).expect("they differ");
+        assert_eq!((names.index("A_C"), names.index("a_d")), (Some(1), None));
+    }
+
+    #[test]
+    fn labels_with_one_name_in_a_log_are_refused() {
+        let error = Names::of(&["a#b_c".to_owned(), "a#bc".to_owned()]).expect_err("both are a_bc");
+        assert_eq!(error.code(), "curriculum/same-log-name");
+    }
+}

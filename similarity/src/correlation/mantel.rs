@@ -1,0 +1,428 @@
+//! The Mantel test: how seldom chance makes two measures of the same pairs go together as they do. The correlations
+//! themselves are in `spearman.rs` and `pearson.rs`.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::relabelling::Relabellings;
+use super::{Correlation, MIN_CORRELATED, pearson, ranks};
+use crate::{DistanceMatrix, SimilarityError};
+
+/// The most relabellings that a test goes through.
+pub const MAX_RELABELLINGS: u64 = 1_000_000;
+
+/// The most items that a test compares.
+pub const MAX_MANTEL_ITEMS: usize = 2_000;
+
+/// Correlations nearer than this are as strong as each other: the order of additions moves them by less.
+const AS_STRONG: f64 = 1e-9;
+
+/// What was measured of one pair of a matrix's items, there and not necessarily back.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PairValue {
+    /// Index of the first item.
+    pub from: usize,
+    /// Index of the second item.
+    pub to: usize,
+    /// What was measured, in any unit.
+    pub value: f64,
+}
+
+impl PairValue {
+    /// Every pair of a matrix once: for the test of two matrices of the same items in the same order.
+    pub fn of_matrix(matrix: &DistanceMatrix) -> Vec<Self> {
+        let all = (0..matrix.len()).flat_map(|from| (from + 1..matrix.len()).map(move |to| (from, to)));
+        all.map(|(from, to)| Self {
+            from,
+            to,
+            value: matrix.get(from, to),
+        })
+        .collect()
+    }
+}
+
+/// What a Mantel test found.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MantelTest {
+    /// How the lists were compared.
+    pub method: Correlation,
+    /// Their correlation, −1 to 1.
+    pub correlation: f64,
+    /// Share of relabellings whose correlation is at least as far from 0.
+    pub p_two_sided: f64,
+    /// Share of relabellings whose correlation is at least as low: for "the nearer, the more".
+    pub p_less: f64,
+    /// Share of relabellings whose correlation is at least as high: for "the farther, the more".
+    pub p_greater: f64,
+    /// How many relabellings were gone through.
+    pub relabellings: u64,
+    /// Whether these were all there are, so that the shares are exact; otherwise they were drawn by chance.
+    pub exact: bool,
+    /// How many items changed labels: those with at least one value.
+    pub items: usize,
+    /// How many pairs had a value.
+    pub pairs: usize,
+}
+
+/// Whether distances and another measure of the same pairs go together, and how seldom chance brings that about.
+///
+/// The correlation is taken over the pairs that have a value. Then the items change their labels in the matrix, and with
+/// them all their distances, and the correlation is taken again: a share of `p` of the relabellings goes together at least as
+/// well. Items change labels and not pairs, since pairs that share an item are not independent. All relabellings are gone
+/// through where there are at most `relabellings`, and `p = k / all`; otherwise as many are drawn from `seed`, and
+/// `p = (k + 1) / (drawn + 1)`, which counts what was found as one of them. `p` is therefore never 0.
+///
+/// `pairs`: in any order, each at most once; there and back are two. **Pairs without a value are left out as they are**: the
+/// gaps stay where they are while labels change, and only items with at least one value take part. The test then speaks of
+/// the pairs that were measured; whether those that were not are like them, no test knows. Distances cannot be missing: a
+/// matrix has all of its own, which is what keeps a test with gaps sound. A relabelling under which all distances
+/// are equal has no correlation; it counts as going together at least as well, against the finding.
+///
+/// Time `O(relabellings · (pairs + items²))`, over all cores; the same result for the same seed on any number of them.
+///
+/// Source: Mantel 1967; Legendre and Legendre 2012, § 10.5; the same correlations as `skbio.stats.distance.mantel` and the
+/// same exact shares as an enumeration with scipy, see `tests/oracle/make_correlation.py`.
+///
+/// # Errors
+/// As [`spearman`](crate::spearman) and [`pearson`](crate::pearson); [`SimilarityError::MantelPair`] for pairs that are
+/// twice there or not of the matrix; [`SimilarityError::MantelCount`] for 0 or more than [`MAX_RELABELLINGS`] relabellings,
+/// and for more than [`MAX_MANTEL_ITEMS`] items.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::{Correlation, DistanceMatrix, PairValue, SimilarityError, mantel};
+/// let at = [0.0_f64, 1.0, 3.0, 7.0];
+/// let names = ["a", "b", "c", "d"].map(String::from).to_vec();
+/// let matrix = DistanceMatrix::measure(names, |a, b| Ok::<_, SimilarityError>((at[a] - at[b]).abs()))?;
+/// let doubled: Vec<_> = PairValue::of_matrix(&matrix).into_iter().map(|pair| PairValue { value: 2.0 * pair.value, ..pair }).collect();
+/// let test = mantel(&matrix, &doubled, Correlation::Spearman, 999, 0)?;
+/// assert!((test.correlation - 1.0).abs() < 1e-12);
+/// assert!(test.exact, "four items have 24 relabellings");
+/// assert_eq!(test.p_greater, 1.0 / 24.0, "only the true labels go together so well");
+/// # Ok::<(), SimilarityError>(())
+/// ```
+pub fn mantel(
+    distances: &DistanceMatrix,
+    pairs: &[PairValue],
+    method: Correlation,
+    relabellings: u64,
+    seed: u64,
+) -> Result<MantelTest, SimilarityError> {
+    check(distances, pairs, relabellings)?;
+    let values: Vec<f64> = pairs.iter().map(|pair| pair.value).collect();
+    let here: Vec<f64> = pairs.iter().map(|pair| distances.get(pair.from, pair.to)).collect();
+    let correlation = method.of(&here, &values)?;
+    let table = Table::new(distances, pairs, method);
+    let ways = Relabellings::new(table.items, relabellings, seed);
+    let tally = table.tally(ways, correlation);
+    // What was found is among all relabellings; to drawn ones it is added.
+    let itself = u64::from(!ways.is_all());
+    let share = |as_strong: u64| (as_strong + itself) as f64 / (ways.count() + itself) as f64;
+    Ok(MantelTest {
+        method,
+        correlation,
+        p_two_sided: share(tally.far),
+        p_less: share(tally.low),
+        p_greater: share(tally.high),
+        relabellings: ways.count(),
+        exact: ways.is_all(),
+        items: table.items,
+        pairs: pairs.len(),
+    })
+}
+
+fn check(distances: &DistanceMatrix, pairs: &[PairValue], relabellings: u64) -> Result<(), SimilarityError> {
+    let count = |what, found, limit| Err(SimilarityError::MantelCount { what, found, limit });
+    if !(1..=MAX_RELABELLINGS).contains(&relabellings) {
+        return count("relabellings", relabellings, MAX_RELABELLINGS);
+    }
+    let mut seen = std::collections::BTreeSet::new();
+    for &PairValue { from, to, .. } in pairs {
+        let wrong = |found, expected| {
+            Err(SimilarityError::MantelPair {
+                from,
+                to,
+                found,
+                expected,
+            })
+        };
+        if from.max(to) >= distances.len() {
+            return wrong("that the matrix does not have", "indices of its items");
+        }
+        if from == to {
+            return wrong("of an item with itself", "two items");
+        }
+        if !seen.insert((from, to)) {
+            return wrong("a second time", "each pair once");
+        }
+    }
+    if pairs.len() < MIN_CORRELATED {
+        return Err(SimilarityError::CorrelationTooFew {
+            found: pairs.len(),
+            needed: MIN_CORRELATED,
+        });
+    }
+    let items: std::collections::BTreeSet<usize> = pairs.iter().flat_map(|pair| [pair.from, pair.to]).collect();
+    if items.len() > MAX_MANTEL_ITEMS {
+        return count("items with values", items.len() as u64, MAX_MANTEL_ITEMS as u64);
+    }
+    Ok(())
+}
+
+/// How many relabellings go together at least as well as what was found.
+#[derive(Clone, Copy, Default)]
+struct Tally {
+    far: u64,
+    low: u64,
+    high: u64,
+}
+
+impl Tally {
+    fn of(correlation: Option<f64>, found: f64) -> Self {
+        let counts = |as_strong: bool| u64::from(correlation.is_none() || as_strong);
+        let here = correlation.unwrap_or_default();
+        Self {
+            far: counts(here.abs() >= found.abs() - AS_STRONG),
+            low: counts(here <= found + AS_STRONG),
+            high: counts(here >= found - AS_STRONG),
+        }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            far: self.far + other.far,
+            low: self.low + other.low,
+            high: self.high + other.high,
+        }
+    }
+}
+
+/// What is the same under every relabelling: items numbered from 0, their distances, and the values to compare with.
+struct Table {
+    items: usize,
+    method: Correlation,
+    /// `(items, items)`, row-major: the distance, or for Spearman's its place among the distances that occur.
+    distances: Vec<f64>,
+    /// How many different distances occur, where places stand for distances.
+    places: usize,
+    pairs: Vec<(usize, usize)>,
+    /// For Spearman's the ranks.
+    values: Vec<f64>,
+}
+
+impl Table {
+    /// Of pairs that can be correlated.
+    fn new(matrix: &DistanceMatrix, pairs: &[PairValue], method: Correlation) -> Self {
+        let mut items: Vec<usize> = pairs.iter().flat_map(|pair| [pair.from, pair.to]).collect();
+        items.sort_unstable();
+        items.dedup();
+        let place = |item: usize| items.partition_point(|other| *other < item);
+        let mut distances: Vec<f64> = items
+            .iter()
+            .flat_map(|a| items.iter().map(|b| matrix.get(*a, *b)))
+            .collect();
+        let mut values: Vec<f64> = pairs.iter().map(|pair| pair.value).collect();
+        let mut places = 0;
+        if method == Correlation::Spearman {
+            values = ranks(&values);
+            places = place_among_equals(&mut distances);
+        }
+        Self {
+            items: items.len(),
+            method,
+            distances,
+            places,
+            pairs: pairs.iter().map(|pair| (place(pair.from), place(pair.to))).collect(),
+            values,
+        }
+    }
+
+    fn tally(&self, ways: Relabellings, found: f64) -> Tally {
+        (0..ways.count())
+            .into_par_iter()
+            .map_init(
+                || vec![0; self.items],
+                |labels, number| {
+                    ways.write(number, labels);
+                    Tally::of(self.correlation(labels), found)
+                },
+            )
+            .reduce(Tally::default, Tally::plus)
+    }
+
+    /// The correlation where each item has the distances of another; nothing where these are all equal.
+    fn correlation(&self, labels: &[usize]) -> Option<f64> {
+        let relabelled = |(from, to): &(usize, usize)| self.distances[labels[*from] * self.items + labels[*to]];
+        let mut here: Vec<f64> = self.pairs.iter().map(relabelled).collect();
+        if self.method == Correlation::Spearman {
+            rank_places(&mut here, self.places);
+        }
+        pearson::of_checked(&here, &self.values)
+    }
+}
+
+/// Puts in place of every number how many different ones are below it; returns how many different ones there are.
+fn place_among_equals(numbers: &mut [f64]) -> usize {
+    let mut different = numbers.to_vec();
+    different.sort_by(f64::total_cmp);
+    different.dedup_by(|a, b| a == b);
+    for number in numbers.iter_mut() {
+        *number = different.partition_point(|other| other < number) as f64;
+    }
+    different.len()
+}
+
+/// Puts ranks in place of places: as [`ranks`], without sorting again for every relabelling.
+fn rank_places(numbers: &mut [f64], places: usize) {
+    let mut counts = vec![0_u32; places + 1];
+    // Places are whole numbers below `places`.
+    for place in numbers.iter() {
+        counts[*place as usize + 1] += 1;
+    }
+    for place in 0..places {
+        counts[place + 1] += counts[place];
+    }
+    for number in numbers.iter_mut() {
+        let place = *number as usize;
+        *number = f64::from(counts[place] + counts[place + 1] + 1) / 2.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn matrix(at: &[f64]) -> DistanceMatrix {
+        let labels = (0..at.len()).map(|k| format!("item {k}")).collect();
+        DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>((at[a] - at[b]).abs())).unwrap()
+    }
+
+    fn pair((from, to, value): (usize, usize, f64)) -> PairValue {
+        PairValue { from, to, value }
+    }
+
+    /// Positions on a line, and values for some of the ordered pairs.
+    fn cases() -> impl Strategy<Value = (Vec<f64>, Vec<PairValue>)> {
+        let at = prop::collection::vec((0_i32..30).prop_map(f64::from), 3..6);
+        let value = prop::option::weighted(0.6, (-9_i32..9).prop_map(f64::from));
+        (at, prop::collection::vec(value, 25)).prop_map(|(at, values)| {
+            let n = at.len();
+            let cells = (0..n * n)
+                .map(|cell| (cell / n, cell % n))
+                .filter(|(from, to)| from != to);
+            let pairs = cells
+                .zip(values)
+                .filter_map(|((from, to), value)| Some(pair((from, to, value?))));
+            (at, pairs.collect())
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn shares_are_shares_and_the_order_of_pairs_is_nothing((at, pairs) in cases(), spearman in any::<bool>()) {
+            let method = if spearman { Correlation::Spearman } else { Correlation::Pearson };
+            let Ok(test) = mantel(&matrix(&at), &pairs, method, 120, 3) else { return Ok(()) };
+            prop_assert!(test.exact);
+            for share in [test.p_two_sided, test.p_less, test.p_greater] {
+                prop_assert!((1.0 / test.relabellings as f64..=1.0).contains(&share), "{:?}", test);
+            }
+            // Each relabelling is at least as low, or at least as high, and the true one is both.
+            prop_assert!(test.p_less + test.p_greater >= 1.0);
+            let mut turned = pairs.clone();
+            turned.reverse();
+            let again = mantel(&matrix(&at), &turned, method, 120, 3).unwrap();
+            prop_assert_eq!((again.p_two_sided, again.p_less), (test.p_two_sided, test.p_less));
+            let negated: Vec<_> = pairs.iter().map(|pair| PairValue { value: -pair.value, ..*pair }).collect();
+            let other = mantel(&matrix(&at), &negated, method, 120, 3).unwrap();
+            prop_assert_eq!((other.p_greater, other.p_two_sided), (test.p_less, test.p_two_sided));
+        }
+
+        #[test]
+        fn drawn_shares_come_near_the_exact_ones((at, pairs) in cases(), seed in 0_u64..9) {
+            let Ok(exact) = mantel(&matrix(&at), &pairs, Correlation::Spearman, 120, seed) else { return Ok(()) };
+            // Fewer than there are, so that they are drawn; 5 items have 120.
+            prop_assume!(exact.relabellings == 120);
+            let drawn = mantel(&matrix(&at), &pairs, Correlation::Spearman, 119, seed).unwrap();
+            prop_assert!(!drawn.exact);
+            // Five standard errors of a share of 119.
+            prop_assert!((drawn.p_less - exact.p_less).abs() < 5.0 * 0.5 / 119_f64.sqrt());
+        }
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_shares_on_any_number_of_threads() {
+        let at: Vec<f64> = (0..12).map(|k| f64::from(k * k % 17)).collect();
+        let pairs: Vec<_> = (0..11)
+            .map(|k| pair((k, k + 1, f64::from((k * 7 % 5) as u8))))
+            .collect();
+        let test = |threads, seed| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| mantel(&matrix(&at), &pairs, Correlation::Spearman, 500, seed).unwrap())
+        };
+        assert_eq!(test(1, 7), test(4, 7));
+        assert_eq!((test(1, 7).items, test(1, 7).pairs), (12, 11));
+        assert_ne!(test(1, 7), test(1, 8));
+    }
+
+    #[test]
+    fn a_relabelling_without_a_correlation_counts_against_the_finding() {
+        // Three pairs of four items, of which three stand on one spot: under some labels all distances are 0.
+        let pairs = [(0, 1, 1.0), (1, 2, 2.0), (0, 2, 3.0), (0, 3, 4.0)].map(pair);
+        let test = mantel(&matrix(&[0.0, 0.0, 0.0, 5.0]), &pairs[..3], Correlation::Pearson, 24, 0);
+        assert_eq!(test.unwrap_err().code(), "similarity/correlation-constant");
+        let test = mantel(&matrix(&[0.0, 0.0, 0.0, 5.0]), &pairs, Correlation::Pearson, 24, 0).unwrap();
+        assert!(test.exact && test.p_greater >= 0.25, "{test:?}");
+        let hanging = [(0, 1, 1.0), (1, 0, 2.0), (2, 3, 3.0)].map(pair);
+        let test = mantel(&matrix(&[0.0, 5.0, 0.0, 5.0]), &hanging, Correlation::Pearson, 24, 0);
+        assert!(test.is_err(), "all three distances are 5");
+        let spread = mantel(&matrix(&[0.0, 5.0, 9.0, 5.0]), &hanging, Correlation::Pearson, 24, 0).unwrap();
+        assert!(spread.p_two_sided > 1.0 / 24.0);
+    }
+
+    #[test]
+    fn what_cannot_be_tested_says_why() {
+        let check = |pairs: &[(usize, usize, f64)], relabellings, expected: &str| {
+            let pairs: Vec<_> = pairs.iter().copied().map(pair).collect();
+            let found = mantel(
+                &matrix(&[0.0, 1.0, 3.0]),
+                &pairs,
+                Correlation::Spearman,
+                relabellings,
+                0,
+            );
+            assert_eq!(found.unwrap_err().to_string(), expected);
+        };
+        let sound = [(0, 1, 1.0), (0, 2, 2.0), (1, 2, 4.0)];
+        check(&sound, 0, "mantel test: found 0 relabellings, expected 1 to 1000000");
+        check(
+            &[(0, 3, 1.0)],
+            9,
+            "mantel test: found a value for the pair 0 to 3 that the matrix does not have, expected indices of its items",
+        );
+        check(
+            &[(1, 1, 1.0)],
+            9,
+            "mantel test: found a value for the pair 1 to 1 of an item with itself, expected two items",
+        );
+        check(
+            &[(0, 1, 1.0), (0, 1, 2.0)],
+            9,
+            "mantel test: found a value for the pair 0 to 1 a second time, expected each pair once",
+        );
+        check(
+            &sound[..2],
+            9,
+            "correlation: found 2 pairs, expected at least 3: two always lie on a straight line; measure more",
+        );
+        let flat = sound.map(|(from, to, _)| (from, to, 7.0));
+        check(
+            &flat,
+            9,
+            "correlation: found 7 everywhere in the second list, expected numbers that differ: what never changes goes \
+             together with nothing",
+        );
+    }
+}

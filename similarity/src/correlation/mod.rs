@@ -1,0 +1,130 @@
+//! Whether two measures of the same pairs go together: correlations, and how seldom chance brings one about. What is
+//! correlated is handed in; distances themselves are measured in the other folders.
+
+mod mantel;
+mod pearson;
+mod relabelling;
+mod spearman;
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+pub use mantel::{MAX_MANTEL_ITEMS, MAX_RELABELLINGS, MantelTest, PairValue, mantel};
+pub use pearson::pearson;
+pub use spearman::{ranks, spearman};
+
+use crate::SimilarityError;
+
+/// The fewest pairs that are correlated: two always lie on a straight line.
+pub const MIN_CORRELATED: usize = 3;
+
+/// How two lists are compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Correlation {
+    /// By their ranks: whether one rises where the other does, however steeply. See [`spearman`].
+    #[default]
+    Spearman,
+    /// By their values: whether they lie on a straight line. See [`pearson`].
+    Pearson,
+}
+
+impl Correlation {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Spearman, Self::Pearson];
+
+    /// The word by which the command line calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Spearman => "spearman",
+            Self::Pearson => "pearson",
+        }
+    }
+
+    /// The correlation of two lists, −1 to 1.
+    ///
+    /// # Errors
+    /// As [`spearman`] and [`pearson`].
+    pub fn of(self, a: &[f64], b: &[f64]) -> Result<f64, SimilarityError> {
+        match self {
+            Self::Spearman => spearman(a, b),
+            Self::Pearson => pearson(a, b),
+        }
+    }
+}
+
+impl fmt::Display for Correlation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Correlation {
+    type Err = SimilarityError;
+
+    fn from_str(word: &str) -> Result<Self, SimilarityError> {
+        let found = Self::ALL.into_iter().find(|correlation| correlation.name() == word);
+        found.ok_or_else(|| SimilarityError::UnknownCorrelation { found: word.to_owned() })
+    }
+}
+
+/// Whether two lists can be correlated: of one length, long enough, finite, neither all one number.
+fn check(a: &[f64], b: &[f64]) -> Result<(), SimilarityError> {
+    if a.len() != b.len() {
+        return Err(SimilarityError::CorrelationLengths { a: a.len(), b: b.len() });
+    }
+    if a.len() < MIN_CORRELATED {
+        return Err(SimilarityError::CorrelationTooFew {
+            found: a.len(),
+            needed: MIN_CORRELATED,
+        });
+    }
+    for (list, values) in [("first", a), ("second", b)] {
+        if let Some(place) = values.iter().position(|value| !value.is_finite()) {
+            let found = values[place];
+            return Err(SimilarityError::CorrelationNotFinite { list, place, found });
+        }
+        if values.iter().all(|value| *value == values[0]) {
+            let found = values[0];
+            return Err(SimilarityError::CorrelationConstant { list, found });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_cannot_be_correlated_says_why() {
+        let said = |a: &[f64], b: &[f64]| {
+            let of = |correlation: Correlation| correlation.of(a, b).unwrap_err().to_string();
+            assert_eq!(of(Correlation::Spearman), of(Correlation::Pearson));
+            of(Correlation::Spearman)
+        };
+        assert_eq!(
+            said(&[1.0, 2.0, 3.0], &[1.0, 2.0]),
+            "correlation: found lists of 3 and 2 numbers, expected as many in both"
+        );
+        assert_eq!(
+            said(&[1.0, 2.0], &[1.0, 2.0]),
+            "correlation: found 2 pairs, expected at least 3: two always lie on a straight line; measure more"
+        );
+        assert_eq!(
+            said(&[1.0, 2.0, 3.0], &[1.0, f64::NAN, 3.0]),
+            "correlation: found NaN at place 1 of the second list, expected a finite number"
+        );
+        assert_eq!(
+            said(&[2.0, 2.0, 2.0], &[1.0, 2.0, 3.0]),
+            "correlation: found 2 everywhere in the first list, expected numbers that differ: what never changes goes \
+             together with nothing"
+        );
+        assert!("kendall".parse::<Correlation>().is_err());
+        for correlation in Correlation::ALL {
+            assert_eq!(correlation.to_string().parse(), Ok(correlation));
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! `driftworld transfer-report`: whether similar variants transferred more, by logs and distances. Transfer is `metrics`'s, the
+//! correlation `similarity`'s, their meeting `curriculum`'s.
+
+mod logs;
+mod matrix;
+mod words;
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use driftworld::curriculum::{TransferOptions, transfer_report};
+use driftworld::metrics::{NormalizationMethod, Options, SmoothingMethod, TransferMethod};
+use driftworld::similarity::MAX_RELABELLINGS;
+
+use super::metrics::score_log;
+use super::pictures::scatter;
+use super::{Failure, output};
+
+/// Ask whether similar variants transferred more: correlate distances with the transfer that logs measured.
+///
+/// Transfer from A to B is what learning A did to B: B's evaluation after it against the one before. It is forward where B was
+/// still to be learned, backward where it had been. A curriculum ordered by distance rests on the belief that the nearer two
+/// variants are, the more they transfer; this report tests the belief on lifetimes that were lived.
+///
+/// Several lifetimes are pooled: of each pair the first transfer of each lifetime counts, and their mean is taken. Use lifetimes
+/// that learned in different orders: where all learned in one order, near variants are also early ones, and the two cannot be
+/// told apart.
+///
+/// The p-value comes from a Mantel test: variants change labels in the distance matrix, pairs without a transfer stay without,
+/// and p is the share of relabellings that go together at least as well.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld order find_objects --matrix distances.csv
+  driftworld transfer-report logs --distances distances.csv -o transfer.png
+  driftworld transfer-report logs/run1 logs/run2 --distances distances.csv --json")]
+pub(crate) struct TransferReport {
+    /// Folders of logs in l2logger's format, or folders of such folders.
+    #[arg(required = true, value_name = "LOGS")]
+    logs: Vec<PathBuf>,
+    /// The distance matrix: a CSV file as `driftworld order --matrix` writes it.
+    #[arg(long, value_name = "FILE")]
+    distances: PathBuf,
+    /// The column that holds the performance.
+    #[arg(long, default_value = "reward", value_name = "COLUMN")]
+    perf_measure: String,
+    /// How transfer compares before and after.
+    #[arg(long, value_enum, default_value_t = Measure::Contrast, value_name = "MEASURE")]
+    transfer_method: Measure,
+    /// How performances are scaled: task, run or none.
+    #[arg(long, default_value = "task", value_name = "METHOD")]
+    normalization_method: NormalizationMethod,
+    /// How learning curves are smoothed: flat, hanning, hamming, bartlett, blackman or none.
+    #[arg(long, default_value = "flat", value_name = "METHOD")]
+    smoothing_method: SmoothingMethod,
+    /// How many relabellings the test draws; all of them where there are no more.
+    #[arg(long, default_value_t = 9_999, value_name = "N",
+        value_parser = clap::value_parser!(u64).range(1..=MAX_RELABELLINGS))]
+    relabellings: u64,
+    /// What relabellings are drawn from.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Draw transfer against distance into this PNG file.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Print the result as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// A measure of transfer.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Measure {
+    /// Difference over sum: −1 to 1, 0 where nothing changed.
+    Contrast,
+    /// After over before: 1 where nothing changed.
+    Ratio,
+}
+
+impl From<Measure> for TransferMethod {
+    fn from(measure: Measure) -> Self {
+        match measure {
+            Measure::Contrast => Self::Contrast,
+            Measure::Ratio => Self::Ratio,
+        }
+    }
+}
+
+impl TransferReport {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let distances = matrix::read(&self.distances)?;
+        let measure = self.transfer_method.into();
+        let options = Options {
+            perf_measure: self.perf_measure,
+            transfer_method: measure,
+            normalization_method: self.normalization_method,
+            smoothing_method: self.smoothing_method,
+            ..Options::default()
+        };
+        let lifetimes = logs::find(&self.logs)?
+            .iter()
+            .map(|log| score_log(log, &[], &options))
+            .collect::<Result<Vec<_>, _>>()?;
+        let options = TransferOptions {
+            measure,
+            relabellings: self.relabellings,
+            seed: self.seed,
+        };
+        let report = transfer_report(&lifetimes, &distances, &options)?;
+        if self.json {
+            output::json(&report)?;
+        } else {
+            output::line(words::report(&report))?;
+        }
+        let Some(path) = self.output else { return Ok(()) };
+        let picture = scatter(&words::panels(&report))?;
+        picture.write(&path)?;
+        output::note(format!("wrote {}", path.display()));
+        Ok(())
+    }
+}

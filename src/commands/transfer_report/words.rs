@@ -1,0 +1,228 @@
+//! The report as text, and the words of its picture. What is drawn where is in `pictures/scatter.rs`.
+
+use driftworld::curriculum::{DirectionReport, TransferReport};
+use driftworld::metrics::TransferMethod;
+use driftworld::similarity::MantelTest;
+
+use super::super::pictures::{Panel, Point};
+use super::super::table::table;
+
+/// How many pairs the table shows; the rest is counted.
+const MOST_PAIRS: usize = 40;
+
+/// The whole report.
+pub(super) fn report(report: &TransferReport) -> String {
+    let mut text = head(report);
+    text.push_str(&pairs(report));
+    text.push_str(&tests(report));
+    text.push('\n');
+    for note in notes(report) {
+        text.extend(["\n", &note, "\n"]);
+    }
+    text.truncate(text.trim_end().len());
+    text
+}
+
+fn head(report: &TransferReport) -> String {
+    format!(
+        "Does similarity predict transfer? {}; transfer as {}\n\n",
+        count(report.lifetimes, "lifetime"),
+        match report.measure {
+            TransferMethod::Ratio => "ratio: above 1 learning helped the other variant, below 1 it harmed",
+            _ => "contrast, −1 to 1: above 0 learning helped the other variant, below 0 it harmed",
+        }
+    )
+}
+
+fn pairs(report: &TransferReport) -> String {
+    let directions = [("forward", &report.forward), ("backward", &report.backward)];
+    let all = directions
+        .iter()
+        .flat_map(|(name, direction)| direction.pairs.iter().map(move |pair| (*name, pair)));
+    let rows: Vec<[String; 6]> = all
+        .clone()
+        .take(MOST_PAIRS)
+        .map(|(name, pair)| {
+            [
+                name.to_owned(),
+                pair.from.clone(),
+                pair.to.clone(),
+                format!("{:.4}", pair.distance),
+                format!("{:.4}", pair.transfer),
+                pair.lifetimes.to_string(),
+            ]
+        })
+        .collect();
+    let head = ["", "learned", "evaluated", "distance", "transfer", "lifetimes"];
+    let mut text = table(head, rows, &[3, 4, 5]);
+    let more = all.count().saturating_sub(MOST_PAIRS);
+    if more > 0 {
+        text.extend(["\nand ", &more.to_string(), " more pairs; --json has all"]);
+    }
+    text + "\n\n"
+}
+
+fn tests(report: &TransferReport) -> String {
+    let mut rows = Vec::new();
+    let mut untested = Vec::new();
+    for (name, direction) in [("forward", &report.forward), ("backward", &report.backward)] {
+        rows.extend(
+            [direction.spearman, direction.pearson]
+                .into_iter()
+                .flatten()
+                .map(|test| {
+                    [
+                        name.to_owned(),
+                        test.method.to_string(),
+                        signed(test.correlation),
+                        share(test.p_less, &test),
+                        share(test.p_two_sided, &test),
+                        test.pairs.to_string(),
+                        test.items.to_string(),
+                    ]
+                }),
+        );
+        untested.extend(
+            direction
+                .untested
+                .iter()
+                .map(|why| format!("\n{name}: not tested: {why}")),
+        );
+    }
+    let head = [
+        "",
+        "correlation",
+        "value",
+        "p (nearer → more)",
+        "p (either way)",
+        "pairs",
+        "variants",
+    ];
+    table(head, rows, &[2, 3, 4, 5, 6]) + &untested.concat()
+}
+
+/// What the numbers do and do not say.
+fn notes(report: &TransferReport) -> Vec<String> {
+    let mut notes = vec![
+        "value: below 0, nearer variants transferred more; 0, distance told nothing. Spearman compares ranks, Pearson the numbers."
+            .to_owned(),
+    ];
+    if let Some(test) = report.forward.spearman.or(report.backward.spearman) {
+        notes.push(format!(
+            "p: the share of {} whose correlation is at least as strong. A small p says that chance labels seldom do as well. It is \
+             not the probability that similarity does not matter, nor does it say how much it matters; a large p says that this \
+             many variants could not show it, not that there is nothing to show.{}",
+            relabellings(&test),
+            if test.exact {
+                format!(
+                    " With {} variants it cannot be below 1/{}.",
+                    test.items, test.relabellings
+                )
+            } else {
+                String::new()
+            }
+        ));
+    }
+    if report.learning_orders < 2 {
+        notes.push(
+            "All lifetimes learned in one order: whether a variant gained because it was near, or because of when it came, they \
+             cannot tell. Add lifetimes in other orders (reversed, random)."
+                .to_owned(),
+        );
+    }
+    notes.push(
+        "A correlation is no cause: a variant that is easy, or already as good as it can be, has its own transfer whatever is near."
+            .to_owned(),
+    );
+    for (names, place) in [
+        (&report.not_in_logs, "logs"),
+        (&report.not_in_matrix, "distance matrix"),
+    ] {
+        if !names.is_empty() {
+            notes.push(format!("Not in the {place}, and left out: {}.", names.join(", ")));
+        }
+    }
+    notes
+}
+
+fn relabellings(test: &MantelTest) -> String {
+    if test.exact {
+        format!("all {} relabellings of the variants", test.relabellings)
+    } else {
+        format!("{} relabellings of the variants, drawn by chance,", test.relabellings)
+    }
+}
+
+fn signed(value: f64) -> String {
+    format!("{value:+.3}")
+}
+
+/// Not more digits than the test has.
+fn share(p: f64, test: &MantelTest) -> String {
+    if !test.exact && p <= 1.0 / (test.relabellings + 1) as f64 {
+        return format!("≤ {p:.1e}");
+    }
+    format!("{p:.4}")
+}
+
+fn count(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}
+
+/// The picture's panels: one for each direction that has pairs.
+pub(super) fn panels(report: &TransferReport) -> Vec<Panel> {
+    let directions = [
+        ("Forward: to variants not yet learned", &report.forward),
+        ("Backward: to variants learned before", &report.backward),
+    ];
+    let neutral = if report.measure == TransferMethod::Ratio {
+        1.0
+    } else {
+        0.0
+    };
+    directions
+        .into_iter()
+        .filter(|(_, direction)| !direction.pairs.is_empty())
+        .map(|(title, direction)| Panel {
+            title: title.to_owned(),
+            words: summary(direction),
+            across: "distance".to_owned(),
+            up: format!("transfer ({})", report.measure),
+            neutral,
+            points: points(direction),
+        })
+        .collect()
+}
+
+fn summary(direction: &DirectionReport) -> String {
+    match &direction.spearman {
+        Some(test) => format!(
+            "Spearman {}; chance labels do as well with p = {} (the nearer, the more); {} pairs of {} variants",
+            signed(test.correlation),
+            share(test.p_less, test),
+            test.pairs,
+            test.items
+        ),
+        None => format!("{}: too few to test", count(direction.pairs.len(), "pair")),
+    }
+}
+
+fn points(direction: &DirectionReport) -> Vec<Point> {
+    let task = |name: &str| name.rsplit_once('#').map_or(String::new(), |(task, _)| task.to_owned());
+    let first = direction.pairs.first().map(|pair| task(&pair.from)).unwrap_or_default();
+    let one_task = direction
+        .pairs
+        .iter()
+        .all(|pair| task(&pair.from) == first && task(&pair.to) == first);
+    // Where all are of one task, its name tells nothing.
+    let short = |name: &str| match name.rsplit_once('#') {
+        Some((_, variant)) if one_task => variant.to_owned(),
+        _ => name.to_owned(),
+    };
+    let point = |pair: &driftworld::curriculum::PairTransfer| Point {
+        x: pair.distance,
+        y: pair.transfer,
+        label: format!("{} › {}", short(&pair.from), short(&pair.to)),
+    };
+    direction.pairs.iter().map(point).collect()
+}

@@ -1,0 +1,235 @@
+//! `driftworld transfer-report` tells apart a learner whose transfer falls with distance and one whose transfer does not.
+//! The learners are a few lines of arithmetic; what they log is read like anyone's log.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp};
+use driftworld::similarity::{DistanceMatrix, SimilarityError};
+use serde_json::Value;
+
+/// Where six variants lie on a line.
+const PLACES: [f64; 6] = [0.0, 0.1, 0.25, 0.5, 0.8, 1.0];
+
+/// Orders in which lifetimes learn them.
+const ORDERS: [[usize; 6]; 6] = [
+    [0, 1, 2, 3, 4, 5],
+    [5, 4, 3, 2, 1, 0],
+    [3, 0, 5, 1, 4, 2],
+    [2, 4, 1, 5, 0, 3],
+    [4, 2, 0, 3, 5, 1],
+    [1, 5, 3, 0, 2, 4],
+];
+
+/// What learning one variant does to another: a share of what it still lacks.
+type Kernel = fn(usize, usize) -> f64;
+
+/// The nearer, the more.
+fn by_distance(a: usize, b: usize) -> f64 {
+    (-(PLACES[a] - PLACES[b]).abs() / 0.3).exp()
+}
+
+/// Something between a tenth and a half, whatever the distance.
+fn by_nothing(a: usize, b: usize) -> f64 {
+    if a == b {
+        1.0
+    } else {
+        0.1 + 0.4 * noise((a * 31 + b * 7) as u64 + 5)
+    }
+}
+
+/// A number in 0..1 that looks like chance.
+fn noise(k: u64) -> f64 {
+    let mixed = k.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    (mixed >> 40) as f64 / (1_u64 << 24) as f64
+}
+
+/// A lifetime under way: how good the learner is at each variant, and the log that it writes.
+struct Life {
+    skill: [f64; 6],
+    log: LogWriter,
+    block: u64,
+    experience: u64,
+}
+
+impl Life {
+    fn experience(&mut self, kind: BlockType, variant: usize) {
+        let reward = 10.0 * self.skill[variant] + 0.1 * noise(self.experience);
+        let when = Timestamp::from_unix_micros(1_600_000_000_000_000 + self.experience as i64).expect("a day in 2020");
+        let record = Record::new(self.block, self.experience, kind, format!("line_v{variant}"), when);
+        self.log
+            .write(&record.with_metric("reward", reward))
+            .expect("the folder can be written");
+        self.experience += 1;
+    }
+
+    fn evaluate(&mut self) {
+        for variant in 0..6 {
+            (0..3).for_each(|_| self.experience(BlockType::Test, variant));
+        }
+        self.block += 1;
+    }
+
+    fn learn(&mut self, variant: usize, kernel: Kernel) {
+        for _ in 0..15 {
+            self.experience(BlockType::Train, variant);
+            for other in 0..6 {
+                self.skill[other] += 0.05 * kernel(variant, other) * (1.0 - self.skill[other]);
+            }
+        }
+        self.block += 1;
+    }
+}
+
+/// Lives all variants in this order, evaluated before and after each unless told otherwise.
+fn live(folder: &Path, order: &[usize], kernel: Kernel, evaluations: bool) {
+    let info = LoggerInfo::new(["reward"]).expect("a column");
+    let log = LogWriter::create(folder, &info, &ScenarioInfo::default()).expect("the folder is new");
+    let mut life = Life {
+        skill: [0.1; 6],
+        log,
+        block: 0,
+        experience: 0,
+    };
+    for variant in order {
+        if evaluations {
+            life.evaluate();
+        }
+        life.learn(*variant, kernel);
+    }
+    if evaluations {
+        life.evaluate();
+    }
+}
+
+/// A folder with `logs/` of these lifetimes and `distances.csv`.
+fn lived(orders: &[&[usize]], kernel: Kernel, evaluations: bool) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    for (k, order) in orders.iter().enumerate() {
+        live(&folder.path().join(format!("logs/run{k}")), order, kernel, evaluations);
+    }
+    let labels = (0..6).map(|k| format!("line#v{k}")).collect();
+    write_matrix(folder.path(), labels);
+    folder
+}
+
+fn write_matrix(folder: &Path, labels: Vec<String>) {
+    let matrix = DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>((PLACES[a] - PLACES[b]).abs()));
+    let text = matrix.expect("these are distances").to_csv();
+    std::fs::write(folder.join("distances.csv"), text).expect("the folder can be written");
+}
+
+fn report(folder: &Path, more: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_driftworld"))
+        .args(["transfer-report", "logs", "--distances", "distances.csv"])
+        .args(more)
+        .current_dir(folder)
+        .output()
+        .expect("the command was built by cargo and starts")
+}
+
+#[track_caller]
+fn succeed(folder: &Path, more: &[&str]) -> String {
+    let output = report(folder, more);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout).expect("the command prints UTF-8")
+}
+
+#[track_caller]
+fn fail(folder: &Path, code: i32, more: &[&str]) -> String {
+    let output = report(folder, more);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{error}");
+    error
+}
+
+fn json(folder: &Path) -> Value {
+    serde_json::from_str(&succeed(folder, &["--json"])).expect("--json prints JSON")
+}
+
+fn every_order() -> Vec<&'static [usize]> {
+    ORDERS.iter().map(<[usize; 6]>::as_slice).collect()
+}
+
+#[test]
+fn a_learner_whose_transfer_falls_with_distance_is_told_from_one_whose_transfer_does_not() {
+    let near = json(lived(&every_order(), by_distance, true).path());
+    let test = &near["forward"]["spearman"];
+    assert_eq!(
+        (&test["pairs"], &test["items"], &test["exact"]),
+        (&30.into(), &6.into(), &true.into())
+    );
+    assert!(test["correlation"].as_f64() < Some(-0.6), "{test}");
+    assert!(test["p_less"].as_f64() < Some(0.01), "{test}");
+    assert_eq!((&near["lifetimes"], &near["learning_orders"]), (&6.into(), &6.into()));
+
+    let blind = json(lived(&every_order(), by_nothing, true).path());
+    let test = &blind["forward"]["spearman"];
+    assert!(test["correlation"].as_f64().map(f64::abs) < Some(0.35), "{test}");
+    assert!(test["p_two_sided"].as_f64() > Some(0.1), "{test}");
+}
+
+#[test]
+fn the_report_explains_itself_and_draws_a_picture() {
+    let folder = lived(&every_order(), by_distance, true);
+    let said = succeed(folder.path(), &["-o", "transfer.png"]);
+    for words in [
+        "6 lifetimes",
+        "line#v0",
+        "all 720 relabellings",
+        "not the probability that similarity does not matter",
+        "A correlation is no cause",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    assert!(!said.contains("one order"), "{said}");
+    let picture = std::fs::read(folder.path().join("transfer.png")).expect("it was written");
+    assert!(picture.starts_with(b"\x89PNG"));
+    if let Some(keep) = std::env::var_os("DRIFTWORLD_KEEP_PICTURES") {
+        std::fs::copy(
+            folder.path().join("transfer.png"),
+            Path::new(&keep).join("transfer.png"),
+        )
+        .expect("a folder");
+    }
+    let one = lived(&[&ORDERS[0]], by_distance, true);
+    assert!(succeed(one.path(), &[]).contains("learned in one order"));
+}
+
+#[test]
+fn what_cannot_be_reported_says_what_is_needed() {
+    let folder = lived(&[&ORDERS[0]], by_distance, false);
+    let error = fail(folder.path(), 1, &[]);
+    assert!(
+        error.contains("no evaluation in 1 logs") && error.contains("--evaluate every"),
+        "{error}"
+    );
+
+    let folder = lived(&[&ORDERS[0][..2]], by_distance, true);
+    write_matrix(folder.path(), vec!["line#v0".to_owned(), "line#v1".to_owned()]);
+    let error = fail(folder.path(), 1, &[]);
+    assert!(
+        error.contains("1 forward and 1 backward") && error.contains("at least 3"),
+        "{error}"
+    );
+
+    write_matrix(folder.path(), vec!["curve#v0".to_owned(), "curve#v1".to_owned()]);
+    let error = fail(folder.path(), 1, &[]);
+    assert!(error.contains("line_v0") && error.contains("curve#v0"), "{error}");
+
+    let error = fail(folder.path(), 1, &["--perf-measure", "joy"]);
+    assert!(error.contains("\"joy\"") && error.contains("reward"), "{error}");
+    std::fs::write(folder.path().join("distances.csv"), "nothing").expect("the folder can be written");
+    assert!(fail(folder.path(), 1, &[]).contains("distances.csv:1: found no line of labels"));
+    std::fs::remove_dir_all(folder.path().join("logs")).expect("it is there");
+    std::fs::create_dir(folder.path().join("logs")).expect("it is gone");
+    write_matrix(folder.path(), vec!["line#v0".to_owned(), "line#v1".to_owned()]);
+    assert!(fail(folder.path(), 1, &[]).contains("logs: found no log"));
+    fail(folder.path(), 2, &["--relabellings", "0"]);
+}
