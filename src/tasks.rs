@@ -6,9 +6,13 @@ use std::sync::Arc;
 use driftworld_spec::{DEFAULT_VARIANT, SpecError, TaskSpec, Variant, nearest};
 
 /// The tasks that are built in: name and text. The files are `examples/tasks/`.
-pub const BUILT_IN: [(&str, &str); 2] = [
+pub const BUILT_IN: [(&str, &str); 6] = [
     ("find_objects", include_str!("../examples/tasks/find_objects.json")),
     ("get_to_goal", include_str!("../examples/tasks/get_to_goal.json")),
+    ("select_object", include_str!("../examples/tasks/select_object.json")),
+    ("moving_object", include_str!("../examples/tasks/moving_object.json")),
+    ("scavenger_hunt", include_str!("../examples/tasks/scavenger_hunt.json")),
+    ("blue_red_green", include_str!("../examples/tasks/blue_red_green.json")),
 ];
 
 /// Why a task cannot be had by its name.
@@ -122,12 +126,13 @@ mod tests {
     fn a_misspelt_name_is_told_the_names_there_are() {
         assert_eq!(
             variant("find_object#red").unwrap_err().to_string(),
-            "found task \"find_object\", expected the path of a task spec or one of find_objects, get_to_goal; \
-             did you mean \"find_objects\"?"
+            "found task \"find_object\", expected the path of a task spec or one of find_objects, get_to_goal, \
+             select_object, moving_object, scavenger_hunt, blue_red_green; did you mean \"find_objects\"?"
         );
         assert_eq!(
             variant("find_objects#rde").unwrap_err().to_string(),
-            "find_objects: found variant \"rde\", expected one of blue, red, green, dusk, huddle, penalty; did you mean \"red\"?"
+            "find_objects: found variant \"rde\", expected one of blue, red, green, dusk, huddle, penalty, \
+             spheres, clearing, wide, modest, poor, half, interact, near, held, long_held, slim, slow, stiff, waypoints; did you mean \"red\"?"
         );
     }
 }

@@ -63,6 +63,7 @@ fn every_subcommand_has_help_with_an_example() {
         "vary",
         "convert",
         "render",
+        "sheet",
         "assets",
         "photograph",
         "console",

@@ -13,4 +13,6 @@ pub use design::{
     control, design, distances, experts, probe, steps,
 };
 pub use error::CurriculumError;
-pub use run::{COLUMNS, Progress, RegimeSummary, Summary, Surroundings, log_name, logger_info, run, scenario_info};
+pub use run::{
+    COLUMNS, FoundWorld, Journal, Plan, Progress, RegimeSummary, Sources, Summary, Surroundings, log_name, run,
+};

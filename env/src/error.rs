@@ -197,6 +197,18 @@ pub enum EnvError {
         /// What could be there.
         expected: String,
     },
+    /// A line of an agent's script that says nothing an agent could do.
+    #[error("{script}:{line}: found {found}, expected {expected}")]
+    BadScript {
+        /// What the script is called, usually its path.
+        script: String,
+        /// The line, counted from 1.
+        line: usize,
+        /// What stands there.
+        found: String,
+        /// What could stand there.
+        expected: String,
+    },
     /// The name of a renderer that there is not.
     #[error("renderer: found {found:?}, expected cpu, gpu or auto")]
     NoSuchRenderer {
@@ -255,6 +267,7 @@ impl EnvError {
             Self::NoHeading { .. } => "env/no-heading",
             Self::TooManyPhotographs { .. } => "env/too-many-photographs",
             Self::PictureSize { .. } => "env/picture-size",
+            Self::BadScript { .. } => "env/bad-script",
             Self::NoSuchRenderer { .. } => "env/no-such-renderer",
             Self::NoGpu { .. } => "env/no-gpu",
             Self::GpuPicture { .. } => "env/gpu-picture",
@@ -311,6 +324,12 @@ mod tests {
                 most: 50_000,
             },
             EnvError::PictureSize { width: 0, height: 5000 },
+            EnvError::BadScript {
+                script: "tour.txt".to_owned(),
+                line: 3,
+                found: "\"zero\"".to_owned(),
+                expected: "how many steps, 1 to 100000".to_owned(),
+            },
             EnvError::NoSuchRenderer {
                 found: "GPU".to_owned(),
             },

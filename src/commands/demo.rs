@@ -16,12 +16,17 @@ use super::metrics::{score_log, summary};
 use super::order::{matrix, path_table};
 use super::pictures::{SheetRow, heat_map, sheet};
 use super::render::Views;
-use super::run::{Who, live};
+use super::run::{Life, Start, processors};
+use super::scenario_file;
 use super::table::wide_table;
+use super::who::Who;
 use super::{Failure, output};
 
 /// The task that the demo is about.
 const TASK: &str = "find_objects";
+
+/// Its variants that the demo shows.
+const VARIANTS: [&str; 6] = ["blue", "red", "green", "dusk", "huddle", "penalty"];
 
 /// Go the whole way once: worlds, pictures, distances, a curriculum, a lifetime, its scores.
 #[derive(Args)]
@@ -44,10 +49,9 @@ struct Shown {
 impl Demo {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let folder = &self.output;
-        let variants: Vec<(String, Variant)> = tasks::variants(TASK)?
-            .into_iter()
-            .map(|variant| (TASK.to_owned(), variant))
-            .collect();
+        let task = tasks::task(TASK)?;
+        let variant = |name| Ok::<_, Failure>((TASK.to_owned(), task.variant(name)?));
+        let variants: Vec<(String, Variant)> = VARIANTS.into_iter().map(variant).collect::<Result<_, _>>()?;
 
         heading(
             "1",
@@ -76,7 +80,15 @@ impl Demo {
         heading("4", "A lifetime: an agent that knows the map lives it")?;
         let logs = folder.join("log");
         remove_old_log(&logs)?;
-        let lived = live(&scenario, Who::Onrails, &logs, Catalogue::default())?;
+        let life = Life {
+            plan: &scenario_file::plan(&scenario, &mut |_| Err("the demo has no world files".to_owned()))?,
+            who: &Who::Onrails,
+            logs: &logs,
+            start: Start::New,
+            jobs: processors(),
+            catalogue: Catalogue::default(),
+        };
+        let lived = life.live()?;
         output::line(block_table(&lived))?;
 
         heading("5", "What the lifetime is worth, by the metrics of lifelong learning")?;

@@ -8,7 +8,9 @@ mod curriculum;
 mod demo;
 mod distance;
 mod doctor;
+mod draw_maps;
 mod input;
+mod interrupt;
 mod metrics;
 mod modality;
 mod order;
@@ -18,12 +20,15 @@ mod pictures;
 mod render;
 mod run;
 mod sample;
+mod scenario_file;
 mod schema;
+mod sheet;
 mod table;
 mod tasks;
 mod validate;
 mod vary;
 mod weights;
+mod who;
 
 use std::process::ExitCode;
 
@@ -43,10 +48,12 @@ pub(crate) enum Command {
     Sample(sample::Sample),
     /// Find a variant at a wanted distance from another.
     Vary(vary::Vary),
-    /// Write a world in L2Explorer's form, or one of L2Explorer's in ours.
+    /// Write a world or a scenario in L2Explorer's form, or one of L2Explorer's in ours.
     Convert(convert::Convert),
     /// Draw what an agent sees of a world, and the world from above.
     Render(render::Render),
+    /// Draw one world of each of many variants: what the agent sees, and the world from above.
+    Sheet(sheet::Sheet),
     /// Turn glTF models into libraries that worlds can use, and look at what there is.
     Assets(assets::Assets),
     /// Step through a world by hand: act, look, change it, send it messages.
@@ -82,6 +89,7 @@ impl Command {
             Self::Vary(command) => command.run(),
             Self::Convert(command) => command.run(),
             Self::Render(command) => command.run(),
+            Self::Sheet(command) => command.run(),
             Self::Assets(command) => command.run(),
             Self::Console(command) => command.run(),
             Self::Photograph(command) => command.run(),
@@ -119,6 +127,13 @@ impl Failure {
         };
         eprintln!("error: {text}");
         ExitCode::from(code)
+    }
+
+    /// What it says.
+    pub(crate) fn text(&self) -> &str {
+        match self {
+            Self::Input(text) | Self::Usage(text) => text,
+        }
     }
 
     pub(crate) fn usage(text: impl Into<String>) -> Self {

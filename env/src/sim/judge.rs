@@ -37,6 +37,11 @@ impl Environment {
             .map(|(index, _)| index)
     }
 
+    /// Whether the agent was in contact with an object at the end of the last step.
+    pub(crate) fn touches(&self, index: usize) -> bool {
+        self.episode.contacts.binary_search(&(index as u32)).is_ok()
+    }
+
     /// The way from the agent to an object along x and y, in metres.
     pub(super) fn way_to(&self, index: usize) -> [f32; 2] {
         let (to, from) = (self.scene.items[index].position, self.episode.agent.position);

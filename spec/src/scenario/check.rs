@@ -35,6 +35,13 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
             ));
         }
         let name = regime.variant_name();
+        if regime.world.is_some() && (regime.drift.is_some() || !regime.values.is_empty()) {
+            let key = if regime.drift.is_some() { "drift" } else { "values" };
+            let found = format!("a world file and {key}");
+            let problem = Problem::new("spec/value", format!("{pointer}/{key}"), found, "one of the two");
+            problems.push(problem.advise("a world file is lived as it is: write what is to change into it"));
+            continue;
+        }
         if regime.name.is_some() && regime.values.is_empty() {
             let found = format!("the name {name:?} and no values");
             let problem = Problem::new(
@@ -57,7 +64,8 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
             problems.push(problem.advise("give the variant that they make a name"));
             continue;
         }
-        let same = |other: &Regime| other.variant == regime.variant && other.values == regime.values;
+        let made_of = |regime: &Regime| (regime.variant.clone(), regime.values.clone(), regime.world.clone());
+        let same = |other: &Regime| made_of(other) == made_of(regime);
         let key = (regime.task.as_str(), name);
         if let Some((_, first)) = called.get(&key).filter(|(other, _)| !same(other)) {
             let key = if regime.name.is_some() { "name" } else { "variant" };
@@ -90,7 +98,7 @@ fn phases(scenario: &Scenario) -> Vec<Problem> {
 pub(super) fn against_tasks(scenario: &Scenario, mut find: impl FnMut(&str) -> Option<Arc<TaskSpec>>) -> Vec<Problem> {
     let mut tasks: BTreeMap<&str, Option<Arc<TaskSpec>>> = BTreeMap::new();
     let mut problems = Vec::new();
-    for (pointer, regime) in regimes(scenario) {
+    for (pointer, regime) in regimes(scenario).filter(|(_, regime)| regime.world.is_none()) {
         let task = tasks.entry(&regime.task).or_insert_with(|| find(&regime.task));
         let Some(task) = task else { continue };
         if let Err(error) = regime.resolve(task) {
@@ -192,6 +200,20 @@ mod tests {
                 dim.replace("dim", "dusk")
             ),
             "(/blocks/0/regimes/1/variant): found \"dusk\", which is another variant at /blocks/0/regimes/0",
+        );
+    }
+
+    #[test]
+    fn a_world_file_is_lived_as_it_is() {
+        let world = r#"{ "task": "t", "variant": "yard", "world": "maps/yard.json", "max_steps": 20, "count": 1 }"#;
+        check(world, "");
+        check(
+            &world.replace("\"count\"", "\"drift\": { \"to\": \"dusk\" }, \"count\""),
+            "(/blocks/0/regimes/0/drift): found a world file and drift, expected one of the two; a world file is lived as it is",
+        );
+        check(
+            &format!("{world}, {}", world.replace("maps/yard", "other/yard")),
+            "(/blocks/0/regimes/1/variant): found \"yard\", which is another variant at /blocks/0/regimes/0",
         );
     }
 

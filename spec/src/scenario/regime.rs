@@ -37,6 +37,15 @@ pub struct Regime {
     /// The index of its first world; the others follow.
     #[serde(default)]
     pub first_index: u64,
+    /// A world file, ours or L2Explorer's, whose world is lived each time instead of drawn ones; found from the scenario's folder.
+    /// Task and variant are mere names then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1, max = 4096))]
+    pub world: Option<String>,
+    /// Steps after which an experience is cut off, in place of what the world says; 0 = never.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 1_000_000_000))]
+    pub max_steps: Option<u32>,
     /// Leads from the variant to another while the experiences pass.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drift: Option<RegimeDrift>,
@@ -62,6 +71,8 @@ impl Regime {
             count,
             seed: 0,
             first_index: 0,
+            world: None,
+            max_steps: None,
             drift: None,
         }
     }

@@ -168,6 +168,7 @@ const EXAMPLES: &[(&str, &[&str])] = &[
         &[
             r#"{ "task": "find_objects", "variant": "red", "count": 100, "seed": 7, "first_index": 0 }"#,
             r#"{ "task": "find_objects", "variant": "red", "values": { "light": 1.2 }, "name": "red-dim", "count": 100 }"#,
+            r#"{ "task": "Task1", "variant": "yard", "world": "maps/yard.json", "max_steps": 200, "count": 10 }"#,
             r#"{ "task": "find_objects", "variant": "red", "count": 100, "drift": { "to": "dusk", "schedule": "cosine" } }"#,
         ],
     ),

@@ -1,0 +1,241 @@
+//! The text form of what a scripted agent does: one command a line, read and checked. Carrying it out is in `scripted.rs`.
+
+use driftworld_spec::nearest;
+
+use crate::EnvError;
+use crate::sim::Action;
+
+/// The most steps of one command.
+const MOST_STEPS: u32 = 100_000;
+
+/// Steps after which a walk to an object is given up, if the script does not say.
+const WALK_STEPS: u32 = 300;
+
+/// The most lines of a script.
+const MOST_LINES: usize = 100_000;
+
+/// Every command with its arguments.
+const COMMANDS: [(&str, &str); 7] = [
+    ("step", "[N] [A B C | ROW]"),
+    ("action", "[-c N] -a A B C | ROW"),
+    ("touch", "NAME [N]"),
+    ("interact", "NAME [N]"),
+    ("near", "NAME METRES [N]"),
+    ("tour", "[N]"),
+    ("repeat", "no arguments"),
+];
+
+/// One command.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Command {
+    /// The same action for so many steps.
+    Act { action: Action, steps: u32 },
+    /// To the nearest object of a name, for a purpose.
+    Go { name: String, until: Until, steps: u32 },
+    /// What the agent on rails does, until nothing is worth going to.
+    Tour { steps: u32 },
+    /// From the first line again.
+    Repeat,
+}
+
+/// When a walk to an object is over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Until {
+    /// The agent has touched it.
+    Touched,
+    /// The agent has interacted with it.
+    Interacted,
+    /// Its middle is nearer than so many metres.
+    Near(f32),
+}
+
+/// Reads a script; `name` is what messages call it.
+pub(super) fn parse(name: &str, text: &str) -> Result<Vec<Command>, EnvError> {
+    let wrong = |index: usize, (found, expected): (String, String)| EnvError::BadScript {
+        script: name.to_owned(),
+        line: index + 1,
+        found,
+        expected,
+    };
+    let mut commands = Vec::new();
+    for (index, line) in text.lines().enumerate() {
+        if index == MOST_LINES {
+            let expected = format!("at most {MOST_LINES} lines");
+            return Err(wrong(index, ("another line".to_owned(), expected)));
+        }
+        let said = line.split('#').next().unwrap_or_default();
+        let words: Vec<&str> = said.split_whitespace().collect();
+        let [first, rest @ ..] = &words[..] else { continue };
+        if commands.last() == Some(&Command::Repeat) {
+            let expected = "nothing after repeat, which begins anew".to_owned();
+            return Err(wrong(index, (format!("{first:?}"), expected)));
+        }
+        commands.push(command(first, rest).map_err(|problem| wrong(index, problem))?);
+    }
+    if matches!(commands[..], [] | [Command::Repeat]) {
+        let last = text.lines().count().saturating_sub(1);
+        let found = "a script without a command".to_owned();
+        return Err(wrong(last, (found, format!("one of {}", names()))));
+    }
+    Ok(commands)
+}
+
+/// What was found, and what was expected.
+type Problem = (String, String);
+
+fn command(name: &str, words: &[&str]) -> Result<Command, Problem> {
+    let go = |object: &str, until, rest: &[&str]| -> Result<Command, Problem> {
+        Ok(Command::Go {
+            name: object.to_owned(),
+            until,
+            steps: rest.first().map_or(Ok(WALK_STEPS), |word| steps(word))?,
+        })
+    };
+    match (name, words) {
+        ("step", []) => act(1, &["0", "0", "0"]),
+        ("step", [count]) => act(steps(count)?, &["0", "0", "0"]),
+        ("step", [count, action @ ..]) if [1, 3].contains(&action.len()) => act(steps(count)?, action),
+        ("action", ["-c", count, "-a", action @ ..] | ["-a", action @ .., "-c", count])
+            if [1, 3].contains(&action.len()) =>
+        {
+            act(steps(count)?, action)
+        }
+        ("action", ["-a", action @ ..]) if [1, 3].contains(&action.len()) => act(1, action),
+        ("touch", [object, rest @ ..]) if rest.len() < 2 => go(object, Until::Touched, rest),
+        ("interact", [object, rest @ ..]) if rest.len() < 2 => go(object, Until::Interacted, rest),
+        ("near", [object, metres, rest @ ..]) if rest.len() < 2 => {
+            go(object, Until::Near(number(metres)? as f32), rest)
+        }
+        ("tour", []) => Ok(Command::Tour { steps: MOST_STEPS }),
+        ("tour", [count]) => Ok(Command::Tour { steps: steps(count)? }),
+        ("repeat", []) => Ok(Command::Repeat),
+        _ => Err(misused(name, words)),
+    }
+}
+
+fn misused(name: &str, words: &[&str]) -> Problem {
+    if let Some((_, takes)) = COMMANDS.iter().find(|(known, _)| *known == name) {
+        let found = std::iter::once(name)
+            .chain(words.iter().copied())
+            .collect::<Vec<_>>()
+            .join(" ");
+        return (format!("{found:?}"), format!("{name} {takes}"));
+    }
+    let near = nearest(name, COMMANDS.map(|(known, _)| known));
+    let near = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
+    (format!("command {name:?}"), format!("one of {}{near}", names()))
+}
+
+fn names() -> String {
+    COMMANDS.map(|(known, _)| known).join(", ")
+}
+
+/// Three numbers, or one row.
+fn act(steps: u32, words: &[&str]) -> Result<Command, Problem> {
+    let action = match words {
+        [a, b, c] => Action::Continuous([number(a)?, number(b)?, number(c)?]),
+        words => Action::Discrete(row(words.first().copied().unwrap_or_default())?),
+    };
+    Ok(Command::Act { action, steps })
+}
+
+fn row(word: &str) -> Result<usize, Problem> {
+    let expected = "the number of a row of the action table, or three numbers";
+    word.parse().map_err(|_| (format!("{word:?}"), expected.to_owned()))
+}
+
+fn number(word: &str) -> Result<f64, Problem> {
+    let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| (format!("{word:?}"), "a number".to_owned()))
+}
+
+fn steps(word: &str) -> Result<u32, Problem> {
+    let steps = word.parse().ok().filter(|steps| (1..=MOST_STEPS).contains(steps));
+    steps.ok_or_else(|| (format!("{word:?}"), format!("how many steps, 1 to {MOST_STEPS}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(text: &str, expected: &[Command]) {
+        assert_eq!(parse("script", text).expect("the script is sound"), expected, "{text}");
+    }
+
+    fn refuse(text: &str, expected: &str) {
+        let said = parse("way.txt", text).expect_err("the script is not sound").to_string();
+        assert_eq!(said, expected, "{text}");
+    }
+
+    #[test]
+    fn actions_are_written_as_in_the_console() {
+        let action = Action::Continuous([2.0, 0.0, 1.0]);
+        for text in [
+            "action -c 20 -a 2 0 1",
+            "action -a 2 0 1 -c 20",
+            "step 20 2 0 1 # ahead",
+        ] {
+            check(text, &[Command::Act { action, steps: 20 }]);
+        }
+        let row = Action::Discrete(4);
+        check(
+            "# nothing yet\n\naction -a 4",
+            &[Command::Act { action: row, steps: 1 }],
+        );
+        let still = Action::Continuous([0.0; 3]);
+        check(
+            "step",
+            &[Command::Act {
+                action: still,
+                steps: 1,
+            }],
+        );
+    }
+
+    #[test]
+    fn walks_and_tours_have_an_end() {
+        let go = |until, steps| Command::Go {
+            name: "goal".to_owned(),
+            until,
+            steps,
+        };
+        check("touch goal", &[go(Until::Touched, WALK_STEPS)]);
+        check("interact goal 40", &[go(Until::Interacted, 40)]);
+        check("near goal 2.5 9\nrepeat", &[go(Until::Near(2.5), 9), Command::Repeat]);
+        check(
+            "tour\ntour 7",
+            &[Command::Tour { steps: MOST_STEPS }, Command::Tour { steps: 7 }],
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_done_is_told_with_its_line() {
+        refuse(
+            "step\ntuch goal",
+            "way.txt:2: found command \"tuch\", expected one of step, action, touch, interact, near, tour, repeat; did you \
+             mean \"touch\"?",
+        );
+        refuse("step 0", "way.txt:1: found \"0\", expected how many steps, 1 to 100000");
+        refuse(
+            "step 5 1 2",
+            "way.txt:1: found \"step 5 1 2\", expected step [N] [A B C | ROW]",
+        );
+        refuse("step 5 1 nan 0", "way.txt:1: found \"nan\", expected a number");
+        refuse(
+            "step 5 north",
+            "way.txt:1: found \"north\", expected the number of a row of the action table, or three numbers",
+        );
+        refuse(
+            "near goal",
+            "way.txt:1: found \"near goal\", expected near NAME METRES [N]",
+        );
+        refuse(
+            "tour\nrepeat\nstep",
+            "way.txt:3: found \"step\", expected nothing after repeat, which begins anew",
+        );
+        refuse(
+            "# nothing\n\n",
+            "way.txt:2: found a script without a command, expected one of step, action, touch, interact, near, tour, repeat",
+        );
+    }
+}

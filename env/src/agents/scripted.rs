@@ -1,0 +1,286 @@
+//! An agent that follows a script: fixed actions, and walks to what the script names. How a script is written is in `script.rs`.
+
+use driftworld_spec::Object;
+
+use super::script::{Command, Until, parse};
+use super::steering::{Purpose, Target, distance, in_space};
+use super::{Agent, OnRailsAgent};
+use crate::EnvError;
+use crate::sim::{Action, Environment, ObjectState};
+
+/// Steps for which an agent interacts with an object that does not answer.
+const INSISTENCE: u32 = 10;
+
+/// Plays a script anew in every episode, one command a line; `#` begins a comment, and after the last line it stands still.
+///
+/// | line | what it does |
+/// |---|---|
+/// | `step [N] [A B C \| ROW]` | N steps (1) of the action A B C (0 0 0), or of a row of the action table, as in the console |
+/// | `action [-c N] -a A B C \| ROW` | the same, by options |
+/// | `touch NAME [N]` | walks to the nearest object of this tag or unique name until it touches it, for at most N steps (300) |
+/// | `interact NAME [N]` | walks there and interacts until the object answers |
+/// | `near NAME METRES [N]` | walks there until its middle is nearer than that |
+/// | `tour [N]` | does what [`OnRailsAgent`] does until nothing is worth going to |
+/// | `repeat` | begins again; only as the last line |
+///
+/// A walk to something that is not there takes no step. Walks fit every action space; the actions of `step` and `action`
+/// are handed to the world as they stand.
+///
+/// # Example
+/// ```
+/// use driftworld_env::{Agent, Environment, ScriptedAgent};
+/// use driftworld_spec::World;
+/// let mut agent = ScriptedAgent::parse("ahead", "step 3 10 0 0")?;
+/// let mut environment = Environment::new(World::default())?;
+/// for _ in 0..5 {
+///     let action = agent.act(&environment);
+///     environment.step(action)?;
+/// }
+/// assert_eq!(environment.agent().position, [0.0, 3.0], "three steps ahead, then it stands still");
+/// # Ok::<(), driftworld_env::EnvError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ScriptedAgent {
+    commands: Vec<Command>,
+    /// The number of the command under way.
+    now: usize,
+    /// Steps that it has taken.
+    steps: u32,
+    walk: Option<Walk>,
+    rails: OnRailsAgent,
+}
+
+/// A walk under way.
+#[derive(Clone, Debug)]
+struct Walk {
+    target: Target,
+    /// The object as it was when the walk began.
+    before: ObjectState,
+    /// Steps in which the agent has interacted within reach.
+    asked: u32,
+}
+
+impl ScriptedAgent {
+    /// Reads a script; `name` is what messages call it, usually its path.
+    ///
+    /// # Errors
+    /// [`EnvError::BadScript`] with the first line that cannot be done.
+    pub fn parse(name: &str, text: &str) -> Result<Self, EnvError> {
+        Ok(Self {
+            commands: parse(name, text)?,
+            now: 0,
+            steps: 0,
+            walk: None,
+            rails: OnRailsAgent::new(),
+        })
+    }
+
+    /// Whether the script is over, so that the agent stands still.
+    pub fn is_over(&self) -> bool {
+        self.now >= self.commands.len()
+    }
+
+    fn next(&mut self) {
+        self.now += 1;
+        self.steps = 0;
+        self.walk = None;
+        self.rails = OnRailsAgent::new();
+    }
+
+    /// What the command under way does in this step; `None` if it is over.
+    fn carry_out(&mut self, environment: &Environment) -> Option<Action> {
+        match self.commands[self.now].clone() {
+            Command::Act { action, steps } => (self.steps < steps).then_some(action),
+            Command::Tour { steps } => {
+                let goes_on = self.steps < steps && !OnRailsAgent::is_done(environment);
+                goes_on.then(|| self.rails.act(environment))
+            }
+            Command::Go { name, until, steps } => {
+                let numbers = (self.steps < steps).then(|| self.go(environment, &name, until))??;
+                Some(in_space(numbers, environment))
+            }
+            Command::Repeat => None,
+        }
+    }
+
+    fn go(&mut self, environment: &Environment, name: &str, until: Until) -> Option<[f64; 3]> {
+        if self.walk.is_none() {
+            let object = nearest(environment, name)?;
+            self.walk = Some(Walk {
+                target: Target::at(object, environment),
+                before: environment.objects()[object].clone(),
+                asked: 0,
+            });
+        }
+        let walk = self.walk.as_mut()?;
+        if walk.is_over(environment, until) {
+            return None;
+        }
+        if walk.target.is_astray(environment) {
+            walk.target = Target::at(walk.target.object, environment);
+        }
+        let purpose = match until {
+            Until::Interacted => Purpose::Interact,
+            Until::Touched | Until::Near(_) => Purpose::Touch,
+        };
+        let numbers = walk.target.towards(environment, purpose);
+        walk.asked += u32::from(purpose == Purpose::Interact && walk.target.is_in_reach(environment));
+        Some(numbers)
+    }
+}
+
+impl Walk {
+    fn is_over(&self, environment: &Environment, until: Until) -> bool {
+        let index = self.target.object;
+        let now = &environment.objects()[index];
+        let answered = |before: &ObjectState| {
+            now.present != before.present || now.collected != before.collected || now.reward != before.reward
+        };
+        match until {
+            Until::Touched => answered(&self.before) || environment.touches(index),
+            Until::Interacted => answered(&self.before) || self.asked >= INSISTENCE,
+            Until::Near(metres) => {
+                let place = environment.scene().items[index].position;
+                !now.present || distance(environment.agent().position, place) < metres
+            }
+        }
+    }
+}
+
+impl Agent for ScriptedAgent {
+    fn act(&mut self, environment: &Environment) -> Action {
+        // Once through the script at most: a loop of commands that take no step would have no end.
+        for _ in 0..=self.commands.len() {
+            if self.is_over() {
+                break;
+            }
+            if let Some(action) = self.carry_out(environment) {
+                self.steps += 1;
+                return action;
+            }
+            let again = self.commands[self.now] == Command::Repeat;
+            self.next();
+            if again {
+                self.now = 0;
+            }
+        }
+        in_space([0.0; 3], environment)
+    }
+
+    fn begin(&mut self, _seed: u64) {
+        self.next();
+        self.now = 0;
+    }
+
+    fn learns(&self) -> bool {
+        false
+    }
+
+    fn frozen(&self) -> Option<Box<dyn Agent + Send>> {
+        Some(Box::new(self.clone()))
+    }
+}
+
+/// The nearest object that is there and has this tag or unique name.
+fn nearest(environment: &Environment, name: &str) -> Option<usize> {
+    let here = environment.agent().position;
+    let items = &environment.scene().items;
+    let named = |object: &Object| {
+        [&object.tag, &object.unique_name]
+            .into_iter()
+            .flatten()
+            .any(|own| own == name)
+    };
+    let objects = environment
+        .world()
+        .objects
+        .iter()
+        .zip(environment.objects())
+        .enumerate();
+    objects
+        .filter(|(_, (object, state))| state.present && named(object))
+        .map(|(index, _)| (index, distance(here, items[index].position)))
+        .min_by(|(_, a), (_, b)| a.total_cmp(b))
+        .map(|(index, _)| index)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use driftworld_spec::{ActionSpace, Stimulus, World};
+
+    /// Coins north and east of the agent, a switch in the west.
+    fn world() -> World {
+        let mut world = World::default();
+        for (tag, at) in [("coin", [0.0, 8.0]), ("coin", [12.0, 0.0]), ("switch", [-6.0, 0.0])] {
+            let mut object = Object::new("geometric", at);
+            object.tag = Some(tag.to_owned());
+            object.reward = 1.0;
+            if tag == "coin" {
+                object.reward_once_stimulus = vec![Stimulus::AgentCollide];
+                object.destroy_stimulus = vec![Stimulus::AgentCollide];
+            } else {
+                object.reward_stimulus = vec![Stimulus::AgentInteract];
+            }
+            world.objects.push(object);
+        }
+        world
+    }
+
+    /// What a script earns in so many steps, and where it leaves the agent.
+    fn play(world: World, script: &str, steps: u32) -> (f64, [f32; 2]) {
+        let mut agent = ScriptedAgent::parse("script", script).expect("the script is sound");
+        let mut environment = Environment::new(world).expect("the world is sound");
+        for _ in 0..steps {
+            let action = agent.act(&environment);
+            environment.step(action).expect("the action fits");
+        }
+        (environment.episode_return(), environment.agent().position)
+    }
+
+    #[test]
+    fn a_walk_takes_the_nearest_and_ends_when_it_is_touched() {
+        let (earned, at) = play(world(), "touch coin\nstep 100", 120);
+        assert_eq!(earned, 1.0);
+        assert!(at[0].abs() < 0.5 && at[1] > 6.0, "{at:?}");
+        assert_eq!(play(world(), "touch coin\ntouch coin", 120).0, 2.0);
+    }
+
+    #[test]
+    fn interacting_is_more_than_touching() {
+        assert_eq!(play(world(), "touch switch", 60).0, 0.0);
+        assert_eq!(play(world(), "interact switch", 60).0, 1.0);
+    }
+
+    #[test]
+    fn near_keeps_its_distance() {
+        let (earned, [x, _]) = play(world(), "near switch 3", 60);
+        assert_eq!(earned, 0.0);
+        assert!((-4.2..-2.9).contains(&x), "{x}");
+    }
+
+    #[test]
+    fn a_repeated_script_begins_again_and_one_that_takes_no_step_stands_still() {
+        assert_eq!(play(world(), "touch coin\nrepeat", 120).0, 2.0);
+        assert_eq!(play(world(), "touch nobody\nrepeat", 5), (0.0, [0.0, 0.0]));
+    }
+
+    #[test]
+    fn walks_fit_a_world_with_an_action_table() {
+        let mut world = world();
+        world.agent_params.actions = ActionSpace::DefaultDiscrete;
+        assert_eq!(play(world, "touch coin", 120).0, 1.0);
+    }
+
+    #[test]
+    fn an_episode_begins_with_the_first_line() {
+        let mut agent = ScriptedAgent::parse("script", "step 2 10 0 0").expect("the script is sound");
+        let environment = Environment::new(World::default()).expect("the world is sound");
+        for _ in 0..3 {
+            agent.act(&environment);
+        }
+        assert!(agent.is_over());
+        agent.begin(1);
+        assert_eq!(agent.act(&environment), Action::Continuous([10.0, 0.0, 0.0]));
+    }
+}

@@ -1,0 +1,174 @@
+//! Walking to one object: the way there, the next step on it, and that step as an action of the world. Which object is chosen by
+//! the agents.
+
+use driftworld_spec::{ActionModel, ActionSpace, MotionModel, Object, World};
+
+use super::route::Route;
+use crate::scene::Scene;
+use crate::sim::{Action, Environment};
+
+/// Metres within which an object is walked at straight, whatever the way.
+const NEAR: f32 = 2.0;
+
+/// Metres within which an agent that means to interact does so.
+const REACH: f32 = 3.0;
+
+/// Share of the distance to an object that it may have moved by before the way to it is found anew.
+const ASTRAY: f32 = 0.2;
+
+/// What an agent goes to an object for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// To walk into it.
+    Touch,
+    /// To interact with it.
+    Interact,
+}
+
+/// Where an agent is going.
+#[derive(Clone, Debug)]
+pub(super) struct Target {
+    /// Index of the object.
+    pub(super) object: usize,
+    /// Where it stood when it was chosen.
+    pub(super) goal: [f32; 2],
+    /// What the way leads around.
+    pub(super) avoided: Vec<u32>,
+    pub(super) route: Route,
+}
+
+impl Target {
+    pub(super) fn new(object: usize, goal: [f32; 2], avoided: Vec<u32>, world: &World, scene: &Scene) -> Self {
+        let route = Route::to(world, scene, goal, &avoided);
+        Self {
+            object,
+            goal,
+            avoided,
+            route,
+        }
+    }
+
+    /// The object where it is now, with the way around what is there now.
+    pub(super) fn at(object: usize, environment: &Environment) -> Self {
+        let (world, scene) = (environment.world(), environment.scene());
+        let goal = scene.items[object].position;
+        Self::new(object, goal, avoided(environment, object), world, scene)
+    }
+
+    /// Whether the object has moved so far that the way leads astray.
+    pub(super) fn is_astray(&self, environment: &Environment) -> bool {
+        let now = environment.scene().items[self.object].position;
+        let far = distance(environment.agent().position, now);
+        far >= NEAR && distance(now, self.goal) > (ASTRAY * far).max(0.5)
+    }
+
+    /// Whether the agent is so near that an interaction should be answered.
+    pub(super) fn is_in_reach(&self, environment: &Environment) -> bool {
+        let item = &environment.scene().items[self.object];
+        let bodies =
+            item.asset.collider.radius() * item.scale + environment.world().agent_params.agent_width as f32 / 2.0;
+        distance(environment.agent().position, item.position) < bodies + 0.5
+    }
+
+    /// The next step on the way, as speed, turn rate and interaction.
+    pub(super) fn towards(&self, environment: &Environment, purpose: Purpose) -> [f64; 3] {
+        let world = environment.world();
+        let agent = environment.agent();
+        let goal = environment.scene().items[self.object].position;
+        let straight = distance(agent.position, goal);
+        let point = if straight < NEAR {
+            goal
+        } else {
+            self.route.next(agent.position, 3)
+        };
+        let way = [point[0] - agent.position[0], point[1] - agent.position[1]];
+        let wanted = libm::atan2f(way[0], way[1]).to_degrees();
+        let off = (wanted - agent.heading_deg + 540.0).rem_euclid(360.0) - 180.0;
+        let seconds = world.agent_params.time_step as f32 * world.agent_params.frame_skip as f32;
+        // Not past the next point, and not at full speed into a turn.
+        let reach = (distance(agent.position, point) + 0.3) / seconds;
+        let after_turn = (off.abs() - world.agent_params.max_angular_speed as f32 * seconds).max(0.0);
+        let speed = if after_turn > 25.0 {
+            0.0
+        } else {
+            reach.min(world.agent_params.max_linear_speed as f32)
+        };
+        let interact = purpose == Purpose::Interact && straight < REACH;
+        [
+            f64::from(speed),
+            f64::from(off / seconds),
+            if interact { 1.0 } else { 0.0 },
+        ]
+    }
+}
+
+/// The objects that a way to `goal` leads around: what stands fast and is solid or costs.
+pub(super) fn avoided(environment: &Environment, goal: usize) -> Vec<u32> {
+    let objects = environment.world().objects.iter().zip(environment.objects());
+    let returns_elsewhere = |object: &Object| object.respawn.as_ref().is_some_and(|back| back.radius > 0.0);
+    let stands = |object: &Object| {
+        object.motion_model == MotionModel::Stationary && object.pushable.is_none() && !returns_elsewhere(object)
+    };
+    objects
+        .enumerate()
+        .filter(|(index, (object, state))| {
+            *index != goal && state.present && stands(object) && (object.solid || object.reward < 0.0)
+        })
+        .map(|(index, _)| index as u32)
+        .collect()
+}
+
+/// The action in the world's own space: the row of its table that comes nearest, if it has one.
+pub(super) fn in_space(numbers: [f64; 3], environment: &Environment) -> Action {
+    let agent = &environment.world().agent_params;
+    let velocity = |numbers: [f64; 3]| match agent.action_model {
+        ActionModel::ByWaypoint => waypoint(numbers, environment),
+        _ => numbers,
+    };
+    let (speed, turn) = (agent.max_linear_speed.max(1e-9), agent.max_angular_speed.max(1e-9));
+    let Some(rows) = agent.num_actions() else {
+        let numbers = velocity(numbers);
+        if agent.actions != ActionSpace::Normalized {
+            return Action::Continuous(numbers);
+        }
+        let [a, b, c] = numbers;
+        return Action::Continuous(match agent.action_model {
+            ActionModel::ByWaypoint => {
+                let [width, depth] = environment.world().environment_params.arena_size();
+                [a / width * 2.0, b / depth * 2.0, c / turn]
+            }
+            _ => [a / speed, b / turn, c * 2.0 - 1.0],
+        });
+    };
+    let scale = [speed, turn, 1.0];
+    let wanted = [numbers[0], numbers[1].clamp(-scale[1], scale[1]), numbers[2]];
+    let miss = |row: [f64; 3]| (0..3).map(|k| ((row[k] - wanted[k]) / scale[k]).powi(2)).sum::<f64>();
+    let misses = (0..rows).filter_map(|row| Some((row, miss(agent.action_row(row)?))));
+    let nearest = misses.min_by(|(_, a), (_, b)| a.total_cmp(b));
+    Action::Discrete(nearest.map_or(0, |(row, _)| row))
+}
+
+/// A speed and a turn as a point to walk to: that which the velocity leads to in one step.
+fn waypoint([speed, turn, _]: [f64; 3], environment: &Environment) -> [f64; 3] {
+    let agent = environment.agent();
+    let agent_params = &environment.world().agent_params;
+    let seconds = agent_params.time_step * f64::from(agent_params.frame_skip);
+    let heading = (agent.heading_deg + (turn * seconds) as f32).to_radians();
+    let ahead = if speed < 0.0 {
+        speed
+    } else {
+        agent_params.max_linear_speed.min(speed.max(1.0))
+    };
+    let reach = (ahead * seconds) as f32;
+    let [x, y] = agent.position;
+    [
+        f64::from(x + libm::sinf(heading) * reach),
+        f64::from(y + libm::cosf(heading) * reach),
+        turn,
+    ]
+}
+
+pub(super) fn distance(a: [f32; 2], b: [f32; 2]) -> f32 {
+    let (dx, dy) = (a[0] - b[0], a[1] - b[1]);
+    (dx * dx + dy * dy).sqrt()
+}

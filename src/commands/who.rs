@@ -1,0 +1,96 @@
+//! `--agent`: which of the agents lives a scenario or a world, and how its name is read. What agents do is `env`'s.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use driftworld::env::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent};
+use driftworld::spec::nearest;
+
+use super::{Failure, input};
+
+/// The built-in agents.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Who {
+    /// Acts at random.
+    Random,
+    /// Knows the map and tours what pays.
+    Onrails,
+    /// Follows the script in this file.
+    Scripted(PathBuf),
+}
+
+impl Who {
+    /// What the help says of the argument.
+    pub(crate) const HELP: &'static str =
+        "Who lives it: random, onrails (knows the map and tours what pays), or scripted:FILE";
+
+    /// What logs call the agent.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            Self::Random => "random".to_owned(),
+            Self::Onrails => "onrails".to_owned(),
+            Self::Scripted(path) => format!("scripted:{}", path.display()),
+        }
+    }
+
+    /// The agent at the start of its life.
+    pub(crate) fn agent(&self) -> Result<Box<dyn Agent>, Failure> {
+        Ok(match self {
+            Self::Random => Box::new(RandomAgent::new(0)),
+            Self::Onrails => Box::new(OnRailsAgent::new()),
+            Self::Scripted(path) => Box::new(scripted(path)?),
+        })
+    }
+}
+
+fn scripted(path: &Path) -> Result<ScriptedAgent, Failure> {
+    Ok(ScriptedAgent::parse(&path.display().to_string(), &input::text(path)?)?)
+}
+
+impl FromStr for Who {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once(':') {
+            Some(("scripted", file)) if !file.is_empty() => Ok(Self::Scripted(file.into())),
+            None if text == "random" => Ok(Self::Random),
+            None if text == "onrails" => Ok(Self::Onrails),
+            _ => {
+                let near = nearest(text, ["random", "onrails", "scripted"]);
+                let near = match near.as_deref() {
+                    Some("scripted") => "; did you mean \"scripted:FILE\"?".to_owned(),
+                    Some(near) => format!("; did you mean {near:?}?"),
+                    None => String::new(),
+                };
+                Err(format!(
+                    "found {text:?}, expected random, onrails or scripted:FILE{near}"
+                ))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn agents_are_called_by_name_and_a_script_by_its_file() {
+        assert_eq!("random".parse(), Ok(Who::Random));
+        assert_eq!("onrails".parse(), Ok(Who::Onrails));
+        assert_eq!("scripted:a:b.txt".parse(), Ok(Who::Scripted("a:b.txt".into())));
+        assert_eq!(Who::Scripted("a.txt".into()).name(), "scripted:a.txt");
+    }
+
+    #[test]
+    fn a_misspelt_agent_is_told_the_agents_there_are() {
+        let said = |text: &str| text.parse::<Who>().expect_err("there is no such agent");
+        let expected = "expected random, onrails or scripted:FILE; did you mean";
+        assert_eq!(said("onrail"), format!("found \"onrail\", {expected} \"onrails\"?"));
+        assert_eq!(
+            said("scripted"),
+            format!("found \"scripted\", {expected} \"scripted:FILE\"?")
+        );
+        assert_eq!(said("bot"), "found \"bot\", expected random, onrails or scripted:FILE");
+    }
+}

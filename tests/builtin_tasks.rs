@@ -1,0 +1,115 @@
+//! Every variant of every built-in task is playable and solved by an agent that comes with the project, and every task has
+//! variants that differ in one element only. What a spec may say is tested in `spec`.
+
+use driftworld::env::{Agent, Environment, OnRailsAgent, ScriptedAgent, Step};
+use driftworld::generator::Sampler;
+use driftworld::similarity::{Weights, variant_distance};
+use driftworld::spec::{Element, Variant};
+use driftworld::tasks;
+
+/// Worlds of each variant that are lived.
+const WORLDS: u64 = 3;
+
+/// Variants in which everything costs. Keeping away from it all is what solves them: no episode ends in success, and nothing
+/// is earned but what the steps pay.
+const COSTLY: [&str; 2] = ["find_objects#penalty", "moving_object#stings"];
+
+/// An episode from the first step to the last: what it earned, and its last step.
+fn live(variant: &Variant, index: u64, agent: &mut dyn Agent) -> (f64, u32, Step) {
+    let name = variant.id();
+    let world = Sampler::new(variant, 11).world(index);
+    let world = world.unwrap_or_else(|error| panic!("{name}, world {index}: {error}"));
+    let mut environment = Environment::new(world).unwrap_or_else(|error| panic!("{name}: {error}"));
+    agent.begin(index);
+    let mut last = Step::default();
+    while !environment.ended() {
+        let action = agent.act(&environment);
+        last = environment
+            .step(action)
+            .unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+    (environment.episode_return(), environment.num_steps(), last)
+}
+
+fn check(task: &str) {
+    let mut unsolved = Vec::new();
+    for variant in tasks::variants(task).unwrap_or_else(|error| panic!("{error}")) {
+        let name = variant.id();
+        for index in 0..WORLDS {
+            let solved = if COSTLY.contains(&name.as_str()) {
+                let mut still = ScriptedAgent::parse("still", "step").expect("the script is sound");
+                let (earned, steps, last) = live(&variant, index, &mut still);
+                let haste = variant
+                    .value("haste")
+                    .and_then(|value| value.as_number())
+                    .unwrap_or(-0.1);
+                !last.success && (earned - haste * f64::from(steps)).abs() < 1e-6
+            } else {
+                let (earned, _, last) = live(&variant, index, &mut OnRailsAgent::new());
+                last.success && earned > 0.0
+            };
+            if !solved {
+                unsolved.push(format!("{name}, world {index}"));
+            }
+        }
+    }
+    assert!(unsolved.is_empty(), "not solved: {}", unsolved.join("; "));
+}
+
+#[test]
+fn find_objects_is_solved_in_every_variant() {
+    check("find_objects");
+}
+
+#[test]
+fn get_to_goal_is_solved_in_every_variant() {
+    check("get_to_goal");
+}
+
+#[test]
+fn select_object_is_solved_in_every_variant() {
+    check("select_object");
+}
+
+#[test]
+fn moving_object_is_solved_in_every_variant() {
+    check("moving_object");
+}
+
+#[test]
+fn scavenger_hunt_is_solved_in_every_variant() {
+    check("scavenger_hunt");
+}
+
+#[test]
+fn blue_red_green_is_solved_in_every_variant() {
+    check("blue_red_green");
+}
+
+/// The element in which two variants differ, if it is one alone.
+fn only_element(a: &Variant, b: &Variant) -> Option<Element> {
+    let distance = variant_distance(a, b, &Weights::default()).unwrap_or_else(|error| panic!("{error}"));
+    let differs = |element: &Element| distance.element(*element).is_some_and(|d| d > 0.0);
+    let differing: Vec<Element> = Element::ALL.into_iter().filter(differs).collect();
+    if let [one] = differing[..] { Some(one) } else { None }
+}
+
+#[test]
+fn each_task_of_the_paper_has_variants_that_differ_from_its_first_in_one_element_alone() {
+    for task in [
+        "find_objects",
+        "get_to_goal",
+        "select_object",
+        "moving_object",
+        "scavenger_hunt",
+    ] {
+        let variants = tasks::variants(task).unwrap_or_else(|error| panic!("{error}"));
+        for element in Element::ALL {
+            let alone = variants[1..]
+                .iter()
+                .filter(|variant| only_element(&variants[0], variant) == Some(element));
+            let names: Vec<&str> = alone.map(|variant| variant.name()).collect();
+            assert!(names.len() >= 3, "{task}: in {} alone differ {names:?}", element.name());
+        }
+    }
+}
