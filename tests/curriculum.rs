@@ -130,8 +130,14 @@ fn a_probe_of_each_element_proves_that_nothing_else_differs() {
 }
 
 #[test]
-fn every_element_of_every_built_in_task_can_be_probed() {
-    for (task, _) in driftworld::tasks::BUILT_IN {
+fn every_element_of_the_five_tasks_can_be_probed() {
+    for task in [
+        "find_objects",
+        "get_to_goal",
+        "select_object",
+        "moving_object",
+        "scavenger_hunt",
+    ] {
         for (place, element) in ["state", "action", "transition", "reward", "observation"]
             .iter()
             .enumerate()
