@@ -2,8 +2,28 @@
 
 use std::path::Path;
 use std::process::{Command, Output};
+use std::sync::LazyLock;
 
 use serde_json::Value;
+
+/// A task that stays as it is when the built-in ones grow.
+static PARK: LazyLock<String> = LazyLock::new(|| {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("park.json");
+    let task = r#"{ "version": 2, "name": "park", "parameters": {
+        "color": { "role": "variant", "type": "color", "affects": ["O"], "choices": ["blue", "red", "green"], "default": "blue" },
+        "reward": { "role": "variant", "type": "number", "affects": ["R"], "range": [-100, 100], "default": 100 },
+        "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0.2, 4], "default": 2.3 },
+        "spread": { "role": "variant", "type": "number", "affects": ["S"], "range": [2, 40], "default": 20 } },
+      "variants": { "blue": {}, "red": { "color": "red" }, "green": { "color": "green" }, "dusk": { "extends": "red", "light": 0.6 },
+        "huddle": { "spread": 6 }, "penalty": { "extends": "red", "reward": -100 } } }"#;
+    std::fs::write(&path, task).expect("cargo has made the folder");
+    text(&path).to_owned()
+});
+
+/// The park, or one of its variants: `#red`.
+fn park(variant: &str) -> &'static str {
+    format!("{}{variant}", *PARK).leak()
+}
 
 fn driftworld(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_driftworld"))
@@ -92,10 +112,10 @@ fn rows(beside: &str, heading: &str) -> Vec<Vec<String>> {
 #[test]
 fn a_probe_of_each_element_proves_that_nothing_else_differs() {
     for (element, column) in [("state", 2), ("reward", 5), ("observation", 6)] {
-        let (scenario, beside) = designed(&["find_objects", "--probe", element]);
+        let (scenario, beside) = designed(&[park(""), "--probe", element]);
         let rows = rows(&beside, "variant");
         assert!(rows.len() >= 4, "{beside}");
-        assert_eq!(rows[0][0], "find_objects#blue", "the default variant comes first");
+        assert_eq!(rows[0][0], park("#blue"), "the default variant comes first");
         for (index, row) in rows.iter().enumerate() {
             for (place, cell) in row.iter().enumerate().skip(2) {
                 let expected_zero = place != column || index == 0;
@@ -104,8 +124,38 @@ fn a_probe_of_each_element_proves_that_nothing_else_differs() {
         }
         let distances: Vec<f64> = rows.iter().map(|row| row[column].parse().expect("a number")).collect();
         assert!(distances.is_sorted(), "gradual is by growing distance: {distances:?}");
-        let shown: Vec<String> = rows.iter().map(|row| row[0].replace("find_objects#", "")).collect();
+        let shown: Vec<String> = rows.iter().map(|row| row[0].replace(park("#"), "")).collect();
         assert_eq!(learned(&scenario), shown);
+    }
+}
+
+#[test]
+fn every_element_of_the_five_tasks_can_be_probed() {
+    for task in [
+        "find_objects",
+        "get_to_goal",
+        "select_object",
+        "moving_object",
+        "scavenger_hunt",
+    ] {
+        for (place, element) in ["state", "action", "transition", "reward", "observation"]
+            .iter()
+            .enumerate()
+        {
+            let (_, beside) = designed(&[task, "--probe", element, "--variants", "5"]);
+            let rows = rows(&beside, "variant");
+            assert_eq!(rows.len(), 5, "{beside}");
+            for row in &rows[1..] {
+                let others = (2..7).filter(|column| *column != place + 2);
+                assert!(
+                    others
+                        .into_iter()
+                        .all(|column| row[column] == "0" || row[column] == "-"),
+                    "{beside}"
+                );
+                assert!(row[place + 2].parse::<f64>().is_ok_and(|apart| apart > 0.0), "{beside}");
+            }
+        }
     }
 }
 
@@ -113,22 +163,14 @@ fn a_probe_of_each_element_proves_that_nothing_else_differs() {
 fn what_a_probe_makes_is_in_the_scenario_and_as_far_as_the_table_says() {
     let folder = scratch();
     let path = folder.path().join("reward.json");
-    let said = driftworld(&[
-        "find_objects",
-        "--probe",
-        "reward",
-        "--variants",
-        "5",
-        "-o",
-        text(&path),
-    ]);
+    let said = driftworld(&[park(""), "--probe", "reward", "--variants", "5", "-o", text(&path)]);
     assert_eq!(said.status.code(), Some(0));
     let table = String::from_utf8(said.stdout).expect("the command prints UTF-8");
     let scenario = read(&path);
     let first = &regimes(&scenario, "learning")[0];
     assert_eq!((name(first).as_str(), first.get("values")), ("blue", None));
     for (row, regime) in rows(&table, "variant").iter().zip(regimes(&scenario, "learning")) {
-        let pays = regime["values"]["target_reward"].as_f64().unwrap_or(100.0);
+        let pays = regime["values"]["reward"].as_f64().unwrap_or(100.0);
         let shown: f64 = row[5].parse().expect("a number");
         assert!((shown - (100.0 - pays) / 200.0).abs() < 1e-4, "{row:?}: {pays}");
         assert_eq!(row[1] == "made", regime.get("values").is_some());
@@ -139,7 +181,7 @@ fn what_a_probe_makes_is_in_the_scenario_and_as_far_as_the_table_says() {
 fn orders_differ_and_controls_are_matched_in_everything_else() {
     let folder = scratch();
     let design = |order: &str| {
-        let (scenario, _) = designed(&["find_objects", "--probe", "reward", "--order", order, "--seed", "4"]);
+        let (scenario, _) = designed(&[park(""), "--probe", "reward", "--order", order, "--seed", "4"]);
         learned(&scenario)
     };
     let orders = ["gradual", "abrupt", "path", "farthest"].map(design);
@@ -150,7 +192,7 @@ fn orders_differ_and_controls_are_matched_in_everything_else() {
     let controls = at("controls");
     let main = at("main.json");
     let status = driftworld(&[
-        "find_objects",
+        park(""),
         "--probe",
         "reward",
         "--name",
@@ -191,13 +233,7 @@ fn orders_differ_and_controls_are_matched_in_everything_else() {
 
 #[test]
 fn evaluation_never_draws_what_is_learned_and_stands_where_it_is_wanted() {
-    let three = [
-        "find_objects#blue",
-        "find_objects#red",
-        "find_objects#green",
-        "--method",
-        "given",
-    ];
+    let three = [park("#blue"), park("#red"), park("#green"), "--method", "given"];
     let with = |more: &[&str]| designed(&[&three[..], more].concat()).0;
     assert_eq!(kinds(&with(&[])), "ELELELE");
     assert_eq!(kinds(&with(&["--evaluate", "ends", "--pre-deployment", "7"])), "PELLLE");
@@ -219,7 +255,7 @@ fn evaluation_never_draws_what_is_learned_and_stands_where_it_is_wanted() {
 
 #[test]
 fn the_forms_arrange_the_blocks_and_say_so() {
-    let two = ["find_objects#blue", "find_objects#red", "--method", "given", "--form"];
+    let two = [park("#blue"), park("#red"), "--method", "given", "--form"];
     let with = |form: &str, more: &[&str]| designed(&[&two[..], &[form], more].concat()).0;
     let condensed = with("condensed", &[]);
     assert_eq!(
@@ -250,7 +286,7 @@ fn the_forms_arrange_the_blocks_and_say_so() {
     let folder = scratch();
     let several = |arguments: &[&str], file: &str| {
         let output = folder.path().join("several");
-        let output = driftworld(&[&["find_objects", "-o", text(&output)], arguments].concat());
+        let output = driftworld(&[&[park(""), "-o", text(&output)], arguments].concat());
         assert_eq!(
             output.status.code(),
             Some(0),
@@ -273,14 +309,7 @@ fn the_forms_arrange_the_blocks_and_say_so() {
 #[test]
 fn drifts_lead_from_variant_to_variant_across_blocks() {
     let drift = |more: &[&str]| {
-        let two = [
-            "find_objects#blue",
-            "find_objects#dusk",
-            "--method",
-            "given",
-            "--drift",
-            "cosine",
-        ];
+        let two = [park("#blue"), park("#dusk"), "--method", "given", "--drift", "cosine"];
         let (scenario, _) = designed(&[&two[..], more].concat());
         let said = |regime: &&Value| {
             let drift = &regime["drift"];
@@ -297,14 +326,14 @@ fn drifts_lead_from_variant_to_variant_across_blocks() {
     };
     assert_eq!(drift(&[]), ["blue>dusk 0-1"]);
     assert_eq!(drift(&["--blocks", "2"]), ["blue>dusk 0-0.5", "blue>dusk 0.5-1"]);
-    let error = fail(1, &["find_objects#blue", "get_to_goal#plain", "--drift", "linear"]);
+    let error = fail(1, &[park("#blue"), "get_to_goal#plain", "--drift", "linear"]);
     assert!(error.contains("expected two variants of one task"), "{error}");
 }
 
 #[test]
 fn even_steps_are_made_and_proven_or_it_is_said_how_far_they_reach() {
     let steps = [
-        "find_objects#blue",
+        park("#blue"),
         "--probe",
         "reward",
         "--step-distance",
@@ -332,7 +361,7 @@ fn even_steps_are_made_and_proven_or_it_is_said_how_far_they_reach() {
         "{error}"
     );
     let whole = [
-        "find_objects",
+        park(""),
         "--step-distance",
         "0.05",
         "--tolerance",
@@ -347,7 +376,7 @@ fn even_steps_are_made_and_proven_or_it_is_said_how_far_they_reach() {
 fn a_scenario_is_drawn_as_bars_over_its_experiences() {
     let folder = scratch();
     let picture = folder.path().join("timeline.png");
-    designed(&["find_objects", "--probe", "reward", "--plot", text(&picture)]);
+    designed(&[park(""), "--probe", "reward", "--plot", text(&picture)]);
     let bytes = std::fs::read(&picture).expect("the picture was written");
     assert!(
         bytes.starts_with(b"\x89PNG") && bytes.len() > 4000,
@@ -390,31 +419,28 @@ fn a_scenario_is_validated_against_the_tasks_it_names() {
 
 #[test]
 fn what_is_asked_for_wrongly_is_answered_with_what_is_possible() {
-    let none = fail(1, &["get_to_goal", "--probe", "transition"]);
+    let none = fail(1, &[park(""), "--probe", "transition"]);
     assert!(
-        none.contains("get_to_goal#plain: found no parameters that affect T alone"),
+        none.contains("park#blue: found no parameters that affect T alone"),
         "{none}"
     );
-    let few = fail(
-        1,
-        &["find_objects", "--probe", "reward", "--start", "find_objects#bleu"],
-    );
-    assert!(few.contains("expected one of find_objects#blue"), "{few}");
-    let mixed = fail(1, &["find_objects", "get_to_goal", "--probe", "reward"]);
+    let few = fail(1, &[park(""), "--probe", "reward", "--start", park("#bleu")]);
+    assert!(few.contains(&format!("expected one of {}", park("#blue"))), "{few}");
+    let mixed = fail(1, &[park(""), "get_to_goal", "--probe", "reward"]);
     assert!(mixed.contains("measure within a task"), "{mixed}");
-    let word = fail(2, &["find_objects", "--probe", "colour"]);
+    let word = fail(2, &[park(""), "--probe", "colour"]);
     assert!(
         word.contains("expected state, action, transition, reward or observation"),
         "{word}"
     );
-    let form = fail(1, &["find_objects", "--form", "alternating"]);
+    let form = fail(1, &[park(""), "--form", "alternating"]);
     assert!(
         form.contains("the form alternating: found 6 variants, expected 2 variants"),
         "{form}"
     );
-    assert!(fail(2, &["find_objects", "--form", "expert"]).contains("--output"));
-    assert!(fail(2, &["find_objects", "--lifetimes", "2"]).contains("--form permuted"));
-    assert!(fail(2, &["find_objects", "--steps", "3"]).contains("--step-distance"));
-    assert!(fail(1, &["find_objects", "--blocks", "0"]).contains("expected 1 to 10000"));
-    assert!(fail(1, &["find_objects", "--step-distance", "2"]).contains("a distance above 0 and at most 1"));
+    assert!(fail(2, &[park(""), "--form", "expert"]).contains("--output"));
+    assert!(fail(2, &[park(""), "--lifetimes", "2"]).contains("--form permuted"));
+    assert!(fail(2, &[park(""), "--steps", "3"]).contains("--step-distance"));
+    assert!(fail(1, &[park(""), "--blocks", "0"]).contains("expected 1 to 10000"));
+    assert!(fail(1, &[park(""), "--step-distance", "2"]).contains("a distance above 0 and at most 1"));
 }

@@ -324,6 +324,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
+    #[expect(clippy::too_many_lines, reason = "one case for each error")]
     fn every_error_has_its_message() {
         let errors = [
             CurriculumError::NoVariants,

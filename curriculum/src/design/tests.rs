@@ -17,8 +17,8 @@ fn kinds(scenario: &Scenario) -> String {
 }
 
 #[track_caller]
-fn check_kinds(options: Design, expected: &str) {
-    assert_eq!(kinds(&design(&choices(3), &options).unwrap()), expected);
+fn check_kinds(options: &Design, expected: &str) {
+    assert_eq!(kinds(&design(&choices(3), options).unwrap()), expected);
 }
 
 fn learned(scenario: &Scenario) -> Vec<&Regime> {
@@ -45,14 +45,14 @@ fn evaluations_stand_where_they_are_wanted() {
         evaluation,
         ..Design::default()
     };
-    check_kinds(with(Evaluate::Ends), "ELLLE");
-    check_kinds(with(Evaluate::After(vec![2, 0])), "ELLEL");
-    check_kinds(with(Evaluate::After(vec![3])), "LLLE");
+    check_kinds(&with(Evaluate::Ends), "ELLLE");
+    check_kinds(&with(Evaluate::After(vec![2, 0])), "ELLEL");
+    check_kinds(&with(Evaluate::After(vec![3])), "LLLE");
     let before = Design {
         pre_deployment: 10,
         ..with(Evaluate::Ends)
     };
-    check_kinds(before, "PELLLE");
+    check_kinds(&before, "PELLLE");
     let error = design(&choices(3), &with(Evaluate::After(vec![4]))).unwrap_err();
     assert_eq!(
         error.to_string(),

@@ -87,13 +87,12 @@ pub(super) fn picture(scenario: &Scenario) -> Result<Picture, Failure> {
                 (end, b + thick),
                 (start, a + thick),
             ];
-            match (stretch.kind, stretch.phase) {
-                (BlockKind::Evaluation, _) => area.draw(&Polygon::new(shape, RGBColor(150, 154, 160).filled()))?,
-                (BlockKind::Learning, Phase::Deployment) => area.draw(&Polygon::new(shape.clone(), color.filled()))?,
-                (BlockKind::Learning, Phase::PreDeployment) => {
-                    area.draw(&Polygon::new(shape.clone(), color.mix(0.3).filled()))?
-                }
-            }
+            let fill = match (stretch.kind, stretch.phase) {
+                (BlockKind::Evaluation, _) => RGBColor(150, 154, 160).filled(),
+                (BlockKind::Learning, Phase::Deployment) => color.filled(),
+                (BlockKind::Learning, Phase::PreDeployment) => color.mix(0.3).filled(),
+            };
+            area.draw(&Polygon::new(shape, fill))?;
             if stretch.kind == BlockKind::Learning {
                 let mut rim = vec![
                     (start, a - thick),
@@ -156,7 +155,7 @@ fn stretches(scenario: &Scenario) -> (Vec<String>, Vec<Stretch>) {
             if rows.len() < MOST_ROWS {
                 rows.push(name);
             } else {
-                rows[MOST_ROWS - 1] = "others".to_owned();
+                "others".clone_into(&mut rows[MOST_ROWS - 1]);
             }
             rows.len() - 1
         })
