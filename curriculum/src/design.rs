@@ -88,36 +88,26 @@ pub fn design(variants: &[Choice], options: &Design) -> Result<Scenario, Curricu
         });
     }
     let regime = |choice: &Choice, count, seed| Regime {
-        task: choice.task.clone(),
-        variant: choice.variant.clone(),
-        count,
         seed,
-        first_index: 0,
+        ..Regime::new(&choice.task, &choice.variant, count)
     };
-    let evaluation = || Block {
-        kind: BlockKind::Evaluation,
-        regimes: variants
+    let evaluation = || {
+        let all = variants
             .iter()
-            .map(|choice| regime(choice, options.evaluate, options.seed * 2 + 1))
-            .collect(),
+            .map(|choice| regime(choice, options.evaluate, options.seed * 2 + 1));
+        Block::new(BlockKind::Evaluation, all.collect())
     };
     let mut blocks = vec![evaluation()];
     for (index, choice) in variants.iter().enumerate() {
-        blocks.push(Block {
-            kind: BlockKind::Learning,
-            regimes: vec![regime(choice, options.learn, options.seed * 2)],
-        });
+        blocks.push(Block::new(
+            BlockKind::Learning,
+            vec![regime(choice, options.learn, options.seed * 2)],
+        ));
         if options.evaluation == Evaluate::Every || index + 1 == variants.len() {
             blocks.push(evaluation());
         }
     }
-    Ok(Scenario {
-        version: driftworld_spec::SCENARIO_VERSION,
-        schema: None,
-        name: options.name.clone(),
-        description: String::new(),
-        blocks,
-    })
+    Ok(Scenario::new(&options.name, blocks))
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! What can go wrong while a curriculum is designed or lived.
 
+use std::path::PathBuf;
+
 use driftworld_env::EnvError;
 use driftworld_generator::GeneratorError;
 use driftworld_metrics::MetricsError;
@@ -55,6 +57,53 @@ pub enum CurriculumError {
         /// What whoever was asked for it says.
         reason: String,
     },
+    /// A world file of the scenario is not to be had.
+    #[error("block {block}, regime {regime}: {reason}")]
+    WorldFile {
+        /// The block, from 0.
+        block: usize,
+        /// The regime in it, from 0.
+        regime: usize,
+        /// What whoever was asked for it says.
+        reason: String,
+    },
+    /// A number of an experience that the scenario does not have.
+    #[error("found experience {found}, expected less than {total}, the experiences of the scenario")]
+    NoSuchExperience {
+        /// The number.
+        found: u64,
+        /// How many there are.
+        total: u64,
+    },
+    /// A log that is to be taken up was written by another run.
+    #[error(
+        "{}: {place}: found {found}, expected {expected} as in this run; \
+         go on with what the log was begun with, or choose another folder", path.display()
+    )]
+    OtherRun {
+        /// The log's folder.
+        path: PathBuf,
+        /// Where in the log's `scenario_info.json`.
+        place: String,
+        /// What the log has there.
+        found: String,
+        /// What this run has.
+        expected: String,
+    },
+    /// A row of a log that is to be taken up is not the one that the scenario has there.
+    #[error(
+        "{}: row {row}: found {found}, expected {expected}; is a file missing or changed? choose another folder", path.display()
+    )]
+    OtherRow {
+        /// The log's folder.
+        path: PathBuf,
+        /// The row, from 0 over all files.
+        row: u64,
+        /// What it says.
+        found: String,
+        /// What the scenario has there.
+        expected: String,
+    },
     /// A world of the scenario cannot be drawn.
     #[error("block {block}, regime {regime}: {source}")]
     World {
@@ -91,6 +140,10 @@ impl CurriculumError {
             Self::BadSeed { .. } => "curriculum/bad-seed",
             Self::SameLogName { .. } => "curriculum/same-log-name",
             Self::Unknown { .. } => "curriculum/unknown",
+            Self::WorldFile { .. } => "curriculum/world-file",
+            Self::NoSuchExperience { .. } => "curriculum/no-such-experience",
+            Self::OtherRun { .. } => "curriculum/other-run",
+            Self::OtherRow { .. } => "curriculum/other-row",
             Self::World { .. } => "curriculum/world",
             Self::Episode { .. } => "curriculum/episode",
             Self::Log(_) => "curriculum/log",
@@ -124,6 +177,24 @@ mod tests {
                 task: "t".into(),
                 variant: "v".into(),
                 reason: "no such task".into(),
+            },
+            CurriculumError::WorldFile {
+                block: 1,
+                regime: 0,
+                reason: "maps/yard.json: not there".into(),
+            },
+            CurriculumError::NoSuchExperience { found: 9, total: 9 },
+            CurriculumError::OtherRun {
+                path: "logs/run".into(),
+                place: "/agent".into(),
+                found: "\"random\"".into(),
+                expected: "\"onrails\"".into(),
+            },
+            CurriculumError::OtherRow {
+                path: "logs/run".into(),
+                row: 7,
+                found: "experience 9 in block 1-test, t_v {}".into(),
+                expected: "experience 7 in block 0-train, t_v {}".into(),
             },
             CurriculumError::World {
                 block: 1,

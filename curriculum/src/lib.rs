@@ -9,4 +9,6 @@ mod run;
 
 pub use design::{Choice, Design, Evaluate, MAX_SEED, design};
 pub use error::CurriculumError;
-pub use run::{COLUMNS, Progress, RegimeSummary, Summary, Surroundings, log_name, logger_info, run, scenario_info};
+pub use run::{
+    COLUMNS, FoundWorld, Journal, Plan, Progress, RegimeSummary, Sources, Summary, Surroundings, log_name, run,
+};

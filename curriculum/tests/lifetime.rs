@@ -1,15 +1,16 @@
 //! A small scenario lived from the first experience to the last: logged, repeatable, scorable, interruptible.
 
+use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use driftworld_curriculum::{
-    Choice, CurriculumError, Design, Progress, Summary, Surroundings, design, logger_info, run, scenario_info,
+    Choice, CurriculumError, Design, FoundWorld, Journal, Plan, Progress, Sources, Summary, Surroundings, design, run,
 };
-use driftworld_env::{Agent, Catalogue, OnRailsAgent, RandomAgent};
-use driftworld_metrics::{LogWriter, MaintenanceMethod, Options, Timestamp, read_log, score};
-use driftworld_spec::{Scenario, TaskSpec, Variant};
+use driftworld_env::{Action, Agent, Catalogue, Environment, Label, OnRailsAgent, RandomAgent, Step};
+use driftworld_metrics::{MaintenanceMethod, Options, Record, Timestamp, read_log, score};
+use driftworld_spec::{Block, BlockKind, Phase, Regime, RegimeDrift, Scenario, TaskLabel, TaskSpec, World};
 
 fn task() -> Arc<TaskSpec> {
     let path = format!("{}/../examples/tasks/find_objects.json", env!("CARGO_MANIFEST_DIR"));
@@ -33,35 +34,75 @@ fn scenario(variants: &[&str]) -> Scenario {
     design(&choices, &options).expect("the design is sound")
 }
 
-/// Lives a scenario by a clock that ticks a second at each look, and stops after `most` experiences.
-fn live(scenario: &Scenario, agent: &mut dyn Agent, folder: &Path, most: u64) -> Result<Summary, CurriculumError> {
+fn plan(scenario: &Scenario) -> Result<Plan, CurriculumError> {
     let task = task();
-    let mut seconds = 1_600_000_000;
-    let mut log = LogWriter::create(folder, &logger_info()?, &scenario_info(scenario, "test"))?;
+    let mut sources = Sources {
+        task: &mut |name| match name {
+            "find_objects" => Ok(Arc::clone(&task)),
+            _ => Err("no such task".to_owned()),
+        },
+        world: &mut |path| match path {
+            "yard.json" => Ok(FoundWorld {
+                world: yard(),
+                note: Some("made up".to_owned()),
+            }),
+            _ => Err(format!("{path}: not there")),
+        },
+    };
+    Plan::new(scenario, &mut sources)
+}
+
+/// A world in which nothing ends an episode but its limit of steps.
+fn yard() -> World {
+    let text = r#"{ "max_steps": 40, "objects": [{ "class": "tree", "coordinates": [3, 4] }] }"#;
+    World::from_json("yard.json", text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// How a scenario is lived: how many experiences at most, several at a time, from the start or from where the log stopped.
+struct Living {
+    most: u64,
+    jobs: usize,
+    resume: bool,
+}
+
+const WHOLE: Living = Living {
+    most: u64::MAX,
+    jobs: 1,
+    resume: false,
+};
+
+/// Lives a scenario by a clock that stands still, so that logs can be compared byte for byte.
+fn live_by(
+    scenario: &Scenario,
+    agent: &mut dyn Agent,
+    folder: &Path,
+    living: &Living,
+) -> Result<Summary, CurriculumError> {
+    let plan = plan(scenario)?;
+    let mut journal = if living.resume {
+        Journal::resume(folder, &plan, "test")?
+    } else {
+        Journal::create(folder, &plan, "test")?
+    };
     let mut around = Surroundings {
-        find: &mut |name, variant| -> Result<Variant, String> {
-            if name == "find_objects" {
-                task.variant(variant).map_err(|e| e.to_string())
-            } else {
-                Err("no such task".to_owned())
-            }
-        },
-        now: &mut || {
-            seconds += 1;
-            Timestamp::from_unix_micros(seconds * 1_000_000).expect("the year is 2020")
-        },
+        now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020"),
         watch: &mut |progress: &Progress| {
-            if progress.done < most {
+            if progress.done < living.most {
                 ControlFlow::Continue(())
             } else {
                 ControlFlow::Break(())
             }
         },
         catalogue: Catalogue::default(),
+        jobs: NonZeroUsize::new(living.jobs).expect("somebody has to live it"),
     };
-    let summary = run(scenario, agent, &mut log, &mut around)?;
-    log.finish()?;
+    let summary = run(&plan, agent, &mut journal, &mut around)?;
+    journal.finish()?;
     Ok(summary)
+}
+
+fn live(scenario: &Scenario, agent: &mut dyn Agent, folder: &Path, most: u64) -> Result<Summary, CurriculumError> {
+    live_by(scenario, agent, folder, &Living { most, ..WHOLE })
 }
 
 fn scratch() -> tempfile::TempDir {
@@ -182,4 +223,303 @@ fn what_cannot_be_lived_says_where() {
     live(&scenario(&["blue"]), &mut RandomAgent::new(0), &log, 1).unwrap_or_else(|error| panic!("{error}"));
     let again = live(&scenario(&["blue"]), &mut RandomAgent::new(0), &log, 1).expect_err("a log is never written over");
     assert_eq!(again.code(), "curriculum/log");
+}
+
+/// A lifetime with everything that a regime can be: before deployment, drawn, drifting, of a world file, cut short.
+fn varied() -> Scenario {
+    let drawn = |variant: &str, count| Regime {
+        seed: 3,
+        ..Regime::new("find_objects", variant, count)
+    };
+    let short = |regime: Regime| Regime {
+        max_steps: Some(60),
+        ..regime
+    };
+    let drift = Regime {
+        drift: Some(RegimeDrift::to("dusk")),
+        ..drawn("red", 3)
+    };
+    let world = Regime {
+        world: Some("yard.json".to_owned()),
+        ..Regime::new("Task 1", "yard", 2)
+    };
+    let mut before = Block::new(BlockKind::Learning, vec![short(drawn("blue", 2))]);
+    before.phase = Phase::PreDeployment;
+    let evaluation = || Block::new(BlockKind::Evaluation, vec![short(drawn("blue", 2)), world.clone()]);
+    let learning = Block::new(BlockKind::Learning, vec![short(drawn("red", 2)), short(drift)]);
+    Scenario::new("varied", vec![before, evaluation(), learning, evaluation()])
+}
+
+fn rows(folder: &Path) -> Vec<Record> {
+    read_log(folder).unwrap_or_else(|error| panic!("{error}")).records
+}
+
+#[test]
+fn the_log_is_the_same_however_many_experiences_are_lived_at_a_time() {
+    let folder = scratch();
+    let lived = |jobs: usize, agent: &mut dyn Agent| {
+        let log = folder.path().join(format!("{jobs}"));
+        let summary = live_by(&varied(), agent, &log, &Living { jobs, ..WHOLE });
+        (everything(&log), summary.unwrap_or_else(|error| panic!("{error}")))
+    };
+    let one = lived(1, &mut RandomAgent::new(0));
+    assert!(one.1.finished && one.1.experiences == 15, "{:?}", one.1);
+    for jobs in [2, 5, 32] {
+        assert_eq!(one, lived(jobs, &mut RandomAgent::new(1)), "{jobs} at a time");
+    }
+}
+
+#[test]
+fn a_log_cut_at_any_byte_is_completed_to_what_it_would_have_been() {
+    let folder = scratch();
+    let whole = folder.path().join("whole");
+    let scenario = varied();
+    let summary = live(&scenario, &mut RandomAgent::new(0), &whole, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    // Files in the order in which they were written.
+    let mut files: Vec<String> = vec!["scenario_info.json".into(), "logger_info.json".into()];
+    for (block, kind) in ["train", "test", "train", "test"].iter().enumerate() {
+        files.push(format!("worker-default/{block}-{kind}/data-log.tsv"));
+    }
+    let bytes: Vec<Vec<u8>> = files
+        .iter()
+        .map(|file| std::fs::read(whole.join(file)).expect("the log has these files"))
+        .collect();
+    let total: usize = bytes.iter().map(Vec::len).sum();
+    for cut in (0..=total).step_by(173) {
+        let log = folder.path().join(format!("cut-{cut}"));
+        std::fs::create_dir(&log).expect("the folder is writable");
+        let mut left = cut;
+        for (file, bytes) in files.iter().zip(&bytes) {
+            if left == 0 {
+                break;
+            }
+            let (torn, part) = (left < bytes.len(), &bytes[..left.min(bytes.len())]);
+            // The two info files are written under another name until they are whole.
+            let name = if torn && !file.contains('/') {
+                format!(".{file}.tmp")
+            } else {
+                file.clone()
+            };
+            let path = log.join(name);
+            std::fs::create_dir_all(path.parent().expect("a file in a folder")).expect("the folder is writable");
+            std::fs::write(path, part).expect("the folder is writable");
+            left -= part.len();
+        }
+        let again = Living {
+            resume: true,
+            jobs: 2,
+            ..WHOLE
+        };
+        let resumed = live_by(&scenario, &mut RandomAgent::new(0), &log, &again);
+        assert_eq!(resumed.unwrap_or_else(|error| panic!("cut at {cut}: {error}")), summary);
+        assert_eq!(everything(&log), everything(&whole), "cut at {cut}");
+    }
+}
+
+#[test]
+fn a_log_is_taken_up_only_by_the_run_that_it_was_begun_with() {
+    let folder = scratch();
+    let log = folder.path().join("log");
+    let scenario = varied();
+    live(&scenario, &mut RandomAgent::new(0), &log, 6).unwrap_or_else(|error| panic!("{error}"));
+    let before = everything(&log);
+    let check = |scenario: &Scenario, agent: &str, expected: &str| {
+        let error = Journal::resume(&log, &plan(scenario).unwrap_or_else(|error| panic!("{error}")), agent);
+        let error = error.expect_err("another run").to_string();
+        assert!(error.contains(expected), "{error}");
+        assert_eq!(everything(&log), before);
+    };
+    check(
+        &scenario,
+        "other",
+        "/agent: found \"test\", expected \"other\" as in this run; go on with what",
+    );
+    let mut longer = scenario.clone();
+    longer.blocks[3].regimes[0].count = 9;
+    check(
+        &longer,
+        "test",
+        "/scenario/blocks/3/regimes/0/count: found 2, expected 9 as in this run",
+    );
+    // A row that somebody took out.
+    let path = log.join("worker-default/0-train/data-log.tsv");
+    let text = std::fs::read_to_string(&path).expect("the log has this file");
+    let lines: Vec<&str> = text.lines().take(2).collect();
+    std::fs::write(&path, lines.join("\n") + "\n").expect("the folder is writable");
+    let error = Journal::resume(&log, &plan(&scenario).unwrap_or_else(|error| panic!("{error}")), "test");
+    let error = error.expect_err("a row is gone");
+    assert_eq!(error.code(), "curriculum/other-row");
+    assert!(
+        error.to_string().contains("row 1: found experience 2 in block 1-test"),
+        "{error}"
+    );
+}
+
+#[test]
+fn every_row_says_how_far_its_variant_is_from_what_was_learned_last() {
+    let folder = scratch();
+    let log = folder.path().join("log");
+    live(&varied(), &mut RandomAgent::new(0), &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    let rows = rows(&log);
+    let distance = |row: usize, element: &str| rows[row].metrics[&format!("distance{element}")];
+    // Experiences: 0-1 blue before deployment, 2-3 blue, 4-5 yard, 6-7 red, 8-10 red to dusk, 11-12 blue, 13-14 yard.
+    assert!(
+        (0..2).all(|row| distance(row, "").is_nan()),
+        "nothing was learned before"
+    );
+    assert!((2..4).all(|row| distance(row, "") == 0.0), "the same variant");
+    assert!(
+        (4..6).all(|row| distance(row, "") > 0.0 && distance(row, "_reward") > 0.0),
+        "another world"
+    );
+    for row in 6..8 {
+        assert!(distance(row, "_observation") > 0.0, "red is not blue");
+        assert_eq!([distance(row, "_reward"), distance(row, "_action")], [0.0, 0.0]);
+    }
+    assert_eq!(distance(8, ""), 0.0, "the drift begins at what was learned last");
+    assert!(distance(8, "") < distance(9, "") && distance(9, "") < distance(10, ""));
+    assert!(
+        distance(11, "_observation") > 0.0,
+        "from dusk, the end of the drift, to blue"
+    );
+    let names: Vec<&str> = [0, 4, 6, 8].map(|row| rows[row].task_name.as_str()).to_vec();
+    assert_eq!(
+        names,
+        [
+            "findobjects_blue",
+            "task1_yard",
+            "findobjects_red",
+            "findobjects_redtodusk"
+        ]
+    );
+    assert_eq!(rows[9].task_params["progress"], 0.5);
+    assert_eq!(rows[0].task_params["phase"], "pre_deployment");
+}
+
+#[test]
+fn what_a_limit_cuts_off_is_truncated_and_the_end_of_a_block_is_no_end() {
+    /// What was told of the last step of each experience.
+    struct Witness(Vec<Step>);
+    impl Agent for Witness {
+        fn act(&mut self, _: &Environment) -> Action {
+            Action::Continuous([0.0; 3])
+        }
+        fn learn(&mut self, _: &Environment, step: &Step) {
+            if step.ended() {
+                self.0.push(step.clone());
+            }
+        }
+    }
+    let folder = scratch();
+    let log = folder.path().join("log");
+    let regime = |max_steps| Regime {
+        max_steps: Some(max_steps),
+        ..Regime::new("find_objects", "blue", 1)
+    };
+    let learning = Block::new(BlockKind::Learning, vec![regime(7), regime(9)]);
+    let mut witness = Witness(Vec::new());
+    let scenario = Scenario::new("cut", vec![learning.clone(), learning]);
+    live(&scenario, &mut witness, &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(witness.0.len(), 4);
+    assert!(witness.0.iter().all(|step| step.truncated && !step.terminated));
+    let rows = rows(&log);
+    let steps: Vec<f64> = rows.iter().map(|row| row.metrics["episode_step_count"]).collect();
+    assert_eq!(steps, [7.0, 9.0, 7.0, 9.0]);
+    assert!(rows.iter().all(|row| row.metrics["truncated"] == 1.0));
+    let log = folder.path().join("ended");
+    live(&self::scenario(&["blue"]), &mut OnRailsAgent::new(), &log, u64::MAX)
+        .unwrap_or_else(|error| panic!("{error}"));
+    assert!(
+        self::rows(&log)
+            .iter()
+            .all(|row| row.metrics["truncated"] == 0.0 && row.metrics["success"] == 1.0)
+    );
+}
+
+/// Writes down what it is told; learns, and can be copied.
+#[derive(Clone, Default)]
+struct Pupil {
+    told: Arc<Mutex<Vec<(u64, Option<Label>)>>>,
+    label: Option<Label>,
+    learned: u64,
+}
+
+impl Agent for Pupil {
+    fn act(&mut self, _: &Environment) -> Action {
+        // Goes the further the more it has learned.
+        Action::Continuous([self.learned as f64 / 100.0, 0.0, 0.0])
+    }
+    fn begin(&mut self, seed: u64) {
+        let label = self.label.take();
+        self.told.lock().expect("no test panics with it").push((seed, label));
+    }
+    fn told(&mut self, label: &Label) {
+        self.label = Some(label.clone());
+    }
+    fn learn(&mut self, _: &Environment, _: &Step) {
+        self.learned += 1;
+    }
+    fn frozen(&self) -> Option<Box<dyn Agent + Send>> {
+        Some(Box::new(self.clone()))
+    }
+}
+
+#[test]
+fn a_learner_learns_in_order_and_is_evaluated_as_it_is_by_several_copies() {
+    let folder = scratch();
+    let lived = |jobs: usize| {
+        let (log, mut pupil) = (folder.path().join(format!("{jobs}")), Pupil::default());
+        live_by(&varied(), &mut pupil, &log, &Living { jobs, ..WHOLE }).unwrap_or_else(|error| panic!("{error}"));
+        (everything(&log), pupil.learned)
+    };
+    let (log, learned) = lived(1);
+    assert_eq!((log, learned), lived(4));
+    assert_eq!(
+        learned,
+        7 * 60,
+        "seven experiences of learning, each cut off after 60 steps"
+    );
+}
+
+#[test]
+fn a_label_is_told_only_where_the_scenario_says_so() {
+    let folder = scratch();
+    let told = |label: TaskLabel| {
+        let (mut pupil, mut scenario) = (Pupil::default(), varied());
+        scenario.task_label = label;
+        let log = folder.path().join(format!("{label:?}"));
+        live(&scenario, &mut pupil, &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+        let told = pupil.told.lock().expect("no test panics with it").clone();
+        assert!(told.iter().map(|(seed, _)| *seed).eq(0..15));
+        told
+    };
+    assert!(told(TaskLabel::None).iter().all(|(_, label)| label.is_none()));
+    for wanted in [TaskLabel::Info, TaskLabel::Observation] {
+        let told: Vec<Label> = told(wanted).into_iter().filter_map(|(_, label)| label).collect();
+        assert_eq!(
+            (told.len(), told[8].name.as_str(), told[8].number),
+            (15, "find_objects#red..dusk", 3)
+        );
+        assert!(
+            told.iter()
+                .all(|label| label.of == 4 && label.observed == (wanted == TaskLabel::Observation))
+        );
+    }
+}
+
+#[test]
+fn a_world_file_that_is_nowhere_is_known_before_anything_is_lived() {
+    let mut scenario = varied();
+    scenario.blocks[1].regimes[1].world = Some("gone.json".to_owned());
+    let error = plan(&scenario).err().expect("there is no such file");
+    assert_eq!(error.to_string(), "block 1, regime 1: gone.json: not there");
+    let folder = scratch();
+    let log = folder.path().join("log");
+    live(&varied(), &mut RandomAgent::new(0), &log, 1).unwrap_or_else(|error| panic!("{error}"));
+    let info = read_log(&log)
+        .unwrap_or_else(|error| panic!("{error}"))
+        .scenario_info
+        .extra;
+    assert_eq!(info["notes"]["yard.json"], "made up");
+    assert_eq!(info["made_from"]["Task 1#yard"], yard().hash());
 }

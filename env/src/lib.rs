@@ -16,7 +16,7 @@ mod scene;
 mod sim;
 mod vector;
 
-pub use agents::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent};
+pub use agents::{Agent, Label, OnRailsAgent, RandomAgent, ScriptedAgent};
 pub use assets::{
     Asset, Catalogue, ColliderShape, Library, LibraryModel, MAX_LIBRARY_MODELS, MAX_MODEL_LEVELS, MAX_MODEL_PARTS,
     MAX_MODEL_REACH, MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES, MAX_NAME_BYTES, Mesh, Paint, Part, asset, classes,

@@ -1,6 +1,9 @@
 //! [`Drift`]: the variants between two variants of a task. How far apart two variants are is `similarity`'s to say.
 
-use driftworld_spec::{Distribution, Domain, Number, Parameter, ParameterType, Spread, Value, Variant};
+use driftworld_spec::{
+    Distribution, Domain, DriftSchedule, DriftSwitch, Number, Parameter, ParameterType, RegimeDrift, Spread, Value,
+    Variant,
+};
 
 use crate::GeneratorError;
 use crate::oklab;
@@ -39,6 +42,17 @@ impl Schedule {
             }
             Self::Sawtooth { .. } if progress == 1.0 => 1.0,
             Self::Sawtooth { periods } => (progress * f64::from(periods.max(1))).fract(),
+        }
+    }
+}
+
+impl From<DriftSchedule> for Schedule {
+    fn from(schedule: DriftSchedule) -> Self {
+        match schedule {
+            DriftSchedule::Linear => Self::Linear,
+            DriftSchedule::Cosine => Self::Cosine,
+            DriftSchedule::Steps(steps) => Self::Step { steps },
+            DriftSchedule::Sawtooth(periods) => Self::Sawtooth { periods },
         }
     }
 }
@@ -108,6 +122,21 @@ impl Drift {
                 to: to.id(),
             })
         }
+    }
+
+    /// The way that a regime of a scenario declares, from its variant to the one that its drift leads to; mixing switches
+    /// draw under the regime's seed.
+    ///
+    /// # Errors
+    /// [`GeneratorError::DifferentTasks`].
+    pub fn declared(drift: &RegimeDrift, from: Variant, to: Variant, seed: u64) -> Result<Self, GeneratorError> {
+        let switch = match drift.switch {
+            DriftSwitch::AtPoint => Switch::AtPoint,
+            DriftSwitch::Mixture => Switch::Mixture { seed },
+        };
+        Ok(Self::new(from, to)?
+            .with_schedule(drift.schedule.into())
+            .with_switch(switch))
     }
 
     /// Goes by another schedule.

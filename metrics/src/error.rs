@@ -32,6 +32,16 @@ pub enum MetricsError {
         path: PathBuf,
     },
 
+    /// Another writer is at work on the log.
+    #[error(
+        "{}: found a log that another run is writing, expected one that nobody writes; \
+         wait for that run, or choose another name", path.display()
+    )]
+    InUse {
+        /// The log's directory.
+        path: PathBuf,
+    },
+
     /// There is no such log directory.
     #[error("{}: found {found}, expected the directory of a log, which holds logger_info.json", path.display())]
     NotADirectory {
@@ -312,6 +322,7 @@ impl MetricsError {
         match self {
             Self::Io { .. } => "metrics/io",
             Self::LogExists { .. } => "metrics/log-exists",
+            Self::InUse { .. } => "metrics/in-use",
             Self::NotADirectory { .. } => "metrics/not-a-directory",
             Self::NoDataFiles { .. } => "metrics/no-data-files",
             Self::MissingFile { .. } => "metrics/missing-file",

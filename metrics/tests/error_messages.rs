@@ -33,6 +33,12 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
              the log that is there with LogWriter::resume",
         ),
         (
+            E::InUse { path: "run".into() },
+            "metrics/in-use",
+            "run: found a log that another run is writing, expected one that nobody writes; wait for that run, or choose \
+             another name",
+        ),
+        (
             E::NotADirectory {
                 path: "run".into(),
                 found: "nothing",

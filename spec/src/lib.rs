@@ -20,7 +20,10 @@ pub use distribution::{Distribution, Number, Order, ParamRef, PlanarMoments, Spr
 pub use document::MAX_BYTES;
 pub use error::{Problem, SpecError, nearest};
 pub use l2explorer::Warning;
-pub use scenario::{Block, BlockKind, MAX_EXPERIENCES, Regime, Scenario};
+pub use scenario::{
+    Block, BlockKind, DriftSchedule, DriftSwitch, MAX_EXPERIENCES, Phase, Regime, RegimeDrift, Scenario, ScenarioForm,
+    TaskLabel,
+};
 pub use task::{
     Count, DEFAULT_VARIANT, Domain, Element, Facing, Group, Hole, KeepOut, Parameter, ParameterType, PlacedGroup,
     Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template, Value, Variant, VariantSpec,

@@ -58,6 +58,13 @@ fn cases() -> Vec<SpecError> {
         ),
         Scenario::from_json("s.json", r#"{ "name": "s", "blocks": [] }"#).expect_err("a scenario has blocks"),
         world(r#"{ "version": 9 }"#),
+        Scenario::from_json(
+            "s.json",
+            r#"{ "name": "s", "blocks": [{ "type": "learning", "regimes": [
+                { "task": "t", "variant": "v", "name": "w", "count": 1 },
+                { "task": "t", "variant": "v", "values": { "p": 1 }, "count": 1 }] }] }"#,
+        )
+        .expect_err("a name and values go together"),
         task(&format!(
             r#"{number}, "require": ["p > 2"], "variants": {{ "a": {{}} }}"#
         )),

@@ -1,19 +1,24 @@
-//! `driftworld convert`: a world from one dialect to the other. Both are read and written by the spec.
+//! `driftworld convert`: a world or a scenario from one dialect to the other. Both are read and written by the spec.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::draw_maps::draw_maps;
 use super::input::WorldChoice;
+use super::scenario_file::{Missing, ScenarioFile};
 use super::{Failure, output};
 
-/// Write a world in L2Explorer's form, or one of L2Explorer's in ours.
+/// Write a world or a scenario in L2Explorer's form, or one of L2Explorer's in ours.
 ///
-/// What the other form cannot say is named in warnings on standard error.
+/// What the other form cannot say is named in warnings on standard error. The original lives map files only: the worlds that a
+/// scenario of ours draws are written as maps into a folder beside the output.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld convert map.json --l2explorer -o world.json
-  driftworld convert find_objects#red --seed 7 --to l2explorer -o reset.json")]
+  driftworld convert find_objects#red --seed 7 --to l2explorer -o reset.json
+  driftworld convert scenario_findobjects.json -o scenario.json
+  driftworld convert scenario.json --to l2explorer -o original/scenario.json")]
 pub(crate) struct Convert {
     #[command(flatten)]
     choice: WorldChoice,
@@ -25,22 +30,46 @@ pub(crate) struct Convert {
     output: PathBuf,
 }
 
-/// A form of world documents.
+/// A form of documents.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Form {
-    /// Ours, in its current version.
+    /// Ours, in its current version; `ours` for short.
+    #[value(alias = "ours")]
     World,
-    /// L2Explorer's reset payload.
+    /// L2Explorer's.
     L2explorer,
 }
 
 impl Convert {
     pub(crate) fn run(self) -> Result<(), Failure> {
+        let path = Path::new(self.choice.name());
+        if ScenarioFile::is_one(path) {
+            return self.scenario(&ScenarioFile::read(path)?);
+        }
         let world = self.choice.world()?;
         if self.to == Form::World {
             return output::write_or_print(&self.output, &world.to_json_pretty());
         }
         let (text, warnings) = world.to_l2explorer();
+        for warning in warnings {
+            output::note(format!("warning: {warning}"));
+        }
+        output::write_or_print(&self.output, &text)
+    }
+
+    fn scenario(&self, file: &ScenarioFile) -> Result<(), Failure> {
+        if self.to == Form::World {
+            return output::write_or_print(&self.output, &file.scenario.to_json_pretty());
+        }
+        let mut scenario = file.scenario.clone();
+        let draws = |scenario: &driftworld::spec::Scenario| {
+            let mut regimes = scenario.blocks.iter().flat_map(|block| &block.regimes);
+            regimes.any(|regime| regime.world.is_none())
+        };
+        if draws(&scenario) {
+            draw_maps(&mut scenario, &file.plan(Missing::Refused)?, &self.output)?;
+        }
+        let (text, warnings) = scenario.to_l2explorer()?;
         for warning in warnings {
             output::note(format!("warning: {warning}"));
         }

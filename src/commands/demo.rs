@@ -16,7 +16,8 @@ use super::metrics::{score_log, summary};
 use super::order::{matrix, path_table};
 use super::pictures::{SheetRow, heat_map, sheet};
 use super::render::Views;
-use super::run::live;
+use super::run::{Life, Start, processors};
+use super::scenario_file;
 use super::table::wide_table;
 use super::who::Who;
 use super::{Failure, output};
@@ -79,7 +80,15 @@ impl Demo {
         heading("4", "A lifetime: an agent that knows the map lives it")?;
         let logs = folder.join("log");
         remove_old_log(&logs)?;
-        let lived = live(&scenario, &Who::Onrails, &logs, Catalogue::default())?;
+        let life = Life {
+            plan: &scenario_file::plan(&scenario, &mut |_| Err("the demo has no world files".to_owned()))?,
+            who: &Who::Onrails,
+            logs: &logs,
+            start: Start::New,
+            jobs: processors(),
+            catalogue: Catalogue::default(),
+        };
+        let lived = life.live()?;
         output::line(block_table(&lived))?;
 
         heading("5", "What the lifetime is worth, by the metrics of lifelong learning")?;

@@ -115,6 +115,11 @@ pub(crate) struct WorldChoice {
 }
 
 impl WorldChoice {
+    /// The name that was given.
+    pub(crate) fn name(&self) -> &str {
+        &self.world
+    }
+
     /// Reads or draws the world.
     pub(crate) fn world(&self) -> Result<World, Failure> {
         if self.is_file() {

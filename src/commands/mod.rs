@@ -8,7 +8,9 @@ mod curriculum;
 mod demo;
 mod distance;
 mod doctor;
+mod draw_maps;
 mod input;
+mod interrupt;
 mod metrics;
 mod modality;
 mod order;
@@ -18,6 +20,7 @@ mod pictures;
 mod render;
 mod run;
 mod sample;
+mod scenario_file;
 mod schema;
 mod sheet;
 mod table;
@@ -44,7 +47,7 @@ pub(crate) enum Command {
     Sample(sample::Sample),
     /// Find a variant at a wanted distance from another.
     Vary(vary::Vary),
-    /// Write a world in L2Explorer's form, or one of L2Explorer's in ours.
+    /// Write a world or a scenario in L2Explorer's form, or one of L2Explorer's in ours.
     Convert(convert::Convert),
     /// Draw what an agent sees of a world, and the world from above.
     Render(render::Render),
@@ -123,6 +126,13 @@ impl Failure {
         };
         eprintln!("error: {text}");
         ExitCode::from(code)
+    }
+
+    /// What it says.
+    pub(crate) fn text(&self) -> &str {
+        match self {
+            Self::Input(text) | Self::Usage(text) => text,
+        }
     }
 
     pub(crate) fn usage(text: impl Into<String>) -> Self {

@@ -1,34 +1,52 @@
 //! `driftworld run`: a scenario lived by an agent into a log. Living it is `curriculum`'s; the clock and the files are here.
 
+use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use driftworld::curriculum::{Progress, Summary, Surroundings, logger_info, run, scenario_info};
+use driftworld::curriculum::{CurriculumError, Journal, Plan, Progress, Summary, Surroundings, run};
 use driftworld::env::Catalogue;
-use driftworld::metrics::{LogWriter, MetricsError, Timestamp};
-use driftworld::spec::{BlockKind, Scenario, Variant};
-use driftworld::tasks;
+use driftworld::metrics::{MetricsError, Timestamp};
+use driftworld::spec::BlockKind;
 
 use super::assets::LibraryChoice;
+use super::interrupt::Interrupt;
+use super::scenario_file::{Missing, ScenarioFile};
 use super::table::table;
 use super::who::Who;
-use super::{Failure, input, output};
+use super::{Failure, output};
+
+/// The most experiences that are lived at the same time.
+const MAX_JOBS: usize = 256;
 
 /// Live a curriculum with an agent and log every experience.
+///
+/// The scenario is a file of ours, or one of L2Explorer's. A run that was interrupted, in whatever way, goes on with --resume
+/// at the first experience that is not in the log, and writes what it would have written undisturbed.
 #[derive(Args)]
 #[command(after_help = "Example:
   driftworld run scenario.json --agent onrails --logs logs/first
-  driftworld run scenario.json --agent scripted:keep_away.txt --logs logs/second
+  driftworld run scenario.json --agent onrails --logs logs/first --resume
+  driftworld run scenario.json --agent scripted:script.txt --logs logs/second
   driftworld metrics logs/first")]
 pub(crate) struct Run {
     /// The scenario file.
     scenario: PathBuf,
     #[arg(long, default_value = "onrails", value_name = "AGENT", help = Who::HELP)]
     agent: Who,
-    /// A folder for the log; it must not hold anything yet.
+    /// A folder for the log; it must not hold anything yet, unless with --resume.
     #[arg(long, default_value = "logs/run", value_name = "DIR")]
     logs: PathBuf,
+    /// Go on with the log in the folder, or begin it if there is none.
+    #[arg(long)]
+    resume: bool,
+    /// How many experiences are lived at the same time, from 1 to 256; as many as there are processors if not given. The log is the same.
+    #[arg(long, value_name = "N", value_parser = jobs)]
+    jobs: Option<NonZeroUsize>,
+    /// Live the world file with the nearest name in place of one that is nowhere, and say so in the log.
+    #[arg(long)]
+    stand_in: bool,
     #[command(flatten)]
     libraries: LibraryChoice,
     /// Print the summary as JSON.
@@ -36,11 +54,29 @@ pub(crate) struct Run {
     json: bool,
 }
 
+fn jobs(text: &str) -> Result<NonZeroUsize, String> {
+    let jobs = text.parse().ok().filter(|jobs: &NonZeroUsize| jobs.get() <= MAX_JOBS);
+    jobs.ok_or_else(|| format!("found {text:?}, expected a whole number in 1..{MAX_JOBS}"))
+}
+
 impl Run {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let text = input::text(&self.scenario)?;
-        let scenario = Scenario::from_json(&self.scenario.display().to_string(), &text)?;
-        let summary = live(&scenario, &self.agent, &self.logs, self.libraries.catalogue()?)?;
+        let file = ScenarioFile::read(&self.scenario)?;
+        let missing = if self.stand_in {
+            Missing::StandIn
+        } else {
+            Missing::Refused
+        };
+        let plan = file.plan(missing)?;
+        let life = Life {
+            plan: &plan,
+            who: &self.agent,
+            logs: &self.logs,
+            start: if self.resume { Start::Resumed } else { Start::New },
+            jobs: self.jobs.unwrap_or_else(processors),
+            catalogue: self.libraries.catalogue()?,
+        };
+        let summary = life.live()?;
         if self.json {
             return output::json(&summary);
         }
@@ -54,38 +90,89 @@ impl Run {
     }
 }
 
-/// Lives a scenario into a new log, with a bar on a terminal.
-pub(crate) fn live(scenario: &Scenario, who: &Who, logs: &Path, catalogue: Catalogue) -> Result<Summary, Failure> {
-    let mut agent = who.agent()?;
-    let mut log =
-        LogWriter::create(logs, &logger_info()?, &scenario_info(scenario, &who.name())).map_err(
-            |error| match error {
-                MetricsError::LogExists { path } => Failure::input(format!(
-                    "{}: holds something already; choose a new folder with --logs",
-                    path.display()
-                )),
-                other => other.into(),
-            },
-        )?;
-    let bar = output::progress(scenario.num_experiences(), "living");
-    let mut around = Surroundings {
-        find: &mut find,
-        now: &mut now,
-        watch: &mut |progress: &Progress| {
-            bar.set_position(progress.done);
-            bar.set_message(progress.variant.clone());
-            ControlFlow::Continue(())
-        },
-        catalogue,
-    };
-    let summary = run(scenario, agent.as_mut(), &mut log, &mut around)?;
-    log.finish()?;
-    bar.finish_and_clear();
-    Ok(summary)
+pub(crate) fn processors() -> NonZeroUsize {
+    let jobs = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    jobs.min(NonZeroUsize::new(MAX_JOBS).unwrap_or(NonZeroUsize::MIN))
 }
 
-fn find(task: &str, variant: &str) -> Result<Variant, String> {
-    tasks::variant(&format!("{task}#{variant}")).map_err(|error| error.to_string())
+/// How a log is begun.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Start {
+    /// In an empty folder.
+    New,
+    /// Where it stopped, if there is one.
+    Resumed,
+}
+
+/// A lifetime that is to be lived.
+pub(crate) struct Life<'a> {
+    pub(crate) plan: &'a Plan,
+    pub(crate) who: &'a Who,
+    pub(crate) logs: &'a Path,
+    pub(crate) start: Start,
+    pub(crate) jobs: NonZeroUsize,
+    pub(crate) catalogue: Catalogue,
+}
+
+impl Life<'_> {
+    /// Lives it, with a bar on a terminal. Whatever stops it, the log holds whole experiences, and the message says how to go on.
+    pub(crate) fn live(self) -> Result<Summary, Failure> {
+        let mut agent = self.who.agent()?;
+        let mut journal = self.journal()?;
+        let interrupt = Interrupt::listen()?;
+        let bar = output::progress(self.plan.num_experiences(), "living");
+        bar.set_position(journal.num_experiences());
+        let mut around = Surroundings {
+            now: &mut now,
+            watch: &mut |progress: &Progress| {
+                bar.set_position(progress.done);
+                bar.set_message(progress.variant.clone());
+                // The last one needs no stopping.
+                if interrupt.is_asked() && progress.done < progress.total {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            },
+            catalogue: self.catalogue.clone(),
+            jobs: self.jobs,
+        };
+        let lived = run(self.plan, agent.as_mut(), &mut journal, &mut around);
+        bar.finish_and_clear();
+        let done = journal.num_experiences();
+        let finished = journal.finish();
+        match lived {
+            Ok(summary) if summary.finished => finished
+                .map(|()| summary)
+                .map_err(|error| self.stopped(&error.to_string(), done)),
+            Ok(_) => Err(self.stopped("interrupted", done)),
+            Err(error) => Err(self.stopped(&error.to_string(), done)),
+        }
+    }
+
+    fn journal(&self) -> Result<Journal, Failure> {
+        let name = self.who.name();
+        let opened = match self.start {
+            Start::New => Journal::create(self.logs, self.plan, &name),
+            Start::Resumed => Journal::resume(self.logs, self.plan, &name),
+        };
+        opened.map_err(|error| match error {
+            CurriculumError::Log(MetricsError::LogExists { path }) => Failure::input(format!(
+                "{}: holds something already; choose a new folder with --logs, or go on with a log with --resume",
+                path.display()
+            )),
+            other => other.into(),
+        })
+    }
+
+    /// Why it stopped, what there is, and how to go on.
+    fn stopped(&self, why: &str, done: u64) -> Failure {
+        Failure::input(format!(
+            "{why}\n{}: holds {done} of {} experiences, each of them whole; go on with the same command and --resume",
+            self.logs.display(),
+            self.plan.num_experiences()
+        ))
+    }
 }
 
 fn now() -> Timestamp {

@@ -11,8 +11,8 @@ use super::{Failure, input, output};
 
 /// Check task specs, worlds, scenarios and maps files, and name every problem with its place.
 ///
-/// What a file is, is seen from its keys: "blocks" make a scenario, "maps" a maps file, "name" a task spec, anything else a
-/// world.
+/// What a file is, is seen from its keys: "blocks" make a scenario, "scenario" one of L2Explorer's, "maps" a maps file, "name" a
+/// task spec, anything else a world.
 #[derive(Args)]
 #[command(after_help = "Example:\n  driftworld validate examples/tasks\n  driftworld validate --l2explorer map.json")]
 pub(crate) struct Validate {
@@ -62,6 +62,13 @@ impl Validate {
         let (kind, error) = match kind_of(&text) {
             "task spec" => ("task spec", TaskSpec::from_json(&name, &text).err()),
             "scenario" => ("scenario", Scenario::from_json(&name, &text).err()),
+            "L2Explorer scenario" => match Scenario::from_l2explorer(&name, &text) {
+                Ok((_, found)) => {
+                    warnings = found.iter().map(ToString::to_string).collect();
+                    ("L2Explorer scenario", None)
+                }
+                Err(error) => ("L2Explorer scenario", Some(error)),
+            },
             "maps file" => ("maps file", MapLibrary::from_json(&name, &text).err()),
             _ if self.l2explorer => match World::from_l2explorer(&name, &text) {
                 Ok((_, found)) => {
@@ -85,6 +92,8 @@ fn kind_of(text: &str) -> &'static str {
     let json: Value = serde_json::from_str(text).unwrap_or_default();
     if json.get("blocks").is_some() {
         "scenario"
+    } else if Scenario::is_l2explorer(&json) {
+        "L2Explorer scenario"
     } else if json.get("maps").is_some() {
         "maps file"
     } else if json.get("name").is_some() || json.get("parameters").is_some() || json.get("groups").is_some() {

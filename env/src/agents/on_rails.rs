@@ -105,6 +105,14 @@ impl Agent for OnRailsAgent {
     fn begin(&mut self, _seed: u64) {
         *self = Self::new();
     }
+
+    fn learns(&self) -> bool {
+        false
+    }
+
+    fn frozen(&self) -> Option<Box<dyn Agent + Send>> {
+        Some(Box::new(self.clone()))
+    }
 }
 
 impl OnRailsAgent {

@@ -64,4 +64,12 @@ impl Agent for RandomAgent {
     fn begin(&mut self, seed: u64) {
         *self = Self::new(seed);
     }
+
+    fn learns(&self) -> bool {
+        false
+    }
+
+    fn frozen(&self) -> Option<Box<dyn Agent + Send>> {
+        Some(Box::new(self.clone()))
+    }
 }

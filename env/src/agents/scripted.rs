@@ -171,6 +171,14 @@ impl Agent for ScriptedAgent {
         self.next();
         self.now = 0;
     }
+
+    fn learns(&self) -> bool {
+        false
+    }
+
+    fn frozen(&self) -> Option<Box<dyn Agent + Send>> {
+        Some(Box::new(self.clone()))
+    }
 }
 
 /// The nearest object that is there and has this tag or unique name.

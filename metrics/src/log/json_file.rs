@@ -67,10 +67,7 @@ pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Metr
 
 /// Writes bytes under a temporary name beside the target and renames.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), MetricsError> {
-    let mut name = std::ffi::OsString::from(".");
-    name.push(path.file_name().unwrap_or_default());
-    name.push(".tmp");
-    let temporary = path.with_file_name(name);
+    let temporary = path.with_file_name(temporary_name(&path.file_name().unwrap_or_default().to_string_lossy()));
     let written = fs::File::create(&temporary).and_then(|mut file| {
         file.write_all(bytes)?;
         file.sync_all()
@@ -81,6 +78,11 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), MetricsError>
         let _ = fs::remove_file(&temporary);
         MetricsError::io(path, "write this file")(error)
     })
+}
+
+/// What a file is called until it is whole.
+pub(super) fn temporary_name(name: &str) -> String {
+    format!(".{name}.tmp")
 }
 
 /// The parser's words without "at line 1 column 2", which stands in front of the message already.

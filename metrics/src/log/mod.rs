@@ -2,6 +2,7 @@
 //!
 //! Not here: what the numbers mean; that is `lifetime` and `score`.
 
+mod begun;
 mod cell;
 mod columns;
 mod data_file;
@@ -16,6 +17,7 @@ mod spaced_json;
 mod timestamp;
 mod writer;
 
+pub use begun::begun_log;
 pub use data_file::{MAX_CELL_BYTES, MAX_FILE_BYTES};
 pub use data_files::MAX_LOG_FILES;
 pub use logger_info::{LOG_FORMAT_VERSION, LoggerInfo};

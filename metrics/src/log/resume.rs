@@ -9,8 +9,8 @@ use std::path::Path;
 use super::cell::ParamsReader;
 use super::logger_info::LoggerInfo;
 use super::record::Record;
-use super::writer::{LogWriter, Progress};
-use super::{columns, data_file, data_files};
+use super::writer::{self, LogWriter, Progress};
+use super::{begun, columns, data_file, data_files};
 use crate::MetricsError;
 
 impl LogWriter {
@@ -20,12 +20,14 @@ impl LogWriter {
     /// The log may have no record yet; its `logger_info.json` must be there.
     ///
     /// # Errors
-    /// Those of [`read_log`](crate::read_log), and [`MetricsError::OtherColumns`] for a data file of format 1.0 or
+    /// Those of [`read_log`](crate::read_log), [`MetricsError::InUse`] while another writer has it, and [`MetricsError::OtherColumns`] for a data file of format 1.0 or
     /// one with columns of its own.
     pub fn resume(dir: impl AsRef<Path>) -> Result<Self, MetricsError> {
         let dir = dir.as_ref();
         let files = data_files::find(dir)?;
         let logger_info = LoggerInfo::read(dir)?;
+        let lock = writer::lock(dir)?;
+        begun::remove_leftovers(dir)?;
         let mut params = ParamsReader::default();
         let mut columns: Option<Vec<String>> = None;
         let mut latest: Vec<Record> = Vec::new();
@@ -46,7 +48,7 @@ impl LogWriter {
             progress.advance(record, columns.clone().unwrap_or_default());
         }
         progress.columns = columns;
-        Ok(Self::with_progress(dir, &logger_info, progress))
+        Ok(Self::with_progress(dir, &logger_info, progress, lock))
     }
 }
 

@@ -3,25 +3,29 @@
 //! Not here: taking up a log that was interrupted, see `resume`.
 
 use std::collections::BTreeSet;
-use std::fs::{self, File, OpenOptions};
-use std::io::Write;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use super::record::{ExpStatus, Record, is_worker_id};
-use super::{LoggerInfo, ScenarioInfo, cell, columns, data_files, json_file, logger_info, scenario_info};
+use super::{LoggerInfo, ScenarioInfo, begun, cell, columns, data_files, json_file, logger_info, scenario_info};
 use crate::MetricsError;
 use crate::log::BlockType;
 
 /// Writes records to a log directory, each flushed to the operating system as soon as it is written.
 ///
 /// The rules of the format are kept record by record: block and experience numbers never fall, every record has the
-/// same metrics, a worker completes an experience once. Opens one file at a time.
+/// same metrics, a worker completes an experience once. Opens one file at a time, and asks the disk to have it when it
+/// turns to the next: a machine that loses its power loses rows of the last block at most. Two writers on one directory
+/// would spoil it, so that the second is refused where the system can tell.
 #[derive(Debug)]
 pub struct LogWriter {
     dir: PathBuf,
     metrics_columns: Vec<String>,
     pub(super) progress: Progress,
     file: Option<BlockFile>,
+    /// Held, not used: the system lets go of it when the writer ends, however it ends.
+    _lock: Option<File>,
 }
 
 /// What later records are checked against.
@@ -47,7 +51,8 @@ impl LogWriter {
     /// Begins a log in `dir`, conventionally `BASE/SCENARIO-TIMESTAMP`; makes the directory if need be.
     ///
     /// # Errors
-    /// [`MetricsError::LogExists`] when the directory holds anything already, [`MetricsError::Io`].
+    /// [`MetricsError::LogExists`] when the directory holds anything but what is left of a log whose making was interrupted,
+    /// [`MetricsError::InUse`], [`MetricsError::Io`].
     pub fn create(
         dir: impl AsRef<Path>,
         logger_info: &LoggerInfo,
@@ -55,22 +60,24 @@ impl LogWriter {
     ) -> Result<Self, MetricsError> {
         let dir = dir.as_ref();
         fs::create_dir_all(dir).map_err(MetricsError::io(dir, "make this directory"))?;
-        let mut entries = fs::read_dir(dir).map_err(MetricsError::io(dir, "list this directory"))?;
-        if entries.next().is_some() {
+        if !begun::is_free(dir)? {
             return Err(MetricsError::LogExists { path: dir.to_owned() });
         }
         json_file::write_json(&dir.join(scenario_info::FILE_NAME), scenario_info)?;
         json_file::write_json(&dir.join(logger_info::FILE_NAME), logger_info)?;
-        Ok(Self::with_progress(dir, logger_info, Progress::default()))
+        let lock = lock(dir)?;
+        begun::remove_leftovers(dir)?;
+        Ok(Self::with_progress(dir, logger_info, Progress::default(), lock))
     }
 
-    pub(super) fn with_progress(dir: &Path, logger_info: &LoggerInfo, progress: Progress) -> Self {
+    pub(super) fn with_progress(dir: &Path, logger_info: &LoggerInfo, progress: Progress, lock: Option<File>) -> Self {
         let metrics_columns = logger_info.metrics_columns().to_vec();
         Self {
             dir: dir.to_owned(),
             metrics_columns,
             progress,
             file: None,
+            _lock: lock,
         }
     }
 
@@ -104,10 +111,7 @@ impl LogWriter {
     /// # Errors
     /// [`MetricsError::Io`].
     pub fn finish(self) -> Result<(), MetricsError> {
-        match self.file {
-            Some(BlockFile { path, file, .. }) => file.sync_all().map_err(MetricsError::io(path, "write this file")),
-            None => Ok(()),
-        }
+        self.file.as_ref().map_or(Ok(()), BlockFile::sync)
     }
 
     /// The file of a record's worker and block, opened or made if it is not the one that is open.
@@ -115,7 +119,10 @@ impl LogWriter {
         let path = data_path(&self.dir, &record.worker_id, record.block_num, record.block_type);
         let open = match self.file.take() {
             Some(open) if open.path == path => open,
-            _ => BlockFile::open(path, columns)?,
+            before => {
+                before.as_ref().map_or(Ok(()), BlockFile::sync)?;
+                BlockFile::open(path, columns)?
+            }
         };
         Ok(self.file.insert(open))
     }
@@ -196,6 +203,17 @@ impl BlockFile {
         Ok(opened)
     }
 
+    /// Asks the disk to have what was written.
+    fn sync(&self) -> Result<(), MetricsError> {
+        // What is no file, such as a pipe that a link leads to, has nothing to keep.
+        match self.file.sync_all() {
+            Err(error) if error.kind() != ErrorKind::InvalidInput => {
+                Err(MetricsError::io(&self.path, "write this file")(error))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Adds one line in one call. If only a part of it could be written, that part is taken back.
     fn append(&mut self, line: &[u8]) -> Result<(), MetricsError> {
         if let Err(source) = self.file.write_all(line) {
@@ -205,6 +223,22 @@ impl BlockFile {
         }
         self.length += line.len() as u64;
         Ok(())
+    }
+}
+
+/// Keeps a second writer away, as long as the file that comes back is open. Where the system has no such locks, there is none.
+///
+/// Only where locks are advice: elsewhere they would keep readers away, too.
+pub(super) fn lock(dir: &Path) -> Result<Option<File>, MetricsError> {
+    if !cfg!(unix) {
+        return Ok(None);
+    }
+    let path = dir.join(logger_info::FILE_NAME);
+    let file = File::open(&path).map_err(MetricsError::io(&path, "open this file"))?;
+    match file.try_lock() {
+        Ok(()) => Ok(Some(file)),
+        Err(TryLockError::WouldBlock) => Err(MetricsError::InUse { path: dir.to_owned() }),
+        Err(TryLockError::Error(_)) => Ok(None),
     }
 }
 

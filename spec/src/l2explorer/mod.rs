@@ -1,5 +1,6 @@
 //! The dialect of L2Explorer's reset files: its keys, and what is said where it and a [`World`](crate::World) differ.
 //! Reading it is in `read.rs`, with the leniency for single values in `lenient.rs`; writing it is in `write.rs`.
+//! Its scenario files, which name such reset files, are in `scenario.rs`.
 //!
 //! The dialect is the smaller language: every file of it becomes a world, but a world may hold more than a file can.
 //! Both directions hand back a [`Warning`] for whatever did not pass as it stood. A number of a predefined map means the
@@ -7,6 +8,7 @@
 
 mod lenient;
 mod read;
+mod scenario;
 mod write;
 
 use std::fmt;

@@ -73,7 +73,7 @@ impl Object {
 
 impl Document<'_> {
     /// What the reader remarked, in the order of the text.
-    fn warnings(&self, remarks: impl IntoIterator<Item = (String, String)>) -> Vec<Warning> {
+    pub(super) fn warnings(&self, remarks: impl IntoIterator<Item = (String, String)>) -> Vec<Warning> {
         let warning = |(pointer, text): (String, String)| {
             let (line, column) = self.place(&pointer);
             let name = self.name.to_owned();

@@ -157,8 +157,21 @@ const EXAMPLES: &[(&str, &[&str])] = &[
     ),
     (
         "Regime",
-        &[r#"{ "task": "find_objects", "variant": "red", "count": 100, "seed": 7, "first_index": 0 }"#],
+        &[
+            r#"{ "task": "find_objects", "variant": "red", "count": 100, "seed": 7, "first_index": 0 }"#,
+            r#"{ "task": "find_objects", "variant": "red", "values": { "light": 1.2 }, "name": "red-dim", "count": 100 }"#,
+            r#"{ "task": "Task1", "variant": "yard", "world": "maps/yard.json", "max_steps": 200, "count": 10 }"#,
+            r#"{ "task": "find_objects", "variant": "red", "count": 100, "drift": { "to": "dusk", "schedule": "cosine" } }"#,
+        ],
     ),
+    (
+        "RegimeDrift",
+        &[
+            r#"{ "to": "dusk" }"#,
+            r#"{ "to": "dusk", "schedule": { "steps": 4 }, "switch": "mixture", "from": 0, "until": 0.5 }"#,
+        ],
+    ),
+    ("DriftSchedule", &[r#""linear""#, r#"{ "sawtooth": 3 }"#]),
     (
         "MapLayout",
         &[r#"{ "id": 2, "name": "yard", "excluded_regions": [[[-5, -5], [5, -5], [5, 5], [-5, 5]]] }"#],

@@ -1,0 +1,68 @@
+//! The numbers that every experience is logged with. What the file looks like is `metrics`'.
+
+use driftworld_metrics::{BlockType, Record, Timestamp};
+use driftworld_spec::BlockKind;
+
+use super::episode::Experience;
+use super::gap::Gap;
+use super::plan::Planned;
+
+/// The columns that every experience is logged with, beside those that the format asks for.
+///
+/// - `reward`: what all its steps paid.
+/// - `success`: 1 if the world's success condition ended it, else 0.
+/// - `episode_step_count`: its steps.
+/// - `time_to_completion`: the seconds of the world's time that it took, which is steps times time step.
+/// - `truncated`: 1 if a limit of steps cut it off, 0 if what happened in it ended it.
+/// - `distance`: how far its variant is from the variant that the agent learned last before this regime began, 0..=1: for an
+///   experience of a learning block the step that the curriculum takes, for one of an evaluation block the way that what was
+///   learned has to carry. 0 if both are the same; `nan`, the format's word for no value, before anything was learned.
+/// - `distance_state`, `distance_action`, `distance_transition`, `distance_reward`, `distance_observation`: the same in each
+///   element of the decision process; 0 where nothing can differ in it.
+///
+/// Variants of one task are compared by what they declare, others by their first 16 worlds under seed 0.
+pub const COLUMNS: [&str; 11] = [
+    "reward",
+    "success",
+    "episode_step_count",
+    "time_to_completion",
+    "truncated",
+    "distance",
+    "distance_state",
+    "distance_action",
+    "distance_transition",
+    "distance_reward",
+    "distance_observation",
+];
+
+/// The row of experience `number`.
+pub(super) fn record(planned: &Planned, number: u64, experience: &Experience, gap: &Gap, now: Timestamp) -> Record {
+    let kind = block_type(planned.kind);
+    let [state, action, transition, reward, observation] = gap.elements;
+    let values = [
+        experience.reward,
+        f64::from(u8::from(experience.success)),
+        f64::from(experience.steps),
+        experience.seconds,
+        f64::from(u8::from(experience.truncated)),
+        gap.total,
+        state,
+        action,
+        transition,
+        reward,
+        observation,
+    ];
+    let record = Record::new(planned.block as u64, number, kind, &planned.log_name, now);
+    COLUMNS
+        .into_iter()
+        .zip(values)
+        .fold(record, |record, (name, value)| record.with_metric(name, value))
+        .with_task_params(planned.params(number))
+}
+
+pub(super) fn block_type(kind: BlockKind) -> BlockType {
+    match kind {
+        BlockKind::Learning => BlockType::Train,
+        BlockKind::Evaluation => BlockType::Test,
+    }
+}

@@ -1,0 +1,63 @@
+//! One experience: an agent in a world from the first step to the last. Which world and what becomes of the numbers is said elsewhere.
+
+use driftworld_env::{Agent, EnvError, Environment, Label, Step};
+
+/// Steps after which an experience in a world without a limit is over.
+pub(super) const MOST_STEPS: u32 = 100_000;
+
+/// What an agent is told of an experience.
+pub(super) struct Briefing<'a> {
+    /// The number that it draws its own chance from.
+    pub(super) seed: u64,
+    pub(super) label: Option<&'a Label>,
+    pub(super) learn: bool,
+}
+
+/// One experience that is over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Experience {
+    pub(super) reward: f64,
+    pub(super) success: bool,
+    pub(super) steps: u32,
+    pub(super) seconds: f64,
+    /// Cut off by a limit of steps, not ended by what happened.
+    pub(super) truncated: bool,
+}
+
+/// Lives one experience in an environment that stands at its beginning.
+///
+/// It ends as the environment says, so that the last of a block ends like any other: by what happened, or cut off by the
+/// limit of steps, never because the block does.
+pub(super) fn live(
+    agent: &mut dyn Agent,
+    environment: &mut Environment,
+    briefing: &Briefing,
+) -> Result<Experience, EnvError> {
+    if let Some(label) = briefing.label {
+        agent.told(label);
+    }
+    agent.begin(briefing.seed);
+    // A world without a limit of steps and without an end would never be over.
+    let limit = if environment.world().max_steps == 0 {
+        MOST_STEPS
+    } else {
+        u32::MAX
+    };
+    let mut last = Step::default();
+    while !environment.ended() && environment.num_steps() < limit {
+        let action = agent.act(environment);
+        last = environment.step(action)?;
+        last.truncated |= !last.terminated && environment.num_steps() >= limit;
+        if briefing.learn {
+            agent.learn(environment, &last);
+        }
+    }
+    let steps = environment.num_steps();
+    Ok(Experience {
+        reward: environment.episode_return(),
+        success: last.success,
+        steps,
+        seconds: f64::from(steps) * environment.world().agent_params.time_step,
+        truncated: last.truncated,
+    })
+}

@@ -1,0 +1,175 @@
+//! How far a regime's variant is from the one that was learned last: the distance columns of a log. The distances are `similarity`'s.
+
+use std::collections::BTreeMap;
+
+use driftworld_generator::{GeneratorError, Sampler};
+use driftworld_similarity::{Distance, Weights, variant_distance, world_distance};
+use driftworld_spec::{Element, Variant, World};
+
+/// How many worlds of each variant are compared where variants of different tasks meet.
+const WORLDS: u64 = 16;
+
+/// How many gaps, and how many subjects' worlds, are remembered: a drift has a variant for each experience.
+const REMEMBERED: usize = 4096;
+const REMEMBERED_WORLDS: usize = 256;
+
+/// A distance in all and in each element; NaN, the format's word for no value, where there is nothing to measure from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Gap {
+    pub(super) total: f64,
+    /// State, action, transition, reward, observation.
+    pub(super) elements: [f64; 5],
+}
+
+impl Gap {
+    /// Before anything was learned.
+    pub(super) const UNKNOWN: Self = Self {
+        total: f64::NAN,
+        elements: [f64::NAN; 5],
+    };
+    const NONE: Self = Self {
+        total: 0.0,
+        elements: [0.0; 5],
+    };
+
+    /// An element in which nothing could differ counts as equal.
+    fn of(distance: &Distance) -> Self {
+        Self {
+            total: distance.total,
+            elements: Element::ALL.map(|element| distance.element(element).unwrap_or(0.0)),
+        }
+    }
+
+    fn mean(gaps: &[Self]) -> Self {
+        let mean = |number: &dyn Fn(&Self) -> f64| gaps.iter().map(number).sum::<f64>() / gaps.len() as f64;
+        let mut elements = [0.0; 5];
+        for (place, element) in elements.iter_mut().enumerate() {
+            *element = mean(&|gap| gap.elements[place]);
+        }
+        Self {
+            total: mean(&|gap| gap.total),
+            elements,
+        }
+    }
+}
+
+/// What an experience is an experience of.
+#[derive(Clone, Copy)]
+pub(super) enum Subject<'a> {
+    Variant(&'a Variant),
+    World(&'a World),
+}
+
+/// Measures gaps, each pair of names once.
+#[derive(Default)]
+pub(super) struct Gaps {
+    known: BTreeMap<(String, String), Gap>,
+    drawn: BTreeMap<String, Vec<World>>,
+}
+
+impl Gaps {
+    /// The gap between two subjects; equal names mean equal subjects.
+    ///
+    /// Variants of one task are compared by what they declare. Others are compared by their first 16 worlds under seed 0, in
+    /// pairs; where there is one world only, it is compared with each.
+    pub(super) fn between(&mut self, a: (&str, Subject), b: (&str, Subject)) -> Result<Gap, GeneratorError> {
+        if a.0 == b.0 {
+            return Ok(Gap::NONE);
+        }
+        let key = (a.0.to_owned(), b.0.to_owned());
+        if let Some(gap) = self.known.get(&key) {
+            return Ok(*gap);
+        }
+        let gap = self.measure(a, b)?;
+        if self.known.len() == REMEMBERED {
+            self.known.clear();
+        }
+        self.known.insert(key, gap);
+        Ok(gap)
+    }
+
+    fn measure(&mut self, a: (&str, Subject), b: (&str, Subject)) -> Result<Gap, GeneratorError> {
+        let weights = Weights::default();
+        // What cannot be compared by what is declared, such as variants of two tasks, is compared by worlds.
+        if let (Subject::Variant(a), Subject::Variant(b)) = (a.1, b.1)
+            && let Ok(distance) = variant_distance(a, b, &weights)
+        {
+            return Ok(Gap::of(&distance));
+        }
+        if self.drawn.len() + 2 > REMEMBERED_WORLDS {
+            self.drawn.clear();
+        }
+        self.draw(a)?;
+        self.draw(b)?;
+        let (a, b) = (&self.drawn[a.0], &self.drawn[b.0]);
+        let pairs = a.len().max(b.len());
+        // A list of one world is as long as the other.
+        let pair = |place: usize| (&a[place % a.len()], &b[place % b.len()]);
+        let gaps: Vec<Gap> = (0..pairs)
+            .map(|place| {
+                let (a, b) = pair(place);
+                Gap::of(&world_distance(a, b, &weights))
+            })
+            .collect();
+        Ok(Gap::mean(&gaps))
+    }
+
+    fn draw(&mut self, (name, subject): (&str, Subject)) -> Result<(), GeneratorError> {
+        if !self.drawn.contains_key(name) {
+            let worlds = match subject {
+                Subject::World(world) => vec![world.clone()],
+                Subject::Variant(variant) => {
+                    let sampler = Sampler::new(variant, 0);
+                    (0..WORLDS)
+                        .map(|index| sampler.world(index))
+                        .collect::<Result<_, _>>()?
+                }
+            };
+            self.drawn.insert(name.to_owned(), worlds);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use driftworld_spec::TaskSpec;
+
+    use super::*;
+
+    fn variant(task: &str, name: &str) -> Variant {
+        let text = format!(
+            r#"{{ "name": "{task}", "variants": {{ "plain": {{}}, "poor": {{ "pay": 0 }} }}, "parameters": {{
+            "pay": {{ "role": "variant", "type": "number", "affects": ["R"], "range": [0, 10], "default": 10 }} }},
+            "groups": [{{ "name": "cubes", "count": 2, "placement": {{ "disc": {{ "center": [0, 0], "radius": 20 }} }},
+                "object": {{ "class": "cube", "reward": {{ "param": "pay" }}, "reward_stimulus": ["AgentCollide"] }} }}] }}"#
+        );
+        TaskSpec::from_json("t", &text).unwrap().variant(name).unwrap()
+    }
+
+    fn gap(a: Subject, b: Subject) -> Gap {
+        Gaps::default().between(("a", a), ("b", b)).unwrap()
+    }
+
+    #[test]
+    fn variants_of_one_task_differ_in_what_they_declare() {
+        let (plain, poor) = (variant("t", "plain"), variant("t", "poor"));
+        let found = gap(Subject::Variant(&plain), Subject::Variant(&poor));
+        let [state, action, transition, reward, observation] = found.elements;
+        assert!(found.total > 0.0 && reward > 0.0, "{found:?}");
+        assert_eq!([state, action, transition, observation], [0.0; 4]);
+        let same = Subject::Variant(&plain);
+        assert_eq!(Gaps::default().between(("a", same), ("a", same)).unwrap(), Gap::NONE);
+    }
+
+    #[test]
+    fn variants_of_two_tasks_and_single_worlds_are_compared_by_worlds() {
+        let (here, there) = (variant("t", "plain"), variant("u", "poor"));
+        let apart = gap(Subject::Variant(&here), Subject::Variant(&there));
+        assert!(apart.total > 0.0 && apart.elements[3] > 0.0, "{apart:?}");
+        let world = Sampler::new(&here, 0).world(0).unwrap();
+        assert_eq!(gap(Subject::World(&world), Subject::World(&world)).total, 0.0);
+        let mixed = gap(Subject::World(&world), Subject::Variant(&here));
+        assert!(mixed.total > 0.0 && mixed.elements[3] == 0.0, "{mixed:?}");
+    }
+}

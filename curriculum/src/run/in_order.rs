@@ -1,0 +1,152 @@
+//! Work on numbered items by several threads, with results handed on in the order of the numbers. What the work is, callers say.
+
+use std::collections::BTreeMap;
+use std::ops::{ControlFlow, Range};
+use std::sync::mpsc;
+use std::sync::{Condvar, Mutex, PoisonError};
+use std::thread;
+
+/// How far ahead of the oldest unfinished item each thread may work: bounds what waits to be handed on.
+const AHEAD: u64 = 16;
+
+/// Does every item of a range, a worker to a thread, and hands the results on in order; ends early when `take` says so.
+///
+/// Items are begun in order, each by whichever worker is free. After an early end the items under way are finished and
+/// dropped.
+pub(super) fn in_order<W: Send, T: Send, E>(
+    items: Range<u64>,
+    workers: Vec<W>,
+    work: impl Fn(&mut W, u64) -> T + Sync,
+    mut take: impl FnMut(u64, T) -> Result<ControlFlow<()>, E>,
+) -> Result<ControlFlow<()>, E> {
+    let window = AHEAD * workers.len() as u64;
+    let gate = Gate::new(items.clone());
+    thread::scope(|scope| {
+        let (results, arrived) = mpsc::channel();
+        for mut worker in workers {
+            let (results, gate, work) = (results.clone(), &gate, &work);
+            scope.spawn(move || {
+                while let Some(item) = gate.next(window) {
+                    if results.send((item, work(&mut worker, item))).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        drop(results);
+        // However this ends, no thread may go on waiting for its turn.
+        let _closing = Closing(&gate);
+        let (mut early, mut wanted) = (BTreeMap::new(), items.start);
+        for (item, result) in arrived {
+            early.insert(item, result);
+            while let Some(result) = early.remove(&wanted) {
+                if take(wanted, result)?.is_break() {
+                    return Ok(ControlFlow::Break(()));
+                }
+                wanted += 1;
+                gate.done(wanted);
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    })
+}
+
+/// Gives out items in order, none too far ahead of those that were handed on.
+struct Gate {
+    state: Mutex<Turn>,
+    moved: Condvar,
+}
+
+struct Turn {
+    items: Range<u64>,
+    done: u64,
+}
+
+impl Gate {
+    fn new(items: Range<u64>) -> Self {
+        let done = items.start;
+        Self {
+            state: Mutex::new(Turn { items, done }),
+            moved: Condvar::new(),
+        }
+    }
+
+    fn next(&self, window: u64) -> Option<u64> {
+        let state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let far = |turn: &mut Turn| !turn.items.is_empty() && turn.items.start >= turn.done.saturating_add(window);
+        let mut state = self
+            .moved
+            .wait_while(state, far)
+            .unwrap_or_else(PoisonError::into_inner);
+        state.items.next()
+    }
+
+    fn done(&self, done: u64) {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner).done = done;
+        self.moved.notify_all();
+    }
+
+    fn close(&self) {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        state.items.start = state.items.end;
+        drop(state);
+        self.moved.notify_all();
+    }
+}
+
+/// Closes the gate when it goes, also by an error.
+struct Closing<'a>(&'a Gate);
+
+impl Drop for Closing<'_> {
+    fn drop(&mut self) {
+        self.0.close();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Squares 10..200; even items take longer than odd ones. Returns what was taken until `last`, and how it ended.
+    fn squares(jobs: usize, last: u64) -> (Vec<(u64, u64)>, Result<ControlFlow<()>, String>) {
+        let mut taken = Vec::new();
+        let work = |_: &mut (), item: u64| {
+            let turns = if item.is_multiple_of(2) { 20_000 } else { 1 };
+            (0..turns).fold(0_u64, |sum, turn| sum.wrapping_add(std::hint::black_box(turn)));
+            item * item
+        };
+        let end = in_order(10..200, vec![(); jobs], work, |item, square| {
+            taken.push((item, square));
+            match item {
+                150 if last == 150 => Err("stopped".to_owned()),
+                _ if item == last => Ok(ControlFlow::Break(())),
+                _ => Ok(ControlFlow::Continue(())),
+            }
+        });
+        (taken, end)
+    }
+
+    #[test]
+    fn results_come_in_order_whatever_the_number_of_threads() {
+        let expected: Vec<(u64, u64)> = (10..200).map(|item| (item, item * item)).collect();
+        for jobs in [1, 2, 7, 64] {
+            assert_eq!(squares(jobs, 200), (expected.clone(), Ok(ControlFlow::Continue(()))));
+        }
+    }
+
+    #[test]
+    fn an_early_end_and_an_error_leave_nobody_waiting() {
+        for jobs in [1, 3] {
+            let (taken, end) = squares(jobs, 20);
+            assert_eq!((taken.len(), end), (11, Ok(ControlFlow::Break(()))));
+            let (taken, end) = squares(jobs, 150);
+            assert_eq!((taken.len(), end), (141, Err("stopped".to_owned())));
+        }
+    }
+
+    #[test]
+    fn no_items_are_no_work() {
+        let end: Result<_, ()> = in_order(5..5, vec![(); 2], |(), item| item, |_, _| Ok(ControlFlow::Continue(())));
+        assert_eq!(end, Ok(ControlFlow::Continue(())));
+    }
+}

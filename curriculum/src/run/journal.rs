@@ -1,0 +1,217 @@
+//! The log that a lifetime is lived into: begun, or taken up where it stopped. What a row holds is in `columns.rs`.
+
+use std::path::Path;
+
+use driftworld_metrics::{
+    LogWriter, LoggerInfo, MetricsError, Record, ScenarioInfo, ScenarioType, begun_log, read_log,
+};
+use driftworld_spec::ScenarioForm;
+use serde_json::{Map, Value, json};
+
+use super::columns::{COLUMNS, block_type};
+use super::plan::Plan;
+use super::summary::Summary;
+use crate::CurriculumError;
+
+/// An open log, and what is in it already.
+#[derive(Debug)]
+pub struct Journal {
+    pub(super) writer: LogWriter,
+    pub(super) summary: Summary,
+}
+
+impl Journal {
+    /// Begins a log in a new or empty folder. `agent` is who will live it, as it is to be written down.
+    ///
+    /// # Errors
+    /// [`CurriculumError::Log`].
+    pub fn create(folder: &Path, plan: &Plan, agent: &str) -> Result<Self, CurriculumError> {
+        let columns = LoggerInfo::new(COLUMNS)?;
+        Ok(Self {
+            writer: LogWriter::create(folder, &columns, &scenario_info(plan, agent))?,
+            summary: Summary::default(),
+        })
+    }
+
+    /// Takes up a log that was interrupted, at any moment: it goes on with the first experience that is not completely in
+    /// it. Where none was begun, it is begun.
+    ///
+    /// # Errors
+    /// [`CurriculumError::OtherRun`] if the log is of another scenario, of another agent, or of variants or worlds that are no longer
+    /// what they were; [`CurriculumError::OtherRow`] if its rows are not those of the plan; [`CurriculumError::Log`] if it cannot
+    /// be read or is being written. In each case the log stays as it is.
+    pub fn resume(folder: &Path, plan: &Plan, agent: &str) -> Result<Self, CurriculumError> {
+        let Some((columns, found)) = begun_log(folder)? else {
+            return Self::create(folder, plan, agent);
+        };
+        let other = |place: &str, found: &Value, expected: &Value| CurriculumError::OtherRun {
+            path: folder.to_owned(),
+            place: place.to_owned(),
+            found: shown(found),
+            expected: shown(expected),
+        };
+        if columns.metrics_columns() != COLUMNS {
+            return Err(other(
+                "metrics_columns",
+                &json!(columns.metrics_columns()),
+                &json!(COLUMNS),
+            ));
+        }
+        let expected = json!(scenario_info(plan, agent).extra);
+        let found = Value::Object(found.extra);
+        if let Some((place, found, expected)) = difference(&found, &expected, String::new()) {
+            return Err(other(&place, found, expected));
+        }
+        let writer = LogWriter::resume(folder)?;
+        let records = match read_log(folder) {
+            Ok(log) => log.records,
+            Err(MetricsError::NoDataFiles { .. }) => Vec::new(),
+            Err(error) => return Err(error.into()),
+        };
+        let mut summary = Summary::default();
+        for (number, record) in (0..).zip(&records) {
+            let wrong = |found: String, expected: String| CurriculumError::OtherRow {
+                path: folder.to_owned(),
+                row: number,
+                found,
+                expected,
+            };
+            take(plan, &mut summary, number, record).map_err(|(found, expected)| wrong(found, expected))?;
+        }
+        Ok(Self { writer, summary })
+    }
+
+    /// How many experiences are in the log.
+    pub fn num_experiences(&self) -> u64 {
+        self.summary.experiences
+    }
+
+    /// Ends the log: asks the disk to have all of it.
+    ///
+    /// # Errors
+    /// [`CurriculumError::Log`].
+    pub fn finish(self) -> Result<(), CurriculumError> {
+        Ok(self.writer.finish()?)
+    }
+}
+
+/// Counts a row of an earlier run, if it is the one that the plan has there; else says what it is, and what the plan has.
+fn take(plan: &Plan, summary: &mut Summary, number: u64, record: &Record) -> Result<(), (String, String)> {
+    if number >= plan.num_experiences() {
+        return Err((
+            "one row more".to_owned(),
+            format!("{} experiences", plan.num_experiences()),
+        ));
+    }
+    let planned = &plan.regimes[plan.regime_of(number)];
+    let told = |block: u64, experience: u64, kind, name: &str, params: &Value| {
+        format!("experience {experience} in block {block}-{kind}, {name} {params}")
+    };
+    let params = Value::Object(Map::clone(&planned.params(number)));
+    let kind = block_type(planned.kind);
+    let expected = told(planned.block as u64, number, kind, &planned.log_name, &params);
+    let params = Value::Object(Map::clone(&record.task_params));
+    let found = told(
+        record.block_num,
+        record.exp_num,
+        record.block_type,
+        &record.task_name,
+        &params,
+    );
+    if found != expected {
+        return Err((found, expected));
+    }
+    let value = |name: &str| record.metrics.get(name).copied().unwrap_or(f64::NAN);
+    let steps = value("episode_step_count") as u64;
+    summary.count(
+        planned,
+        number == planned.first,
+        value("reward"),
+        value("success"),
+        steps,
+    );
+    Ok(())
+}
+
+/// What the log says of a lifetime: the scenario, who lives it, and what its variants and worlds were made from.
+fn scenario_info(plan: &Plan, agent: &str) -> ScenarioInfo {
+    let mut extra = Map::new();
+    extra.insert("agent".to_owned(), json!(agent));
+    extra.insert("scenario".to_owned(), json!(plan.scenario));
+    extra.insert("made_from".to_owned(), json!(plan.prints));
+    if !plan.notes.is_empty() {
+        extra.insert("notes".to_owned(), json!(plan.notes));
+    }
+    let form = match plan.scenario.form {
+        Some(ScenarioForm::Condensed) => ScenarioType::Condensed,
+        Some(ScenarioForm::Dispersed) => ScenarioType::Dispersed,
+        Some(ScenarioForm::Permuted) => ScenarioType::Permuted,
+        Some(ScenarioForm::Alternating) => ScenarioType::Alternating,
+        Some(ScenarioForm::Expert) => ScenarioType::Ste,
+        Some(ScenarioForm::Custom) | None => ScenarioType::Custom,
+    };
+    ScenarioInfo {
+        scenario_type: Some(form),
+        extra,
+        ..ScenarioInfo::default()
+    }
+}
+
+/// Where two JSON values first differ, and what each has there.
+fn difference<'a>(found: &'a Value, expected: &'a Value, place: String) -> Option<(String, &'a Value, &'a Value)> {
+    const NOTHING: &Value = &Value::Null;
+    match (found, expected) {
+        (Value::Object(a), Value::Object(b)) => {
+            let mut keys: Vec<&String> = b.keys().chain(a.keys().filter(|key| !b.contains_key(*key))).collect();
+            // A scenario of another name is another scenario: that tells more than a count that differs.
+            keys.sort_by_key(|key| *key != "name");
+            keys.into_iter().find_map(|key| {
+                let of = |map: &'a Map<String, Value>| map.get(key).unwrap_or(NOTHING);
+                difference(of(a), of(b), format!("{place}/{key}"))
+            })
+        }
+        (Value::Array(a), Value::Array(b)) => (0..a.len().max(b.len())).find_map(|index| {
+            let of = |list: &'a Vec<Value>| list.get(index).unwrap_or(NOTHING);
+            difference(of(a), of(b), format!("{place}/{index}"))
+        }),
+        _ if found == expected => None,
+        _ => Some((place, found, expected)),
+    }
+}
+
+/// A value in the few words that a message has room for.
+fn shown(value: &Value) -> String {
+    let text = match value {
+        Value::Null => return "nothing".to_owned(),
+        other => other.to_string(),
+    };
+    match text.char_indices().nth(120) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_difference_is_named_by_its_place() {
+        let check = |a: Value, b: Value, expected: Option<(&str, &str, &str)>| {
+            let found = difference(&a, &b, String::new());
+            let found = found.map(|(place, a, b)| (place, shown(a), shown(b)));
+            let expected = expected.map(|(place, a, b)| (place.to_owned(), a.to_owned(), b.to_owned()));
+            assert_eq!(found, expected);
+        };
+        check(json!({ "a": [1, 2.5] }), json!({ "a": [1, 2.5] }), None);
+        check(json!({ "a": [1, 2] }), json!({ "a": [1, 3] }), Some(("/a/1", "2", "3")));
+        check(
+            json!({ "a": [1] }),
+            json!({ "a": [1, 3] }),
+            Some(("/a/1", "nothing", "3")),
+        );
+        check(json!({ "b": 1 }), json!({}), Some(("/b", "1", "nothing")));
+        let (old, new) = (json!({ "count": 1, "name": "x" }), json!({ "count": 2, "name": "y" }));
+        check(old, new, Some(("/name", "\"x\"", "\"y\"")));
+    }
+}

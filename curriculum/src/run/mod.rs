@@ -1,0 +1,219 @@
+//! Living a scenario: experience after experience, each logged. Designing one is in `design.rs`, scoring it is `metrics`'.
+//!
+//! A [`Plan`] is a scenario with everything that it names, a [`Journal`] the log that it is lived into, [`run`] lives it.
+
+mod columns;
+mod episode;
+mod gap;
+mod in_order;
+mod journal;
+mod plan;
+mod summary;
+
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+
+use driftworld_env::{Agent, Catalogue, Environment};
+use driftworld_generator::Sampler;
+use driftworld_metrics::{LogWriter, Timestamp};
+use driftworld_spec::{BlockKind, Variant};
+
+pub use columns::COLUMNS;
+pub use journal::Journal;
+pub use plan::{FoundWorld, Plan, Sources, log_name};
+pub use summary::{Progress, RegimeSummary, Summary};
+
+use crate::CurriculumError;
+use episode::{Briefing, Experience};
+use gap::{Gap, Gaps};
+
+/// What a run is handed, since it does not look at the clock.
+pub struct Surroundings<'a> {
+    /// The time now.
+    pub now: &'a mut dyn FnMut() -> Timestamp,
+    /// Told after each experience; may end the run there. What was lived until then is in the log.
+    pub watch: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    /// Where worlds take their assets from.
+    pub catalogue: Catalogue,
+    /// How many experiences are lived at the same time, where they do not depend on each other. Changes no byte of the log.
+    pub jobs: NonZeroUsize,
+}
+
+/// Lives a scenario from the first experience that is not in the log to its last, and logs each as soon as it is over.
+///
+/// The order of experiences, their worlds and the numbers that the agent begins them with depend on the scenario alone:
+/// a run that was interrupted and taken up again writes what an undisturbed one does. [`Agent::learn`] is called in learning
+/// blocks only. An agent that learns lives learning blocks one experience after the other; whoever takes up a log with such an
+/// agent hands over one that has learned what is in the log. Evaluation blocks, and all blocks of an agent that does not
+/// learn, are lived by its [`Agent::frozen`] copies, several at a time.
+///
+/// # Errors
+/// [`CurriculumError`] that says at which block, regime and experience; what was lived before is in the log.
+pub fn run(
+    plan: &Plan,
+    agent: &mut dyn Agent,
+    journal: &mut Journal,
+    around: &mut Surroundings,
+) -> Result<Summary, CurriculumError> {
+    let total = plan.num_experiences();
+    let (jobs, catalogue) = (around.jobs.get(), around.catalogue.clone());
+    let mut life = Life {
+        plan,
+        writer: &mut journal.writer,
+        around,
+        summary: &mut journal.summary,
+        gaps: Gaps::default(),
+        learned: None,
+    };
+    let mut desk = Desk::new(plan, catalogue.clone());
+    let mut next = life.summary.experiences;
+    while next < total {
+        let learns = agent.learns();
+        let end = if learns { plan.end_of_kind(next) } else { total };
+        let still = !learns || plan.regimes[plan.regime_of(next)].kind == BlockKind::Evaluation;
+        let copies: Option<Vec<_>> = (still && jobs > 1)
+            .then(|| {
+                let copy = |_| Some((agent.frozen()?, Desk::new(plan, catalogue.clone())));
+                (0..jobs).map(copy).collect()
+            })
+            .flatten();
+        let flow = match copies {
+            Some(copies) => {
+                let work =
+                    |(agent, desk): &mut (Box<dyn Agent + Send>, Desk), number| desk.live(agent.as_mut(), number);
+                in_order::in_order(next..end, copies, work, |number, lived| life.take(number, &lived?))?
+            }
+            None => life.one_by_one(next..end, agent, &mut desk)?,
+        };
+        if flow.is_break() {
+            break;
+        }
+        next = end;
+    }
+    life.summary.finished = life.summary.experiences == total;
+    Ok(life.summary.clone())
+}
+
+/// An experience that was lived, with the variant that it was an experience of where its regime drifts.
+struct Lived {
+    experience: Experience,
+    between: Option<Variant>,
+}
+
+/// Where experiences are lived, one at a time.
+struct Desk<'a> {
+    plan: &'a Plan,
+    catalogue: Catalogue,
+    /// The regime that the last experience belonged to, and its sampler.
+    sampler: Option<(usize, Option<Sampler>)>,
+    environment: Option<Environment>,
+}
+
+impl<'a> Desk<'a> {
+    fn new(plan: &'a Plan, catalogue: Catalogue) -> Self {
+        Self {
+            plan,
+            catalogue,
+            sampler: None,
+            environment: None,
+        }
+    }
+
+    fn live(&mut self, agent: &mut dyn Agent, number: u64) -> Result<Lived, CurriculumError> {
+        let index = self.plan.regime_of(number);
+        let planned = &self.plan.regimes[index];
+        let sampler = match &mut self.sampler {
+            Some((regime, sampler)) if *regime == index => sampler,
+            old => &mut old.insert((index, planned.sampler())).1,
+        };
+        let assignment = planned.assignment(number, sampler.as_ref())?;
+        let failed = |source| CurriculumError::Episode {
+            block: planned.block,
+            regime: planned.regime,
+            experience: number,
+            source,
+        };
+        let environment = match &mut self.environment {
+            Some(environment) => {
+                environment.reset(assignment.world).map_err(failed)?;
+                environment
+            }
+            none => none.insert(Environment::with_catalogue(assignment.world, self.catalogue.clone()).map_err(failed)?),
+        };
+        let briefing = Briefing {
+            seed: number,
+            label: planned.label.as_ref(),
+            learn: planned.kind == BlockKind::Learning,
+        };
+        Ok(Lived {
+            experience: episode::live(agent, environment, &briefing).map_err(failed)?,
+            between: assignment.between,
+        })
+    }
+}
+
+/// A lifetime under way.
+struct Life<'a, 'b> {
+    plan: &'a Plan,
+    writer: &'a mut LogWriter,
+    around: &'a mut Surroundings<'b>,
+    summary: &'a mut Summary,
+    gaps: Gaps,
+    /// A learning regime, and the variant at the end of its drift if it has one.
+    learned: Option<(usize, Option<Variant>)>,
+}
+
+impl Life<'_, '_> {
+    fn one_by_one(
+        &mut self,
+        numbers: std::ops::Range<u64>,
+        agent: &mut dyn Agent,
+        desk: &mut Desk,
+    ) -> Result<ControlFlow<()>, CurriculumError> {
+        for number in numbers {
+            let lived = desk.live(agent, number)?;
+            if self.take(number, &lived)?.is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Logs an experience, counts it and tells whoever watches.
+    fn take(&mut self, number: u64, lived: &Lived) -> Result<ControlFlow<()>, CurriculumError> {
+        let planned = &self.plan.regimes[self.plan.regime_of(number)];
+        let gap = self.gap(number, lived.between.as_ref())?;
+        let experience = &lived.experience;
+        let record = columns::record(planned, number, experience, &gap, (self.around.now)());
+        self.writer.write(&record)?;
+        let success = f64::from(u8::from(experience.success));
+        let steps = u64::from(experience.steps);
+        self.summary
+            .count(planned, number == planned.first, experience.reward, success, steps);
+        Ok((self.around.watch)(&Progress {
+            done: self.summary.experiences,
+            total: self.plan.num_experiences(),
+            block: planned.block,
+            kind: planned.kind,
+            variant: planned.id.clone(),
+            reward: experience.reward,
+        }))
+    }
+
+    /// How far an experience is from what was learned last before its regime began.
+    fn gap(&mut self, number: u64, between: Option<&Variant>) -> Result<Gap, CurriculumError> {
+        let planned = &self.plan.regimes[self.plan.regime_of(number)];
+        let Some(index) = planned.learned else {
+            return Ok(Gap::UNKNOWN);
+        };
+        let learned = &self.plan.regimes[index];
+        if self.learned.as_ref().is_none_or(|(known, _)| *known != index) {
+            self.learned = Some((index, learned.last()?));
+        }
+        let end = self.learned.as_ref().and_then(|(_, end)| end.as_ref());
+        let before = learned.subject(learned.first + u64::from(learned.count) - 1, end);
+        let here = planned.subject(number, between);
+        let gap = self.gaps.between((&before.0, before.1), (&here.0, here.1));
+        gap.map_err(|source| planned.wrong(source))
+    }
+}

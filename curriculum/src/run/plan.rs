@@ -1,0 +1,462 @@
+//! A scenario made ready to be lived: every variant and world found, every experience known by its number. Living it is in `mod.rs`.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use driftworld_env::Label;
+use driftworld_generator::{Drift, GeneratorError, Sampler};
+use driftworld_metrics::TaskParams;
+use driftworld_spec::{Block, BlockKind, Phase, Regime, RegimeDrift, Scenario, TaskLabel, TaskSpec, Variant, World};
+use serde_json::{Map, Value, json};
+
+use super::gap::Subject;
+use crate::CurriculumError;
+
+/// Where the tasks and worlds of a scenario come from, since nothing here reads files. An error is its message.
+pub struct Sources<'a> {
+    /// The task of this name or path.
+    pub task: &'a mut dyn FnMut(&str) -> Result<Arc<TaskSpec>, String>,
+    /// The world file of this path, as the scenario has it.
+    pub world: &'a mut dyn FnMut(&str) -> Result<FoundWorld, String>,
+}
+
+/// A world file that was found.
+#[derive(Clone, Debug)]
+pub struct FoundWorld {
+    /// The world.
+    pub world: World,
+    /// What has to be known about it, for instance that it stands in for another. Logs keep it.
+    pub note: Option<String>,
+}
+
+/// A scenario with everything that living it needs.
+pub struct Plan {
+    pub(super) scenario: Scenario,
+    pub(super) regimes: Vec<Planned>,
+    /// What must be the same when a log is taken up again: for each variant and world its name and a hash of what it is.
+    pub(super) prints: BTreeMap<String, String>,
+    /// What has to be known about world files, by path.
+    pub(super) notes: BTreeMap<String, String>,
+}
+
+/// A regime of it.
+pub(super) struct Planned {
+    pub(super) block: usize,
+    pub(super) regime: usize,
+    pub(super) kind: BlockKind,
+    phase: Phase,
+    /// Its name in tables: `task#variant`.
+    pub(super) id: String,
+    pub(super) log_name: String,
+    /// The number of its first experience over the whole lifetime.
+    pub(super) first: u64,
+    pub(super) count: u32,
+    seed: u64,
+    first_index: u64,
+    max_steps: Option<u32>,
+    source: Source,
+    /// The regime that the agent learned in last before this one.
+    pub(super) learned: Option<usize>,
+    pub(super) label: Option<Label>,
+}
+
+/// Where its worlds come from.
+enum Source {
+    Variant(Variant),
+    Drift {
+        from: Variant,
+        to: Variant,
+        way: Drift,
+        drift: RegimeDrift,
+    },
+    World {
+        world: Arc<World>,
+        path: String,
+    },
+}
+
+/// What one experience is made of.
+pub(super) struct Assignment {
+    pub(super) world: World,
+    /// The variant, where it is another in each experience.
+    pub(super) between: Option<Variant>,
+}
+
+impl Plan {
+    /// Finds everything that a scenario names, so that what cannot be had is known before anything is lived.
+    ///
+    /// # Errors
+    /// [`CurriculumError::Unknown`], [`CurriculumError::WorldFile`], [`CurriculumError::World`] where the first world of a
+    /// variant cannot be drawn, [`CurriculumError::SameLogName`].
+    pub fn new(scenario: &Scenario, sources: &mut Sources) -> Result<Self, CurriculumError> {
+        let mut plan = Self {
+            scenario: scenario.clone(),
+            regimes: Vec::new(),
+            prints: BTreeMap::new(),
+            notes: BTreeMap::new(),
+        };
+        let mut finder = Finder {
+            sources,
+            tasks: BTreeMap::new(),
+            worlds: BTreeMap::new(),
+        };
+        let mut log_names: BTreeMap<String, String> = BTreeMap::new();
+        let (mut first, mut learned) = (0, None);
+        for (b, block) in scenario.blocks.iter().enumerate() {
+            for (r, regime) in block.regimes.iter().enumerate() {
+                let planned = plan.planned(&mut finder, (b, block), (r, regime), first, learned)?;
+                first += u64::from(planned.count);
+                let called = called(regime);
+                if let Some(other) = log_names.insert(planned.log_name.clone(), called.clone())
+                    && other != called
+                {
+                    return Err(CurriculumError::SameLogName {
+                        a: other,
+                        b: called,
+                        name: planned.log_name,
+                    });
+                }
+                if planned.kind == BlockKind::Learning {
+                    learned = Some(plan.regimes.len());
+                }
+                plan.regimes.push(planned);
+            }
+        }
+        plan.put_labels();
+        Ok(plan)
+    }
+
+    /// The scenario that it was made from.
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    /// How many experiences the whole lifetime has.
+    pub fn num_experiences(&self) -> u64 {
+        self.scenario.num_experiences()
+    }
+
+    /// The world of an experience, by its number over the whole lifetime.
+    ///
+    /// # Errors
+    /// [`CurriculumError::World`] if it cannot be drawn; [`CurriculumError::NoSuchExperience`].
+    pub fn world(&self, number: u64) -> Result<World, CurriculumError> {
+        let total = self.num_experiences();
+        if number >= total {
+            return Err(CurriculumError::NoSuchExperience { found: number, total });
+        }
+        Ok(self.regimes[self.regime_of(number)].assignment(number, None)?.world)
+    }
+
+    /// The index of the regime that an experience belongs to.
+    pub(super) fn regime_of(&self, number: u64) -> usize {
+        // The first regime begins with experience 0.
+        self.regimes.partition_point(|planned| planned.first <= number) - 1
+    }
+
+    /// Where the unbroken stretch of blocks of one kind that an experience belongs to ends.
+    pub(super) fn end_of_kind(&self, number: u64) -> u64 {
+        let here = self.regime_of(number);
+        let kind = self.regimes[here].kind;
+        let other = self.regimes[here..].iter().find(|planned| planned.kind != kind);
+        other.map_or(self.num_experiences(), |planned| planned.first)
+    }
+
+    fn planned(
+        &mut self,
+        finder: &mut Finder,
+        (b, block): (usize, &Block),
+        (r, regime): (usize, &Regime),
+        first: u64,
+        learned: Option<usize>,
+    ) -> Result<Planned, CurriculumError> {
+        let source = finder.source(b, r, regime)?;
+        let (id, log_name) = match &source {
+            Source::Variant(variant) => (variant.id(), log_name(variant.task().name(), variant.name())),
+            Source::Drift { from, to, .. } => {
+                let task = from.task().name();
+                let id = format!("{}..{}", from.id(), to.name());
+                (id, log_name(task, &format!("{}to{}", from.name(), to.name())))
+            }
+            Source::World { .. } => {
+                let name = regime.variant_name();
+                (format!("{}#{name}", regime.task), log_name(&regime.task, name))
+            }
+        };
+        let planned = Planned {
+            block: b,
+            regime: r,
+            kind: block.kind,
+            phase: block.phase,
+            id,
+            log_name,
+            first,
+            count: regime.count,
+            seed: regime.seed,
+            first_index: regime.first_index,
+            max_steps: regime.max_steps,
+            source,
+            learned,
+            label: None,
+        };
+        self.print(&planned)?;
+        if let Source::World { path, .. } = &planned.source
+            && let Some(note) = finder.worlds[path].1.clone()
+        {
+            self.notes.insert(path.clone(), note);
+        }
+        Ok(planned)
+    }
+
+    /// Takes down what a regime's worlds are made from.
+    fn print(&mut self, planned: &Planned) -> Result<(), CurriculumError> {
+        let draw = |variant: &Variant| {
+            let world = Sampler::new(variant, planned.seed).world(planned.first_index);
+            Ok(world.map_err(|source| planned.wrong(source))?.hash())
+        };
+        let mut take = |id: String, hash: &dyn Fn() -> Result<String, CurriculumError>| {
+            if !self.prints.contains_key(&id) {
+                self.prints.insert(id, hash()?);
+            }
+            Ok(())
+        };
+        match &planned.source {
+            Source::Variant(variant) => take(variant.id(), &|| draw(variant)),
+            Source::Drift { from, to, .. } => {
+                take(from.id(), &|| draw(from))?;
+                take(to.id(), &|| draw(to))
+            }
+            Source::World { world, .. } => take(planned.id.clone(), &|| Ok(world.hash())),
+        }
+    }
+
+    /// Gives the variants their labels, numbered in the order in which they come, where the scenario wants any.
+    fn put_labels(&mut self) {
+        let wanted = self.scenario.task_label;
+        if wanted == TaskLabel::None {
+            return;
+        }
+        let mut names: Vec<String> = Vec::new();
+        let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
+        for planned in &self.regimes {
+            let next = names.len();
+            numbers.entry(planned.id.clone()).or_insert_with(|| {
+                names.push(planned.id.clone());
+                next
+            });
+        }
+        for planned in &mut self.regimes {
+            planned.label = Some(Label {
+                name: planned.id.clone(),
+                number: numbers[&planned.id],
+                of: names.len(),
+                observed: wanted == TaskLabel::Observation,
+            });
+        }
+    }
+}
+
+impl Planned {
+    pub(super) fn wrong(&self, source: GeneratorError) -> CurriculumError {
+        CurriculumError::World {
+            block: self.block,
+            regime: self.regime,
+            source,
+        }
+    }
+
+    /// The sampler of its worlds, where they are all drawn from one variant.
+    pub(super) fn sampler(&self) -> Option<Sampler> {
+        match &self.source {
+            Source::Variant(variant) => Some(Sampler::new(variant, self.seed)),
+            _ => None,
+        }
+    }
+
+    /// What experience `number` of the lifetime is made of. `sampler` is this regime's own.
+    pub(super) fn assignment(&self, number: u64, sampler: Option<&Sampler>) -> Result<Assignment, CurriculumError> {
+        let index = self.first_index + (number - self.first);
+        let between = self.between(number)?;
+        let drawn = match &self.source {
+            Source::World { world, .. } => Ok(World::clone(world)),
+            Source::Variant(variant) => match sampler {
+                Some(sampler) => sampler.world(index),
+                None => Sampler::new(variant, self.seed).world(index),
+            },
+            Source::Drift { from, .. } => Sampler::new(between.as_ref().unwrap_or(from), self.seed).world(index),
+        };
+        let mut world = drawn.map_err(|source| self.wrong(source))?;
+        if let Some(max_steps) = self.max_steps {
+            world.max_steps = max_steps;
+        }
+        Ok(Assignment { world, between })
+    }
+
+    /// The variant of an experience of a drift.
+    fn between(&self, number: u64) -> Result<Option<Variant>, CurriculumError> {
+        let Source::Drift { way, drift, .. } = &self.source else {
+            return Ok(None);
+        };
+        let experience = (number - self.first) as u32;
+        let index = self.first_index + (number - self.first);
+        let variant = way.at(drift.progress(experience, self.count), index);
+        variant.map(Some).map_err(|source| self.wrong(source))
+    }
+
+    /// What experience `number` is an experience of, under a name that is its own; `between` is its variant in a drift.
+    pub(super) fn subject<'a>(&'a self, number: u64, between: Option<&'a Variant>) -> (String, Subject<'a>) {
+        match (&self.source, between) {
+            (Source::World { world, .. }, _) => (self.id.clone(), Subject::World(world)),
+            (Source::Variant(variant), _) => (variant.id(), Subject::Variant(variant)),
+            // On the way, chance may have made another variant of each experience.
+            (Source::Drift { from, to, .. }, Some(variant)) if ![from.name(), to.name()].contains(&variant.name()) => {
+                (format!("{}/{number}", variant.id()), Subject::Variant(variant))
+            }
+            (Source::Drift { from, .. }, between) => {
+                let variant = between.unwrap_or(from);
+                (variant.id(), Subject::Variant(variant))
+            }
+        }
+    }
+
+    /// The variant of its last experience, where it drifts.
+    pub(super) fn last(&self) -> Result<Option<Variant>, CurriculumError> {
+        self.between(self.first + u64::from(self.count) - 1)
+    }
+
+    /// What a log says of an experience beside its numbers.
+    pub(super) fn params(&self, number: u64) -> TaskParams {
+        let mut params = Map::new();
+        let mut say = |key: &str, value: Value| params.insert(key.to_owned(), value);
+        let index = self.first_index + (number - self.first);
+        match &self.source {
+            Source::Variant(variant) => {
+                say("task", json!(variant.task().name()));
+                say("variant", json!(variant.name()));
+                say("seed", json!(self.seed));
+                say("index", json!(index));
+            }
+            Source::Drift { from, to, drift, .. } => {
+                say("task", json!(from.task().name()));
+                say("variant", json!(from.name()));
+                say("to", json!(to.name()));
+                let progress = drift.progress((number - self.first) as u32, self.count);
+                say("progress", json!(progress));
+                say("seed", json!(self.seed));
+                say("index", json!(index));
+            }
+            Source::World { path, .. } => {
+                let (task, variant) = self.id.split_once('#').unwrap_or((&self.id, ""));
+                say("task", json!(task));
+                say("variant", json!(variant));
+                say("world", json!(path));
+            }
+        }
+        if let Some(max_steps) = self.max_steps {
+            say("max_steps", json!(max_steps));
+        }
+        if self.phase == Phase::PreDeployment {
+            say("phase", json!("pre_deployment"));
+        }
+        TaskParams::from(params)
+    }
+}
+
+/// Finds tasks and worlds, each once.
+struct Finder<'a, 'b> {
+    sources: &'a mut Sources<'b>,
+    tasks: BTreeMap<String, Arc<TaskSpec>>,
+    worlds: BTreeMap<String, (Arc<World>, Option<String>)>,
+}
+
+impl Finder<'_, '_> {
+    fn source(&mut self, block: usize, regime_number: usize, regime: &Regime) -> Result<Source, CurriculumError> {
+        if let Some(path) = &regime.world {
+            if !self.worlds.contains_key(path) {
+                let found = (self.sources.world)(path).map_err(|reason| CurriculumError::WorldFile {
+                    block,
+                    regime: regime_number,
+                    reason,
+                })?;
+                self.worlds.insert(path.clone(), (Arc::new(found.world), found.note));
+            }
+            return Ok(Source::World {
+                world: Arc::clone(&self.worlds[path].0),
+                path: path.clone(),
+            });
+        }
+        let unknown = |variant: &str, reason: String| CurriculumError::Unknown {
+            block,
+            regime: regime_number,
+            task: regime.task.clone(),
+            variant: variant.to_owned(),
+            reason,
+        };
+        if !self.tasks.contains_key(&regime.task) {
+            let task = (self.sources.task)(&regime.task).map_err(|reason| unknown(&regime.variant, reason))?;
+            self.tasks.insert(regime.task.clone(), task);
+        }
+        let task = &self.tasks[&regime.task];
+        let from = regime
+            .resolve(task)
+            .map_err(|error| unknown(&regime.variant, error.to_string()))?;
+        let Some(drift) = &regime.drift else {
+            return Ok(Source::Variant(from));
+        };
+        let to = regime
+            .resolve_end(task)
+            .map_err(|error| unknown(&drift.to, error.to_string()))?
+            .expect("a regime with a drift has its end");
+        let way = Drift::declared(drift, from.clone(), to.clone(), regime.seed);
+        let way = way.map_err(|source| CurriculumError::World {
+            block,
+            regime: regime_number,
+            source,
+        })?;
+        Ok(Source::Drift {
+            from,
+            to,
+            way,
+            drift: drift.clone(),
+        })
+    }
+}
+
+/// What a regime's variant is called in the scenario.
+fn called(regime: &Regime) -> String {
+    let to = regime
+        .drift
+        .as_ref()
+        .map_or_else(String::new, |drift| format!("..{}", drift.to));
+    format!("{}#{}{to}", regime.task, regime.variant_name())
+}
+
+/// The name of a variant in a log: letters and digits of the task's name, an underscore, those of the variant's.
+///
+/// The format wants `task_variant` with letters and digits alone: `find_objects` and `red` are `findobjects_red`. A name
+/// without any is `x`.
+pub fn log_name(task: &str, variant: &str) -> String {
+    let plain = |text: &str| {
+        let plain: String = text.chars().filter(char::is_ascii_alphanumeric).collect();
+        if plain.is_empty() {
+            "x".to_owned()
+        } else {
+            plain.to_lowercase()
+        }
+    };
+    format!("{}_{}", plain(task), plain(variant))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_in_logs_are_letters_and_digits() {
+        let check = |task: &str, variant: &str, expected: &str| assert_eq!(log_name(task, variant), expected);
+        check("find_objects", "red", "findobjects_red");
+        check("Task1", "map_findobjects_0", "task1_mapfindobjects0");
+        check("tasks/my-own.json", "élan 2", "tasksmyownjson_lan2");
+        check("任务", "#", "x_x");
+    }
+}

@@ -1,0 +1,130 @@
+//! How far a log directory has come: whether its making was interrupted, and what the log that is there was about.
+//!
+//! Not here: taking it up, see `resume`; its rows, see `reader`.
+
+use std::fs;
+use std::path::Path;
+
+use super::logger_info::{self, LoggerInfo};
+use super::reader::LogWarning;
+use super::scenario_info::{self, ScenarioInfo};
+use super::{data_files, json_file};
+use crate::MetricsError;
+
+/// The log in `dir` as its two info files have it; `None` where no log was begun.
+///
+/// That is so where there is no such directory, where it is empty, and where it holds no more than what is left of a log
+/// whose making was interrupted before its first row: [`LogWriter::create`](crate::LogWriter::create) takes such a
+/// directory.
+///
+/// # Errors
+/// [`MetricsError::MissingFile`] and [`MetricsError::Json`] where there are rows and an info file is gone or torn,
+/// [`MetricsError::LoggerInfo`], [`MetricsError::NotADirectory`] for a file, [`MetricsError::Io`].
+pub fn begun_log(dir: impl AsRef<Path>) -> Result<Option<(LoggerInfo, ScenarioInfo)>, MetricsError> {
+    let dir = dir.as_ref();
+    if !dir.exists() || (dir.is_dir() && is_free(dir)?) {
+        return Ok(None);
+    }
+    data_files::find(dir)?;
+    let logger_info = LoggerInfo::read(dir)?;
+    let mut warnings = Vec::new();
+    let scenario_info = ScenarioInfo::read(dir, &mut warnings)?;
+    if warnings.contains(&LogWarning::NoScenarioInfo) {
+        return Err(MetricsError::MissingFile {
+            path: dir.join(scenario_info::FILE_NAME),
+            expected: "a JSON object",
+        });
+    }
+    Ok(Some((logger_info, scenario_info)))
+}
+
+/// Whether a directory is empty, or holds nothing but what an interrupted making of a log leaves.
+///
+/// The info files are written before anything else, `logger_info.json` last: where both are whole, a log was begun.
+pub(super) fn is_free(dir: &Path) -> Result<bool, MetricsError> {
+    let list = |error| MetricsError::io(dir, "list this directory")(error);
+    let names = [scenario_info::FILE_NAME, logger_info::FILE_NAME];
+    let mut whole = 0;
+    for entry in fs::read_dir(dir).map_err(list)? {
+        let entry = entry.map_err(list)?;
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if names
+            .iter()
+            .any(|info| json_file::temporary_name(info) == name.as_ref())
+        {
+            continue;
+        }
+        if !names.contains(&name.as_ref()) || !entry.file_type().map_err(list)?.is_file() {
+            return Ok(false);
+        }
+        whole += usize::from(json_file::read_object(&entry.path(), "a JSON object").is_ok());
+    }
+    Ok(whole < names.len())
+}
+
+/// Removes the temporary files that an interrupted making of a log leaves.
+pub(super) fn remove_leftovers(dir: &Path) -> Result<(), MetricsError> {
+    for info in [scenario_info::FILE_NAME, logger_info::FILE_NAME] {
+        let path = dir.join(json_file::temporary_name(info));
+        match fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(MetricsError::io(path, "remove this file")(error));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::LogWriter;
+
+    /// A log directory that was made as far as these files.
+    fn made(files: &[(&str, &str)]) -> tempfile::TempDir {
+        let dir = tempfile::tempdir().unwrap();
+        for (name, text) in files {
+            fs::write(dir.path().join(name), text).unwrap();
+        }
+        dir
+    }
+
+    #[test]
+    fn a_log_whose_making_was_interrupted_is_made_anew() {
+        let scenario = ("scenario_info.json", "{}");
+        let check = |files: &[(&str, &str)]| {
+            let dir = made(files);
+            assert!(begun_log(dir.path()).unwrap().is_none(), "{files:?}");
+            let info = LoggerInfo::new(["reward"]).unwrap();
+            LogWriter::create(dir.path(), &info, &ScenarioInfo::default()).unwrap();
+            assert_eq!(begun_log(dir.path()).unwrap().unwrap().0, info, "{files:?}");
+            assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2, "{files:?}");
+        };
+        check(&[]);
+        check(&[(".scenario_info.json.tmp", "{ \"scen")]);
+        check(&[scenario]);
+        check(&[("scenario_info.json", "{ \"scen")]);
+        check(&[scenario, (".logger_info.json.tmp", "")]);
+        check(&[scenario, ("logger_info.json", "{ \"metr")]);
+    }
+
+    #[test]
+    fn what_is_not_left_of_a_log_is_never_written_over() {
+        let check = |files: &[(&str, &str)], code: &str| {
+            let dir = made(files);
+            assert_eq!(begun_log(dir.path()).unwrap_err().code(), code);
+            let info = LoggerInfo::new(["reward"]).unwrap();
+            let error = LogWriter::create(dir.path(), &info, &ScenarioInfo::default()).unwrap_err();
+            assert_eq!(error.code(), "metrics/log-exists");
+        };
+        check(&[("notes.txt", "mine")], "metrics/missing-file");
+        check(
+            &[("scenario_info.json", "{}"), ("notes.txt", "mine")],
+            "metrics/missing-file",
+        );
+        let torn = [("logger_info.json", "{ \"met"), ("data-log.tsv", "block_num\n")];
+        check(&torn, "metrics/json");
+    }
+}

@@ -1,0 +1,416 @@
+//! The original's scenario files, to and from a [`Scenario`] whose regimes name world files. The worlds in those files are read in `read.rs`.
+//!
+//! ```text
+//! { "logging_base_dir": "logs", "scenario": [{ "type": "train", "regimes":
+//!     [{ "task": "Task1", "count": 2, "params": { "map": "../map.json", "maxsteps": 200 } }] }] }
+//! ```
+
+use std::collections::BTreeMap;
+
+use serde_json::{Map, Value as Json, json};
+
+use super::Warning;
+use crate::document::{Document, describe, escape};
+use crate::error::{Problem, SpecError};
+use crate::scenario::{Block, BlockKind, MAX_EXPERIENCES, Phase, Regime, Scenario, ScenarioForm, TaskLabel};
+
+/// The most steps that a regime may allow, as our own documents have it.
+const MAX_STEPS: u64 = 1_000_000_000;
+
+impl Scenario {
+    /// Reads a scenario file of the original. Each map becomes the world file of a regime, and its name without folder and
+    /// ending the regime's variant.
+    ///
+    /// # Errors
+    /// [`SpecError`] where the file is not JSON, or lacks what a regime must say.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::Scenario;
+    /// let text = r#"{ "logging_base_dir": "logs", "scenario": [{ "type": "train", "regimes":
+    ///     [{ "task": "Task1", "count": 2, "params": { "map": "../map_1.json", "maxsteps": 200 } }] }] }"#;
+    /// let (scenario, warnings) = Scenario::from_l2explorer("s.json", text)?;
+    /// let regime = &scenario.blocks[0].regimes[0];
+    /// assert_eq!((regime.task.as_str(), regime.variant.as_str(), regime.max_steps), ("Task1", "map_1", Some(200)));
+    /// assert_eq!(scenario.to_l2explorer()?.0.parse::<serde_json::Value>()?, text.parse::<serde_json::Value>()?);
+    /// assert!(warnings.is_empty());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
+        let document = Document::parse(name, text)?;
+        let mut reader = Reader::default();
+        let scenario = reader.scenario(&document.value);
+        document.fail_on(reader.problems)?;
+        Ok((scenario, document.warnings(reader.warnings)))
+    }
+
+    /// The scenario in the original's form, and what of it that form cannot say.
+    ///
+    /// # Errors
+    /// [`SpecError::Document`] with every regime that has no world file: the original lives one map in each regime.
+    pub fn to_l2explorer(&self) -> Result<(String, Vec<Warning>), SpecError> {
+        let mut writer = Writer::default();
+        let json = writer.scenario(self);
+        if !writer.problems.is_empty() {
+            let name = self.name.clone();
+            let problems = writer.problems;
+            return Err(SpecError::Document { name, problems });
+        }
+        let mut text = serde_json::to_string_pretty(&json).expect("texts and whole numbers serialise");
+        text.push('\n');
+        Ok((text, writer.warnings))
+    }
+
+    /// Whether a JSON value is a scenario in the original's form, by its keys.
+    pub fn is_l2explorer(json: &Json) -> bool {
+        json.get("scenario").is_some_and(Json::is_array) && json.get("blocks").is_none()
+    }
+}
+
+#[derive(Default)]
+struct Reader {
+    warnings: Vec<(String, String)>,
+    problems: Vec<Problem>,
+    /// The variant that each map of a task has become, and by task the plain names that are taken.
+    variants: BTreeMap<(String, String), String>,
+    taken: BTreeMap<String, Vec<String>>,
+}
+
+impl Reader {
+    fn scenario(&mut self, json: &Json) -> Scenario {
+        let empty = Map::new();
+        let map = json.as_object().unwrap_or(&empty);
+        self.unknown("", map, &["logging_base_dir", "scenario"]);
+        let name = self.name(map.get("logging_base_dir"));
+        let blocks = self.list("", map, "scenario", "block");
+        let blocks = blocks.iter().enumerate();
+        let blocks = blocks.map(|(b, block)| self.block(&format!("/scenario/{b}"), block));
+        Scenario::new(name, blocks.collect())
+    }
+
+    fn name(&mut self, found: Option<&Json>) -> String {
+        let fits = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '_' | '.' | '-');
+        let Some(text) = found.and_then(Json::as_str).filter(|text| !text.is_empty()) else {
+            self.warn(
+                "",
+                "without the key \"logging_base_dir\" the scenario is called \"scenario\"",
+            );
+            return "scenario".to_owned();
+        };
+        let name: String = text
+            .chars()
+            .take(100)
+            .map(|letter| if fits(letter) { letter } else { '_' })
+            .collect();
+        if name != text {
+            self.warn("/logging_base_dir", format!("{text:?} is read as the name {name:?}"));
+        }
+        name
+    }
+
+    fn block(&mut self, at: &str, json: &Json) -> Block {
+        let empty = Map::new();
+        let map = json.as_object().unwrap_or(&empty);
+        self.unknown(at, map, &["type", "regimes"]);
+        let kind = map.get("type").and_then(Json::as_str).map(str::to_ascii_lowercase);
+        let kind = match kind.as_deref() {
+            Some("train") => BlockKind::Learning,
+            Some("test") => BlockKind::Evaluation,
+            _ => {
+                self.wrong(at, map, "type", "\"train\" or \"test\"");
+                BlockKind::Learning
+            }
+        };
+        let regimes = self.list(at, map, "regimes", "regime");
+        let regimes = regimes.iter().enumerate();
+        let regimes = regimes.map(|(r, regime)| self.regime(&format!("{at}/regimes/{r}"), regime));
+        Block::new(kind, regimes.collect())
+    }
+
+    fn regime(&mut self, at: &str, json: &Json) -> Regime {
+        let empty = Map::new();
+        let map = json.as_object().unwrap_or(&empty);
+        self.unknown(at, map, &["task", "count", "params"]);
+        let task = self.text(at, map, "task");
+        let count = self.whole(at, map, "count", 1, u64::from(MAX_EXPERIENCES)).unwrap_or(1);
+        let params = format!("{at}/params");
+        let said = map.get("params").and_then(Json::as_object).unwrap_or(&empty);
+        self.unknown(&params, said, &["map", "maxsteps"]);
+        if map.get("params").is_none_or(Json::is_object) {
+            let world = self.text(&params, said, "map");
+            let max_steps = said
+                .contains_key("maxsteps")
+                .then(|| self.whole(&params, said, "maxsteps", 0, MAX_STEPS))
+                .flatten();
+            return Regime {
+                max_steps: max_steps.map(|steps| steps as u32),
+                world: Some(world.clone()),
+                ..Regime::new(&task, self.variant(&task, &world), count as u32)
+            };
+        }
+        self.wrong(at, map, "params", "an object with the key \"map\"");
+        Regime::new(task, "map", count as u32)
+    }
+
+    /// The variant that a task's map becomes: the file's name, with a number where two would be one in a log.
+    fn variant(&mut self, task: &str, world: &str) -> String {
+        let key = (task.to_owned(), world.to_owned());
+        if let Some(known) = self.variants.get(&key) {
+            return known.clone();
+        }
+        let stem = stem(world);
+        let plain = |name: &str| -> String {
+            let letters = name.chars().filter(char::is_ascii_alphanumeric);
+            letters.collect::<String>().to_ascii_lowercase()
+        };
+        let taken = self.taken.entry(task.to_owned()).or_default();
+        let mut name = stem.clone();
+        for number in 2.. {
+            if !taken.contains(&plain(&name)) {
+                break;
+            }
+            name = format!("{stem}-v{number}");
+        }
+        taken.push(plain(&name));
+        self.variants.insert(key, name.clone());
+        name
+    }
+
+    fn list(&mut self, at: &str, map: &Map<String, Json>, key: &str, item: &str) -> Vec<Json> {
+        match map.get(key).and_then(Json::as_array) {
+            Some(items) if (1..=100_000).contains(&items.len()) => items.clone(),
+            _ => {
+                self.wrong(at, map, key, &format!("a list of 1 to 100000 {item}s"));
+                Vec::new()
+            }
+        }
+    }
+
+    fn text(&mut self, at: &str, map: &Map<String, Json>, key: &str) -> String {
+        match map.get(key).and_then(Json::as_str) {
+            Some(text) if (1..=4096).contains(&text.chars().count()) => text.to_owned(),
+            _ => {
+                self.wrong(at, map, key, "a text of 1 to 4096 characters");
+                String::new()
+            }
+        }
+    }
+
+    fn whole(&mut self, at: &str, map: &Map<String, Json>, key: &str, least: u64, most: u64) -> Option<u64> {
+        let number = map.get(key).and_then(Json::as_f64);
+        let number = number.filter(|number| number.fract() == 0.0 && (least as f64..=most as f64).contains(number));
+        if number.is_none() {
+            self.wrong(at, map, key, &format!("a whole number in {least}..{most}"));
+        }
+        number.map(|number| number as u64)
+    }
+
+    /// A key that is missing, or whose value will not do.
+    fn wrong(&mut self, at: &str, map: &Map<String, Json>, key: &str, expected: &str) {
+        let problem = match map.get(key) {
+            Some(value) => Problem::new("spec/value", format!("{at}/{key}"), describe(value), expected),
+            None => Problem::new(
+                "spec/missing-key",
+                at,
+                "nothing",
+                format!("the key {key:?} with {expected}"),
+            ),
+        };
+        self.problems.push(problem);
+    }
+
+    fn unknown(&mut self, at: &str, map: &Map<String, Json>, known: &[&str]) {
+        for key in map.keys().filter(|key| !known.contains(&key.as_str())) {
+            let text = format!("the key {key:?} has no meaning here and is left out");
+            self.warn(format!("{at}/{}", escape(key)), text);
+        }
+    }
+
+    fn warn(&mut self, pointer: impl Into<String>, text: impl Into<String>) {
+        self.warnings.push((pointer.into(), text.into()));
+    }
+}
+
+/// The name of a file without folders and ending.
+fn stem(path: &str) -> String {
+    let file = path.rsplit(['/', '\\']).next().unwrap_or(path);
+    let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
+    let stem: String = stem.chars().take(90).collect();
+    if stem.is_empty() { "map".to_owned() } else { stem }
+}
+
+#[derive(Default)]
+struct Writer {
+    warnings: Vec<Warning>,
+    problems: Vec<Problem>,
+    /// Variants that were warned about.
+    renamed: Vec<String>,
+}
+
+impl Writer {
+    fn scenario(&mut self, scenario: &Scenario) -> Json {
+        if !scenario.description.is_empty() {
+            self.lost("/description", "the description");
+        }
+        if scenario.form.is_some_and(|form| form != ScenarioForm::Custom) {
+            self.lost("/form", "the form");
+        }
+        if scenario.task_label != TaskLabel::None {
+            self.lost("/task_label", "that the learner is told its task");
+        }
+        let blocks = scenario.blocks.iter().enumerate();
+        let blocks: Vec<Json> = blocks
+            .map(|(b, block)| self.block(&format!("/blocks/{b}"), block))
+            .collect();
+        json!({ "logging_base_dir": scenario.name, "scenario": blocks })
+    }
+
+    fn block(&mut self, at: &str, block: &Block) -> Json {
+        if block.phase == Phase::PreDeployment {
+            self.lost(&format!("{at}/phase"), "that the block comes before deployment");
+        }
+        let kind = match block.kind {
+            BlockKind::Learning => "train",
+            BlockKind::Evaluation => "test",
+        };
+        let regimes = block.regimes.iter().enumerate();
+        let regimes: Vec<Json> = regimes
+            .map(|(r, regime)| self.regime(&format!("{at}/regimes/{r}"), regime))
+            .collect();
+        json!({ "type": kind, "regimes": regimes })
+    }
+
+    fn regime(&mut self, at: &str, regime: &Regime) -> Json {
+        let Some(world) = &regime.world else {
+            let found = format!("worlds drawn from {}#{}", regime.task, regime.variant_name());
+            let problem = Problem::new("spec/value", at, found, "the key \"world\" with a world file");
+            let advice = "the original lives one map in each regime: draw worlds with driftworld sample and name them";
+            self.problems.push(problem.advise(advice));
+            return Json::Null;
+        };
+        if stem(world) != regime.variant && !self.renamed.contains(&regime.variant) {
+            self.renamed.push(regime.variant.clone());
+            self.lost(
+                &format!("{at}/variant"),
+                &format!("the variant's name {:?}", regime.variant),
+            );
+        }
+        let mut params = Map::new();
+        params.insert("map".into(), json!(world));
+        if let Some(steps) = regime.max_steps {
+            params.insert("maxsteps".into(), json!(steps));
+        }
+        json!({ "task": regime.task, "count": regime.count, "params": params })
+    }
+
+    fn lost(&mut self, pointer: &str, what: &str) {
+        self.warnings.push(Warning {
+            name: "scenario".to_owned(),
+            pointer: pointer.to_owned(),
+            line: 0,
+            column: 0,
+            text: format!("{what} cannot be said in the original's form and is left out"),
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A file of the original with one regime of these entries.
+    fn file(regime: &str) -> String {
+        format!(r#"{{ "logging_base_dir": "logs", "scenario": [{{ "type": "train", "regimes": [{{ {regime} }}] }}] }}"#)
+    }
+
+    fn refused(text: &str) -> String {
+        Scenario::from_l2explorer("s.json", text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn what_a_regime_lacks_is_named_with_its_place() {
+        let check = |regime: &str, expected: &str| {
+            let said = refused(&file(regime));
+            assert!(said.ends_with(expected), "{said}");
+        };
+        let params = r#""params": { "map": "m.json" }"#;
+        check(
+            &format!(r#""task": "a", "count": 0, {params}"#),
+            "(/scenario/0/regimes/0/count): found 0, expected a whole number in 1..10000000",
+        );
+        check(
+            &format!(r#""count": 1, {params}"#),
+            "(/scenario/0/regimes/0): found nothing, expected the key \"task\" with a text of 1 to 4096 characters",
+        );
+        check(
+            r#""task": "a", "count": 1, "params": {}"#,
+            "expected the key \"map\" with a text of 1 to 4096 characters",
+        );
+        check(
+            r#""task": "a", "count": 1, "params": [3]"#,
+            "(/scenario/0/regimes/0/params): found [3], expected an object with the key \"map\"",
+        );
+        assert!(refused("[1]").ends_with("expected the key \"scenario\" with a list of 1 to 100000 blocks"));
+        let wake = file("").replace("train", "wake");
+        assert!(
+            refused(&wake).contains("found \"wake\", expected \"train\" or \"test\""),
+            "{}",
+            refused(&wake)
+        );
+    }
+
+    #[test]
+    fn what_has_no_meaning_here_is_warned_about() {
+        let text = file(r#""task": "a", "count": 2.0, "params": { "map": "m.json", "fog": 1 }"#)
+            .replace("\"logs\"", "\"my logs\"");
+        let (scenario, warnings) = Scenario::from_l2explorer("s.json", &text).unwrap();
+        assert_eq!((scenario.name.as_str(), scenario.num_experiences()), ("my_logs", 2));
+        let said: Vec<&str> = warnings.iter().map(|warning| warning.text.as_str()).collect();
+        let expected = [
+            "\"my logs\" is read as the name \"my_logs\"",
+            "the key \"fog\" has no meaning here and is left out",
+        ];
+        assert_eq!(said, expected);
+    }
+
+    #[test]
+    fn maps_of_one_name_become_variants_of_two() {
+        let one = |map: &str| format!(r#"{{ "task": "a", "count": 1, "params": {{ "map": "{map}" }} }}"#);
+        let regimes = ["x/m_1.json", "y/m_1.json", "x/m_1.json", "m1"].map(one).join(", ");
+        let text =
+            format!(r#"{{ "logging_base_dir": "l", "scenario": [{{ "type": "TEST", "regimes": [{regimes}] }}] }}"#);
+        let (scenario, _) = Scenario::from_l2explorer("s.json", &text).unwrap();
+        let names: Vec<&str> = scenario.blocks[0]
+            .regimes
+            .iter()
+            .map(|regime| regime.variant.as_str())
+            .collect();
+        assert_eq!(names, ["m_1", "m_1-v2", "m_1", "m1-v3"]);
+        assert_eq!(
+            Scenario::from_json("s.json", &scenario.to_json_pretty()).unwrap(),
+            scenario
+        );
+    }
+
+    #[test]
+    fn what_the_original_cannot_say_is_told() {
+        let mut scenario = Scenario::new(
+            "s",
+            vec![Block::new(BlockKind::Learning, vec![Regime::new("find", "red", 3)])],
+        );
+        let error = scenario.to_l2explorer().unwrap_err().to_string();
+        assert!(
+            error.contains("(/blocks/0/regimes/0): found worlds drawn from find#red, expected the key \"world\""),
+            "{error}"
+        );
+        scenario.blocks[0].regimes[0].world = Some("maps/yard.json".into());
+        scenario.description = "Long.".into();
+        scenario.blocks[0].phase = Phase::PreDeployment;
+        let (_, warnings) = scenario.to_l2explorer().unwrap();
+        let pointers: Vec<&str> = warnings.iter().map(|warning| warning.pointer.as_str()).collect();
+        assert_eq!(
+            pointers,
+            ["/description", "/blocks/0/phase", "/blocks/0/regimes/0/variant"]
+        );
+    }
+}

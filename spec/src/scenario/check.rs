@@ -1,0 +1,267 @@
+//! What a schema cannot see in a scenario: what its blocks say together, and what the tasks that it names allow.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::{Phase, Regime, Scenario};
+use crate::error::{Problem, SpecError, nearest};
+use crate::task::TaskSpec;
+
+/// Each regime with the pointer to it.
+fn regimes(scenario: &Scenario) -> impl Iterator<Item = (String, &Regime)> {
+    scenario.blocks.iter().enumerate().flat_map(|(b, block)| {
+        let pointer = move |r: usize| format!("/blocks/{b}/regimes/{r}");
+        block
+            .regimes
+            .iter()
+            .enumerate()
+            .map(move |(r, regime)| (pointer(r), regime))
+    })
+}
+
+/// Everything wrong in a scenario that needs no task to be seen.
+pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
+    let mut problems = phases(scenario);
+    let mut called: BTreeMap<(&str, &str), (&Regime, String)> = BTreeMap::new();
+    for (pointer, regime) in regimes(scenario) {
+        if regime.first_index.checked_add(u64::from(regime.count)).is_none() {
+            let found = regime.first_index.to_string();
+            let expected = "an index that leaves room for count more";
+            problems.push(Problem::new(
+                "spec/range",
+                format!("{pointer}/first_index"),
+                found,
+                expected,
+            ));
+        }
+        let name = regime.variant_name();
+        if regime.world.is_some() && (regime.drift.is_some() || !regime.values.is_empty()) {
+            let key = if regime.drift.is_some() { "drift" } else { "values" };
+            let found = format!("a world file and {key}");
+            let problem = Problem::new("spec/value", format!("{pointer}/{key}"), found, "one of the two");
+            problems.push(problem.advise("a world file is lived as it is: write what is to change into it"));
+            continue;
+        }
+        if regime.name.is_some() && regime.values.is_empty() {
+            let found = format!("the name {name:?} and no values");
+            let problem = Problem::new(
+                "spec/value",
+                format!("{pointer}/name"),
+                found,
+                "a name together with values",
+            );
+            problems.push(problem.advise("remove it: the variant has a name of its own"));
+            continue;
+        }
+        if regime.name.is_none() && !regime.values.is_empty() {
+            let found = "values and no name";
+            let problem = Problem::new(
+                "spec/missing-key",
+                format!("{pointer}/values"),
+                found,
+                "the key \"name\"",
+            );
+            problems.push(problem.advise("give the variant that they make a name"));
+            continue;
+        }
+        let made_of = |regime: &Regime| (regime.variant.clone(), regime.values.clone(), regime.world.clone());
+        let same = |other: &Regime| made_of(other) == made_of(regime);
+        let key = (regime.task.as_str(), name);
+        if let Some((_, first)) = called.get(&key).filter(|(other, _)| !same(other)) {
+            let key = if regime.name.is_some() { "name" } else { "variant" };
+            let found = format!("{name:?}, which is another variant at {first}");
+            let expected = "one variant of a task under each name";
+            problems.push(Problem::new(
+                "spec/duplicate",
+                format!("{pointer}/{key}"),
+                found,
+                expected,
+            ));
+        }
+        called.entry(key).or_insert((regime, pointer));
+    }
+    problems
+}
+
+fn phases(scenario: &Scenario) -> Vec<Problem> {
+    let first = scenario
+        .blocks
+        .iter()
+        .position(|block| block.phase == Phase::Deployment);
+    let late = |(b, block): &(usize, &super::Block)| {
+        block.phase == Phase::PreDeployment && first.is_some_and(|first| first < *b)
+    };
+    let problem = |(b, _)| {
+        let found = format!("a block before deployment after block {}", first.unwrap_or(0));
+        let expected = "all blocks before deployment ahead of the others";
+        Problem::new("spec/value", format!("/blocks/{b}/phase"), found, expected).advise("move the block up")
+    };
+    scenario.blocks.iter().enumerate().filter(late).map(problem).collect()
+}
+
+/// Everything in a scenario that the tasks it names do not allow. A task that cannot be found is asked for once.
+pub(super) fn against_tasks(scenario: &Scenario, mut find: impl FnMut(&str) -> Option<Arc<TaskSpec>>) -> Vec<Problem> {
+    let mut tasks: BTreeMap<&str, Option<Arc<TaskSpec>>> = BTreeMap::new();
+    let mut problems = Vec::new();
+    for (pointer, regime) in regimes(scenario).filter(|(_, regime)| regime.world.is_none()) {
+        let task = tasks.entry(&regime.task).or_insert_with(|| find(&regime.task));
+        let Some(task) = task else { continue };
+        if let Err(error) = regime.resolve(task) {
+            problems.extend(placed(error, &pointer, "variant"));
+        }
+        if let Err(error) = regime.resolve_end(task) {
+            problems.extend(placed(error, &format!("{pointer}/drift"), "to"));
+        }
+    }
+    problems
+}
+
+/// An error about a variant as problems of the document that names the variant under `key`.
+fn placed(error: SpecError, pointer: &str, key: &str) -> Vec<Problem> {
+    match error {
+        SpecError::UnknownVariant { task, found, known } => {
+            let shown = if known.len() > 20 {
+                format!("{} and {} more", known[..20].join(", "), known.len() - 20)
+            } else {
+                known.join(", ")
+            };
+            let expected = format!("a variant of {task}: {shown}");
+            let problem = Problem::new(
+                "spec/unknown-variant",
+                format!("{pointer}/{key}"),
+                format!("{found:?}"),
+                expected,
+            );
+            vec![match nearest(&found, &known) {
+                Some(near) => problem.advise(format!("did you mean {near:?}?")),
+                None => problem,
+            }]
+        }
+        SpecError::Values { problems, .. } => problems
+            .into_iter()
+            .map(|problem| Problem {
+                pointer: format!("{pointer}/values{}", problem.pointer),
+                ..problem
+            })
+            .collect(),
+        other => vec![Problem::new(
+            "spec/value",
+            format!("{pointer}/{key}"),
+            other.to_string(),
+            "a variant that can be drawn from",
+        )],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(regimes: &str) -> String {
+        let text = format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regimes}] }}] }}"#);
+        let task = TaskSpec::from_json(
+            "t",
+            r#"{ "name": "t", "variants": { "day": {}, "dusk": { "light": 0.3 } }, "parameters": {
+                "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0, 4], "default": 2 } } }"#,
+        )
+        .unwrap();
+        let read = Scenario::from_json_with("s", &text, |name| (name == "t").then(|| Arc::clone(&task)));
+        read.map_or_else(|error| error.to_string(), |_| String::new())
+    }
+
+    #[track_caller]
+    fn check(regimes: &str, expected: &str) {
+        let said = said(regimes);
+        assert!(
+            if expected.is_empty() {
+                said.is_empty()
+            } else {
+                said.contains(expected)
+            },
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn values_and_a_name_go_together_and_a_name_means_one_variant() {
+        let dim = r#"{ "task": "t", "variant": "day", "values": { "light": 1 }, "name": "dim", "count": 1 }"#;
+        check(dim, "");
+        check(&format!("{dim}, {dim}"), "");
+        check(
+            r#"{ "task": "t", "variant": "day", "name": "dim", "count": 1 }"#,
+            "(/blocks/0/regimes/0/name): found the name \"dim\" and no values, expected a name together with values; remove it",
+        );
+        check(
+            r#"{ "task": "t", "variant": "day", "values": { "light": 1 }, "count": 1 }"#,
+            "(/blocks/0/regimes/0/values): found values and no name, expected the key \"name\"",
+        );
+        check(
+            &format!("{dim}, {}", dim.replace("\"light\": 1", "\"light\": 1.5")),
+            "(/blocks/0/regimes/1/name): found \"dim\", which is another variant at /blocks/0/regimes/0",
+        );
+        check(
+            &format!(
+                r#"{}, {{ "task": "t", "variant": "dusk", "count": 1 }}"#,
+                dim.replace("dim", "dusk")
+            ),
+            "(/blocks/0/regimes/1/variant): found \"dusk\", which is another variant at /blocks/0/regimes/0",
+        );
+    }
+
+    #[test]
+    fn a_world_file_is_lived_as_it_is() {
+        let world = r#"{ "task": "t", "variant": "yard", "world": "maps/yard.json", "max_steps": 20, "count": 1 }"#;
+        check(world, "");
+        check(
+            &world.replace("\"count\"", "\"drift\": { \"to\": \"dusk\" }, \"count\""),
+            "(/blocks/0/regimes/0/drift): found a world file and drift, expected one of the two; a world file is lived as it is",
+        );
+        check(
+            &format!("{world}, {}", world.replace("maps/yard", "other/yard")),
+            "(/blocks/0/regimes/1/variant): found \"yard\", which is another variant at /blocks/0/regimes/0",
+        );
+    }
+
+    #[test]
+    fn variants_values_and_drifts_are_those_that_the_task_has() {
+        check(r#"{ "task": "elsewhere.json", "variant": "any", "count": 1 }"#, "");
+        check(
+            r#"{ "task": "t", "variant": "dask", "count": 1 }"#,
+            "(/blocks/0/regimes/0/variant): found \"dask\", expected a variant of t: day, dusk; did you mean \"dusk\"?",
+        );
+        check(
+            r#"{ "task": "t", "variant": "day", "values": { "light": 5 }, "name": "glare", "count": 1 }"#,
+            "(/blocks/0/regimes/0/values/light): found 5, expected a number in 0..4",
+        );
+        check(
+            r#"{ "task": "t", "variant": "day", "drift": { "to": "night" }, "count": 1 }"#,
+            "(/blocks/0/regimes/0/drift/to): found \"night\", expected a variant of t: day, dusk",
+        );
+        check(
+            r#"{ "task": "t", "variant": "day", "drift": { "to": "dusk", "values": { "lihgt": 1 } }, "count": 1 }"#,
+            "did you mean \"light\"?",
+        );
+    }
+
+    #[test]
+    fn blocks_before_deployment_come_first() {
+        let block = |phase: &str| {
+            format!(r#"{{ "type": "learning"{phase}, "regimes": [{{ "task": "t", "variant": "day", "count": 1 }}] }}"#)
+        };
+        let read = |phases: [&str; 3]| {
+            let blocks = phases.map(block).join(", ");
+            Scenario::from_json("s", &format!(r#"{{ "name": "s", "blocks": [{blocks}] }}"#))
+        };
+        let pre = r#", "phase": "pre_deployment""#;
+        assert!(read([pre, pre, ""]).is_ok());
+        assert!(read([pre, pre, pre]).is_ok());
+        let error = read([pre, "", pre]).unwrap_err().to_string();
+        assert!(
+            error.ends_with(
+                "(/blocks/2/phase): found a block before deployment after block 1, expected all blocks before \
+                 deployment ahead of the others; move the block up"
+            ),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,136 @@
+//! [`RegimeDrift`]: what a document says of a drift from one variant to another. Drawing the variants between is the generator's job.
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::task::Value;
+
+/// A drift from a regime's variant to another of the same task.
+///
+/// A drift crosses the border of a block where the next block's regime goes on from the progress at which the one before stopped.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RegimeDrift {
+    /// The variant that it leads to.
+    #[schemars(length(min = 1, max = 200))]
+    pub to: String,
+    /// Values laid over those of the variant that it leads to, by parameter.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schemars(schema_with = "super::regime::values_schema")]
+    pub values: IndexMap<String, Value>,
+    /// How far it has come, as a function of its progress.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub schedule: DriftSchedule,
+    /// How values that have nothing between them change.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub switch: DriftSwitch,
+    /// Its progress at the regime's first experience, 0..1; 0 if absent.
+    #[serde(default, skip_serializing_if = "is_default")]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub from: f64,
+    /// Its progress at the regime's last experience, 0..1; 1 if absent.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub until: f64,
+}
+
+/// How far a drift has come, as a function of its progress.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum DriftSchedule {
+    /// Evenly.
+    #[default]
+    Linear,
+    /// Slowly at first and at last.
+    Cosine,
+    /// In so many equal steps.
+    Steps(#[schemars(range(min = 1, max = 1_000_000))] u32),
+    /// Up to the end and back at once to the beginning, so many times.
+    Sawtooth(#[schemars(range(min = 1, max = 1_000_000))] u32),
+}
+
+/// How values that have nothing between them change in a drift: texts, true and false, numbers out of a list.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DriftSwitch {
+    /// At the fraction that the parameter declares as `switch_at`; a half where it declares none.
+    #[default]
+    AtPoint,
+    /// By chance: at fraction t of the drift a world has the new value with probability t, drawn under the regime's seed.
+    Mixture,
+}
+
+impl RegimeDrift {
+    /// The whole way to a variant, evenly.
+    pub fn to(variant: impl Into<String>) -> Self {
+        Self {
+            to: variant.into(),
+            values: IndexMap::new(),
+            schedule: DriftSchedule::default(),
+            switch: DriftSwitch::default(),
+            from: 0.0,
+            until: 1.0,
+        }
+    }
+
+    /// The drift's progress, 0..=1, at experience number `experience`, from 0, of a regime of `count`.
+    ///
+    /// Evenly from `from` at the first to `until` at the last; in the middle of both where there is only one.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::RegimeDrift;
+    /// let second_half = RegimeDrift { from: 0.5, ..RegimeDrift::to("dusk") };
+    /// assert_eq!([0, 1, 2].map(|experience| second_half.progress(experience, 3)), [0.5, 0.75, 1.0]);
+    /// assert_eq!(RegimeDrift::to("dusk").progress(0, 1), 0.5);
+    /// ```
+    pub fn progress(&self, experience: u32, count: u32) -> f64 {
+        if count <= 1 {
+            return f64::midpoint(self.from, self.until);
+        }
+        let last = count - 1;
+        let share = f64::from(experience.min(last)) / f64::from(last);
+        self.from * (1.0 - share) + self.until * share
+    }
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_one(value: &f64) -> bool {
+    *value == 1.0
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drift_may_go_backwards_and_never_leaves_its_stretch() {
+        let back = RegimeDrift {
+            from: 1.0,
+            until: 0.25,
+            ..RegimeDrift::to("dusk")
+        };
+        assert_eq!(
+            [0, 2, 4].map(|experience| back.progress(experience, 5)),
+            [1.0, 0.625, 0.25]
+        );
+        assert_eq!(back.progress(9, 5), 0.25);
+    }
+
+    #[test]
+    fn a_drift_is_written_without_what_goes_without_saying() {
+        let json = |drift: &RegimeDrift| serde_json::to_string(drift).unwrap();
+        assert_eq!(json(&RegimeDrift::to("dusk")), r#"{"to":"dusk"}"#);
+        let all = r#"{"to":"dusk","values":{"light":0.5},"schedule":{"steps":4},"switch":"mixture","from":0.25,"until":0.75}"#;
+        assert_eq!(json(&serde_json::from_str(all).unwrap()), all);
+    }
+}

@@ -1,0 +1,219 @@
+//! [`Scenario`]: a curriculum as a document: learning and evaluation blocks. Designing and running one is `curriculum`'s job.
+
+mod check;
+mod drift;
+mod regime;
+
+use std::sync::Arc;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+pub use drift::{DriftSchedule, DriftSwitch, RegimeDrift};
+pub use regime::Regime;
+
+use crate::document::Document;
+use crate::error::SpecError;
+use crate::task::TaskSpec;
+use crate::version::SCENARIO_VERSION;
+use crate::{schema, version};
+
+/// The most experiences that one regime may hold.
+pub const MAX_EXPERIENCES: u32 = 10_000_000;
+
+/// A lifetime: blocks of learning and evaluation, in order.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scenario {
+    /// Where the JSON Schema of this document is, for editors.
+    #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
+    pub schema: Option<String>,
+    /// The version of this form of document. Older ones are read, newer ones refused; without it, it is taken to be 1.
+    #[serde(default = "current")]
+    #[schemars(range(min = 1, max = 1))]
+    pub version: u32,
+    /// The scenario's name; logs are named after it.
+    #[schemars(length(min = 1, max = 100), regex(pattern = "^[0-9a-zA-Z_.-]+$"))]
+    pub name: String,
+    /// What it is for, in a sentence or two.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub description: String,
+    /// How its blocks are arranged; logs are marked with it. Custom if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub form: Option<ScenarioForm>,
+    /// Whether the learner is told which task it is in; by default it is not.
+    #[serde(default, skip_serializing_if = "TaskLabel::is_none")]
+    pub task_label: TaskLabel,
+    /// The blocks, in the order in which they are lived.
+    #[schemars(length(min = 1, max = 100_000))]
+    pub blocks: Vec<Block>,
+}
+
+fn current() -> u32 {
+    SCENARIO_VERSION
+}
+
+/// The arrangements of blocks that lifelong learning knows by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum ScenarioForm {
+    /// Each task once, in one long learning block.
+    Condensed,
+    /// Each task again and again, in several short learning blocks.
+    Dispersed,
+    /// The tasks in an order drawn by chance, another in every lifetime.
+    Permuted,
+    /// Two tasks in turn.
+    Alternating,
+    /// One task alone, to compare a lifelong learner with; `ste` in a log.
+    Expert,
+    /// Anything else.
+    Custom,
+}
+
+/// Whether the learner is told which task it is in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum TaskLabel {
+    /// It is not.
+    #[default]
+    None,
+    /// Beside its observations.
+    Info,
+    /// As part of its observations.
+    Observation,
+}
+
+impl TaskLabel {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+    fn is_none(&self) -> bool {
+        *self == Self::None
+    }
+}
+
+/// A block: the agent either learns, or is frozen and evaluated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Block {
+    /// Whether the agent may learn.
+    #[serde(rename = "type")]
+    pub kind: BlockKind,
+    /// Whether it belongs to the time before deployment, whose blocks come before all others.
+    #[serde(default, skip_serializing_if = "Phase::is_deployment")]
+    pub phase: Phase,
+    /// Stretches of experiences of one variant each, in order.
+    #[schemars(length(min = 1, max = 100_000))]
+    pub regimes: Vec<Regime>,
+}
+
+/// Whether the agent may learn in a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum BlockKind {
+    /// It may.
+    Learning,
+    /// It is frozen.
+    Evaluation,
+}
+
+/// The part of a lifetime that a block belongs to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Phase {
+    /// Preparation: what is learned here is not scored as lifelong learning.
+    PreDeployment,
+    /// The lifetime itself.
+    #[default]
+    Deployment,
+}
+
+impl Phase {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+    fn is_deployment(&self) -> bool {
+        *self == Self::Deployment
+    }
+}
+
+impl Block {
+    /// A block of the lifetime itself.
+    pub fn new(kind: BlockKind, regimes: Vec<Regime>) -> Self {
+        Self {
+            kind,
+            phase: Phase::default(),
+            regimes,
+        }
+    }
+
+    /// How many experiences it has.
+    pub fn num_experiences(&self) -> u64 {
+        self.regimes.iter().map(|regime| u64::from(regime.count)).sum()
+    }
+}
+
+impl Scenario {
+    /// A scenario of the current version that says nothing but its name and blocks.
+    pub fn new(name: impl Into<String>, blocks: Vec<Block>) -> Self {
+        Self {
+            schema: None,
+            version: SCENARIO_VERSION,
+            name: name.into(),
+            description: String::new(),
+            form: None,
+            task_label: TaskLabel::default(),
+            blocks,
+        }
+    }
+
+    /// Reads a scenario, strictly. `name` is what messages call the document, usually its path.
+    ///
+    /// # Errors
+    /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
+    pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
+        Self::from_json_with(name, text, |_| None)
+    }
+
+    /// Reads a scenario, strictly, and checks its variants and their values against the tasks that can be found.
+    ///
+    /// `task` is asked once for each task that the scenario names; where it has none, nothing of that task is checked.
+    ///
+    /// # Errors
+    /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::{Scenario, TaskSpec};
+    /// let lamps = TaskSpec::from_json("lamps", r#"{ "name": "lamps", "variants": { "dim": {}, "bright": {} } }"#)?;
+    /// let text = r#"{ "name": "s", "blocks": [{ "type": "learning",
+    ///     "regimes": [{ "task": "lamps", "variant": "brigth", "count": 1 }] }] }"#;
+    /// let error = Scenario::from_json_with("s", text, |name| (name == "lamps").then(|| lamps.clone())).unwrap_err();
+    /// assert!(error.to_string().ends_with("did you mean \"bright\"?"));
+    /// # Ok::<(), driftworld_spec::SpecError>(())
+    /// ```
+    pub fn from_json_with(
+        name: &str,
+        text: &str,
+        task: impl FnMut(&str) -> Option<Arc<TaskSpec>>,
+    ) -> Result<Self, SpecError> {
+        let mut document = Document::parse(name, text)?;
+        document.upgrade(&version::SCENARIO)?;
+        document.check_schema(schema::scenario())?;
+        let scenario: Self = document.deserialize()?;
+        let mut problems = check::alone(&scenario);
+        problems.extend(check::against_tasks(&scenario, task));
+        document.fail_on(problems)?;
+        Ok(scenario)
+    }
+
+    /// The scenario as indented JSON with a final newline.
+    pub fn to_json_pretty(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self)
+            .expect("a scenario is texts, finite numbers and maps by text, which serialise");
+        text.push('\n');
+        text
+    }
+
+    /// How many experiences the whole lifetime has.
+    pub fn num_experiences(&self) -> u64 {
+        self.blocks.iter().map(Block::num_experiences).sum()
+    }
+}

@@ -1,0 +1,129 @@
+//! [`Regime`]: a stretch of experiences of one variant, as a document has it. Living one is `curriculum`'s job.
+
+use std::sync::Arc;
+
+use indexmap::IndexMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::RegimeDrift;
+use crate::error::SpecError;
+use crate::task::{TaskSpec, Value, Variant};
+
+/// A stretch of experiences (episodes) of one variant, or of the way from it to another.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Regime {
+    /// The task: a built-in name, or the path of a task spec.
+    #[schemars(length(min = 1, max = 4096))]
+    pub task: String,
+    /// The variant of the task.
+    #[schemars(length(min = 1, max = 100))]
+    pub variant: String,
+    /// Values laid over the variant's, by parameter: they make a variant of it that the task does not declare.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    #[schemars(schema_with = "values_schema")]
+    pub values: IndexMap<String, Value>,
+    /// What the variant with these values is called in tables and logs; goes with `values` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1, max = 100), regex(pattern = r"^[^#/\\\s]+$"))]
+    pub name: Option<String>,
+    /// How many experiences.
+    #[schemars(range(min = 1, max = 10_000_000))]
+    pub count: u32,
+    /// The seed of its worlds.
+    #[serde(default)]
+    pub seed: u64,
+    /// The index of its first world; the others follow.
+    #[serde(default)]
+    pub first_index: u64,
+    /// A world file, ours or L2Explorer's, whose world is lived each time instead of drawn ones; found from the scenario's folder.
+    /// Task and variant are mere names then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1, max = 4096))]
+    pub world: Option<String>,
+    /// Steps after which an experience is cut off, in place of what the world says; 0 = never.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = 1_000_000_000))]
+    pub max_steps: Option<u32>,
+    /// Leads from the variant to another while the experiences pass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift: Option<RegimeDrift>,
+}
+
+/// Values by parameter. What each may be is said by the task, so that the schema knows no more than that they are no lists of texts.
+pub(super) fn values_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+    schemars::json_schema!({
+        "type": "object",
+        "propertyNames": { "pattern": "^[a-z][a-z0-9_]*$", "maxLength": 100 },
+        "additionalProperties": { "type": ["boolean", "number", "string", "array", "object"] }
+    })
+}
+
+impl Regime {
+    /// The first `count` worlds of a variant under seed 0.
+    pub fn new(task: impl Into<String>, variant: impl Into<String>, count: u32) -> Self {
+        Self {
+            task: task.into(),
+            variant: variant.into(),
+            values: IndexMap::new(),
+            name: None,
+            count,
+            seed: 0,
+            first_index: 0,
+            world: None,
+            max_steps: None,
+            drift: None,
+        }
+    }
+
+    /// What its variant is called in tables and logs: its name if it has one, else the variant's.
+    pub fn variant_name(&self) -> &str {
+        self.name.as_deref().unwrap_or(&self.variant)
+    }
+
+    /// The variant that its worlds are drawn from, with its values laid over; where it drifts, the one that the drift begins at.
+    ///
+    /// # Errors
+    /// [`SpecError::UnknownVariant`]; [`SpecError::Values`] if it cannot have the values.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::{Regime, TaskSpec, Value};
+    /// let task = TaskSpec::from_json("t", r#"{ "name": "t", "parameters": {
+    ///     "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0, 4], "default": 2 } } }"#)?;
+    /// let mut regime = Regime::new("t", "default", 10);
+    /// regime.values.insert("light".into(), Value::Number(0.5));
+    /// regime.name = Some("dim".into());
+    /// let variant = regime.resolve(&task)?;
+    /// assert_eq!((variant.id().as_str(), variant.value("light")), ("t#dim", Some(&Value::Number(0.5))));
+    /// # Ok::<(), driftworld_spec::SpecError>(())
+    /// ```
+    pub fn resolve(&self, task: &Arc<TaskSpec>) -> Result<Variant, SpecError> {
+        laid_over(task, &self.variant, &self.values, self.variant_name())
+    }
+
+    /// The variant that its drift leads to; `None` if it does not drift.
+    ///
+    /// # Errors
+    /// As [`Regime::resolve`].
+    pub fn resolve_end(&self, task: &Arc<TaskSpec>) -> Result<Option<Variant>, SpecError> {
+        self.drift
+            .as_ref()
+            .map(|drift| laid_over(task, &drift.to, &drift.values, &drift.to))
+            .transpose()
+    }
+}
+
+fn laid_over(
+    task: &Arc<TaskSpec>,
+    variant: &str,
+    values: &IndexMap<String, Value>,
+    name: &str,
+) -> Result<Variant, SpecError> {
+    let declared = task.variant(variant)?;
+    if values.is_empty() {
+        return Ok(declared);
+    }
+    declared.with(name, values.iter().map(|(name, value)| (name.clone(), value.clone())))
+}

@@ -1,0 +1,160 @@
+//! Scenario files, ours and the original's, and the world files that they name. What a scenario means is `spec`'s, living it `curriculum`'s.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use driftworld::curriculum::{FoundWorld, Plan, Sources};
+use driftworld::spec::{Scenario, World, nearest};
+use driftworld::tasks;
+use serde_json::Value;
+
+use super::{Failure, input, output};
+
+/// A scenario that was read, and where its world files are looked for.
+pub(crate) struct ScenarioFile {
+    pub(crate) scenario: Scenario,
+    path: PathBuf,
+    /// Whether the file is the original's; then its maps are, too.
+    pub(crate) original: bool,
+}
+
+impl ScenarioFile {
+    /// Reads a scenario in our form or in the original's, with warnings on standard error.
+    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
+        let text = input::text(path)?;
+        let name = path.display().to_string();
+        let original = is_original(&text);
+        let scenario = if original {
+            let (scenario, warnings) = Scenario::from_l2explorer(&name, &text)?;
+            for warning in warnings {
+                output::note(format!("warning: {warning}"));
+            }
+            scenario
+        } else {
+            Scenario::from_json(&name, &text)?
+        };
+        Ok(Self {
+            scenario,
+            path: path.to_owned(),
+            original,
+        })
+    }
+
+    /// Whether a file is a scenario, in whichever form.
+    pub(crate) fn is_one(path: &Path) -> bool {
+        let text = fs::read_to_string(path).unwrap_or_default();
+        let json: Value = serde_json::from_str(&text).unwrap_or_default();
+        json.get("blocks").is_some() || Scenario::is_l2explorer(&json)
+    }
+
+    /// The scenario with everything that it names.
+    pub(crate) fn plan(&self, missing: Missing) -> Result<Plan, Failure> {
+        plan(&self.scenario, &mut |path| self.world(path, missing))
+    }
+
+    /// The world file that a regime names, from the scenario's folder; beside the scenario if it is not there.
+    fn world(&self, named: &str, missing: Missing) -> Result<FoundWorld, String> {
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let named = Path::new(named);
+        let beside = named.file_name().map_or_else(PathBuf::new, |name| folder.join(name));
+        let meant = folder.join(named);
+        if meant.is_file() {
+            return Ok(FoundWorld {
+                world: self.read_world(&meant)?,
+                note: None,
+            });
+        }
+        if beside.is_file() {
+            output::note(format!(
+                "warning: {}: there is no such file; {} is lived, which lies beside the scenario",
+                meant.display(),
+                beside.display()
+            ));
+            return Ok(FoundWorld {
+                world: self.read_world(&beside)?,
+                note: None,
+            });
+        }
+        let looked = if meant == beside {
+            meant.display().to_string()
+        } else {
+            format!("{} and {}", meant.display(), beside.display())
+        };
+        let stand_in = self.nearest(&[&meant, &beside]);
+        match (stand_in, missing) {
+            (Some(file), Missing::StandIn) => {
+                let lived = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                let note = format!("not there; {lived} stood in for it");
+                output::note(format!("warning: {}: {note}", named.display()));
+                Ok(FoundWorld {
+                    world: self.read_world(&file)?,
+                    note: Some(note),
+                })
+            }
+            (stand_in, _) => {
+                let advice = stand_in.map_or_else(String::new, |file| {
+                    format!("; or let {} stand in for it with --stand-in", file.display())
+                });
+                Err(format!(
+                    "found no file {:?}, looked for {looked}, expected a world file; put it there{advice}",
+                    named.display().to_string()
+                ))
+            }
+        }
+    }
+
+    /// The world file with the nearest name in the folders where one was looked for.
+    fn nearest(&self, wanted: &[&PathBuf]) -> Option<PathBuf> {
+        wanted.iter().find_map(|wanted| {
+            let name = wanted.file_name()?.to_string_lossy().into_owned();
+            let files = input::json_files(wanted.parent()?).ok()?;
+            let worlds: Vec<&PathBuf> = files.iter().filter(|file| self.read_world(file).is_ok()).collect();
+            let names: Vec<String> = worlds
+                .iter()
+                .map(|file| file.file_name().unwrap_or_default().to_string_lossy().into_owned())
+                .collect();
+            let near = nearest(&name, &names)?;
+            Some(worlds[names.iter().position(|name| *name == near)?].clone())
+        })
+    }
+
+    fn read_world(&self, path: &Path) -> Result<World, String> {
+        let name = path.display().to_string();
+        let text = input::text(path).map_err(|failure| failure.text().to_owned())?;
+        let ours = World::from_json(&name, &text);
+        match (self.original, ours) {
+            (false, Ok(world)) => Ok(world),
+            (original, ours) => match (World::from_l2explorer(&name, &text), ours) {
+                (Ok((world, _)), _) => Ok(world),
+                (Err(theirs), _) if original => Err(theirs.to_string()),
+                (Err(theirs), Ok(_)) => Err(theirs.to_string()),
+                (Err(_), Err(ours)) => Err(ours.to_string()),
+            },
+        }
+    }
+}
+
+/// What becomes of a world file that is nowhere.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Missing {
+    /// It is an error.
+    Refused,
+    /// The one with the nearest name is lived instead.
+    StandIn,
+}
+
+/// A scenario with everything that it names; its world files come from `world`.
+pub(crate) fn plan(
+    scenario: &Scenario,
+    world: &mut dyn FnMut(&str) -> Result<FoundWorld, String>,
+) -> Result<Plan, Failure> {
+    let mut sources = Sources {
+        task: &mut |name| tasks::task(name).map_err(|error| error.to_string()),
+        world,
+    };
+    Ok(Plan::new(scenario, &mut sources)?)
+}
+
+fn is_original(text: &str) -> bool {
+    serde_json::from_str(text).is_ok_and(|json: Value| Scenario::is_l2explorer(&json))
+}

@@ -1,0 +1,473 @@
+//! `driftworld run` as it is interrupted: killed at any moment, told to stop, out of room; and the original's scenario files.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+
+fn driftworld(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_driftworld"));
+    command.args(arguments).current_dir(env!("CARGO_MANIFEST_DIR"));
+    command
+}
+
+fn output(arguments: &[&str]) -> Output {
+    driftworld(arguments)
+        .output()
+        .expect("the command was built by cargo and starts")
+}
+
+#[track_caller]
+fn succeed(arguments: &[&str]) -> String {
+    let output = output(arguments);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {error}");
+    String::from_utf8(output.stdout).expect("the command prints UTF-8")
+}
+
+#[track_caller]
+fn fail(code: i32, arguments: &[&str]) -> String {
+    let output = output(arguments);
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
+    assert!(!error.contains("panicked"), "{error}");
+    error
+}
+
+fn scratch() -> tempfile::TempDir {
+    tempfile::tempdir().expect("the machine has a folder for temporary files")
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("temporary paths are UTF-8")
+}
+
+fn write(path: &Path, text: &str) {
+    fs::create_dir_all(path.parent().expect("a file lies in a folder")).expect("the scratch folder can be written");
+    fs::write(path, text).expect("the scratch folder can be written");
+}
+
+/// A lifetime of 3 blocks and 36 experiences, a few milliseconds each.
+fn scenario(folder: &Path) -> PathBuf {
+    let path = folder.join("scenario.json");
+    let regime = |variant: &str, count: u32| {
+        format!(r#"{{ "task": "find_objects", "variant": "{variant}", "count": {count}, "seed": 5, "max_steps": 80 }}"#)
+    };
+    let (blue, red) = (regime("blue", 4), regime("red", 4));
+    let learning = regime("red", 20);
+    let text = format!(
+        r#"{{ "name": "interrupted", "blocks": [
+            {{ "type": "evaluation", "regimes": [{blue}, {red}] }},
+            {{ "type": "learning", "regimes": [{learning}] }},
+            {{ "type": "evaluation", "regimes": [{blue}, {red}] }} ] }}"#
+    );
+    write(&path, &text);
+    path
+}
+
+/// All files of a log by their paths, without the times at which rows were written.
+fn files(log: &Path) -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![log.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).expect("the log can be listed") {
+            let path = entry.expect("the log can be listed").path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let name = path
+                .strip_prefix(log)
+                .expect("it lies in the log")
+                .display()
+                .to_string();
+            let text = fs::read_to_string(&path).expect("logs are text");
+            let text = if name.ends_with(".tsv") { timeless(&text) } else { text };
+            found.insert(name, text);
+        }
+    }
+    found
+}
+
+fn timeless(table: &str) -> String {
+    let header: Vec<&str> = table.lines().next().unwrap_or_default().split('\t').collect();
+    let place = header
+        .iter()
+        .position(|name| *name == "timestamp")
+        .expect("rows say when");
+    let row = |line: &str| {
+        let mut cells: Vec<&str> = line.split('\t').collect();
+        cells.remove(place);
+        cells.join("\t") + "\n"
+    };
+    table.lines().map(row).collect()
+}
+
+/// Bytes in all files of a folder, which may not be there yet.
+fn bytes(folder: &Path) -> u64 {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries
+        .map(|entry| match entry.metadata() {
+            Ok(about) if about.is_dir() => bytes(&entry.path()),
+            Ok(about) => about.len(),
+            Err(_) => 0,
+        })
+        .sum()
+}
+
+fn start(arguments: &[&str]) -> Child {
+    let mut command = driftworld(arguments);
+    let command = command.stdout(Stdio::null()).stderr(Stdio::piped());
+    command.spawn().expect("the command was built by cargo and starts")
+}
+
+/// Waits until a log holds so many bytes; false if the run ended before.
+fn grown(child: &mut Child, log: &Path, least: u64) -> bool {
+    while bytes(log) < least {
+        if child.try_wait().expect("the child can be asked").is_some() {
+            return false;
+        }
+        std::thread::yield_now();
+    }
+    true
+}
+
+#[test]
+fn a_run_killed_again_and_again_writes_what_an_undisturbed_one_does() {
+    let folder = scratch();
+    let scenario = scenario(folder.path());
+    let whole = folder.path().join("whole");
+    let all = ["run", text(&scenario), "--agent", "random", "--jobs", "2", "--json"];
+    let said = succeed(&[&all[..], &["--logs", text(&whole)]].concat());
+    let (expected, total) = (files(&whole), bytes(&whole));
+    let mut kills = 0;
+    // From the very beginning, when there is not even a folder, to the last rows, by another step each time.
+    for step in [211, 947, 2503] {
+        let log = folder.path().join(format!("killed-{step}"));
+        let arguments = [&all[..], &["--resume", "--logs", text(&log)]].concat();
+        let mut least = 0;
+        while least < total {
+            let mut child = start(&arguments);
+            let going = grown(&mut child, &log, least);
+            child.kill().expect("the child can be killed");
+            child.wait().expect("the child can be waited for");
+            if !going {
+                break;
+            }
+            kills += 1;
+            // What a killed run has written may be more than was waited for.
+            least = bytes(&log).max(least) + step;
+        }
+        assert_eq!(succeed(&arguments), said, "step {step}");
+        assert_eq!(files(&log), expected, "step {step}");
+        assert_eq!(succeed(&arguments), said, "a finished log has nothing to go on with");
+        assert_eq!(files(&log), expected);
+    }
+    assert!(kills >= 12, "{kills} kills are too few to mean anything");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_told_to_stop_finishes_its_row_and_says_how_to_go_on() {
+    let folder = scratch();
+    let scenario = scenario(folder.path());
+    let whole = folder.path().join("whole");
+    let all = ["run", text(&scenario), "--agent", "onrails", "--jobs", "1"];
+    succeed(&[&all[..], &["--logs", text(&whole)]].concat());
+    for signal in ["-INT", "-TERM"] {
+        let log = folder.path().join(signal);
+        let arguments = [&all[..], &["--logs", text(&log)]].concat();
+        let mut child = start(&arguments);
+        assert!(grown(&mut child, &log.join("worker-default"), 1), "it runs");
+        let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
+        assert!(sent.expect("the system has the command kill").success());
+        let output = child.wait_with_output().expect("the child can be waited for");
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{error}");
+        assert!(
+            error.contains("interrupted") && error.contains("of 36 experiences, each of them whole"),
+            "{error}"
+        );
+        assert!(error.contains("--resume"), "{error}");
+        let metrics = output_of_rows(&log);
+        assert!(
+            metrics > 0 && error.contains(&format!("holds {metrics} of 36")),
+            "{error}"
+        );
+        succeed(&[&arguments[..], &["--resume"]].concat());
+        assert_eq!(files(&log), files(&whole), "{signal}");
+    }
+}
+
+/// How many rows a log has, all of them with a line end.
+fn output_of_rows(log: &Path) -> usize {
+    let tables = files(log).into_iter().filter(|(name, _)| name.ends_with(".tsv"));
+    tables.map(|(_, text)| text.lines().count() - 1).sum()
+}
+
+#[test]
+fn a_log_of_another_run_is_refused_and_stays_as_it_is() {
+    let folder = scratch();
+    let scenario = scenario(folder.path());
+    let log = folder.path().join("log");
+    succeed(&["run", text(&scenario), "--agent", "random", "--logs", text(&log)]);
+    let before = files(&log);
+    let resume = |scenario: &Path, agent: &str| {
+        let error = fail(
+            1,
+            &[
+                "run",
+                text(scenario),
+                "--agent",
+                agent,
+                "--logs",
+                text(&log),
+                "--resume",
+            ],
+        );
+        assert_eq!(files(&log), before);
+        error
+    };
+    let error = resume(&scenario, "onrails");
+    assert!(
+        error.contains("/agent: found \"random\", expected \"onrails\" as in this run"),
+        "{error}"
+    );
+    let other = folder.path().join("other.json");
+    let changed = fs::read_to_string(&scenario)
+        .expect("it was written")
+        .replace("\"count\": 20", "\"count\": 21");
+    write(&other, &changed);
+    let error = resume(&other, "random");
+    assert!(
+        error.contains("/scenario/blocks/1/regimes/0/count: found 20, expected 21"),
+        "{error}"
+    );
+    let error = fail(1, &["run", text(&scenario), "--logs", text(&log)]);
+    assert!(error.contains("--logs") && error.contains("--resume"), "{error}");
+}
+
+#[test]
+fn a_task_that_was_changed_between_is_noticed() {
+    let folder = scratch();
+    let task = folder.path().join("lamps.json");
+    let spec = r#"{ "name": "lamps", "variants": { "dim": {} }, "world": { "max_steps": 5,
+        "environment_params": { "light_intensity": 2 } } }"#;
+    write(&task, spec);
+    let scenario = folder.path().join("scenario.json");
+    let regime = format!(r#"{{ "task": {:?}, "variant": "dim", "count": 2 }}"#, text(&task));
+    write(
+        &scenario,
+        &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),
+    );
+    let log = folder.path().join("log");
+    succeed(&["run", text(&scenario), "--logs", text(&log)]);
+    write(&task, &spec.replace("intensity\": 2", "intensity\": 3"));
+    let error = fail(1, &["run", text(&scenario), "--logs", text(&log), "--resume"]);
+    assert!(error.contains("/made_from/lamps#dim: found"), "{error}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error_that_loses_nothing() {
+    let folder = scratch();
+    let scenario = scenario(folder.path());
+    let whole = folder.path().join("whole");
+    let all = ["run", text(&scenario), "--agent", "random"];
+    succeed(&[&all[..], &["--logs", text(&whole)]].concat());
+    // A log whose second block meets a disk that is full.
+    let log = folder.path().join("log");
+    let block = "worker-default/0-test/data-log.tsv";
+    for file in ["scenario_info.json", "logger_info.json", block] {
+        let text = fs::read_to_string(whole.join(file)).expect("the log has it");
+        write(&log.join(file), &text);
+    }
+    let full = log.join("worker-default/1-train/data-log.tsv");
+    fs::create_dir_all(full.parent().expect("a file lies in a folder")).expect("the scratch folder can be written");
+    std::os::unix::fs::symlink("/dev/full", &full).expect("the scratch folder can hold links");
+    let arguments = [&all[..], &["--logs", text(&log), "--resume"]].concat();
+    let error = fail(1, &arguments);
+    assert!(
+        error.contains("1-train/data-log.tsv: cannot append a line to this file: No space left"),
+        "{error}"
+    );
+    assert!(
+        error.contains("holds 8 of 36 experiences, each of them whole"),
+        "{error}"
+    );
+    fs::remove_file(&full).expect("the link can be removed");
+    succeed(&arguments);
+    assert_eq!(files(&log), files(&whole));
+    let error = fail(1, &["run", text(&scenario), "--logs", "/dev/full"]);
+    assert!(error.contains("/dev/full"), "{error}");
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_an_error() {
+    let folder = scratch();
+    let scenario = scenario(folder.path());
+    let file = folder.path().join("file");
+    write(&file, "in the way");
+    for resume in [&[][..], &["--resume"]] {
+        let arguments = ["run", text(&scenario), "--logs", text(&file.join("log"))];
+        let error = fail(1, &[&arguments, resume].concat());
+        assert!(error.contains("file/log: cannot make this directory"), "{error}");
+    }
+    let error = fail(1, &["run", text(&scenario), "--logs", text(&file), "--resume"]);
+    assert!(
+        error.contains("found a file, expected the directory of a log"),
+        "{error}"
+    );
+    fail(2, &["run", text(&scenario), "--jobs", "0"]);
+    assert!(fail(2, &["run", text(&scenario), "--agent", "onrail"]).contains("did you mean \"onrails\"?"));
+}
+
+/// The original's files, or a visible skip.
+fn reference(file: &str) -> Option<PathBuf> {
+    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/reference");
+    let root = std::env::var_os("DRIFTWORLD_REFERENCE").map_or(default, PathBuf::from);
+    let path = root.join("l2explorer").join(file);
+    if !path.exists() {
+        #[expect(clippy::print_stdout, reason = "a skip must be seen")]
+        {
+            println!("skipped: {} is not there; set DRIFTWORLD_REFERENCE", path.display());
+        }
+        return None;
+    }
+    Some(path)
+}
+
+#[test]
+fn the_originals_scenario_is_lived_as_it_stands() {
+    let Some(original) = reference("scenario_findobjects.json") else {
+        return;
+    };
+    let Some(map) = reference("map_findobjects_0.json") else {
+        return;
+    };
+    let folder = scratch();
+    // As in the original: the maps lie above the scenario.
+    let scenario = folder.path().join("scenarios/scenario_findobjects.json");
+    let copy = |from: &Path, to: &Path| write(to, &fs::read_to_string(from).expect("the reference can be read"));
+    copy(&original, &scenario);
+    copy(&map, &folder.path().join("map_findobjects_0.json"));
+    copy(&map, &folder.path().join("map_findobjects_1.json"));
+    let log = folder.path().join("log");
+    let few = ["--agent", "onrails", "--logs", text(&log)];
+    succeed(&[&["run", text(&scenario)][..], &few].concat());
+    let tables = files(&log);
+    let names: Vec<&str> = tables
+        .keys()
+        .map(String::as_str)
+        .filter(|name| name.ends_with("tsv"))
+        .collect();
+    let blocks = ["0-train", "1-test", "2-train", "3-test"];
+    assert_eq!(
+        names,
+        blocks.map(|block| format!("worker-default/{block}/data-log.tsv"))
+    );
+    assert_eq!(output_of_rows(&log), 2 + 3 + 6 + 4);
+    assert!(
+        tables[names[3]].contains("\ttask2_mapfindobjects1\t"),
+        "{}",
+        tables[names[3]]
+    );
+    let metrics = succeed(&["metrics", text(&log), "--json"]);
+    assert!(metrics.contains("task1_mapfindobjects0"), "{metrics}");
+
+    // As it stands beside us: one map lies beside the scenario, the other is nowhere.
+    let error = fail(
+        1,
+        &["run", text(&original), "--logs", text(&folder.path().join("none"))],
+    );
+    assert!(
+        error.contains("found no file \"../map_findobjects_1.json\", looked for"),
+        "{error}"
+    );
+    assert!(
+        error.contains("map_findobjects_0.json stand in for it with --stand-in"),
+        "{error}"
+    );
+    let stand_in = folder.path().join("stand-in");
+    let run = [
+        "run",
+        text(&original),
+        "--agent",
+        "random",
+        "--stand-in",
+        "--logs",
+        text(&stand_in),
+    ];
+    let output = output(&run);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("which lies beside the scenario"), "{said}");
+    assert!(
+        said.contains("map_findobjects_1.json: not there; map_findobjects_0.json stood in for it"),
+        "{said}"
+    );
+    let info = &files(&stand_in)["scenario_info.json"];
+    assert!(
+        info.contains("\"../map_findobjects_1.json\": \"not there; map_findobjects_0.json stood in for it\""),
+        "{info}"
+    );
+    let again = [&run[..], &["--resume"]].concat();
+    succeed(&again);
+}
+
+#[test]
+fn the_originals_scenario_goes_to_ours_and_back() {
+    let Some(original) = reference("scenario_findobjects.json") else {
+        return;
+    };
+    succeed(&["validate", text(&original)]);
+    let folder = scratch();
+    let (ours, back) = (folder.path().join("ours.json"), folder.path().join("back.json"));
+    succeed(&["convert", text(&original), "-o", text(&ours)]);
+    succeed(&["validate", text(&ours)]);
+    succeed(&["convert", text(&ours), "--to", "l2explorer", "-o", text(&back)]);
+    let json = |path: &Path| -> serde_json::Value {
+        serde_json::from_str(&fs::read_to_string(path).expect("it was written")).expect("it is JSON")
+    };
+    assert_eq!(json(&back), json(&original));
+}
+
+#[test]
+fn worlds_that_a_scenario_draws_become_maps_that_are_lived_alike() {
+    let folder = scratch();
+    let scenario = scenario(folder.path());
+    let error = fail(2, &["convert", text(&scenario), "--to", "l2explorer"]);
+    assert!(error.contains("-o"), "{error}");
+    let original = folder.path().join("original/scenario.json");
+    succeed(&["convert", text(&scenario), "--to", "l2explorer", "-o", text(&original)]);
+    let (ours, theirs) = (folder.path().join("ours"), folder.path().join("theirs"));
+    let live = |scenario: &Path, log: &Path| {
+        succeed(&["run", text(scenario), "--agent", "onrails", "--logs", text(log)]);
+        rewards(log)
+    };
+    let lived = live(&scenario, &ours);
+    assert_eq!(lived.len(), 36);
+    assert_eq!(lived, live(&original, &theirs), "the same rewards in the same order");
+}
+
+/// The rewards of a log, in order.
+fn rewards(log: &Path) -> Vec<String> {
+    let tables = files(log).into_iter().filter(|(name, _)| name.ends_with(".tsv"));
+    tables
+        .flat_map(|(_, table)| {
+            let header: Vec<String> = table
+                .lines()
+                .next()
+                .unwrap_or_default()
+                .split('\t')
+                .map(str::to_owned)
+                .collect();
+            let place = header
+                .iter()
+                .position(|name| name == "reward")
+                .expect("rows say the reward");
+            let cell = |line: &str| line.split('\t').nth(place).unwrap_or_default().to_owned();
+            table.lines().skip(1).map(cell).collect::<Vec<_>>()
+        })
+        .collect()
+}
