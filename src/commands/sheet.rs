@@ -65,7 +65,7 @@ impl Sheet {
         };
         if variants.is_empty() || variants.len() > MOST_VARIANTS {
             return Err(Failure::input(format!(
-                "found {} variants, expected 1 to {MOST_VARIANTS} for one picture",
+                "found {} variants, expected 1 to {MOST_VARIANTS} for one picture; name some as TASK#VARIANT",
                 variants.len()
             )));
         }
