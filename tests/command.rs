@@ -253,12 +253,24 @@ fn a_sheet_shows_variants_or_what_a_scenario_learns() {
     let small = ["--size", "32", "-o", text(&path)];
     let said = succeed(&[&["sheet", "find_objects#red", "get_to_goal#soft"], &small[..]].concat());
     assert!(said.contains("188 × 102 pixels"), "two beside each other: {said}");
-    let scenario = ["sheet", "--scenario", "examples/curricula/reward.json", "--columns", "1"];
+    let scenario = [
+        "sheet",
+        "--scenario",
+        "examples/curricula/reward.json",
+        "--columns",
+        "1",
+    ];
     let said = succeed(&[&scenario[..], &small[..]].concat());
     assert!(said.contains("100 × 372 pixels"), "four below each other: {said}");
-    let error = fail(1, &["sheet", "find_objects", "get_to_goal", "select_object", "moving_object"]);
+    let error = fail(
+        1,
+        &["sheet", "find_objects", "get_to_goal", "select_object", "moving_object"],
+    );
     assert!(error.contains("expected 1 to 60"), "{error}");
-    fail(2, &["sheet", "find_objects", "--scenario", "examples/curricula/reward.json"]);
+    fail(
+        2,
+        &["sheet", "find_objects", "--scenario", "examples/curricula/reward.json"],
+    );
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use driftworld_env::EnvError;
 use driftworld_generator::GeneratorError;
 use driftworld_metrics::MetricsError;
+use driftworld_similarity::SimilarityError;
 
 /// Everything that can go wrong in this crate.
 #[derive(Debug, thiserror::Error)]
@@ -31,6 +32,110 @@ pub enum CurriculumError {
         /// The largest there can be.
         limit: u64,
     },
+    /// A number of learning blocks that a scenario cannot have.
+    #[error("design: found {found} learning blocks, expected 1 to {limit}")]
+    BadBlocks {
+        /// The number.
+        found: u32,
+        /// The most there can be.
+        limit: u32,
+    },
+    /// Variants or blocks that a form cannot be made of.
+    #[error("the form {form}: found {variants} variants{}, expected {expected}", and_blocks(*blocks))]
+    BadForm {
+        /// The form.
+        form: &'static str,
+        /// How many variants.
+        variants: usize,
+        /// How many learning blocks, where they were asked for.
+        blocks: Option<u32>,
+        /// What the form is made of.
+        expected: String,
+    },
+    /// An evaluation after a block that there is not.
+    #[error("design: found an evaluation after learning block {found}, expected 0 to {last}; 0 is before the first")]
+    NoSuchPlace {
+        /// The place.
+        found: u32,
+        /// How many learning blocks there are.
+        last: u32,
+    },
+    /// A drift has nowhere to go.
+    #[error("design: found one variant to drift through, expected at least 2")]
+    NoWay,
+    /// A drift would lead from one task to another.
+    #[error(
+        "design: found a drift from {from} to {to}, expected two variants of one task; leave the drift out, or one of them"
+    )]
+    DriftBetweenTasks {
+        /// Where it begins.
+        from: String,
+        /// Where it would lead.
+        to: String,
+    },
+    /// Variants of several tasks where element by element distances are wanted.
+    #[error("design: found {a} and {b}, expected variants of one task; probe and step within a task")]
+    SeveralTasks {
+        /// The one.
+        a: String,
+        /// The other.
+        b: String,
+    },
+    /// Not enough variants differ in an element alone.
+    #[error(
+        "probing the {element}: found {found} variants that differ from {anchor} in it alone, expected {wanted}; ask for \
+         fewer, or give the task parameters that affect it alone"
+    )]
+    TooFew {
+        /// The variant that the others are compared with.
+        anchor: String,
+        /// The element.
+        element: &'static str,
+        /// How many there are, the anchor among them.
+        found: usize,
+        /// How many are wanted.
+        wanted: usize,
+    },
+    /// Numbers that make no sequence of steps.
+    #[error(
+        "steps: found {count} steps of {distance} ± {tolerance}, expected 1 to {limit} steps, a distance above 0 and at \
+         most 1, and a tolerance below it"
+    )]
+    BadSteps {
+        /// How far each step is to go.
+        distance: f64,
+        /// How far off it may be.
+        tolerance: f64,
+        /// How many steps.
+        count: u32,
+        /// The most there can be.
+        limit: u32,
+    },
+    /// A sequence of steps ends too soon.
+    #[error(
+        "steps from {anchor}: found at most {found} of {distance} ± {tolerance}, expected {wanted}; the farthest variant is \
+         {farthest:.4} away: ask for fewer or smaller steps, a larger tolerance, or another start"
+    )]
+    TooFewSteps {
+        /// The variant that the sequence begins with.
+        anchor: String,
+        /// How far each step is to go.
+        distance: f64,
+        /// How far off it may be.
+        tolerance: f64,
+        /// The steps of the longest sequence that was found.
+        found: usize,
+        /// How many are wanted.
+        wanted: u32,
+        /// How far from the first anything is that was tried.
+        farthest: f64,
+    },
+    /// A distance or an order cannot be had.
+    #[error(transparent)]
+    Similarity(#[from] SimilarityError),
+    /// A variant cannot be made.
+    #[error(transparent)]
+    Generator(#[from] GeneratorError),
     /// Two variants would have the same name in the log.
     #[error(
         "found {a} and {b}, which are both {name:?} in a log, expected names that differ in letters and digits; rename one"
@@ -131,6 +236,10 @@ pub enum CurriculumError {
     Log(#[from] MetricsError),
 }
 
+fn and_blocks(blocks: Option<u32>) -> String {
+    blocks.map_or_else(String::new, |blocks| format!(" and {blocks} learning blocks"))
+}
+
 impl CurriculumError {
     /// The stable name of this kind of error.
     pub fn code(&self) -> &'static str {
@@ -138,6 +247,17 @@ impl CurriculumError {
             Self::NoVariants => "curriculum/no-variants",
             Self::BadCount { .. } => "curriculum/bad-count",
             Self::BadSeed { .. } => "curriculum/bad-seed",
+            Self::BadBlocks { .. } => "curriculum/bad-blocks",
+            Self::BadForm { .. } => "curriculum/bad-form",
+            Self::NoSuchPlace { .. } => "curriculum/no-such-place",
+            Self::NoWay => "curriculum/no-way",
+            Self::DriftBetweenTasks { .. } => "curriculum/drift-between-tasks",
+            Self::SeveralTasks { .. } => "curriculum/several-tasks",
+            Self::TooFew { .. } => "curriculum/too-few",
+            Self::BadSteps { .. } => "curriculum/bad-steps",
+            Self::TooFewSteps { .. } => "curriculum/too-few-steps",
+            Self::Similarity(_) => "curriculum/similarity",
+            Self::Generator(_) => "curriculum/generator",
             Self::SameLogName { .. } => "curriculum/same-log-name",
             Self::Unknown { .. } => "curriculum/unknown",
             Self::WorldFile { .. } => "curriculum/world-file",
@@ -166,6 +286,48 @@ mod tests {
                 limit: 10,
             },
             CurriculumError::BadSeed { found: 9, limit: 8 },
+            CurriculumError::BadBlocks { found: 9, limit: 8 },
+            CurriculumError::BadForm {
+                form: "alternating",
+                variants: 3,
+                blocks: Some(4),
+                expected: "2 variants".into(),
+            },
+            CurriculumError::NoSuchPlace { found: 4, last: 3 },
+            CurriculumError::NoWay,
+            CurriculumError::DriftBetweenTasks {
+                from: "t#v".into(),
+                to: "u#v".into(),
+            },
+            CurriculumError::SeveralTasks {
+                a: "t#v".into(),
+                b: "u#v".into(),
+            },
+            CurriculumError::TooFew {
+                anchor: "t#v".into(),
+                element: "reward",
+                found: 1,
+                wanted: 4,
+            },
+            CurriculumError::BadSteps {
+                distance: 2.0,
+                tolerance: 0.1,
+                count: 3,
+                limit: 1000,
+            },
+            CurriculumError::TooFewSteps {
+                anchor: "t#v".into(),
+                distance: 0.25,
+                tolerance: 0.01,
+                found: 2,
+                wanted: 3,
+                farthest: 0.5,
+            },
+            CurriculumError::Similarity(SimilarityError::Empty),
+            CurriculumError::Generator(GeneratorError::DifferentTasks {
+                from: "t#v".into(),
+                to: "u#v".into(),
+            }),
             CurriculumError::SameLogName {
                 a: "a#b_c".into(),
                 b: "a#bc".into(),

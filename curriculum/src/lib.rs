@@ -1,13 +1,17 @@
 //! Curricula: variants in an order made into learning and evaluation blocks, and lived by an agent into a log.
 //!
-//! [`design`] makes a [`Scenario`](driftworld_spec::Scenario), [`run`] lives it. The order of variants comes from distances
-//! measured elsewhere; files and the clock are handed in.
+//! [`probe`] and [`steps`] find the variants that a hypothesis is about, [`arrange`] puts them into its order, [`design`] makes a
+//! [`Scenario`](driftworld_spec::Scenario) of them, [`run`] lives it. Distances are measured elsewhere; files and the clock are
+//! handed in.
 
 mod design;
 mod error;
 mod run;
 
-pub use design::{Choice, Design, Evaluate, MAX_SEED, design};
+pub use design::{
+    Choice, Control, Design, Drifting, Evaluate, Hypothesis, MAX_BLOCKS, MAX_SEED, MAX_STEPS, Picked, Steps, arrange,
+    control, design, distances, experts, probe, steps,
+};
 pub use error::CurriculumError;
 pub use run::{
     COLUMNS, FoundWorld, Journal, Plan, Progress, RegimeSummary, Sources, Summary, Surroundings, log_name, run,

@@ -19,11 +19,7 @@ fn task() -> Arc<TaskSpec> {
 }
 
 fn scenario(variants: &[&str]) -> Scenario {
-    let choice = |variant: &&str| Choice {
-        task: "find_objects".to_owned(),
-        variant: (*variant).to_owned(),
-    };
-    let choices: Vec<Choice> = variants.iter().map(choice).collect();
+    let choices: Vec<Choice> = variants.iter().map(|name| Choice::new("find_objects", *name)).collect();
     let options = Design {
         name: "small".to_owned(),
         learn: 3,

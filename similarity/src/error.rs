@@ -22,6 +22,72 @@ pub enum SimilarityError {
         /// What was found.
         found: f64,
     },
+    /// A mass that nothing can have.
+    #[error("mass {index} of {side}: found {found}, expected a number from 0 to 1e200")]
+    BadMass {
+        /// Which masses it is among.
+        side: &'static str,
+        /// Its place among them, from 0.
+        index: usize,
+        /// The mass.
+        found: f64,
+    },
+    /// A coordinate that no point can have.
+    #[error("point {index} of {side}: found the coordinate {found}, expected a number of metres from -1e100 to 1e100")]
+    BadPoint {
+        /// Which points it is among.
+        side: &'static str,
+        /// Its place among them, from 0.
+        index: usize,
+        /// The coordinate.
+        found: f64,
+    },
+    /// Mass cannot be moved to where there is more room, or less, than mass.
+    #[error(
+        "masses: found sums of {from} and {to}, expected equal sums; divide each mass by its sum, or use a distance for unequal masses"
+    )]
+    UnequalMasses {
+        /// The sum at the origins.
+        from: f64,
+        /// The sum at the destinations.
+        to: f64,
+    },
+    /// Grids that are not of one raster.
+    #[error("grids: found {a} and {b}, expected equal shapes; make both with one raster")]
+    GridsDiffer {
+        /// The first one's shape.
+        a: String,
+        /// The second one's shape.
+        b: String,
+    },
+    /// A grid would not fit.
+    #[error("grid: found {found} cells, expected at most {limit}; use larger cells, a smaller extent or fewer classes")]
+    TooFine {
+        /// How many there are.
+        found: usize,
+        /// How many are possible.
+        limit: usize,
+    },
+    /// An object whose class a raster has no plane for.
+    #[error(
+        "class of an object: found {found:?}, expected one of {expected}; make the raster of all worlds, or merge classes"
+    )]
+    UnknownClass {
+        /// The class.
+        found: String,
+        /// Those that there are.
+        expected: String,
+    },
+    /// A setting out of its range.
+    #[error("{name}: found {found}, expected {expected}")]
+    BadSetting {
+        /// What is set.
+        name: &'static str,
+        /// What to.
+        found: f64,
+        /// What it may be.
+        expected: &'static str,
+    },
     /// A matrix would not fit.
     #[error("found {found} items, expected at most {limit}; compare fewer at a time")]
     TooMany {
@@ -30,27 +96,96 @@ pub enum SimilarityError {
         /// How many are possible.
         limit: usize,
     },
-    /// An exact order was asked for more items than it can be found for.
-    #[error("exact order: found {found} items, expected at most {limit}; use the method two-opt")]
-    TooManyForExact {
+    /// A method was asked for more items than it can put into an order.
+    #[error("method {method}: found {found} items, expected at most {limit}; use the method two-opt")]
+    TooManyForMethod {
+        /// The method.
+        method: &'static str,
         /// How many there are.
         found: usize,
         /// How many are possible.
         limit: usize,
     },
-    /// The item that an order should start from is not there.
-    #[error("order: found start {found}, expected one of 0 to {last}")]
-    NoSuchStart {
+    /// An item that an order should begin or end with is not there.
+    #[error("order: found {found} as the {end} item, expected one of 0 to {most}")]
+    NoSuchEnd {
+        /// "first" or "last".
+        end: &'static str,
         /// The index asked for.
         found: usize,
         /// The last index there is.
-        last: usize,
+        most: usize,
+    },
+    /// One item cannot be at both ends.
+    #[error("order: found {label:?} as the first item and as the last, expected two different ones")]
+    EqualEnds {
+        /// The item.
+        label: String,
+    },
+    /// A method chooses its ends by itself.
+    #[error(
+        "method {method}: found {label:?} as the {end} item, which this method cannot keep there; leave that end free or use the method two-opt"
+    )]
+    CannotFixEnds {
+        /// The method.
+        method: &'static str,
+        /// "first" or "last".
+        end: &'static str,
+        /// The item.
+        label: String,
+    },
+    /// A method whose promise needs the triangle inequality got distances that break it.
+    #[error(
+        "method {method}: found {a:?} and {b:?} {straight} apart but by way of {by:?} only {detour}, expected a metric; use the method two-opt"
+    )]
+    NotAMetric {
+        /// The method.
+        method: &'static str,
+        /// One item.
+        a: String,
+        /// Another.
+        b: String,
+        /// The one between them.
+        by: String,
+        /// The distance of the two.
+        straight: f64,
+        /// The way by the third.
+        detour: f64,
+    },
+    /// A method whose promise needs a metric got more items than can be checked for it.
+    #[error(
+        "method {method}: found {found} items whose measure is not known to be a metric, expected at most {limit} to check; declare the matrix's nature or use the method two-opt"
+    )]
+    NotCheckedAsMetric {
+        /// The method.
+        method: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many would be checked.
+        limit: usize,
+    },
+    /// The wanted step is missing or no length.
+    #[error("method target-step: found {found} as the wanted step, expected a finite number of at least 0")]
+    BadTargetStep {
+        /// What was found.
+        found: String,
+    },
+    /// There are no samples to compare.
+    #[error("samples: found none, expected at least 1")]
+    NoSamples,
+    /// A sample is not a number.
+    #[error("sample {index}: found {found}, expected a finite number")]
+    NotASample {
+        /// Its place in the list, from 0 on.
+        index: usize,
+        /// What was found.
+        found: f64,
     },
     /// There is nothing to order.
     #[error("order: found no items, expected at least 1")]
     Empty,
     /// A word that names no method.
-    #[error("method: found {found:?}, expected one of nearest, exact, two-opt, contrast")]
+    #[error("method: found {found:?}, expected one of {}", crate::Method::names())]
     UnknownMethod {
         /// The word.
         found: String,
@@ -63,6 +198,87 @@ pub enum SimilarityError {
         /// The weight.
         found: f64,
     },
+    /// Numbers that do not fill the table they are for, or fill more.
+    #[error("{of}: found {found} numbers, expected {expected}")]
+    Shape {
+        /// What the numbers are.
+        of: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// A cost that cannot be added up.
+    #[error(
+        "cost in row {row}, column {column}: found {found}, expected a number from -1e200 to 1e200; use a large cost to keep two apart"
+    )]
+    BadCost {
+        /// The row, from 0.
+        row: usize,
+        /// The column, from 0.
+        column: usize,
+        /// The cost.
+        found: f64,
+    },
+    /// A number that is not what it is taken for.
+    #[error("{of}: found {found}, expected {expected}")]
+    BadNumber {
+        /// What the number is.
+        of: &'static str,
+        /// The number.
+        found: f64,
+        /// What would do.
+        expected: &'static str,
+    },
+    /// A table of costs in which one is not a distance.
+    #[error("cost of {a:?} to {b:?}: found {found}, expected {expected}")]
+    BadTable {
+        /// The first choice.
+        a: String,
+        /// The second choice.
+        b: String,
+        /// The cost.
+        found: f64,
+        /// What would do.
+        expected: String,
+    },
+    /// A name that is there more than once.
+    #[error("choices: found {name:?} more than once, expected each once; remove one")]
+    TwiceNamed {
+        /// The name.
+        name: String,
+    },
+    /// A choice that a table of costs does not have.
+    #[error("choice: found {found:?}, expected one of {expected}; add it to the cost table")]
+    UnknownChoice {
+        /// The choice.
+        found: String,
+        /// Those that it has.
+        expected: String,
+    },
+    /// Pictures that do not lie on each other.
+    #[error(
+        "picture: found {found} pixels (height × width), expected {expected} as in the other; render both at one size"
+    )]
+    PictureSizes {
+        /// The second picture's height and width.
+        found: String,
+        /// The first picture's.
+        expected: String,
+    },
+    /// Sets of pictures without any.
+    #[error("pictures: found none, expected at least 1 of each world; render from at least one pose")]
+    NoPictures,
+    /// A picture with a side that is too short or too long.
+    #[error("picture: found a side of {found} pixels, expected {least} to {most}")]
+    PictureSide {
+        /// The side.
+        found: usize,
+        /// The least.
+        least: usize,
+        /// The most.
+        most: usize,
+    },
 }
 
 impl SimilarityError {
@@ -71,12 +287,35 @@ impl SimilarityError {
         match self {
             Self::DifferentTasks { .. } => "similarity/different-tasks",
             Self::NotADistance { .. } => "similarity/not-a-distance",
+            Self::BadMass { .. } => "similarity/bad-mass",
+            Self::BadPoint { .. } => "similarity/bad-point",
+            Self::UnequalMasses { .. } => "similarity/unequal-masses",
+            Self::GridsDiffer { .. } => "similarity/grids-differ",
+            Self::TooFine { .. } => "similarity/too-fine",
+            Self::UnknownClass { .. } => "similarity/unknown-class",
+            Self::BadSetting { .. } => "similarity/bad-setting",
             Self::TooMany { .. } => "similarity/too-many",
-            Self::TooManyForExact { .. } => "similarity/too-many-for-exact",
-            Self::NoSuchStart { .. } => "similarity/no-such-start",
+            Self::NoSamples => "similarity/no-samples",
+            Self::NotASample { .. } => "similarity/not-a-sample",
+            Self::TooManyForMethod { .. } => "similarity/too-many-for-method",
+            Self::NoSuchEnd { .. } => "similarity/no-such-end",
+            Self::EqualEnds { .. } => "similarity/equal-ends",
+            Self::CannotFixEnds { .. } => "similarity/cannot-fix-ends",
+            Self::NotAMetric { .. } => "similarity/not-a-metric",
+            Self::NotCheckedAsMetric { .. } => "similarity/not-checked-as-metric",
+            Self::BadTargetStep { .. } => "similarity/bad-target-step",
             Self::Empty => "similarity/empty",
             Self::UnknownMethod { .. } => "similarity/unknown-method",
             Self::BadWeight { .. } => "similarity/bad-weight",
+            Self::Shape { .. } => "similarity/shape",
+            Self::BadCost { .. } => "similarity/bad-cost",
+            Self::BadNumber { .. } => "similarity/bad-number",
+            Self::BadTable { .. } => "similarity/bad-table",
+            Self::TwiceNamed { .. } => "similarity/twice-named",
+            Self::UnknownChoice { .. } => "similarity/unknown-choice",
+            Self::PictureSizes { .. } => "similarity/picture-sizes",
+            Self::NoPictures => "similarity/no-pictures",
+            Self::PictureSide { .. } => "similarity/picture-side",
         }
     }
 }
@@ -87,6 +326,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
+    #[expect(clippy::too_many_lines, reason = "each kind of error has a case")]
     fn every_error_has_its_message() {
         let errors = [
             SimilarityError::DifferentTasks {
@@ -98,12 +338,73 @@ mod tests {
                 b: "two".into(),
                 found: -1.0,
             },
+            SimilarityError::BadMass {
+                side: "from",
+                index: 3,
+                found: -1.0,
+            },
+            SimilarityError::BadPoint {
+                side: "a",
+                index: 0,
+                found: f64::NAN,
+            },
+            SimilarityError::UnequalMasses { from: 1.0, to: 2.5 },
+            SimilarityError::GridsDiffer {
+                a: "3 × 3 × 1 cells of 1 m".into(),
+                b: "3 × 4 × 1 cells of 1 m".into(),
+            },
+            SimilarityError::TooFine {
+                found: 2_000_000,
+                limit: 1_048_576,
+            },
+            SimilarityError::UnknownClass {
+                found: "lamp".into(),
+                expected: "rock, tree".into(),
+            },
+            SimilarityError::BadSetting {
+                name: "regularisation",
+                found: 0.0,
+                expected: "a number from 1e-200 to 1e200",
+            },
             SimilarityError::TooMany {
                 found: 30_000,
                 limit: 20_000,
             },
-            SimilarityError::TooManyForExact { found: 14, limit: 13 },
-            SimilarityError::NoSuchStart { found: 3, last: 2 },
+            SimilarityError::NoSamples,
+            SimilarityError::NotASample {
+                index: 3,
+                found: f64::NAN,
+            },
+            SimilarityError::TooManyForMethod {
+                method: "exact",
+                found: 16,
+                limit: 15,
+            },
+            SimilarityError::NoSuchEnd {
+                end: "first",
+                found: 3,
+                most: 2,
+            },
+            SimilarityError::EqualEnds { label: "one".into() },
+            SimilarityError::CannotFixEnds {
+                method: "spectral",
+                end: "first",
+                label: "one".into(),
+            },
+            SimilarityError::NotAMetric {
+                method: "tree",
+                a: "one".into(),
+                b: "two".into(),
+                by: "three".into(),
+                straight: 4.0,
+                detour: 2.0,
+            },
+            SimilarityError::NotCheckedAsMetric {
+                method: "tree",
+                found: 3000,
+                limit: 2000,
+            },
+            SimilarityError::BadTargetStep { found: "none".into() },
             SimilarityError::Empty,
             SimilarityError::UnknownMethod {
                 found: "shortest".into(),
@@ -111,6 +412,42 @@ mod tests {
             SimilarityError::BadWeight {
                 name: "reward".into(),
                 found: f64::NAN,
+            },
+            SimilarityError::Shape {
+                of: "costs",
+                found: 5,
+                expected: 6,
+            },
+            SimilarityError::BadCost {
+                row: 1,
+                column: 2,
+                found: f64::INFINITY,
+            },
+            SimilarityError::BadNumber {
+                of: "a scale",
+                found: -2.0,
+                expected: "a finite number above 0",
+            },
+            SimilarityError::BadTable {
+                a: "walk".into(),
+                b: "run".into(),
+                found: 2.0,
+                expected: "1 as on the way back".into(),
+            },
+            SimilarityError::TwiceNamed { name: "walk".into() },
+            SimilarityError::UnknownChoice {
+                found: "swim".into(),
+                expected: "fly, run, walk".into(),
+            },
+            SimilarityError::PictureSizes {
+                found: "64 × 64".into(),
+                expected: "84 × 84".into(),
+            },
+            SimilarityError::NoPictures,
+            SimilarityError::PictureSide {
+                found: 8,
+                least: 11,
+                most: 4096,
             },
         ];
         let said: Vec<String> = errors

@@ -4,23 +4,42 @@
 //! is in them; both explain themselves part by part. [`DistanceMatrix`] holds all distances among many, [`order`] puts the
 //! many into a path. The measures that they are made of stand alone, too. Nothing here draws worlds or pictures.
 
+mod assignment;
 mod color;
 mod combined;
-mod distribution;
+pub mod distribution;
 mod error;
 mod matrix;
 mod nature;
 mod occupancy;
 mod order;
+pub mod picture;
+pub mod scalar;
+mod transport;
 
-pub use color::{ciede2000, oklab_distance, srgb_distance};
-pub use combined::variant::variant_distance;
-pub use combined::world::{world_distance, world_sets_distance};
+pub use assignment::{Assignment, MAX_ASSIGNED};
+pub use color::cie76::cie76;
+pub use color::ciede2000::{ciede2000, ciede2000_to_each};
+pub use color::hyab::hyab;
+pub use color::lab::{Lab, LabTable};
+pub use color::measure::ColorMeasure;
+pub use color::oklab::{Oklab, oklab_distance};
+pub use color::sets::color_sets_distance;
+pub use color::srgb::srgb_distance;
+pub use combined::variant::{VariantMeasure, variant_distance};
+pub use combined::world::{Worlds, world_distance, world_sets_distance, world_sets_explained};
 pub use combined::{Distance, Part, Weights};
-pub use distribution::planar::bures_wasserstein;
-pub use distribution::wasserstein::{total_variation, wasserstein_1};
 pub use error::SimilarityError;
-pub use matrix::{DistanceMatrix, MAX_ITEMS};
+pub use matrix::{DistanceMatrix, MAX_ITEMS, Triangles, Violation};
 pub use nature::Nature;
-pub use occupancy::{Classes, Occupancy, hamming_distance, jaccard_distance};
-pub use order::{MAX_EXACT, Method, Ordering, order};
+pub use occupancy::{
+    BitGrid, Classes, Extent, Grid, GridShape, MAX_CELLS, Occupancy, Ospa, Raster, grid_chamfer_distance,
+    grid_dice_distance, grid_earth_movers_distance, grid_earth_movers_hat, grid_hamming_distance, grid_hausdorff_95,
+    grid_hausdorff_distance, grid_jaccard_distance, grid_ruzicka_distance, grid_sinkhorn, grid_sliced_wasserstein,
+    hamming_distance, jaccard_distance,
+};
+pub use order::{MAX_EXACT, MAX_LEAVES, Method, OrderOptions, Ordering, order};
+pub use transport::{
+    MAX_DIRECTIONS, MAX_SINKHORN_STEPS, MAX_TRANSPORTED, Move, Sinkhorn, SinkhornSettings, TransportPlan,
+    earth_movers_distance, optimal_transport, sinkhorn, sliced_wasserstein,
+};

@@ -25,8 +25,9 @@ pub use scenario::{
     TaskLabel,
 };
 pub use task::{
-    Count, DEFAULT_VARIANT, Domain, Element, Facing, Group, Hole, KeepOut, Parameter, ParameterType, PlacedGroup,
-    Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template, Value, Variant, VariantSpec,
+    Compare, Count, DEFAULT_VARIANT, Domain, Element, ElementWeights, Facing, Group, Hole, KeepOut, MeasureName,
+    Parameter, ParameterType, PlacedGroup, Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template,
+    Value, Variant, VariantSpec,
 };
 pub use version::{SCENARIO_VERSION, TASK_VERSION, WORLD_VERSION};
 pub use world::{

@@ -56,6 +56,9 @@ fn cases() -> Vec<SpecError> {
         task(
             r#""parameters": { "p": { "role": "fixed", "type": "number", "value": 1 } }, "variants": { "a": { "p": 2 } }"#,
         ),
+        parameter(
+            r#"{ "role": "variant", "type": "number", "affects": ["S"], "range": [0, 1], "default": 0, "compare": { "measure": "oklab" } }"#,
+        ),
         Scenario::from_json("s.json", r#"{ "name": "s", "blocks": [] }"#).expect_err("a scenario has blocks"),
         world(r#"{ "version": 9 }"#),
         Scenario::from_json(

@@ -7,7 +7,7 @@ use driftworld::curriculum::{Design, Summary, design};
 use driftworld::env::Catalogue;
 use driftworld::generator::Sampler;
 use driftworld::metrics::{Options, Settings};
-use driftworld::similarity::{DistanceMatrix, Method, Ordering, order};
+use driftworld::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
 use driftworld::spec::{BlockKind, Scenario, Variant, World};
 use driftworld::tasks;
 
@@ -62,7 +62,7 @@ impl Demo {
 
         heading("2", "How far apart the variants are, from 0 to 1")?;
         let matrix = matrix(&variants)?;
-        let ordering = order(&matrix, Method::Exact, Some(0))?;
+        let ordering = order(&matrix, Method::Exact, &OrderOptions::default().with_first(0))?;
         output::write(&folder.join("distances.csv"), matrix.to_csv().as_bytes())?;
         let short: Vec<String> = variants.iter().map(|(_, variant)| variant.name().to_owned()).collect();
         heat_map("Distances between the variants of find_objects", &short, |a, b| {

@@ -1,41 +1,58 @@
 //! `driftworld distance`: how far apart two variants or two worlds are, element by element. The measures are `similarity`'s.
 
 use clap::Args;
-use driftworld::similarity::{Distance as Measured, Weights, variant_distance, world_distance};
-use driftworld::spec::Element;
+use driftworld::generator::Sampler;
+use driftworld::similarity::{
+    Distance as Measured, Part, VariantMeasure, Weights, world_distance, world_sets_explained,
+};
+use driftworld::spec::{Element, Variant, World};
 use driftworld::tasks;
 
 use super::table::table;
+use super::weights::WeightArgs;
 use super::{Failure, input, output};
 
 /// Measure how far apart two variants or two worlds are.
 ///
-/// Two variants of one task are compared parameter by parameter; world files, and variants of different tasks, are
-/// compared as worlds: what stands where, what it pays, how it looks.
+/// Two variants of one task are compared parameter by parameter, at the weights and by the measures that the task declares.
+/// Variants of different tasks are compared by worlds drawn from each under one seed, world files as they are: what stands
+/// where, what it pays, how it looks. All distances are in 0 to 1.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld distance find_objects#blue find_objects#dusk --explain
+  driftworld distance find_objects#blue get_to_goal#plain --explain --worlds 64
   driftworld distance a.json b.json --json")]
 pub(crate) struct Distance {
     /// A task's variant, or a world file.
     a: String,
     /// Another.
     b: String,
-    /// Show every part: what was compared, how, and its share.
+    /// Show every part: what was compared, by which measure and how, its number, what it weighs, its share of the whole.
     #[arg(long)]
     explain: bool,
-    /// Compare worlds even where both are variants of one task.
-    #[arg(long)]
-    worlds: bool,
+    /// Compare so many worlds of each even where both are variants of one task; 16 of each are compared where they are not.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000), num_args = 0..=1, default_missing_value = "16")]
+    worlds: Option<u64>,
     /// The seed, where worlds are drawn from variants.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// The number of the worlds, where they are drawn from variants.
+    /// The number of the first world, where they are drawn from variants.
     #[arg(long, default_value_t = 0)]
     index: u64,
+    #[command(flatten)]
+    weights: WeightArgs,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
+}
+
+/// How many worlds of each variant are compared where nothing is said.
+const WORLDS: u64 = 16;
+
+/// What is compared.
+enum Side {
+    World(Box<World>),
+    Variant(Variant),
 }
 
 impl Distance {
@@ -53,20 +70,49 @@ impl Distance {
         Ok(())
     }
 
-    fn measure(&self) -> Result<(Measured, &'static str), Failure> {
-        let weights = Weights::default();
-        let is_world = [&self.a, &self.b].map(|name| input::is_world_file(name));
-        if is_world == [false, false] && !self.worlds {
-            let (a, b) = (tasks::variant(&self.a)?, tasks::variant(&self.b)?);
-            if a.task().name() == b.task().name() {
-                return Ok((variant_distance(&a, &b, &weights)?, "parameter by parameter"));
+    fn measure(&self) -> Result<(Measured, String), Failure> {
+        let (a, b) = (self.side(&self.a)?, self.side(&self.b)?);
+        if let (Side::Variant(a), Side::Variant(b), None) = (&a, &b, self.worlds)
+            && a.task().name() == b.task().name()
+        {
+            let weights = self.weights.over(Weights::of_task(a.task()))?;
+            let distance = VariantMeasure::new(a.task(), weights).between(a, b)?;
+            return Ok((distance, "parameter by parameter".to_owned()));
+        }
+        let weights = self.weights.over(Weights::default())?;
+        if let (Side::World(a), Side::World(b)) = (&a, &b) {
+            return Ok((world_distance(a, b, &weights), "world to world".to_owned()));
+        }
+        let count = self.worlds.unwrap_or(WORLDS);
+        let (a, b) = (self.draw(a, count)?, self.draw(b, count)?);
+        let distance = world_sets_explained(&a, &b, &weights)?;
+        let plural = if count == 1 { "" } else { "s" };
+        let drawn = format!("mean of {count} world{plural} of each, drawn under seed {}", self.seed);
+        Ok((distance, drawn))
+    }
+
+    fn side(&self, name: &str) -> Result<Side, Failure> {
+        if input::is_world_file(name) {
+            let world = input::world(name, self.seed, self.index, false)?;
+            Ok(Side::World(Box::new(world)))
+        } else {
+            Ok(Side::Variant(tasks::variant(name)?))
+        }
+    }
+
+    /// Worlds of a variant; a world as often as there are of the other.
+    fn draw(&self, side: Side, count: u64) -> Result<Vec<World>, Failure> {
+        match side {
+            Side::World(world) => Ok((0..count).map(|_| (*world).clone()).collect()),
+            Side::Variant(variant) => {
+                let sampler = Sampler::new(&variant, self.seed);
+                let end = self.index.checked_add(count).ok_or_else(|| {
+                    Failure::usage(format!("--index: found {}, expected room for {count} more", self.index))
+                })?;
+                let worlds = (self.index..end).map(|index| sampler.world(index));
+                Ok(worlds.collect::<Result<_, _>>()?)
             }
         }
-        let world = |name: &str| input::world(name, self.seed, self.index, false);
-        Ok((
-            world_distance(&world(&self.a)?, &world(&self.b)?, &weights),
-            "world to world",
-        ))
     }
 }
 
@@ -86,19 +132,31 @@ fn by_element(distance: &Measured) -> String {
 }
 
 fn parts(distance: &Measured) -> String {
-    let rows = distance.parts.iter().map(|part| {
+    let row = |part: &Part| {
         [
             part.name.clone(),
             part.element.letter().to_owned(),
             part.measure.to_string(),
+            part.how
+                .map_or_else(|| "of the values".to_owned(), |how| how.to_string()),
             format!("{:.4}", part.raw),
             format!("{:.4}", part.normalised),
             format!("{}", part.weight),
+            format!("{:.1}%", 100.0 * part.share),
         ]
-    });
+    };
     table(
-        ["what", "element", "measure", "raw", "normalised", "weight"],
-        rows.collect(),
-        &[3, 4, 5],
+        [
+            "what",
+            "element",
+            "measure",
+            "found",
+            "raw",
+            "normalised",
+            "weight",
+            "share",
+        ],
+        distance.parts.iter().map(row).collect(),
+        &[4, 5, 6, 7],
     )
 }

@@ -27,6 +27,7 @@ mod table;
 mod tasks;
 mod validate;
 mod vary;
+mod weights;
 mod who;
 
 use std::process::ExitCode;

@@ -9,8 +9,8 @@ use plotters::style::{FontStyle, register_font};
 
 use super::{Failure, output};
 
-const INK: RGBColor = RGBColor(38, 42, 48);
-const FAINT: RGBColor = RGBColor(110, 116, 124);
+pub(crate) const INK: RGBColor = RGBColor(38, 42, 48);
+pub(crate) const FAINT: RGBColor = RGBColor(110, 116, 124);
 
 /// A picture in memory: 8-bit RGB, row 0 on top.
 #[derive(Clone)]
@@ -135,7 +135,7 @@ impl Picture {
     }
 
     /// Draws with the plotting library onto this picture.
-    fn draw(
+    pub(crate) fn draw(
         &mut self,
         job: impl FnOnce(&DrawingArea<BitMapBackend, plotters::coord::Shift>) -> Result<(), Box<dyn std::error::Error>>,
     ) -> Result<(), Failure> {

@@ -28,7 +28,7 @@ const MAX_JOBS: usize = 256;
 #[command(after_help = "Example:
   driftworld run scenario.json --agent onrails --logs logs/first
   driftworld run scenario.json --agent onrails --logs logs/first --resume
-  driftworld run scenario.json --agent scripted:script.txt --logs logs/second
+  driftworld run scenario.json --agent scripted:keep_away.txt --logs logs/second
   driftworld metrics logs/first")]
 pub(crate) struct Run {
     /// The scenario file.
@@ -118,8 +118,9 @@ impl Life<'_> {
     /// Lives it, with a bar on a terminal. Whatever stops it, the log holds whole experiences, and the message says how to go on.
     pub(crate) fn live(self) -> Result<Summary, Failure> {
         let mut agent = self.who.agent()?;
-        let mut journal = self.journal()?;
+        // Before there is a log, so that whoever sees one may ask for its end.
         let interrupt = Interrupt::listen()?;
+        let mut journal = self.journal()?;
         let bar = output::progress(self.plan.num_experiences(), "living");
         bar.set_position(journal.num_experiences());
         let mut around = Surroundings {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use driftworld::spec::maps::MapLibrary;
 use driftworld::spec::{Problem, Scenario, SpecError, TaskSpec, World};
+use driftworld::tasks;
 use serde_json::{Value, json};
 
 use super::{Failure, input, output};
@@ -12,7 +13,7 @@ use super::{Failure, input, output};
 /// Check task specs, worlds, scenarios and maps files, and name every problem with its place.
 ///
 /// What a file is, is seen from its keys: "blocks" make a scenario, "scenario" one of L2Explorer's, "maps" a maps file, "name" a
-/// task spec, anything else a world.
+/// task spec, anything else a world. The variants that a scenario names are checked against its tasks, where those can be found.
 #[derive(Args)]
 #[command(after_help = "Example:\n  driftworld validate examples/tasks\n  driftworld validate --l2explorer map.json")]
 pub(crate) struct Validate {
@@ -61,7 +62,15 @@ impl Validate {
         let mut warnings = Vec::new();
         let (kind, error) = match kind_of(&text) {
             "task spec" => ("task spec", TaskSpec::from_json(&name, &text).err()),
-            "scenario" => ("scenario", Scenario::from_json(&name, &text).err()),
+            "scenario" => {
+                let read = Scenario::from_json_with(&name, &text, |called| {
+                    let unchecked = |error| format!("{name}: the variants of {called} are not checked: {error}");
+                    tasks::task(called)
+                        .map_err(|error| warnings.push(unchecked(error)))
+                        .ok()
+                });
+                ("scenario", read.err())
+            }
             "L2Explorer scenario" => match Scenario::from_l2explorer(&name, &text) {
                 Ok((_, found)) => {
                     warnings = found.iter().map(ToString::to_string).collect();

@@ -3,22 +3,25 @@
 
 use crate::error::XtaskError;
 use crate::process::{cargo, run};
+use crate::side_by_side;
 use crate::workspace::Workspace;
 
 /// The benches of one part of the house.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Suite {
     Generator,
+    Similarity,
     Env,
 }
 
 impl Suite {
-    pub(crate) const ALL: [Self; 2] = [Self::Generator, Self::Env];
+    pub(crate) const ALL: [Self; 3] = [Self::Generator, Self::Similarity, Self::Env];
 
     /// The word after `bench`.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Generator => "generator",
+            Self::Similarity => "similarity",
             Self::Env => "env",
         }
     }
@@ -32,16 +35,21 @@ impl Suite {
     fn packages(self) -> &'static [&'static str] {
         match self {
             Self::Generator => &["driftworld-spec", "driftworld-generator"],
+            Self::Similarity => &["driftworld-similarity"],
             Self::Env => &["driftworld-env"],
         }
     }
 }
 
-/// Measures: criterion's benches, then the figures that `driftworld bench` prints.
+/// Measures: criterion's benches, then the figures that `driftworld bench` prints, those of distances beside their peers'.
 pub(crate) fn measure(workspace: &Workspace, suites: &[Suite]) -> Result<(), XtaskError> {
     for suite in suites {
         for package in suite.packages() {
             run(cargo(workspace, &["bench", "--package", package]))?;
+        }
+        if *suite == Suite::Similarity {
+            side_by_side::measure(workspace)?;
+            continue;
         }
         run(cargo(
             workspace,

@@ -18,6 +18,7 @@ mod peers;
 mod process;
 mod runner;
 mod schemas;
+mod side_by_side;
 mod stage;
 mod tidy;
 mod workspace;
@@ -36,7 +37,7 @@ Usage:
   cargo xtask test --list           the stages and what each holds
   cargo xtask STAGE                 the same as `test --only STAGE`, but for `schemas`
   cargo xtask schemas               rewrite schemas/*.json from the Rust types
-  cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, env)
+  cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, similarity, env)
   cargo xtask bench peers PYTHON SCRIPTS
                                     ours beside the peers that PYTHON has, by the scripts in a folder; draws the README's plot";
 

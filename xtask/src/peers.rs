@@ -3,10 +3,10 @@
 
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 use crate::error::XtaskError;
-use crate::process::{cargo, not_started, shown, succeeded};
+use crate::process::{cargo, output};
 use crate::workspace::Workspace;
 
 /// Where the plot goes, from the workspace's root.
@@ -101,20 +101,6 @@ fn steps(line: &str) -> Option<f64> {
         .collect();
     numbers.sort_by(f64::total_cmp);
     numbers.get(numbers.len() / 2).copied()
-}
-
-/// What a command prints; its errors are shown as they come.
-fn output(mut command: Command) -> Result<String, XtaskError> {
-    let line = shown(&command);
-    println!("$ {line}");
-    let done = command
-        .stderr(Stdio::inherit())
-        .output()
-        .map_err(|source| not_started(&command, source))?;
-    succeeded(&line, done.status)?;
-    let text = String::from_utf8_lossy(&done.stdout).into_owned();
-    print!("{text}");
-    Ok(text)
 }
 
 /// Horizontal bars on one scale, as SVG.

@@ -72,6 +72,20 @@ pub(crate) fn program(command: &Command) -> String {
         .into_owned()
 }
 
+/// What a command prints; its errors are shown as they come.
+pub(crate) fn output(mut command: Command) -> Result<String, XtaskError> {
+    let line = shown(&command);
+    println!("$ {line}");
+    let done = command
+        .stderr(Stdio::inherit())
+        .output()
+        .map_err(|source| not_started(&command, source))?;
+    succeeded(&line, done.status)?;
+    let text = String::from_utf8_lossy(&done.stdout).into_owned();
+    print!("{text}");
+    Ok(text)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

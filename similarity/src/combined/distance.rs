@@ -1,9 +1,10 @@
 //! A distance with its parts: what was compared, how, and what it weighs. Which parts there are is said by `variant.rs` and `world.rs`.
 
-use driftworld_spec::Element;
+use driftworld_spec::{Element, TaskSpec};
 use serde::Serialize;
 
 use crate::SimilarityError;
+use crate::distribution::How;
 
 /// What the elements of the decision process weigh in the whole. Each 1 by default.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +17,11 @@ impl Default for Weights {
 }
 
 impl Weights {
+    /// The weights that a task declares under `element_weights`.
+    pub fn of_task(task: &TaskSpec) -> Self {
+        Self(task.element_weights().to_array())
+    }
+
     /// The same weights but for one element.
     ///
     /// # Errors
@@ -31,9 +37,27 @@ impl Weights {
         Ok(self)
     }
 
+    /// Weight 1 for one element and 0 for all others: the distance in that element alone.
+    pub fn only(element: Element) -> Self {
+        Self(Element::ALL.map(|other| f64::from(u8::from(other == element))))
+    }
+
     /// What an element weighs.
     pub fn of(&self, element: Element) -> f64 {
         self.0[position(element)]
+    }
+
+    /// The weighted mean of the elements that are there; 0 if none that counts is.
+    pub(super) fn mean(&self, elements: &[Option<f64>; 5]) -> f64 {
+        let mut sum = 0.0;
+        let mut whole = 0.0;
+        for (weight, distance) in self.0.iter().zip(elements) {
+            if let Some(distance) = distance {
+                sum += weight * distance;
+                whole += weight;
+            }
+        }
+        if whole > 0.0 { sum / whole } else { 0.0 }
     }
 }
 
@@ -44,20 +68,27 @@ pub struct Part {
     pub name: String,
     /// The element of the decision process that it counts for.
     pub element: Element,
-    /// How it was compared.
+    /// The measure, and what its number is divided by.
     pub measure: &'static str,
+    /// For distributions: how the number was found. Values are compared as they are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub how: Option<How>,
     /// The measure's own number, in its own units.
     pub raw: f64,
     /// The number that counts, in 0..=1.
     pub normalised: f64,
     /// What it weighs among the parts of its element.
     pub weight: f64,
+    /// Which share of the whole distance is its doing, in 0..=1; the shares of all parts add up to 1, or are 0 where the whole is.
+    pub share: f64,
 }
 
 /// How far apart two variants or two worlds are.
 ///
 /// A Gower mix: each element's distance is the weighted mean of its parts, the whole is the weighted mean of the elements
-/// that have parts. All in 0..=1.
+/// that have parts. All in 0..=1. A weighted mean of metrics with fixed weights is a metric again.
+///
+/// Source: Gower 1971, "A general coefficient of similarity and some of its properties".
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Distance {
     /// All elements together.
@@ -69,24 +100,32 @@ pub struct Distance {
 }
 
 impl Distance {
-    pub(crate) fn new(parts: Vec<Part>, weights: &Weights) -> Self {
+    pub(crate) fn new(mut parts: Vec<Part>, weights: &Weights) -> Self {
+        let weight_of = |parts: &[Part], element| -> f64 {
+            let own = parts.iter().filter(|part| part.element == element);
+            own.map(|part| part.weight).sum()
+        };
         let elements = Element::ALL.map(|element| {
-            let own = || parts.iter().filter(move |part| part.element == element);
-            let weight: f64 = own().map(|part| part.weight).sum();
-            (weight > 0.0).then(|| own().map(|part| part.normalised * part.weight).sum::<f64>() / weight)
+            let weight = weight_of(&parts, element);
+            let own = parts.iter().filter(|part| part.element == element);
+            (weight > 0.0).then(|| own.map(|part| part.normalised * part.weight).sum::<f64>() / weight)
         });
-        let present = || {
-            Element::ALL
-                .into_iter()
-                .zip(elements)
-                .filter_map(|(element, d)| Some((weights.of(element), d?)))
-        };
-        let weight: f64 = present().map(|(weight, _)| weight).sum();
-        let total = if weight > 0.0 {
-            present().map(|(weight, d)| weight * d).sum::<f64>() / weight
-        } else {
-            0.0
-        };
+        let total = weights.mean(&elements);
+        let all: f64 = Element::ALL
+            .iter()
+            .zip(&elements)
+            .map(|(element, distance)| weights.of(*element) * distance.map_or(0.0, |_| 1.0))
+            .sum();
+        if total > 0.0 {
+            let of_element = Element::ALL.map(|element| weight_of(&parts, element));
+            for part in &mut parts {
+                let own = of_element[position(part.element)];
+                if own > 0.0 {
+                    let counts = part.normalised * part.weight / own * weights.of(part.element) / all;
+                    part.share = counts / total;
+                }
+            }
+        }
         Self { total, elements, parts }
     }
 
@@ -94,11 +133,63 @@ impl Distance {
     pub fn element(&self, element: Element) -> Option<f64> {
         self.elements[position(element)]
     }
+
+    /// The elements in which there is any distance.
+    pub fn differs_in(&self) -> Vec<Element> {
+        let differs = |element: &Element| self.element(*element).is_some_and(|distance| distance > 0.0);
+        Element::ALL.into_iter().filter(differs).collect()
+    }
 }
 
-fn position(element: Element) -> usize {
+pub(super) fn position(element: Element) -> usize {
     Element::ALL
         .iter()
         .position(|other| *other == element)
         .expect("ALL holds every element")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part(element: Element, normalised: f64, weight: f64) -> Part {
+        Part {
+            name: "p".to_owned(),
+            element,
+            measure: "same or not",
+            how: None,
+            raw: normalised,
+            normalised,
+            weight,
+            share: 0.0,
+        }
+    }
+
+    #[test]
+    fn parts_make_elements_and_elements_the_whole() {
+        let parts = vec![
+            part(Element::R, 1.0, 1.0),
+            part(Element::R, 0.0, 3.0),
+            part(Element::O, 0.5, 2.0),
+            part(Element::T, 0.7, 0.0),
+        ];
+        let weights = Weights::default().with(Element::O, 3.0).unwrap();
+        let distance = Distance::new(parts, &weights);
+        assert_eq!(distance.elements, [None, None, None, Some(0.25), Some(0.5)]);
+        assert_eq!(distance.total, (0.25 + 3.0 * 0.5) / 4.0);
+        assert_eq!(distance.differs_in(), [Element::R, Element::O]);
+        let shares: Vec<f64> = distance.parts.iter().map(|part| part.share).collect();
+        assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        assert_eq!((shares[1], shares[3]), (0.0, 0.0));
+        assert!((shares[0] - 0.25 / 1.75).abs() < 1e-12);
+    }
+
+    #[test]
+    fn one_element_can_be_taken_alone() {
+        let parts = vec![part(Element::R, 1.0, 1.0), part(Element::O, 0.5, 1.0)];
+        assert_eq!(Distance::new(parts.clone(), &Weights::only(Element::O)).total, 0.5);
+        assert_eq!(Distance::new(parts, &Weights::only(Element::S)).total, 0.0);
+        assert!(Weights::default().with(Element::R, f64::NAN).is_err());
+        assert!(Weights::default().with(Element::R, -1.0).is_err());
+    }
 }

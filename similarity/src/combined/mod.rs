@@ -1,6 +1,9 @@
 //! Distances of whole variants and whole worlds, made of many parts. The measures that the parts are made of are in their own folders.
 
 mod distance;
+mod drawn;
+mod sketch;
+mod value;
 pub(crate) mod variant;
 pub(crate) mod world;
 

@@ -1,172 +1,173 @@
 //! Distance between two variants of one task, parameter by parameter. Distances of concrete worlds are in `world.rs`.
 
-use driftworld_spec::{Distribution, Domain, Parameter, ParameterType, Role, Value, Variant};
+use std::sync::Arc;
 
-use crate::SimilarityError;
-use crate::color::oklab_distance;
-use crate::combined::{Distance, Part, Weights};
-use crate::distribution::planar::{bures_wasserstein, spread};
-use crate::distribution::wasserstein::{total_variation, wasserstein_1, width};
+use driftworld_spec::{Element, ParameterType, Role, TaskSpec, Variant};
 
-/// How one parameter differs: measure, raw number, number in 0..=1.
-type Difference = (&'static str, f64, f64);
+use crate::combined::distance::{Distance, Part, Weights};
+use crate::combined::drawn::DrawnMeasure;
+use crate::combined::value::ValueMeasure;
+use crate::{Nature, SimilarityError};
 
 /// How far apart two variants of one task are.
 ///
-/// Every parameter counts, with weight 1, for each element that it affects. Variant parameters are compared by value:
-/// numbers by difference over the declared range, colours in Oklab, points over the widest pair of choices, anything else as
-/// the same or not. Randomized ones are compared by distribution: Wasserstein-1 over the width of both, total variation for
-/// words, Bures–Wasserstein for points. A parameter that is alike in both contributes exactly 0, so variants that differ in
-/// what they pay are 0 apart in all elements but the reward. Fixed parameters cannot differ and are left out.
+/// Every parameter counts for each element that it affects, at the weight and by the measure that the task gives it under
+/// `compare`, or else at weight 1 and by what its type has: numbers by difference over the declared range, headings by the
+/// turn, colours in Oklab, points over the widest pair of choices, vectors by Euclidean length over the range, anything else
+/// as the same or not. Randomized ones are compared by distribution: Wasserstein-1 over the width of all declared variants
+/// together, round the circle for headings, Wasserstein-2 over the diagonal for points, total variation for words. What is alike in both
+/// contributes exactly 0, so variants that differ in what they pay are 0 apart in all elements but the reward. Fixed
+/// parameters cannot differ and are left out.
+///
+/// What a number is divided by depends on the task alone, so the whole is a metric if each measure in it is one:
+/// [`VariantMeasure::nature`] says so. To compare many variants, make a [`VariantMeasure`] once.
 ///
 /// # Errors
 /// [`SimilarityError::DifferentTasks`].
 pub fn variant_distance(a: &Variant, b: &Variant, weights: &Weights) -> Result<Distance, SimilarityError> {
-    if a.task().name() != b.task().name() {
-        let (a, b) = (a.task().name().to_owned(), b.task().name().to_owned());
-        return Err(SimilarityError::DifferentTasks { a, b });
-    }
-    let mut parts = Vec::new();
-    for (name, parameter) in a.task().parameters() {
-        let difference = match parameter.role {
-            Role::Fixed => None,
-            Role::Variant if parameter.kind != ParameterType::Distribution => {
-                a.value(name).zip(b.value(name)).map(|(a, b)| by_value(parameter, a, b))
-            }
-            Role::Variant | Role::Randomized => a
-                .distribution(name)
-                .zip(b.distribution(name))
-                .map(|(a, b)| by_distribution(&a, &b)),
-        };
-        let Some((measure, raw, normalised)) = difference else {
-            continue;
-        };
-        parts.extend(parameter.affects.iter().map(|element| Part {
-            name: name.clone(),
-            element: *element,
-            measure,
-            raw,
-            normalised: normalised.clamp(0.0, 1.0),
-            weight: 1.0,
-        }));
-    }
-    Ok(Distance::new(parts, weights))
+    VariantMeasure::new(a.task(), weights.clone()).between(a, b)
 }
 
-fn by_value(parameter: &Parameter, a: &Value, b: &Value) -> Difference {
-    match (a, b) {
-        (Value::Color(a), Value::Color(b)) => {
-            let raw = oklab_distance(*a, *b);
-            ("oklab", raw, raw)
-        }
-        (Value::Point(a), Value::Point(b)) => {
-            let raw = length(*a, *b);
-            ("euclidean / widest choice", raw, share(raw, widest_choice(parameter)))
-        }
-        (Value::Vector(a), Value::Vector(b)) => {
-            let raw = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
-            (
-                "euclidean / range",
-                raw,
-                share(raw, range(parameter) * (a.len() as f64).sqrt()),
-            )
-        }
-        _ if parameter.kind == ParameterType::Heading => {
-            let turn = (a.as_number().unwrap_or(0.0) - b.as_number().unwrap_or(0.0)).rem_euclid(360.0);
-            let raw = turn.min(360.0 - turn);
-            ("turn / 180 degrees", raw, raw / 180.0)
-        }
-        _ => {
-            if let (Some(a), Some(b)) = (a.as_number(), b.as_number()) {
-                (
-                    "difference / range",
-                    (a - b).abs(),
-                    share((a - b).abs(), range(parameter)),
-                )
-            } else {
-                let raw = if a == b { 0.0 } else { 1.0 };
-                ("same or not", raw, raw)
-            }
-        }
-    }
+/// How the variants of one task are compared, made ready for many comparisons.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::{Nature, VariantMeasure, Weights};
+/// use driftworld_spec::{Element, TaskSpec};
+/// let task = TaskSpec::from_json("inline", r#"{ "name": "t", "parameters": {
+///     "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0, 4], "default": 2 } },
+///   "variants": { "day": {}, "dusk": { "light": 1 } } }"#)?;
+/// let measure = VariantMeasure::new(&task, Weights::of_task(&task));
+/// let distance = measure.between(&task.variant("day")?, &task.variant("dusk")?)?;
+/// assert_eq!((distance.element(Element::O), measure.nature()), (Some(0.25), Nature::Metric));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct VariantMeasure {
+    task: Arc<TaskSpec>,
+    weights: Weights,
+    parameters: Vec<Compared>,
 }
 
-fn by_distribution(a: &Distribution, b: &Distribution) -> Difference {
-    if a == b {
-        return ("distribution", 0.0, 0.0);
-    }
-    if let Some(raw) = wasserstein_1(a, b) {
-        let wide = match (width(a), width(b)) {
-            (Some([a_low, a_high]), Some([b_low, b_high])) => a_high.max(b_high) - a_low.min(b_low),
-            _ => 0.0,
-        };
-        return ("wasserstein-1 / width", raw, share(raw, wide));
-    }
-    if let Some(raw) = bures_wasserstein(a, b) {
-        let spread = |distribution| spread(distribution).unwrap_or(0.0);
-        // Far apart is 1, and one spread of the two apart is a half.
-        return (
-            "bures-wasserstein",
-            raw,
-            raw / (raw + f64::midpoint(spread(a), spread(b)).max(1e-12)),
-        );
-    }
-    if let Some(raw) = total_variation(a, b) {
-        return ("total variation", raw, raw);
-    }
-    ("same or not", 1.0, 1.0)
+/// A parameter, and how it is compared.
+#[derive(Clone, Debug)]
+struct Compared {
+    name: String,
+    affects: Vec<Element>,
+    weight: f64,
+    by: By,
 }
 
-fn share(raw: f64, whole: f64) -> f64 {
-    if raw == 0.0 {
-        0.0
-    } else {
-        raw / whole.max(f64::MIN_POSITIVE)
-    }
+#[derive(Clone, Debug)]
+enum By {
+    Value(ValueMeasure),
+    Drawn(DrawnMeasure),
 }
 
-/// Width of what a number may be.
-fn range(parameter: &Parameter) -> f64 {
-    match parameter.domain() {
-        Some(Domain::Range([low, high])) => high - low,
-        Some(Domain::Choices(choices)) => {
-            let numbers_of = |choice: &Value| match choice {
-                Value::Vector(numbers) => numbers.clone(),
-                other => other.as_number().into_iter().collect(),
+impl VariantMeasure {
+    /// Compares variants of this task, its elements at these weights.
+    pub fn new(task: &Arc<TaskSpec>, weights: Weights) -> Self {
+        let variants = task.all_variants();
+        let parameters = task.parameters().iter().filter_map(|(name, parameter)| {
+            let by = match parameter.role {
+                Role::Fixed => return None,
+                Role::Variant if parameter.kind != ParameterType::Distribution => {
+                    By::Value(ValueMeasure::of(parameter))
+                }
+                Role::Variant | Role::Randomized => {
+                    let default = task.variant(driftworld_spec::DEFAULT_VARIANT).ok();
+                    let all = variants.iter().chain(&default);
+                    By::Drawn(DrawnMeasure::of(
+                        parameter,
+                        all.filter_map(|variant| variant.distribution(name)),
+                    ))
+                }
             };
-            let numbers: Vec<f64> = choices.iter().flat_map(numbers_of).collect();
-            let least = numbers.iter().copied().fold(f64::INFINITY, f64::min);
-            numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least
+            Some(Compared {
+                name: name.clone(),
+                affects: parameter.affects.clone(),
+                weight: parameter.compare.as_ref().map_or(1.0, |compare| compare.weight),
+                by,
+            })
+        });
+        Self {
+            task: Arc::clone(task),
+            weights,
+            parameters: parameters.collect(),
         }
-        None => 0.0,
     }
-}
 
-fn widest_choice(parameter: &Parameter) -> f64 {
-    let Some(Domain::Choices(choices)) = parameter.domain() else {
-        return 0.0;
-    };
-    let points = || {
-        choices.iter().filter_map(|choice| {
-            if let Value::Point(point) = choice {
-                Some(*point)
-            } else {
-                None
+    /// How far apart two variants of the task are.
+    ///
+    /// # Errors
+    /// [`SimilarityError::DifferentTasks`] if one is not a variant of this task.
+    pub fn between(&self, a: &Variant, b: &Variant) -> Result<Distance, SimilarityError> {
+        for variant in [a, b] {
+            if !self.is_of_this_task(variant) {
+                let (a, b) = (a.task().name().to_owned(), b.task().name().to_owned());
+                return Err(SimilarityError::DifferentTasks { a, b });
             }
-        })
-    };
-    points()
-        .flat_map(|a| points().map(move |b| length(a, b)))
-        .fold(0.0, f64::max)
-}
+        }
+        let mut parts = Vec::new();
+        for compared in &self.parameters {
+            let name = &compared.name;
+            let found = match &compared.by {
+                By::Value(measure) => a.value(name).zip(b.value(name)).map(|(a, b)| {
+                    let (raw, normalised) = measure.between(a, b);
+                    (measure.name(), None, raw, normalised)
+                }),
+                By::Drawn(measure) => a
+                    .distribution(name)
+                    .zip(b.distribution(name))
+                    .map(|(a, b)| measure.between(&a, &b)),
+            };
+            let Some((measure, how, raw, normalised)) = found else {
+                continue;
+            };
+            parts.extend(compared.affects.iter().map(|element| Part {
+                name: name.clone(),
+                element: *element,
+                measure,
+                how,
+                raw,
+                normalised: normalised.clamp(0.0, 1.0),
+                weight: compared.weight,
+                share: 0.0,
+            }));
+        }
+        Ok(Distance::new(parts, &self.weights))
+    }
 
-fn length(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
+    /// Whether the whole distance is a metric, up to variants that have all values alike: it is unless a measure that counts
+    /// is none.
+    pub fn nature(&self) -> Nature {
+        let metric = |compared: &Compared| match &compared.by {
+            By::Value(measure) => measure.is_metric(),
+            By::Drawn(measure) => measure.is_metric(),
+        };
+        if self
+            .parameters
+            .iter()
+            .filter(|compared| compared.weight > 0.0)
+            .all(metric)
+        {
+            Nature::Metric
+        } else {
+            Nature::Distance
+        }
+    }
+
+    fn is_of_this_task(&self, variant: &Variant) -> bool {
+        let task = variant.task();
+        Arc::ptr_eq(&self.task, task)
+            || (self.task.name() == task.name() && self.task.parameters() == task.parameters())
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ColorMeasure;
     use driftworld_spec::{Element, TaskSpec};
 
     fn distance(a: &str, b: &str) -> Distance {
@@ -233,5 +234,131 @@ mod tests {
             "variants": { "a": {}, "b": { "r": 1 } } }"#).unwrap();
         let distance = variant_distance(&task.variant("a").unwrap(), &task.variant("b").unwrap(), &weights).unwrap();
         assert_eq!((distance.total, distance.element(Element::R)), (0.0, Some(1.0)));
+    }
+
+    /// The distance of two variants in the parameter `p`, as the task declares it.
+    fn check(parameter: &str, other: &str, measure: &str, expected: f64) {
+        let text = format!(
+            r#"{{ "name": "t", "parameters": {{ "p": {{ "affects": ["O"], {parameter} }} }}, "variants": {{ "a": {{}}, "b": {{ "p": {other} }} }} }}"#
+        );
+        let task = TaskSpec::from_json("t.json", &text).unwrap();
+        let (a, b) = (task.variant("a").unwrap(), task.variant("b").unwrap());
+        let distance = variant_distance(&a, &b, &Weights::of_task(&task)).unwrap();
+        let part = &distance.parts[0];
+        assert_eq!(part.measure, measure);
+        assert!(
+            (part.normalised - expected).abs() < 1e-6,
+            "{measure}: {}",
+            part.normalised
+        );
+    }
+
+    #[test]
+    fn a_task_says_by_which_measure_a_parameter_is_compared() {
+        let number = r#""role": "variant", "type": "number", "range": [1, 100], "default": 1"#;
+        check(number, "10", "difference / range", 9.0 / 99.0);
+        check(
+            &format!(r#"{number}, "compare": {{ "measure": "log_ratio" }}"#),
+            "10",
+            "log ratio / range",
+            0.5,
+        );
+        check(
+            &format!(r#"{number}, "compare": {{ "measure": "same_or_not" }}"#),
+            "10",
+            "same or not",
+            1.0,
+        );
+        let word = r#""role": "variant", "type": "string", "choices": ["a", "b", "c"], "default": "a""#;
+        check(word, r#""b""#, "same or not", 1.0);
+        check(
+            &format!(r#"{word}, "compare": {{ "costs": [[0, 1, 4], [1, 0, 4], [4, 4, 0]] }}"#),
+            r#""b""#,
+            "cost / largest",
+            0.25,
+        );
+        let heading = r#""role": "variant", "type": "heading", "range": [0, 360], "default": 350"#;
+        check(heading, "10", "turn / 180 degrees", 20.0 / 180.0);
+        let point = r#""role": "variant", "type": "point", "choices": [[0, 0], [3, 4], [0, 10]], "default": [0, 0]"#;
+        check(point, "[3, 4]", "euclidean / widest choice", 0.5);
+        let vector = r#""role": "variant", "type": "vector", "range": [0, 1], "default": [0, 0, 0, 0]"#;
+        check(vector, "[1, 1, 0, 0]", "euclidean / range", 0.5_f64.sqrt());
+        let color = r#""role": "variant", "type": "color", "choices": ["black", "white"], "default": "black""#;
+        check(color, r#""white""#, "oklab", 1.0);
+        for (name, measure) in [("srgb", "srgb / largest"), ("cie76", "cie76 / largest")] {
+            let compare = format!(r#"{color}, "compare": {{ "measure": "{name}" }}"#);
+            let expected = if name == "srgb" {
+                1.0
+            } else {
+                100.0 / ColorMeasure::Cie76.diameter()
+            };
+            check(&compare, r#""white""#, measure, expected);
+        }
+        let drawn = |more: &str| {
+            format!(
+                r#""role": "variant", "type": "distribution", "choices": [{{ "uniform": {{ "low": 0, "high": 1 }} }}, {{ "uniform": {{ "low": 1, "high": 3 }} }}],
+                   "default": {{ "uniform": {{ "low": 0, "high": 1 }} }}{more}"#
+            )
+        };
+        let other = r#"{ "uniform": { "low": 1, "high": 3 } }"#;
+        check(&drawn(""), other, "wasserstein-1 / width", 0.5);
+        check(
+            &drawn(r#", "compare": { "measure": "total_variation" }"#),
+            other,
+            "total variation",
+            1.0,
+        );
+    }
+
+    #[test]
+    fn weights_of_parameters_and_of_elements_come_from_the_task() {
+        let task = TaskSpec::from_json("t.json", r#"{ "name": "t", "element_weights": { "R": 3 }, "parameters": {
+            "r": { "role": "variant", "type": "number", "affects": ["R"], "range": [0, 1], "default": 0 },
+            "o": { "role": "variant", "type": "boolean", "affects": ["O"], "choices": [true, false], "default": true, "compare": { "weight": 0 } },
+            "p": { "role": "variant", "type": "boolean", "affects": ["O"], "choices": [true, false], "default": true } },
+            "variants": { "a": {}, "b": { "r": 1, "o": false } } }"#).unwrap();
+        let (a, b) = (task.variant("a").unwrap(), task.variant("b").unwrap());
+        let distance = variant_distance(&a, &b, &Weights::of_task(&task)).unwrap();
+        assert_eq!(distance.elements, [None, None, None, Some(1.0), Some(0.0)]);
+        assert_eq!(distance.total, 0.75);
+    }
+
+    #[test]
+    fn a_measure_that_is_no_metric_makes_the_whole_none() {
+        let nature = |compare: &str| {
+            let text = format!(
+                r#"{{ "name": "t", "parameters": {{ "p": {{ "role": "variant", "affects": ["O"], {compare} }} }} }}"#
+            );
+            let task = TaskSpec::from_json("t.json", &text).unwrap();
+            VariantMeasure::new(&task, Weights::default()).nature()
+        };
+        let color = r#""type": "color", "choices": ["red", "blue"], "default": "red""#;
+        assert_eq!(nature(color), Nature::Metric);
+        assert_eq!(
+            nature(&format!(r#"{color}, "compare": {{ "measure": "ciede2000" }}"#)),
+            Nature::Distance
+        );
+        let word = r#""type": "string", "choices": ["a", "b", "c"], "default": "a""#;
+        let costs = |c: f64| format!(r#"{word}, "compare": {{ "costs": [[0, 1, {c}], [1, 0, 1], [{c}, 1, 0]] }}"#);
+        assert_eq!(nature(&costs(2.0)), Nature::Metric);
+        assert_eq!(nature(&costs(2.5)), Nature::Distance);
+    }
+
+    #[test]
+    fn variants_of_another_task_are_refused_even_under_the_same_name() {
+        let task = |range: &str| {
+            TaskSpec::from_json(
+                "t.json",
+                &format!(
+                    r#"{{ "name": "t", "parameters": {{
+                "p": {{ "role": "variant", "type": "number", "affects": ["O"], "range": {range}, "default": 0 }} }} }}"#
+                ),
+            )
+            .unwrap()
+        };
+        let variant = |range: &str| task(range).variant("default").unwrap();
+        let weights = Weights::default();
+        assert!(variant_distance(&variant("[0, 1]"), &variant("[0, 1]"), &weights).is_ok());
+        assert!(variant_distance(&variant("[0, 1]"), &variant("[0, 2]"), &weights).is_err());
     }
 }

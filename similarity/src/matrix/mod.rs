@@ -1,10 +1,16 @@
-//! [`DistanceMatrix`]: every distance among some items. What is measured is handed in; orders of it are in `order.rs`.
+//! [`DistanceMatrix`]: every distance among some items. What is measured is handed in; files of it are in `csv.rs`, `json.rs`
+//! and `npy.rs`, orders of it in `order/`.
 
-use ndarray::Array2;
+pub(crate) mod eigen;
+mod triangles;
+
+use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::SimilarityError;
+use crate::{Nature, SimilarityError};
+
+pub use triangles::{Triangles, Violation};
 
 /// The most items that a matrix holds.
 pub const MAX_ITEMS: usize = 20_000;
@@ -13,6 +19,7 @@ pub const MAX_ITEMS: usize = 20_000;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DistanceMatrix {
     labels: Vec<String>,
+    nature: Nature,
     #[serde(serialize_with = "rows")]
     values: Array2<f64>,
 }
@@ -24,35 +31,86 @@ fn rows<S: serde::Serializer>(values: &Array2<f64>, serializer: S) -> Result<S::
 impl DistanceMatrix {
     /// Measures every pair once, in parallel; `measure` takes two indices, the first below the second.
     ///
+    /// What the measure is, nobody has said yet: the matrix counts as one of a [`Nature::Distance`] until
+    /// [`DistanceMatrix::with_nature`] says more.
+    ///
     /// # Errors
     /// Whatever `measure` says of the first pair, in row order, that it fails on; [`SimilarityError::NotADistance`] for a
     /// number that is none; [`SimilarityError::TooMany`] for more than [`MAX_ITEMS`] items.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_similarity::{DistanceMatrix, SimilarityError};
+    /// let heights = [1.5_f64, 1.0, 3.0];
+    /// let names = ["a", "b", "c"].map(String::from).to_vec();
+    /// let matrix = DistanceMatrix::measure(names, |a, b| Ok::<_, SimilarityError>((heights[a] - heights[b]).abs()))?;
+    /// assert_eq!(matrix.get(2, 0), 1.5);
+    /// # Ok::<(), SimilarityError>(())
+    /// ```
     pub fn measure<E>(labels: Vec<String>, measure: impl Fn(usize, usize) -> Result<f64, E> + Sync) -> Result<Self, E>
     where
         E: From<SimilarityError> + Send,
     {
-        let n = labels.len();
-        if n > MAX_ITEMS {
-            return Err(SimilarityError::TooMany {
-                found: n,
-                limit: MAX_ITEMS,
-            }
-            .into());
-        }
-        let row = |a: usize| -> Vec<Result<f64, E>> { (a + 1..n).map(|b| measure(a, b)).collect() };
-        let triangle: Vec<Vec<Result<f64, E>>> = (0..n).into_par_iter().map(row).collect();
+        let n = Self::bounded(labels.len())?;
         let mut values = Array2::zeros((n, n));
-        for (a, row) in triangle.into_iter().enumerate() {
-            for (b, distance) in (a + 1..n).zip(row) {
-                let found = distance?;
-                if !found.is_finite() || found < 0.0 {
-                    let (a, b) = (labels[a].clone(), labels[b].clone());
-                    return Err(SimilarityError::NotADistance { a, b, found }.into());
-                }
-                (values[[a, b]], values[[b, a]]) = (found, found);
+        let row = |(a, mut row): (usize, ndarray::ArrayViewMut1<f64>)| -> Result<(), E> {
+            for b in a + 1..n {
+                let found = measure(a, b)?;
+                row[b] = Self::sound(&labels, a, b, found)?;
+            }
+            Ok(())
+        };
+        let outcomes: Vec<Result<(), E>> = values
+            .axis_iter_mut(Axis(0))
+            .into_par_iter()
+            .enumerate()
+            .map(row)
+            .collect();
+        outcomes.into_iter().collect::<Result<(), E>>()?;
+        Ok(Self::mirrored(labels, values))
+    }
+
+    fn bounded(found: usize) -> Result<usize, SimilarityError> {
+        let limit = MAX_ITEMS;
+        if found > limit {
+            return Err(SimilarityError::TooMany { found, limit });
+        }
+        Ok(found)
+    }
+
+    fn sound(labels: &[String], a: usize, b: usize, found: f64) -> Result<f64, SimilarityError> {
+        if found.is_finite() && found >= 0.0 {
+            return Ok(found);
+        }
+        let (a, b) = (labels[a].clone(), labels[b].clone());
+        Err(SimilarityError::NotADistance { a, b, found })
+    }
+
+    /// The matrix whose upper triangle is filled.
+    fn mirrored(labels: Vec<String>, mut values: Array2<f64>) -> Self {
+        let n = labels.len();
+        for a in 0..n {
+            for b in a + 1..n {
+                values[[b, a]] = values[[a, b]];
             }
         }
-        Ok(Self { labels, values })
+        Self {
+            labels,
+            nature: Nature::default(),
+            values,
+        }
+    }
+
+    /// The same matrix, of a measure that is known to keep these laws. Nothing is checked: a matrix that claims to be one of a
+    /// metric is trusted by the methods that need one; [`DistanceMatrix::triangle_violations`] measures it.
+    #[must_use]
+    pub fn with_nature(self, nature: Nature) -> Self {
+        Self { nature, ..self }
+    }
+
+    /// Which laws the measure behind it keeps, as far as anyone has said.
+    pub fn nature(&self) -> Nature {
+        self.nature
     }
 
     /// The items' names, in order.

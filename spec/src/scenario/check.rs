@@ -71,12 +71,7 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
             let key = if regime.name.is_some() { "name" } else { "variant" };
             let found = format!("{name:?}, which is another variant at {first}");
             let expected = "one variant of a task under each name";
-            problems.push(Problem::new(
-                "spec/duplicate",
-                format!("{pointer}/{key}"),
-                found,
-                expected,
-            ));
+            problems.push(Problem::new("spec/value", format!("{pointer}/{key}"), found, expected));
         }
         called.entry(key).or_insert((regime, pointer));
     }

@@ -51,7 +51,7 @@ pub struct Regime {
     pub drift: Option<RegimeDrift>,
 }
 
-/// Values by parameter. What each may be is said by the task, so that the schema knows no more than that they are no lists of texts.
+/// Values by parameter. What each may be is for the task to say: the schema only knows what can be a value at all.
 pub(super) fn values_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     schemars::json_schema!({
         "type": "object",

@@ -113,6 +113,14 @@ const EXAMPLES: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "Compare",
+        &[
+            r#"{ "weight": 2, "measure": "log_ratio" }"#,
+            r#"{ "costs": [[0, 0.2, 1], [0.2, 0, 1], [1, 1, 0]] }"#,
+        ],
+    ),
+    ("ElementWeights", &[r#"{ "R": 2, "O": 0.5 }"#]),
+    (
         "ParamRef",
         &[r#"{ "param": "light" }"#, r#"{ "param": "shares", "index": 0 }"#],
     ),

@@ -1,6 +1,7 @@
 //! [`TaskSpec`]: typed parameters, a world template that refers to them, and named variants. Drawing worlds is the generator's job.
 
 mod check;
+mod compare;
 mod expression;
 mod family;
 mod group;
@@ -18,6 +19,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
+pub use compare::{Compare, ElementWeights, MeasureName};
 pub use family::{Spacing, Sweep};
 pub use group::{Facing, Group, KeepOut};
 pub use parameter::{Domain, Element, Parameter, Role};
@@ -66,6 +68,9 @@ pub(crate) struct TaskDocument {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 100), inner(length(min = 1, max = 500)))]
     pub(crate) require: Vec<String>,
+    /// What each element of the decision process weighs when variants are compared; 1 where nothing is said.
+    #[serde(default, skip_serializing_if = "ElementWeights::is_default")]
+    pub(crate) element_weights: ElementWeights,
     /// Named variants: each sets some of the variant parameters, over another variant's values or the defaults. One with a
     /// grid or a sweep is a family of variants.
     #[serde(default)]
@@ -177,6 +182,11 @@ impl TaskSpec {
     /// The parameters in the order of the document.
     pub fn parameters(&self) -> &IndexMap<String, Parameter> {
         &self.document.parameters
+    }
+
+    /// What each element of the decision process weighs when variants are compared.
+    pub fn element_weights(&self) -> ElementWeights {
+        self.document.element_weights
     }
 
     /// The world's template; its objects are [`TaskSpec::fixtures`].

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use super::compare::Compare;
 use super::template::Source;
 use super::value::{ParameterType, Value};
 use crate::document::escape;
@@ -103,6 +104,9 @@ pub struct Parameter {
     /// Randomized only: how it is drawn; a distribution, or a parameter that is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub distribution: Option<Source>,
+    /// Not for fixed ones: by which measure two variants are compared in it, and how much that counts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compare: Option<Compare>,
 }
 
 /// The values that a variant parameter may have.
@@ -133,7 +137,7 @@ fn require_what_the_role_needs(schema: &mut schemars::Schema) {
         role(
             "fixed",
             json!({ "required": ["value"] }),
-            &["choices", "range", "default", "switch_at", "distribution"],
+            &["choices", "range", "default", "switch_at", "distribution", "compare"],
         ),
         role(
             "variant",
@@ -271,6 +275,9 @@ impl Parameter {
             ));
         }
         problems.extend(self.range_problem(&at("range")));
+        if let Some(compare) = &self.compare {
+            problems.extend(compare.problems(&at("compare"), self));
+        }
         if let (Some(default), true) = (&self.default, problems.is_empty())
             && let Err(expected) = self.accept(default)
         {

@@ -3,6 +3,7 @@
 
 mod environment;
 mod generator;
+mod similarity;
 
 use std::time::{Duration, Instant};
 
@@ -31,6 +32,10 @@ enum What {
     /// Worlds drawn and documents checked, each second on one core.
     #[command(after_help = "Example:\n  driftworld bench generator --json")]
     Generator(Options),
+    /// Pairs of colours, grids, points and samples measured each second on one core; seconds for the distances among 1,000
+    /// worlds and for an order of 1,000 items.
+    #[command(after_help = "Example:\n  driftworld bench similarity --json")]
+    Similarity(Options),
     /// Steps with pictures, and resets, each second on one core; what a second core adds; memory.
     #[command(after_help = "Example:\n  driftworld bench env --json")]
     Env(EnvOptions),
@@ -68,6 +73,10 @@ impl Bench {
         let (options, figures) = match self.what {
             What::Generator(options) => {
                 let figures = generator::measure(round(&options))?;
+                (options, figures)
+            }
+            What::Similarity(options) => {
+                let figures = similarity::measure(round(&options))?;
                 (options, figures)
             }
             What::Env(EnvOptions { options, renderer }) => {

@@ -1,14 +1,18 @@
 //! `driftworld order`: variants in an order by their distances. Distances and orders are `similarity`'s.
 
+mod arguments;
+
 use std::path::PathBuf;
 
 use clap::Args;
 use driftworld::generator::Sampler;
 use driftworld::similarity::{
-    DistanceMatrix, Method, Ordering, SimilarityError, Weights, order, variant_distance, world_sets_distance,
+    DistanceMatrix, Ordering, SimilarityError, Weights, variant_distance, world_sets_distance,
 };
 use driftworld::spec::Variant;
 use serde_json::json;
+
+pub(crate) use arguments::OrderArgs;
 
 use super::table::table;
 use super::{Failure, input, output};
@@ -32,27 +36,19 @@ pub(crate) struct Order {
     /// Write the distance matrix into this CSV file.
     #[arg(long, value_name = "FILE")]
     matrix: Option<PathBuf>,
+    /// What the method random draws from.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
-}
-
-/// How an order is found; shared with `curriculum`.
-#[derive(Args)]
-pub(crate) struct OrderArgs {
-    /// The method: nearest, exact (up to 13 variants), two-opt or contrast; exact where possible if none is given.
-    #[arg(long)]
-    method: Option<Method>,
-    /// The variant that comes first; whichever is best if none is given.
-    #[arg(long, value_name = "TASK#VARIANT")]
-    start: Option<String>,
 }
 
 impl Order {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let variants = input::variants(&self.tasks)?;
         let matrix = matrix(&variants)?;
-        let (method, ordering) = self.ordering.order(&matrix)?;
+        let (method, ordering) = self.ordering.order(&matrix, self.seed)?;
         if let Some(path) = &self.matrix {
             output::write(path, matrix.to_csv().as_bytes())?;
         }
@@ -71,24 +67,6 @@ impl Order {
             ordering.largest_step(),
             ordering.mean_step()
         ))
-    }
-}
-
-impl OrderArgs {
-    /// The order of a matrix's items, and the method that found it.
-    pub(crate) fn order(&self, matrix: &DistanceMatrix) -> Result<(Method, Ordering), Failure> {
-        let method = self.method.unwrap_or_else(|| Method::default_for(matrix.len()));
-        let position = |name: &String| {
-            let found = matrix.labels().iter().position(|label| label == name);
-            found.ok_or_else(|| {
-                Failure::input(format!(
-                    "--start: found {name:?}, expected one of {}",
-                    matrix.labels().join(", ")
-                ))
-            })
-        };
-        let start = self.start.as_ref().map(position).transpose()?;
-        Ok((method, order(matrix, method, start)?))
     }
 }
 

@@ -1,0 +1,101 @@
+//! Learning blocks that drift from variant to variant, across their borders where there are fewer or more blocks than ways.
+
+use driftworld_spec::{DriftSchedule, DriftSwitch, Regime, RegimeDrift};
+
+use super::{Choice, Design};
+use crate::CurriculumError;
+
+/// How learning blocks drift from each variant to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Drifting {
+    /// How far each way has come, as a function of its progress.
+    pub schedule: DriftSchedule,
+    /// How values that have nothing between them change.
+    pub switch: DriftSwitch,
+}
+
+/// The regimes of each learning block: the ways along `path` one after the other, shared out evenly among `num_blocks`.
+///
+/// A way that goes on in the next block goes on there from the progress at which it stopped.
+pub(super) fn lessons(
+    variants: &[Choice],
+    path: &[usize],
+    num_blocks: u64,
+    options: &Design,
+    drifting: Drifting,
+) -> Result<Vec<Vec<Regime>>, CurriculumError> {
+    let ways = path.len().saturating_sub(1) as u64;
+    let mut taken = vec![0; variants.len()];
+    let mut lessons = Vec::new();
+    // Lengths are counted in parts of which a way has as many as there are blocks, and a block as many as there are ways.
+    for block in 0..num_blocks {
+        let (start, end) = (block * ways, (block + 1) * ways);
+        let lived = |part: u64| ((part - start) * u64::from(options.learn) + ways / 2) / ways;
+        let mut regimes = Vec::new();
+        let mut here = start;
+        while here < end {
+            let way = here / num_blocks;
+            let stop = end.min((way + 1) * num_blocks);
+            let count = (lived(stop) - lived(here)) as u32;
+            let (from, to) = (path[way as usize], path[way as usize + 1]);
+            if variants[from].task != variants[to].task {
+                return Err(CurriculumError::DriftBetweenTasks {
+                    from: variants[from].id(),
+                    to: variants[to].id(),
+                });
+            }
+            if count > 0 {
+                let progress = |part: u64| (part - way * num_blocks) as f64 / num_blocks as f64;
+                let drift = RegimeDrift {
+                    values: variants[to].values.clone(),
+                    schedule: drifting.schedule,
+                    switch: drifting.switch,
+                    from: progress(here),
+                    until: progress(stop),
+                    ..RegimeDrift::to(&variants[to].variant)
+                };
+                regimes.push(Regime {
+                    drift: Some(drift),
+                    ..variants[from].regime(count, options.seed * 2, taken[from])
+                });
+                taken[from] += u64::from(count);
+            }
+            here = stop;
+        }
+        lessons.push(regimes);
+    }
+    Ok(lessons)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each regime as `variant>variant from-until ×count`, blocks parted by `|`.
+    #[track_caller]
+    fn check(path: &[usize], num_blocks: u64, expected: &str) {
+        let variants = ["a", "b", "c"].map(|name| Choice::new("t", name));
+        let lessons = lessons(&variants, path, num_blocks, &Design::default(), Drifting::default()).unwrap();
+        let regime = |regime: &Regime| {
+            let drift = regime.drift.as_ref().unwrap();
+            format!(
+                "{}>{} {}-{} x{}",
+                regime.variant, drift.to, drift.from, drift.until, regime.count
+            )
+        };
+        let block = |block: &Vec<Regime>| block.iter().map(regime).collect::<Vec<_>>().join(", ");
+        assert_eq!(lessons.iter().map(block).collect::<Vec<_>>().join(" | "), expected);
+    }
+
+    #[test]
+    fn ways_are_shared_out_evenly_and_cross_the_borders_of_blocks() {
+        check(&[0, 1, 2], 2, "a>b 0-1 x20 | b>c 0-1 x20");
+        check(&[0, 1], 2, "a>b 0-0.5 x20 | a>b 0.5-1 x20");
+        check(&[0, 1, 2], 1, "a>b 0-1 x10, b>c 0-1 x10");
+        check(
+            &[0, 1, 2, 0],
+            2,
+            "a>b 0-1 x13, b>c 0-0.5 x7 | b>c 0.5-1 x7, c>a 0-1 x13",
+        );
+    }
+}

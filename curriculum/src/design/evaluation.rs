@@ -1,0 +1,33 @@
+//! Where evaluation blocks stand among learning blocks. What they hold is `mod.rs`'s.
+
+use std::collections::BTreeSet;
+
+use crate::CurriculumError;
+
+/// When the agent is evaluated.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Evaluate {
+    /// Before the first learning block and after each.
+    Every,
+    /// Before the first and after the last.
+    Ends,
+    /// After so many learning blocks each; 0 is before the first.
+    After(Vec<u32>),
+}
+
+impl Evaluate {
+    /// After how many of the learning blocks the agent is evaluated.
+    pub(super) fn places(&self, num_blocks: u32) -> Result<BTreeSet<u32>, CurriculumError> {
+        match self {
+            Self::Every => Ok((0..=num_blocks).collect()),
+            Self::Ends => Ok(BTreeSet::from([0, num_blocks])),
+            Self::After(places) => match places.iter().find(|place| **place > num_blocks) {
+                Some(found) => Err(CurriculumError::NoSuchPlace {
+                    found: *found,
+                    last: num_blocks,
+                }),
+                None => Ok(places.iter().copied().collect()),
+            },
+        }
+    }
+}

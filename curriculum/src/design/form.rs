@@ -1,0 +1,148 @@
+//! Which variant each learning block is about: the forms of lifelong learning. Evaluation blocks are `evaluation.rs`'s.
+
+use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, order};
+use driftworld_spec::ScenarioForm;
+
+use crate::CurriculumError;
+
+/// The most learning blocks of a scenario.
+pub const MAX_BLOCKS: u32 = 10_000;
+
+/// How often a variant comes back in a form of recurring tasks, where nobody says.
+const ROUNDS: u32 = 3;
+
+/// For each learning block the number of its variant, of `count` in an order.
+pub(super) fn sequence(
+    form: Option<ScenarioForm>,
+    count: usize,
+    blocks: Option<u32>,
+    (seed, lifetime): (u64, u64),
+) -> Result<Vec<usize>, CurriculumError> {
+    let all = u32::try_from(count).unwrap_or(u32::MAX);
+    let wrong = |form, expected: String| CurriculumError::BadForm {
+        form,
+        variants: count,
+        blocks,
+        expected,
+    };
+    let once = |form| {
+        if blocks.is_none_or(|blocks| blocks == all) {
+            Ok(all)
+        } else {
+            Err(wrong(
+                form,
+                format!("one learning block for each variant, {all} in all"),
+            ))
+        }
+    };
+    let num_blocks = match form {
+        None | Some(ScenarioForm::Custom) => blocks.unwrap_or(all),
+        Some(ScenarioForm::Condensed) => once("condensed")?,
+        Some(ScenarioForm::Permuted) => once("permuted")?,
+        Some(ScenarioForm::Dispersed) => {
+            let blocks = blocks.unwrap_or(all.saturating_mul(ROUNDS));
+            if blocks < all.saturating_mul(2) {
+                let expected = format!(
+                    "at least 2 learning blocks for each variant, {} in all",
+                    all.saturating_mul(2)
+                );
+                return Err(wrong("dispersed", expected));
+            }
+            blocks
+        }
+        Some(ScenarioForm::Alternating) => {
+            if count != 2 {
+                return Err(wrong("alternating", "2 variants".to_owned()));
+            }
+            let blocks = blocks.unwrap_or(2 * ROUNDS);
+            if blocks < 3 {
+                return Err(wrong("alternating", "at least 3 learning blocks".to_owned()));
+            }
+            blocks
+        }
+        Some(ScenarioForm::Expert) => {
+            if count != 1 {
+                return Err(wrong(
+                    "expert",
+                    "1 variant; experts() makes a scenario for each".to_owned(),
+                ));
+            }
+            blocks.unwrap_or(1)
+        }
+    };
+    if !(1..=MAX_BLOCKS).contains(&num_blocks) {
+        return Err(CurriculumError::BadBlocks {
+            found: num_blocks,
+            limit: MAX_BLOCKS,
+        });
+    }
+    let places = if form == Some(ScenarioForm::Permuted) {
+        permutation(count, seed, lifetime)?
+    } else {
+        (0..count).collect()
+    };
+    Ok(places.iter().copied().cycle().take(num_blocks as usize).collect())
+}
+
+/// The order in which a lifetime meets its variants where chance decides.
+fn permutation(count: usize, seed: u64, lifetime: u64) -> Result<Vec<usize>, CurriculumError> {
+    // The names are as long as each other, so that they sort as the numbers do.
+    let names = (0..count).map(|index| format!("{index:08}")).collect();
+    let alike = DistanceMatrix::measure(names, |_, _| Ok::<_, CurriculumError>(0.0))?;
+    // An odd factor: lifetimes of one seed and neighbouring seeds are far apart.
+    let seed = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(lifetime);
+    let options = OrderOptions {
+        seed,
+        ..OrderOptions::default()
+    };
+    Ok(order(&alike, Method::Random, &options)?.indices)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(form: Option<ScenarioForm>, count: usize, blocks: Option<u32>, expected: &[usize]) {
+        assert_eq!(sequence(form, count, blocks, (0, 0)).unwrap(), expected);
+    }
+
+    #[test]
+    fn each_form_has_its_sequence() {
+        check(None, 3, None, &[0, 1, 2]);
+        check(None, 3, Some(5), &[0, 1, 2, 0, 1]);
+        check(None, 3, Some(2), &[0, 1]);
+        check(Some(ScenarioForm::Condensed), 3, None, &[0, 1, 2]);
+        check(Some(ScenarioForm::Dispersed), 2, None, &[0, 1, 0, 1, 0, 1]);
+        check(Some(ScenarioForm::Dispersed), 2, Some(5), &[0, 1, 0, 1, 0]);
+        check(Some(ScenarioForm::Alternating), 2, Some(3), &[0, 1, 0]);
+        check(Some(ScenarioForm::Expert), 1, Some(2), &[0, 0]);
+    }
+
+    #[test]
+    fn lifetimes_of_the_permuted_form_meet_all_variants_in_orders_of_their_own() {
+        let of = |seed, lifetime| sequence(Some(ScenarioForm::Permuted), 6, None, (seed, lifetime)).unwrap();
+        assert_eq!(of(3, 1), of(3, 1));
+        assert!((0..8).any(|lifetime| of(3, lifetime) != of(3, 0)));
+        for lifetime in 0..8 {
+            let mut sorted = of(3, lifetime);
+            sorted.sort_unstable();
+            assert_eq!(sorted, [0, 1, 2, 3, 4, 5]);
+        }
+    }
+
+    #[test]
+    fn what_a_form_cannot_be_is_refused() {
+        let said = |form, count, blocks| sequence(Some(form), count, blocks, (0, 0)).unwrap_err().to_string();
+        assert_eq!(
+            said(ScenarioForm::Alternating, 3, None),
+            "the form alternating: found 3 variants, expected 2 variants"
+        );
+        assert_eq!(
+            said(ScenarioForm::Dispersed, 3, Some(5)),
+            "the form dispersed: found 3 variants and 5 learning blocks, expected at least 2 learning blocks for each variant, 6 in all"
+        );
+        assert!(said(ScenarioForm::Condensed, 3, Some(5)).ends_with("3 in all"));
+        assert!(said(ScenarioForm::Custom, 3, Some(10_001)).contains("10000"));
+    }
+}

@@ -1,0 +1,359 @@
+//! A sequence of variants whose neighbours are a wanted distance apart. One variant at a wanted distance is the generator's to find.
+
+use driftworld_generator::{Drift, Subject, at_distance};
+use driftworld_spec::{Domain, Element, Parameter, ParameterType, Role, Value, Variant};
+
+use super::picked::{Picked, apart, distance, in_element, is_alone};
+use crate::CurriculumError;
+
+/// The most steps of a sequence.
+pub const MAX_STEPS: u32 = 1000;
+
+/// The most variants that a sequence is tried to go on from.
+const MOST_TRIES: u32 = 4000;
+
+/// Halvings of a stretch before it is given up.
+const HALVINGS: u32 = 60;
+
+/// A sequence that is wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steps {
+    /// How far neighbours are apart, above 0 and at most 1.
+    pub distance: f64,
+    /// How far off that may be, at least 0 and below `distance`.
+    pub tolerance: f64,
+    /// How many steps: one fewer than variants. At most [`MAX_STEPS`].
+    pub count: u32,
+    /// The element that alone changes and is measured; all together if there is none.
+    pub element: Option<Element>,
+}
+
+/// Variants of one task of which each is `distance ± tolerance` from the one before, beginning with `anchor`.
+///
+/// No two of them are nearer to each other than half the distance, so the sequence does not run back and forth. A variant of the
+/// `pool` that is right is taken before one is made; of those that can be made, the one farthest from everything met so far. Where
+/// that leads nowhere the sequence goes back and on another way, a bounded number of times. The same arguments always give the same
+/// sequence. `task` is what scenarios call the task.
+///
+/// # Errors
+/// [`CurriculumError::BadSteps`] for numbers that make no sequence; [`CurriculumError::SeveralTasks`];
+/// [`CurriculumError::TooFewSteps`] with the longest sequence that was found, and how far from the anchor anything is.
+pub fn steps(task: &str, pool: &[Variant], anchor: &Variant, wanted: &Steps) -> Result<Vec<Picked>, CurriculumError> {
+    let sound = wanted.distance > 0.0
+        && wanted.distance <= 1.0
+        && wanted.tolerance >= 0.0
+        && wanted.tolerance < wanted.distance
+        && (1..=MAX_STEPS).contains(&wanted.count);
+    if !sound {
+        return Err(CurriculumError::BadSteps {
+            distance: wanted.distance,
+            tolerance: wanted.tolerance,
+            count: wanted.count,
+            limit: MAX_STEPS,
+        });
+    }
+    if let Some(other) = pool.iter().find(|other| other.task().name() != anchor.task().name()) {
+        return Err(CurriculumError::SeveralTasks {
+            a: anchor.id(),
+            b: other.id(),
+        });
+    }
+    let mut walk = Walk {
+        task,
+        pool,
+        anchor,
+        wanted,
+        path: vec![Picked::declared(task, anchor.clone())],
+        longest: 0,
+        farthest: 0.0,
+        tries: 0,
+    };
+    if walk.go_on()? {
+        return Ok(walk.path);
+    }
+    Err(CurriculumError::TooFewSteps {
+        anchor: anchor.id(),
+        distance: wanted.distance,
+        tolerance: wanted.tolerance,
+        found: walk.longest,
+        wanted: wanted.count,
+        farthest: walk.farthest,
+    })
+}
+
+struct Walk<'a> {
+    task: &'a str,
+    pool: &'a [Variant],
+    anchor: &'a Variant,
+    wanted: &'a Steps,
+    path: Vec<Picked>,
+    longest: usize,
+    farthest: f64,
+    tries: u32,
+}
+
+impl Walk<'_> {
+    /// Completes the path; false if it cannot be.
+    fn go_on(&mut self) -> Result<bool, CurriculumError> {
+        self.longest = self.longest.max(self.path.len() - 1);
+        if self.path.len() > self.wanted.count as usize {
+            return Ok(true);
+        }
+        self.tries += 1;
+        if self.tries > MOST_TRIES {
+            return Ok(false);
+        }
+        for next in self.nexts()? {
+            self.path.push(next);
+            if self.go_on()? {
+                return Ok(true);
+            }
+            self.path.pop();
+            if self.tries > MOST_TRIES {
+                break;
+            }
+        }
+        Ok(false)
+    }
+
+    fn here(&self) -> Variant {
+        self.path[self.path.len() - 1].variant.clone()
+    }
+
+    /// Where the path may go on: what the task declares, then what can be made.
+    fn nexts(&mut self) -> Result<Vec<Picked>, CurriculumError> {
+        let here = self.here();
+        let mut declared = Vec::new();
+        for variant in self.pool {
+            let (apart, alone) = self.measure(&here, variant)?;
+            let miss = (apart - self.wanted.distance).abs();
+            if alone && miss <= self.wanted.tolerance && self.nearest_met(variant)? > self.wanted.distance / 2.0 {
+                declared.push((miss, Picked::declared(self.task, variant.clone())));
+            }
+        }
+        declared.sort_by(|a, b| {
+            a.0.total_cmp(&b.0)
+                .then_with(|| a.1.choice.name().cmp(b.1.choice.name()))
+        });
+        let mut made: Vec<(f64, Picked)> = Vec::new();
+        for target in self.targets(&here)? {
+            let Some(variant) = self.on_the_way(&here, &target)? else {
+                continue;
+            };
+            let met = self.nearest_met(&variant)?;
+            if met > self.wanted.distance / 2.0 {
+                made.push((met, Picked::made(self.task, self.anchor, variant)));
+            }
+        }
+        // A stable sort: of equally new ones the first parameter's comes first.
+        made.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Ok(declared.into_iter().chain(made).map(|(_, picked)| picked).collect())
+    }
+
+    /// How far two variants are apart, and whether in nothing but what may change.
+    fn measure(&self, a: &Variant, b: &Variant) -> Result<(f64, bool), CurriculumError> {
+        let apart = distance(a, b)?;
+        let alone = self.wanted.element.is_none_or(|element| is_alone(&apart, element));
+        Ok((in_element(&apart, self.wanted.element), alone))
+    }
+
+    /// The distance to the nearest variant of the path.
+    fn nearest_met(&self, variant: &Variant) -> Result<f64, CurriculumError> {
+        let mut nearest = f64::INFINITY;
+        for met in &self.path {
+            nearest = nearest.min(apart(&met.variant, variant, self.wanted.element)?);
+        }
+        Ok(nearest)
+    }
+
+    /// Variants in whose direction a step may go: the ends and choices of each parameter, both ends of all, those of the pool,
+    /// and the one that the generator finds.
+    fn targets(&mut self, here: &Variant) -> Result<Vec<Variant>, CurriculumError> {
+        let belongs = |parameter: &Parameter| {
+            parameter.role == Role::Variant && self.wanted.element.is_none_or(|element| parameter.affects == [element])
+        };
+        let parameters = here.task().parameters().iter();
+        let free: Vec<(&String, &Parameter)> = parameters.filter(|(_, parameter)| belongs(parameter)).collect();
+        let mut changes: Vec<Vec<(String, Value)>> = Vec::new();
+        let mut corners = [Vec::new(), Vec::new()];
+        for (name, parameter) in &free {
+            let Some(value) = here.value(name) else { continue };
+            let values = ends(parameter, value);
+            for (corner, end) in corners.iter_mut().zip(&values) {
+                if matches!(parameter.domain(), Some(Domain::Range(_))) {
+                    corner.push(((*name).clone(), end.clone()));
+                }
+            }
+            changes.extend(values.into_iter().map(|value| vec![((*name).clone(), value)]));
+        }
+        changes.extend(corners);
+        let changed = changes.into_iter().filter_map(|change| here.with("end", change).ok());
+        let mut targets: Vec<Variant> = changed.collect();
+        for variant in self.pool {
+            if self.measure(here, variant)?.1 {
+                targets.push(variant.clone());
+            }
+        }
+        let subject = match self.wanted.element {
+            Some(element) => Subject::Element(element),
+            None => Subject::Parameters(free.iter().map(|(name, _)| (*name).clone()).collect()),
+        };
+        let measure = |other: &Variant| apart(here, other, self.wanted.element).unwrap_or(0.0);
+        let found = at_distance(here, &subject, self.wanted.distance, self.wanted.tolerance, measure);
+        targets.extend(found.ok().map(|found| found.variant));
+        for target in &targets {
+            self.farthest = self.farthest.max(apart(self.anchor, target, self.wanted.element)?);
+        }
+        Ok(targets)
+    }
+
+    /// The variant at the wanted distance on the way to a target; `None` if there is none.
+    fn on_the_way(&self, here: &Variant, target: &Variant) -> Result<Option<Variant>, CurriculumError> {
+        let (wanted, tolerance) = (self.wanted.distance, self.wanted.tolerance);
+        let whole = apart(here, target, self.wanted.element)?;
+        if whole < wanted - tolerance {
+            return Ok(None);
+        }
+        let mut best = (f64::INFINITY, target.clone());
+        if whole <= wanted {
+            best.0 = wanted - whole;
+        } else {
+            let drift = Drift::new(here.clone(), target.clone())?;
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..HALVINGS {
+                let middle = f64::midpoint(low, high);
+                let Ok(variant) = drift.at(middle, 0) else {
+                    return Ok(None);
+                };
+                let apart = apart(here, &variant, self.wanted.element)?;
+                let miss = (apart - wanted).abs();
+                if miss < best.0 {
+                    best = (miss, variant);
+                }
+                if miss <= tolerance.min(1e-9) {
+                    break;
+                }
+                if apart < wanted {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            if (whole - wanted).abs() < best.0 {
+                best = (whole - wanted, target.clone());
+            }
+        }
+        if best.0 > tolerance {
+            return Ok(None);
+        }
+        let values = best.1.values().iter();
+        let changed: Vec<(String, Value)> = values
+            .filter(|(name, value)| self.anchor.value(name) != Some(*value))
+            .map(|(name, value)| (name.clone(), value.clone()))
+            .collect();
+        Ok(self.anchor.with(&self.name(), changed).ok())
+    }
+
+    /// What the next variant is called: `blue-step-3`.
+    fn name(&self) -> String {
+        let declared = self.anchor.task().variant_names();
+        let mut name = format!("{}-step-{}", self.anchor.name(), self.path.len());
+        while declared.contains(&name.as_str()) {
+            name.push('x');
+        }
+        name
+    }
+}
+
+/// The values that a parameter could go to: low and high end of a range, a heading's opposite too, or its other choices.
+fn ends(parameter: &Parameter, value: &Value) -> Vec<Value> {
+    match parameter.domain() {
+        Some(Domain::Choices(choices)) => choices.into_iter().filter(|choice| choice != value).collect(),
+        Some(Domain::Range([low, high])) => {
+            let at = |end: f64| match value {
+                Value::Integer(_) => Value::Integer(end.round() as i64),
+                Value::Vector(numbers) => Value::Vector(vec![end; numbers.len()]),
+                _ => Value::Number(end),
+            };
+            let turned = value.as_number().filter(|_| parameter.kind == ParameterType::Heading);
+            let opposite = turned.map(|degrees| Value::Number((degrees + 180.0).rem_euclid(360.0)));
+            [at(low), at(high)].into_iter().chain(opposite).collect()
+        }
+        None => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use driftworld_spec::TaskSpec;
+    use std::sync::Arc;
+
+    fn task() -> Arc<TaskSpec> {
+        TaskSpec::from_json(
+            "t",
+            r#"{ "name": "t", "parameters": {
+                "pay": { "role": "variant", "type": "number", "affects": ["R"], "range": [-100, 100], "default": 100 },
+                "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0, 4], "default": 2 },
+                "look": { "role": "variant", "type": "string", "affects": ["O"], "choices": ["a", "b"], "default": "a" } },
+               "variants": { "rich": {}, "half": { "pay": 50 }, "middle": { "pay": 0 } } }"#,
+        )
+        .unwrap()
+    }
+
+    fn found(from: &str, distance: f64, count: u32, element: Option<Element>) -> Result<Vec<Picked>, CurriculumError> {
+        let task = task();
+        let wanted = Steps {
+            distance,
+            tolerance: 0.01,
+            count,
+            element,
+        };
+        steps("t", &task.all_variants(), &task.variant(from).unwrap(), &wanted)
+    }
+
+    fn names(picked: &[Picked]) -> Vec<&str> {
+        picked.iter().map(|one| one.choice.name()).collect()
+    }
+
+    #[test]
+    fn neighbours_are_the_wanted_distance_apart_and_declared_ones_come_before_made_ones() {
+        let path = found("rich", 0.25, 4, Some(Element::R)).unwrap();
+        assert_eq!(names(&path), ["rich", "half", "middle", "rich-step-3", "rich-step-4"]);
+        for pair in path.windows(2) {
+            let apart = pair[0].distance(&pair[1]).unwrap();
+            assert!((apart.element(Element::R).unwrap() - 0.25).abs() <= 0.01);
+            assert!(is_alone(&apart, Element::R));
+        }
+    }
+
+    #[test]
+    fn a_way_that_ends_too_soon_is_left_for_another() {
+        // From the middle, 3 steps of 0.25 fit on neither side: at most 2 in the reward alone, more in all together.
+        let error = found("middle", 0.25, 3, Some(Element::R)).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "steps from t#middle: found at most 2 of 0.25 ± 0.01, expected 3; the farthest variant is 0.5000 away: \
+             ask for fewer or smaller steps, a larger tolerance, or another start"
+        );
+        let path = found("middle", 0.1, 7, None).unwrap();
+        assert_eq!(path.len(), 8);
+        for (a, b) in (0..8).flat_map(|a| (0..a).map(move |b| (a, b))) {
+            let apart = path[a].distance(&path[b]).unwrap().total;
+            assert!(
+                apart > 0.05 && (a - b > 1 || (apart - 0.1).abs() <= 0.01),
+                "{a} {b} {apart}"
+            );
+        }
+    }
+
+    #[test]
+    fn numbers_that_make_no_sequence_are_refused() {
+        for (distance, count) in [(0.0, 3), (1.5, 3), (0.2, 0), (0.2, 1001), (f64::NAN, 3), (0.005, 3)] {
+            assert!(matches!(
+                found("rich", distance, count, None),
+                Err(CurriculumError::BadSteps { .. })
+            ));
+        }
+    }
+}

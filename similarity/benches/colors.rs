@@ -1,0 +1,81 @@
+//! How long distances of colours, pictures and sets take. What is measured beside other tools is in `driftworld bench similarity`.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use driftworld_similarity::picture::{Picture, picture_oklab, structural_similarity};
+use driftworld_similarity::{
+    Assignment, ColorMeasure, Lab, LabTable, Ospa, ciede2000, ciede2000_to_each, color_sets_distance,
+};
+use driftworld_spec::Color;
+
+/// Numbers in 0..1 that look random and are the same on every run: the fractions of multiples of the golden ratio, stirred.
+fn number(index: usize) -> f64 {
+    let stirred = (index as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let stirred = (stirred ^ (stirred >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    (stirred >> 11) as f64 / (1u64 << 53) as f64
+}
+
+fn colors(count: usize, from: usize) -> Vec<Color> {
+    let color = |k: usize| Color([0, 1, 2].map(|channel| number(from + 3 * k + channel)));
+    (0..count).map(color).collect()
+}
+
+fn differences(c: &mut Criterion) {
+    let labs: Vec<Lab> = colors(1000, 0).into_iter().map(Lab::from).collect();
+    let table: LabTable = labs.iter().copied().collect();
+    let mut distances = vec![0.0; labs.len()];
+    c.bench_function("CIEDE2000, 1000 × 1000 Lab triples, row by row", |bench| {
+        bench.iter(|| {
+            for &lab in &labs {
+                ciede2000_to_each(lab, &table, &mut distances).expect("there are as many places");
+                black_box(&distances);
+            }
+        });
+    });
+    c.bench_function("CIEDE2000, 1000 Lab pairs, one by one", |bench| {
+        bench.iter(|| labs.iter().map(|&lab| ciede2000(labs[0], lab)).sum::<f64>());
+    });
+    let (a, b) = (colors(20, 0), colors(15, 999));
+    c.bench_function("a set of 20 colours to one of 15, Oklab", |bench| {
+        bench.iter(|| color_sets_distance(black_box(&a), &b, ColorMeasure::Oklab));
+    });
+}
+
+fn pictures(c: &mut Criterion) {
+    const SIDE: usize = 64;
+    let bytes = |from: usize| -> Vec<u8> { (0..SIDE * SIDE * 3).map(|k| (number(from + k) * 256.0) as u8).collect() };
+    let (a, b) = (bytes(0), bytes(1_000_000));
+    let view = |rgb| Picture::new(rgb, SIDE, SIDE).expect("the size is sound");
+    c.bench_function("SSIM of pictures of 64 × 64", |bench| {
+        bench.iter(|| structural_similarity(view(black_box(&a)), view(&b)));
+    });
+    c.bench_function("mean Oklab difference of pictures of 64 × 64", |bench| {
+        bench.iter(|| picture_oklab(view(black_box(&a)), view(&b)));
+    });
+}
+
+fn assignments(c: &mut Criterion) {
+    let points = |count: usize, from: usize| -> Vec<[f64; 2]> {
+        (0..count)
+            .map(|k| [number(from + 2 * k), number(from + 2 * k + 1)])
+            .collect()
+    };
+    let mut assignment = Assignment::new();
+    for side in [20, 200] {
+        let (a, b) = (points(side, 0), points(side, 5000));
+        let distance = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+        let costs: Vec<f64> = a.iter().flat_map(|a| b.iter().map(move |b| distance(a, b))).collect();
+        c.bench_function(&format!("assignment of {side} × {side} points of a square"), |bench| {
+            bench.iter(|| assignment.solve(black_box(&costs), side, side));
+        });
+    }
+    let ospa = Ospa::new(0.5, 1.0).expect("they are within bounds");
+    let (a, b) = (points(20, 0), points(15, 5000));
+    c.bench_function("OSPA of 20 and 15 points", |bench| {
+        bench.iter(|| ospa.between_points(black_box(&a), &b));
+    });
+}
+
+criterion_group!(benches, differences, pictures, assignments);
+criterion_main!(benches);

@@ -1,0 +1,342 @@
+//! [`Assignment`]: the cheapest way to pair rows with columns. What the rows and columns are, and what an unpaired one costs, is
+//! said by the measures that use it.
+//!
+//! Own code, for want of a crate that fits: `lapjv` takes square matrices only, compares costs with one absolute tolerance
+//! and is kept as it is; `pathfinding::kuhn_munkres` wants costs that are `Ord`, which `f64` is not, and takes new memory for every row.
+
+use crate::SimilarityError;
+
+/// Most rows, and most columns, of an assignment.
+pub const MAX_ASSIGNED: usize = 4096;
+
+/// Largest size of a cost: sums of that many of them stay finite.
+const MAX_COST: f64 = 1e200;
+
+/// Stands for "paired with none" in the buffers.
+const NONE: usize = usize::MAX;
+
+/// Pairs rows with columns so that the sum of the costs is least, and keeps its memory for the next matrix.
+///
+/// Each row and each column is in one pair at most, and there are as many pairs as the shorter side has members. Exact up to the
+/// rounding of `f64`. The same matrix gives the same pairs, also where several pairings are equally cheap.
+/// Time `O(rows · columns · shorter side)` at worst and often far less; takes no memory once it has met the size.
+///
+/// Source: Jonker and Volgenant 1987, "A shortest augmenting path algorithm for dense and sparse linear assignment problems"
+/// (without the reduction of columns, which holds for square matrices only); the same sums as
+/// `scipy.optimize.linear_sum_assignment`, see `tests/oracle/assignment.json`.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::Assignment;
+/// let mut assignment = Assignment::new();
+/// // Two rows, three columns.
+/// let total = assignment.solve(&[1.0, 2.0, 9.0, 1.0, 4.0, 9.0], 2, 3)?;
+/// assert_eq!(total, 3.0);
+/// assert_eq!(assignment.partners(), [Some(1), Some(0)]);
+/// # Ok::<(), driftworld_similarity::SimilarityError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Assignment {
+    partners: Vec<Option<usize>>,
+    /// The costs with rows and columns exchanged, where there are more rows than columns.
+    exchanged: Vec<f64>,
+    column_of: Vec<usize>,
+    row_of: Vec<usize>,
+    /// What each column is paid to be taken, at most 0; exactly 0 for columns that are not.
+    price: Vec<f64>,
+    free: Vec<usize>,
+    reach: Vec<f64>,
+    before: Vec<usize>,
+    open: Vec<usize>,
+    closed: Vec<usize>,
+}
+
+impl Assignment {
+    /// With no memory taken yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The least sum of costs. `costs`: `(rows, columns)`, row after row, any unit, negative ones too; the sum has the same
+    /// unit. Without rows or columns it is 0.
+    ///
+    /// # Errors
+    /// [`SimilarityError::Shape`] when the number of costs is not `rows · columns`, [`SimilarityError::TooMany`] above
+    /// [`MAX_ASSIGNED`], [`SimilarityError::BadCost`] for a cost that is not finite or not within ±1e200.
+    pub fn solve(&mut self, costs: &[f64], rows: usize, columns: usize) -> Result<f64, SimilarityError> {
+        check(costs, rows, columns)?;
+        self.partners.clear();
+        self.partners.resize(rows, None);
+        if rows <= columns {
+            self.pair(costs, rows, columns);
+            for (partner, &column) in self.partners.iter_mut().zip(&self.column_of) {
+                *partner = Some(column);
+            }
+        } else {
+            let mut exchanged = std::mem::take(&mut self.exchanged);
+            exchanged.clear();
+            exchanged.extend((0..columns).flat_map(|column| costs[column..].iter().step_by(columns).copied()));
+            self.pair(&exchanged, columns, rows);
+            self.exchanged = exchanged;
+            for (column, &row) in self.column_of.iter().enumerate() {
+                self.partners[row] = Some(column);
+            }
+        }
+        let paired = self.partners.iter().enumerate();
+        Ok(paired
+            .filter_map(|(row, partner)| partner.map(|column| costs[row * columns + column]))
+            .sum())
+    }
+
+    /// For each row of the last matrix solved the column it is paired with; `None` for rows left over.
+    pub fn partners(&self) -> &[Option<usize>] {
+        &self.partners
+    }
+
+    /// Pairs every row; there are at most as many as columns.
+    fn pair(&mut self, costs: &[f64], rows: usize, columns: usize) {
+        for (buffer, length) in [(&mut self.column_of, rows), (&mut self.row_of, columns)] {
+            buffer.clear();
+            buffer.resize(length, NONE);
+        }
+        self.before.resize(columns, NONE);
+        self.reach.resize(columns, 0.0);
+        self.price.clear();
+        self.price.resize(columns, 0.0);
+        self.free.clear();
+        self.free.extend((0..rows).rev());
+        if columns > 1 {
+            self.bid(costs, columns);
+        }
+        while let Some(row) = self.free.pop() {
+            let end = self.shortest_path(costs, columns, row);
+            self.exchange_along_path(row, end);
+        }
+    }
+
+    /// Augmenting row reduction: each row takes the column it likes best and lowers its price until the second best is as
+    /// good; who is driven out bids again. Rows that this does not settle soon are left to `shortest_path`, because with costs
+    /// that are not whole numbers bidding may go on for very long.
+    fn bid(&mut self, costs: &[f64], columns: usize) {
+        let mut left_over = std::mem::take(&mut self.closed);
+        left_over.clear();
+        let mut bids = 3 * self.free.len();
+        while let Some(row) = self.free.pop() {
+            let [(best, at), (second, at_second)] = two_least(&costs[row * columns..][..columns], &self.price);
+            let lower = self.price[at] - (second - best);
+            let column = if lower < self.price[at] {
+                self.price[at] = lower;
+                at
+            } else if self.row_of[at] == NONE {
+                at
+            } else {
+                at_second
+            };
+            let driven_out = std::mem::replace(&mut self.row_of[column], row);
+            self.column_of[row] = column;
+            bids = bids.saturating_sub(1);
+            if driven_out != NONE {
+                self.column_of[driven_out] = NONE;
+                if bids > 0 && column == at {
+                    self.free.push(driven_out);
+                } else {
+                    left_over.push(driven_out);
+                }
+            }
+        }
+        left_over.reverse();
+        self.closed = std::mem::replace(&mut self.free, left_over);
+    }
+
+    /// Finds the cheapest way from a free row to a free column, over pairs that would be exchanged; adjusts the prices.
+    fn shortest_path(&mut self, costs: &[f64], columns: usize, start: usize) -> usize {
+        self.open.clear();
+        self.open.extend(0..columns);
+        self.closed.clear();
+        self.reach.fill(f64::INFINITY);
+        // How far it is to the row that is looked from, less what its pair costs.
+        let (mut row, mut so_far, mut least) = (start, 0.0, f64::NEG_INFINITY);
+        loop {
+            let line = &costs[row * columns..][..columns];
+            let (mut nearest, mut nearest_at, mut nearest_is_free) = (f64::INFINITY, 0, false);
+            for (position, &column) in self.open.iter().enumerate() {
+                // No less than `least`, but for rounding.
+                let reach = (line[column] - self.price[column] + so_far).max(least);
+                if reach < self.reach[column] {
+                    self.reach[column] = reach;
+                    self.before[column] = row;
+                }
+                let reach = self.reach[column];
+                if reach < nearest || (reach == nearest && !nearest_is_free && self.row_of[column] == NONE) {
+                    (nearest, nearest_at) = (reach, position);
+                    nearest_is_free = self.row_of[column] == NONE;
+                }
+            }
+            least = nearest;
+            let column = self.open.swap_remove(nearest_at);
+            if nearest_is_free {
+                for &column in &self.closed {
+                    self.price[column] += self.reach[column] - least;
+                }
+                return column;
+            }
+            self.closed.push(column);
+            row = self.row_of[column];
+            so_far = least - (costs[row * columns + column] - self.price[column]);
+        }
+    }
+
+    fn exchange_along_path(&mut self, start: usize, end: usize) {
+        let mut column = end;
+        loop {
+            let row = self.before[column];
+            self.row_of[column] = row;
+            let next = std::mem::replace(&mut self.column_of[row], column);
+            if row == start {
+                return;
+            }
+            column = next;
+        }
+    }
+}
+
+/// The two least costs after prices and where they are, the first of equals first. There are at least two.
+fn two_least(line: &[f64], price: &[f64]) -> [(f64, usize); 2] {
+    let mut least = [(f64::INFINITY, 0), (f64::INFINITY, 0)];
+    for (column, (cost, price)) in line.iter().zip(price).enumerate() {
+        let reduced = cost - price;
+        if reduced < least[0].0 {
+            least = [(reduced, column), least[0]];
+        } else if reduced < least[1].0 {
+            least[1] = (reduced, column);
+        }
+    }
+    least
+}
+
+fn check(costs: &[f64], rows: usize, columns: usize) -> Result<(), SimilarityError> {
+    let longest = rows.max(columns);
+    if longest > MAX_ASSIGNED {
+        return Err(SimilarityError::TooMany {
+            found: longest,
+            limit: MAX_ASSIGNED,
+        });
+    }
+    if costs.len() != rows * columns {
+        return Err(SimilarityError::Shape {
+            of: "costs",
+            found: costs.len(),
+            expected: rows * columns,
+        });
+    }
+    let bad = |cost: &f64| cost.is_nan() || cost.abs() > MAX_COST;
+    costs.iter().position(bad).map_or(Ok(()), |index| {
+        Err(SimilarityError::BadCost {
+            row: index / columns,
+            column: index % columns,
+            found: costs[index],
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[track_caller]
+    fn check(costs: &[f64], rows: usize, columns: usize, expected: f64) {
+        let mut assignment = Assignment::new();
+        let found = assignment.solve(costs, rows, columns).unwrap();
+        assert!(
+            (found - expected).abs() < 1e-12,
+            "{costs:?}: {found}, expected {expected}"
+        );
+    }
+
+    #[test]
+    fn small_matrices_have_their_known_sums() {
+        check(&[], 0, 0, 0.0);
+        check(&[], 0, 3, 0.0);
+        check(&[7.0], 1, 1, 7.0);
+        check(&[4.0, 1.0, 3.0, 2.0, 0.0, 5.0, 3.0, 2.0, 2.0], 3, 3, 5.0);
+        check(&[3.0, -2.0, 1.0], 1, 3, -2.0);
+        check(&[3.0, -2.0, 1.0], 3, 1, -2.0);
+        check(&[5.0; 16], 4, 4, 20.0);
+    }
+
+    #[test]
+    fn what_cannot_be_solved_is_refused() {
+        let mut assignment = Assignment::new();
+        let bad = [1.0, 2.0, f64::NAN, 4.0];
+        let error = assignment.solve(&bad, 2, 2).unwrap_err();
+        assert!(
+            matches!(error, SimilarityError::BadCost { row: 1, column: 0, .. }),
+            "{error}"
+        );
+        let error = assignment.solve(&[1.0], 2, 2).unwrap_err();
+        assert!(
+            matches!(
+                error,
+                SimilarityError::Shape {
+                    found: 1,
+                    expected: 4,
+                    ..
+                }
+            ),
+            "{error}"
+        );
+        let error = assignment.solve(&[], 0, MAX_ASSIGNED + 1).unwrap_err();
+        assert!(matches!(error, SimilarityError::TooMany { .. }), "{error}");
+    }
+
+    /// The least sum by trying all pairings.
+    fn by_trying(costs: &[f64], rows: usize, columns: usize) -> f64 {
+        fn from(costs: &[f64], columns: usize, row: usize, rows: usize, spare: usize, taken: u32) -> f64 {
+            if row == rows {
+                return 0.0;
+            }
+            let mut least = f64::INFINITY;
+            if spare > 0 {
+                least = from(costs, columns, row + 1, rows, spare - 1, taken);
+            }
+            for column in (0..columns).filter(|column| taken & (1 << column) == 0) {
+                let rest = from(costs, columns, row + 1, rows, spare, taken | 1 << column);
+                least = least.min(costs[row * columns + column] + rest);
+            }
+            least
+        }
+        from(costs, columns, 0, rows, rows.saturating_sub(columns), 0)
+    }
+
+    fn matrix() -> impl Strategy<Value = (Vec<f64>, usize, usize)> {
+        // Whole numbers from a short range are full of ties.
+        let cost = prop_oneof![(-3i8..4).prop_map(f64::from), -5.0..5.0];
+        (1usize..6, 1usize..6).prop_flat_map(move |(rows, columns)| {
+            (
+                prop::collection::vec(cost.clone(), rows * columns),
+                Just(rows),
+                Just(columns),
+            )
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn no_pairing_is_cheaper(first in matrix(), second in matrix()) {
+            // One workspace for both: nothing of the first may be left in the second.
+            let mut assignment = Assignment::new();
+            for (costs, rows, columns) in [first, second] {
+                let total = assignment.solve(&costs, rows, columns).unwrap();
+                prop_assert!((total - by_trying(&costs, rows, columns)).abs() < 1e-9);
+                let mut taken: Vec<usize> = assignment.partners().iter().copied().flatten().collect();
+                prop_assert_eq!(taken.len(), rows.min(columns));
+                taken.sort_unstable();
+                taken.dedup();
+                prop_assert_eq!(taken.len(), rows.min(columns), "a column is taken twice");
+                let again = Assignment::new().solve(&costs, rows, columns).unwrap();
+                prop_assert_eq!(total.to_bits(), again.to_bits());
+            }
+        }
+    }
+}

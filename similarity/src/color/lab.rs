@@ -1,0 +1,99 @@
+//! [`Lab`]: a colour in CIE L*a*b*, where distances mean more than in sRGB. The distances are in files of their own.
+
+use driftworld_spec::Color;
+
+/// Linear sRGB to CIE XYZ (ITU-R BT.709 primaries, D65), rounded as scikit-image has it.
+const XYZ_FROM_RGB: [[f64; 3]; 3] = [
+    [0.412_453, 0.357_580, 0.180_423],
+    [0.212_671, 0.715_160, 0.072_169],
+    [0.019_334, 0.119_193, 0.950_227],
+];
+
+/// XYZ of the white D65, for an eye that looks 2° wide.
+const WHITE: [f64; 3] = [0.950_47, 1.0, 1.088_83];
+
+/// A colour in CIE L*a*b* under D65: lightness 0 to 100, a* from green to red, b* from blue to yellow, both about ±110 for sRGB.
+///
+/// Made once per colour, so that matrices of distances do not convert again. Numbers must be finite and not above 1e6 in size;
+/// beyond, distances lose their meaning.
+///
+/// Source: CIE 15, with the matrix and the white of scikit-image: the same numbers as `skimage.color.rgb2lab` within 1e-9. (Other tools
+/// round these constants elsewhere and differ by up to 0.02.)
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::Lab;
+/// use driftworld_spec::Color;
+/// let Lab([lightness, a, b]) = Lab::from(Color([1.0, 0.0, 0.0]));
+/// assert!((lightness - 53.2406).abs() < 1e-4 && (a - 80.0923).abs() < 1e-4 && (b - 67.2028).abs() < 1e-4);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lab(pub [f64; 3]);
+
+impl From<Color> for Lab {
+    fn from(color: Color) -> Self {
+        let rgb = color.0.map(linear);
+        let row = |k: usize| XYZ_FROM_RGB[k][0] * rgb[0] + XYZ_FROM_RGB[k][1] * rgb[1] + XYZ_FROM_RGB[k][2] * rgb[2];
+        let [x, y, z] = [0, 1, 2].map(|k| compressed(row(k) / WHITE[k]));
+        Self([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)])
+    }
+}
+
+impl Lab {
+    /// Distance from the grey of the same lightness.
+    pub fn chroma(self) -> f64 {
+        (self.0[1] * self.0[1] + self.0[2] * self.0[2]).sqrt()
+    }
+}
+
+/// sRGB's curve undone: from what a file says to amounts of light (IEC 61966-2-1).
+pub(crate) fn linear(channel: f64) -> f64 {
+    if channel > 0.040_45 {
+        libm::pow((channel + 0.055) / 1.055, 2.4)
+    } else {
+        channel / 12.92
+    }
+}
+
+/// The cube root, but a straight line near black.
+fn compressed(share: f64) -> f64 {
+    if share > 0.008_856 {
+        libm::cbrt(share)
+    } else {
+        7.787 * share + 16.0 / 116.0
+    }
+}
+
+/// Many colours, channel by channel, as whole vectors want them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LabTable {
+    pub(crate) lightness: Vec<f64>,
+    pub(crate) a: Vec<f64>,
+    pub(crate) b: Vec<f64>,
+    pub(crate) chroma: Vec<f64>,
+}
+
+impl LabTable {
+    /// How many colours there are.
+    pub fn len(&self) -> usize {
+        self.lightness.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.lightness.is_empty()
+    }
+}
+
+impl FromIterator<Lab> for LabTable {
+    fn from_iter<T: IntoIterator<Item = Lab>>(colors: T) -> Self {
+        let mut table = Self::default();
+        for lab in colors {
+            table.lightness.push(lab.0[0]);
+            table.a.push(lab.0[1]);
+            table.b.push(lab.0[2]);
+            table.chroma.push(lab.chroma());
+        }
+        table
+    }
+}

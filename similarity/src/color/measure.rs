@@ -1,0 +1,184 @@
+//! [`ColorMeasure`]: which of the distances between colours to take, and how far two colours can be apart by it. The formulas are in
+//! files of their own.
+
+use driftworld_spec::Color;
+
+use crate::Nature;
+use crate::color::cie76::{CIE76_DIAMETER, cie76};
+use crate::color::ciede2000::{CIEDE2000_DIAMETER, ciede2000};
+use crate::color::hyab::hyab;
+use crate::color::lab::Lab;
+use crate::color::oklab::Oklab;
+use crate::color::srgb::srgb_distance;
+
+/// A way to say how far two colours are apart.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::ColorMeasure;
+/// use driftworld_spec::Color;
+/// let named = |name| Color::from_name(name).unwrap();
+/// let far = ColorMeasure::Ciede2000.normalised(named("blue"), named("yellow"));
+/// let near = ColorMeasure::Ciede2000.normalised(named("blue"), named("navy"));
+/// assert!(near < far && far <= 1.0);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColorMeasure {
+    /// [`srgb_distance`]: the L2Explorer paper's.
+    Srgb,
+    /// [`cie76`].
+    Cie76,
+    /// [`ciede2000`]. Not a metric.
+    Ciede2000,
+    /// [`oklab_distance`](crate::oklab_distance): the default, a metric that follows the eye.
+    #[default]
+    Oklab,
+    /// [`hyab`].
+    Hyab,
+}
+
+impl ColorMeasure {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Srgb, Self::Cie76, Self::Ciede2000, Self::Oklab, Self::Hyab];
+
+    /// Its name in tables and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Srgb => "srgb",
+            Self::Cie76 => "cie76",
+            Self::Ciede2000 => "ciede2000",
+            Self::Oklab => "oklab",
+            Self::Hyab => "hyab",
+        }
+    }
+
+    /// The measure of this name, if there is one.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|measure| measure.name() == name)
+    }
+
+    /// How far two colours are apart, in the measure's own numbers.
+    pub fn between(self, a: Color, b: Color) -> f64 {
+        self.between_prepared(self.prepare(a), self.prepare(b))
+    }
+
+    /// How far two colours are apart as a share of [`ColorMeasure::diameter`], in `0..=1`.
+    pub fn normalised(self, a: Color, b: Color) -> f64 {
+        (self.between(a, b) / self.diameter()).min(1.0)
+    }
+
+    /// How far the two sRGB colours that are farthest apart are apart; rounded up in the last place.
+    pub fn diameter(self) -> f64 {
+        match self {
+            // Black to white.
+            Self::Srgb => 1.732_050_807_568_877_2,
+            Self::Oklab => 1.0,
+            Self::Cie76 => CIE76_DIAMETER,
+            Self::Ciede2000 => CIEDE2000_DIAMETER,
+            // Blue to lime.
+            Self::Hyab => 308.109_02,
+        }
+    }
+
+    /// Which laws it keeps.
+    pub fn nature(self) -> Nature {
+        match self {
+            Self::Ciede2000 => Nature::Distance,
+            Self::Srgb | Self::Cie76 | Self::Oklab | Self::Hyab => Nature::Metric,
+        }
+    }
+
+    /// The colour in the space that the measure takes it in: each colour is converted once for many pairs.
+    pub(crate) fn prepare(self, color: Color) -> [f64; 3] {
+        match self {
+            Self::Srgb => color.0,
+            Self::Oklab => Oklab::from(color).0,
+            Self::Cie76 | Self::Ciede2000 | Self::Hyab => Lab::from(color).0,
+        }
+    }
+
+    pub(crate) fn between_prepared(self, a: [f64; 3], b: [f64; 3]) -> f64 {
+        match self {
+            Self::Srgb => srgb_distance(Color(a), Color(b)),
+            Self::Oklab => Oklab(a).distance(Oklab(b)),
+            Self::Cie76 => cie76(Lab(a), Lab(b)),
+            Self::Ciede2000 => ciede2000(Lab(a), Lab(b)),
+            Self::Hyab => hyab(Lab(a), Lab(b)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn color() -> impl Strategy<Value = Color> {
+        let channel = prop_oneof![Just(0.0), Just(1.0), 0.0..=1.0];
+        prop::array::uniform3(channel).prop_map(Color)
+    }
+
+    #[test]
+    fn the_farthest_colours_are_a_diameter_apart() {
+        let named = |name| Color::from_name(name).expect("a name of CSS");
+        for (measure, a, b) in [
+            (ColorMeasure::Srgb, named("black"), named("white")),
+            (ColorMeasure::Oklab, named("black"), named("white")),
+            (ColorMeasure::Cie76, named("blue"), named("lime")),
+            (ColorMeasure::Hyab, named("blue"), named("lime")),
+            (
+                ColorMeasure::Ciede2000,
+                Color([0.0, 0.0, 0.430_3]),
+                Color([0.558_93, 1.0, 0.0]),
+            ),
+        ] {
+            let share = measure.between(a, b) / measure.diameter();
+            assert!(
+                (1.0 - 1e-7..=1.0 + 1e-12).contains(&share),
+                "{}: {share}",
+                measure.name()
+            );
+        }
+    }
+
+    #[test]
+    fn names_are_read_back() {
+        for measure in ColorMeasure::ALL {
+            assert_eq!(ColorMeasure::from_name(measure.name()), Some(measure));
+        }
+        assert_eq!(ColorMeasure::from_name("rgb"), None);
+    }
+
+    #[test]
+    fn a_detour_by_ciede2000_may_be_shorter() {
+        let [a, b, c] = [[0.0, 1.0, 0.4], [0.6, 0.8, 0.8], [1.0, 0.0, 1.0]].map(Color);
+        let d = |a, b| ColorMeasure::Ciede2000.between(a, b);
+        // By scikit-image: 30.3 and 32.0 instead of 108.4.
+        assert!(
+            d(a, b) + d(b, c) < 0.58 * d(a, c),
+            "{} {} {}",
+            d(a, b),
+            d(b, c),
+            d(a, c)
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn they_are_what_they_say(a in color(), b in color(), c in color()) {
+            for measure in ColorMeasure::ALL {
+                let d = |a, b| measure.normalised(a, b);
+                prop_assert_eq!(d(a, a), 0.0);
+                prop_assert!((d(a, b) - d(b, a)).abs() < 1e-9);
+                prop_assert!((0.0..=1.0).contains(&d(a, b)));
+                prop_assert!(measure.between(a, b) <= measure.diameter() * (1.0 + 1e-12), "{}", measure.name());
+                if a != b {
+                    prop_assert!(d(a, b) > 0.0);
+                }
+                if measure.nature().is_metric() {
+                    prop_assert!(d(a, c) <= d(a, b) + d(b, c) + 1e-12, "{}", measure.name());
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! Euclidean distance of sRGB triples. Distances that follow the eye are in the other files.
+
+use driftworld_spec::Color;
+
+use crate::color::euclidean;
+
+/// Euclidean distance of two sRGB triples, as the L2Explorer paper takes it: √(Δr² + Δg² + Δb²).
+///
+/// A metric, in `0..=√3`, no unit. Blind to what people see: black to dark green is as far as black to dark blue. A few nanoseconds.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::srgb_distance;
+/// use driftworld_spec::Color;
+/// let (red, blue) = (Color([1.0, 0.0, 0.0]), Color([0.0, 0.0, 1.0]));
+/// assert!((srgb_distance(red, blue) - 2.0_f64.sqrt()).abs() < 1e-15);
+/// ```
+pub fn srgb_distance(a: Color, b: Color) -> f64 {
+    euclidean(a.0, b.0)
+}

@@ -1,0 +1,227 @@
+//! [`Sketches`]: worlds reduced to the numbers that comparing them needs, made once and compared often. The parts of a
+//! distance are in `world.rs`.
+
+use std::collections::BTreeMap;
+
+use driftworld_spec::{Color, Object, World};
+use serde::Serialize;
+
+/// Worlds reduced alike: what is the same thing has the same number in each.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sketcher {
+    numbers: BTreeMap<String, u32>,
+}
+
+/// A world as it is compared.
+#[derive(Clone, Debug)]
+pub(super) struct Sketch {
+    /// Objects by class, those of one class in the order of the world.
+    pub(super) objects: Vec<Thing>,
+    /// For each class its number, and where its objects end in `objects`; by number.
+    pub(super) classes: Vec<(u32, usize)>,
+    /// Cells in which something stands, in rising order.
+    pub(super) cells: Vec<(i32, i32)>,
+    pub(super) start: [f64; 2],
+    pub(super) heading: f64,
+    pub(super) action_model: u32,
+    pub(super) action_space: u32,
+    pub(super) linear_speed: f64,
+    pub(super) angular_speed: f64,
+    pub(super) time_step: f64,
+    pub(super) agent_width: f64,
+    pub(super) walls: u32,
+    pub(super) area: f64,
+    pub(super) step_reward: f64,
+    pub(super) rules: u32,
+    pub(super) max_steps: u32,
+    pub(super) light: f64,
+    /// Wall, sky, ground, sunlight in Oklab.
+    pub(super) surroundings: [[f64; 3]; 4],
+    pub(super) camera: u32,
+}
+
+/// An object as it is compared.
+#[derive(Clone, Debug)]
+pub(super) struct Thing {
+    pub(super) place: [f64; 2],
+    pub(super) motion: u32,
+    pub(super) body: u32,
+    pub(super) reward: f64,
+    pub(super) paid_for: u32,
+    pub(super) odds: f64,
+    /// In Oklab.
+    pub(super) color: Option<[f64; 3]>,
+    pub(super) look: u32,
+}
+
+impl Sketcher {
+    /// The number of a thing: the same for equal things, another for others.
+    fn number(&mut self, thing: impl Serialize) -> u32 {
+        let text = serde_json::to_string(&thing).expect("documents and parts of them serialise");
+        let next = u32::try_from(self.numbers.len()).unwrap_or(u32::MAX);
+        *self.numbers.entry(text).or_insert(next)
+    }
+
+    /// The sketch of a world, with cells of `cell` metres.
+    pub(super) fn sketch(&mut self, world: &World, cell: f64) -> Sketch {
+        let mut by_class: BTreeMap<u32, Vec<Thing>> = BTreeMap::new();
+        for object in &world.objects {
+            let class = self.number(("class", object.class.to_lowercase()));
+            let thing = self.thing(object);
+            by_class.entry(class).or_default().push(thing);
+        }
+        let mut objects = Vec::with_capacity(world.objects.len());
+        let mut classes = Vec::with_capacity(by_class.len());
+        for (class, things) in by_class {
+            objects.extend(things);
+            classes.push((class, objects.len()));
+        }
+        let index = |metres: f64| (metres / cell).floor() as i32;
+        let mut cells: Vec<(i32, i32)> = objects
+            .iter()
+            .map(|thing| (index(thing.place[0]), index(thing.place[1])))
+            .collect();
+        cells.sort_unstable();
+        cells.dedup();
+        let (agent, around, rules) = (&world.agent_params, &world.environment_params, &world.rules);
+        let [width, depth] = around.arena_size();
+        Sketch {
+            objects,
+            classes,
+            cells,
+            start: agent.coordinates,
+            heading: agent.heading,
+            action_model: self.number(("action model", agent.action_model)),
+            action_space: self.number(("action space", &agent.actions, agent.interact)),
+            linear_speed: agent.max_linear_speed,
+            angular_speed: agent.max_angular_speed,
+            time_step: agent.time_step * f64::from(agent.frame_skip),
+            agent_width: agent.agent_width,
+            walls: self.number(("walls", around.predefined_map, &around.map_regions, &around.walls)),
+            area: width * depth,
+            step_reward: rules.step_reward,
+            rules: self.number((
+                "rules",
+                &rules.success,
+                &rules.failure,
+                rules.order_penalty,
+                &rules.shaping,
+            )),
+            max_steps: world.max_steps,
+            light: around.light_intensity,
+            surroundings: [
+                around.bounding_wall_color,
+                around.sky_color,
+                around.ground_color,
+                around.light_color,
+            ]
+            .map(oklab),
+            camera: self.number((
+                "camera",
+                (
+                    agent.agent_height,
+                    agent.field_of_view,
+                    agent.picture_size(),
+                    agent.supersampling,
+                ),
+                (
+                    around.fog_distance,
+                    around.sun_direction,
+                    around.ambient_light,
+                    around.wall_height,
+                ),
+                (&agent.modalities, &agent.state_features),
+            )),
+        }
+    }
+
+    fn thing(&mut self, object: &Object) -> Thing {
+        let motion = (
+            object.motion_model,
+            object.speed,
+            object.turn_rate,
+            object.sight_range,
+            &object.waypoints,
+        );
+        let body = (
+            &object.solid,
+            &object.pushable,
+            &object.respawn,
+            &object.destroy_stimulus,
+        );
+        let paid_for = (
+            &object.reward_stimulus,
+            &object.reward_once_stimulus,
+            object.order,
+            object.range_stimulus_distance,
+        );
+        Thing {
+            place: object.coordinates,
+            motion: self.number(("motion", motion)),
+            body: self.number(("body", body)),
+            reward: object.reward,
+            paid_for: self.number(("paid for", paid_for)),
+            odds: object.reward_probability,
+            color: object.color.map(oklab),
+            look: self.number(("look", &object.model, object.scale)),
+        }
+    }
+}
+
+impl Sketch {
+    /// For each class that either has, where its objects are in each: `(class, range in a, range in b)`, by class.
+    pub(super) fn classes_of_both<'a>(
+        &'a self,
+        other: &'a Self,
+    ) -> impl Iterator<Item = (&'a [Thing], &'a [Thing])> + 'a {
+        let (mut i, mut j) = (0, 0);
+        std::iter::from_fn(move || {
+            let (mine, theirs) = (self.classes.get(i), other.classes.get(j));
+            let class = match (mine, theirs) {
+                (None, None) => return None,
+                (Some(mine), None) => mine.0,
+                (None, Some(theirs)) => theirs.0,
+                (Some(mine), Some(theirs)) => mine.0.min(theirs.0),
+            };
+            let take = |sketch: &'a Self, at: &mut usize| -> &'a [Thing] {
+                let Some(&(_, end)) = sketch.classes.get(*at).filter(|entry| entry.0 == class) else {
+                    return &[];
+                };
+                let start = at.checked_sub(1).map_or(0, |before| sketch.classes[before].1);
+                *at += 1;
+                &sketch.objects[start..end]
+            };
+            Some((take(self, &mut i), take(other, &mut j)))
+        })
+    }
+}
+
+fn oklab(color: Color) -> [f64; 3] {
+    crate::color::oklab::Oklab::from(color).0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn classes_meet_by_name_and_keep_their_order() {
+        let world = |classes: &[(&str, f64)]| World {
+            objects: classes
+                .iter()
+                .map(|(class, x)| Object::new(*class, [*x, 0.0]))
+                .collect(),
+            ..World::default()
+        };
+        let mut sketcher = Sketcher::default();
+        let a = sketcher.sketch(&world(&[("tree", 1.0), ("Rock", 2.0), ("tree", 3.0)]), 2.0);
+        let b = sketcher.sketch(&world(&[("pot", 4.0), ("rock", 5.0)]), 2.0);
+        let xs = |things: &[Thing]| things.iter().map(|thing| thing.place[0]).collect::<Vec<_>>();
+        let mut met: Vec<(Vec<f64>, Vec<f64>)> = a.classes_of_both(&b).map(|(a, b)| (xs(a), xs(b))).collect();
+        met.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        assert_eq!(
+            met,
+            [(vec![], vec![4.0]), (vec![1.0, 3.0], vec![]), (vec![2.0], vec![5.0])]
+        );
+    }
+}

@@ -1,0 +1,167 @@
+//! Wasserstein-1 between distributions of headings, around the circle. Along a line it is in `wasserstein_1.rs`.
+
+use driftworld_spec::Distribution;
+
+use super::gap::Power;
+use super::law::{Law, rising};
+use super::measured::Measured;
+
+/// Widest stretch, in degrees, over which a curved cumulative function is taken as straight.
+const FINE: f64 = 0.25;
+
+/// Least work, in degrees, that turns one distribution of headings into the other, each the shorter way round.
+///
+/// min over c of ∫ |F − G − c| over one turn; the best c is the median of F − G. A metric in `0..=180` degrees. Numbers are
+/// taken as headings in degrees, whatever turn they lie in. `None` if either draws no numbers, or strews them over more than
+/// 200 turns. Exact for constants, choices and uniform headings; otherwise by the trapezium rule, mostly within 1e-3 degrees,
+/// in a millisecond.
+///
+/// Source: Rabin, Delon & Gousseau 2011, "Transportation distances on the circle"; the same numbers as
+/// `ot.wasserstein_circle`, which counts in turns.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::distribution::circular_wasserstein_1;
+/// use driftworld_spec::Distribution::Uniform;
+/// let (a, b) = (Uniform { low: 340.0, high: 350.0 }, Uniform { low: 0.0, high: 10.0 });
+/// assert!((circular_wasserstein_1(&a, &b).unwrap().value - 20.0).abs() < 1e-9);
+/// ```
+pub fn circular_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measured> {
+    let (p, q) = (Law::of_headings(a)?, Law::of_headings(b)?);
+    if a == b {
+        return Some(Measured::closed(0.0));
+    }
+    if p.is_flat() && q.is_flat() {
+        let value = around(&stretches(&p, &q, 360.0));
+        return Some(if p.parts.is_empty() && q.parts.is_empty() {
+            Measured::atoms(value)
+        } else {
+            Measured::closed(value)
+        });
+    }
+    let (coarse, fine) = (around(&stretches(&p, &q, 2.0 * FINE)), around(&stretches(&p, &q, FINE)));
+    // Twice as many stretches leave a quarter of the error.
+    Some(Measured::quadrature(fine, (coarse - fine).abs().max(1e-9)))
+}
+
+/// A stretch of the circle: how wide, and the difference of the cumulative functions at its ends.
+type Stretch = (f64, f64, f64);
+
+fn stretches(a: &Law, b: &Law, widest: f64) -> Vec<Stretch> {
+    let mut knots: Vec<f64> = a.knots().into_iter().chain(b.knots()).collect();
+    knots.iter_mut().for_each(|x| *x = x.rem_euclid(360.0));
+    knots.extend(a.atoms.iter().chain(&b.atoms).map(|atom| atom.0));
+    knots.extend([0.0, 360.0]);
+    let knots = rising(knots);
+    let steps = |law: &Law, x: f64| -> f64 {
+        let up_to = law.atoms.partition_point(|atom| atom.0 <= x);
+        law.atoms[..up_to].iter().map(|atom| atom.1).sum()
+    };
+    let gap = |x: f64| a.cumulative_of_parts(x) - b.cumulative_of_parts(x);
+    let mut found = Vec::new();
+    for ends in knots.windows(2) {
+        let step = steps(a, ends[0]) - steps(b, ends[0]);
+        // Where no stretch may be as wide as the circle, curves get at least eight pieces between knots.
+        let count = if widest < 360.0 {
+            ((ends[1] - ends[0]) / widest).ceil().max(4.0 / widest.min(1.0))
+        } else {
+            1.0
+        };
+        let width = (ends[1] - ends[0]) / count;
+        let mut before = gap(ends[0]);
+        for k in 1..=count as u32 {
+            let after = gap(ends[0] + width * f64::from(k));
+            found.push((width, step + before, step + after));
+            before = after;
+        }
+    }
+    found
+}
+
+/// The area between the stretches and their median.
+fn around(stretches: &[Stretch]) -> f64 {
+    let all = || stretches.iter().flat_map(|(_, from, to)| [*from, *to]);
+    let mut low = all().fold(f64::INFINITY, f64::min);
+    let mut high = all().fold(f64::NEG_INFINITY, f64::max);
+    let whole: f64 = stretches.iter().map(|stretch| stretch.0).sum();
+    let below = |c: f64| -> f64 {
+        let each = stretches.iter().map(|(width, from, to)| {
+            let (least, most) = (from.min(*to), from.max(*to));
+            if most <= c {
+                *width
+            } else if least >= c {
+                0.0
+            } else {
+                width * (c - least) / (most - least)
+            }
+        });
+        each.sum()
+    };
+    for _ in 0..60 {
+        let middle = f64::midpoint(low, high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if below(middle) * 2.0 < whole {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    // Between the two the median lies; at a jump either end is as good.
+    let area = |c: f64| -> f64 {
+        let each = stretches.iter();
+        each.map(|(width, from, to)| width * Power::Absolute.along(from - c, to - c))
+            .sum()
+    };
+    area(high).min(area(low))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Distribution::{Choice, Normal, Uniform, VonMises};
+    use driftworld_spec::Value;
+
+    #[track_caller]
+    fn check(a: &Distribution, b: &Distribution, expected: f64, within: f64) {
+        for found in [circular_wasserstein_1(a, b), circular_wasserstein_1(b, a)] {
+            let found = found.unwrap();
+            assert!(
+                (found.value - expected).abs() <= within,
+                "{found:?}, expected {expected}"
+            );
+        }
+    }
+
+    fn headings(degrees: &[f64]) -> Distribution {
+        Choice {
+            values: degrees.iter().map(|x| Value::Number(*x)).collect(),
+            weights: None,
+        }
+    }
+
+    #[test]
+    fn the_shorter_way_counts() {
+        check(&headings(&[350.0]), &headings(&[10.0]), 20.0, 1e-9);
+        check(&headings(&[0.0]), &headings(&[180.0]), 180.0, 1e-9);
+        check(&headings(&[0.0, 90.0]), &headings(&[350.0, 100.0]), 10.0, 1e-9);
+        check(&headings(&[-10.0]), &headings(&[710.0]), 0.0, 1e-9);
+        // All alike is a quarter turn from any one on average.
+        check(&headings(&[123.0]), &Uniform { low: 0.0, high: 360.0 }, 90.0, 1e-9);
+    }
+
+    #[test]
+    fn narrow_bells_are_as_far_as_on_the_line() {
+        let at = |mean: f64| VonMises { mean, kappa: 500.0 };
+        check(&at(350.0), &at(15.0), 25.0, 1e-3);
+        let normal = |mean: f64, std: f64| Normal { mean, std };
+        check(&normal(355.0, 5.0), &normal(20.0, 5.0), 25.0, 1e-3);
+        check(
+            &VonMises { mean: 5.0, kappa: 0.0 },
+            &Uniform { low: 0.0, high: 360.0 },
+            0.0,
+            1e-9,
+        );
+    }
+}

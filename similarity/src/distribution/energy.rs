@@ -1,0 +1,90 @@
+//! Energy distance between distributions of numbers. Its kin with a kernel is in `maximum_mean_discrepancy.rs`.
+
+use std::f64::consts::PI;
+
+use driftworld_spec::Distribution;
+
+use super::gap::{self, Power};
+use super::law::{Law, draws_headings};
+use super::measured::Measured;
+use super::wasserstein_1::folded;
+
+/// √(2 E|X − Y| − E|X − X′| − E|Y − Y′|), which on the line is √(2 ∫ (F − G)²): in roots of the numbers' unit.
+///
+/// A metric in `0..` (its square is none). A Bernoulli counts as 0 and 1. `None` if either draws no numbers, or headings.
+/// Closed for two normals and for all that is flat or in steps; otherwise by quadrature, mostly within 1e-6, in a fraction of
+/// a millisecond. Whole numbers out of more than 4,096 count as evenly spread.
+///
+/// Source: Székely & Rizzo 2013, "Energy statistics"; the same numbers as `scipy.stats.energy_distance`, which returns the
+/// root, too.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::distribution::energy;
+/// use driftworld_spec::Distribution::Bernoulli;
+/// let apart = energy(&Bernoulli { p: 0.0 }, &Bernoulli { p: 1.0 }).unwrap();
+/// assert!((apart.value - 2.0_f64.sqrt()).abs() < 1e-12);
+/// ```
+pub fn energy(a: &Distribution, b: &Distribution) -> Option<Measured> {
+    if draws_headings(a) || draws_headings(b) {
+        return None;
+    }
+    if let (Distribution::Normal { mean: m, std: s }, Distribution::Normal { mean: n, std: t }) = (a, b) {
+        let square = 2.0 * folded((m - n).abs(), s.hypot(*t)) - 2.0 * (s + t) / PI.sqrt();
+        // Neighbours would lose their digits: the quadrature has them.
+        if square > 1e-4 * (s + t) {
+            return Some(Measured::closed(square).root());
+        }
+    }
+    let ((p, miss_p), (q, miss_q)) = (Law::of(a)?.smoothed(), Law::of(b)?.smoothed());
+    if a == b {
+        return Some(Measured::closed(0.0));
+    }
+    let found = gap::integral(&p, &q, Power::Square).times(2.0);
+    Some(if miss_p + miss_q > 0.0 {
+        // |F − G| is at most 1, so its square is off by no more than twice what it is.
+        Measured::quadrature(found.value, 4.0 * (miss_p + miss_q)).root()
+    } else {
+        found.root()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Distribution::{Exponential, Normal, Uniform};
+
+    #[track_caller]
+    fn check(a: &Distribution, b: &Distribution, expected: f64) {
+        for found in [energy(a, b).unwrap(), energy(b, a).unwrap()] {
+            assert!((found.value - expected).abs() < 1e-9, "{found:?}, expected {expected}");
+        }
+    }
+
+    #[test]
+    fn closed_forms_are_met() {
+        // E|X − Y| = 1/r + 1/s − 2/(r + s), E|X − X′| = 1/r.
+        let (r, s) = (1.0, 4.0);
+        check(
+            &Exponential { rate: r },
+            &Exponential { rate: s },
+            (1.0_f64 / r + 1.0 / s - 4.0 / (r + s)).sqrt(),
+        );
+        // Squared: 2 · 2 − 1/3 − 1/3.
+        check(
+            &Uniform { low: 0.0, high: 1.0 },
+            &Uniform { low: 2.0, high: 3.0 },
+            (4.0 - 2.0 / 3.0_f64).sqrt(),
+        );
+        let (a, b) = (Normal { mean: 0.0, std: 1.0 }, Normal { mean: 1.0, std: 2.0 });
+        let area = gap::integral(&Law::of(&a).unwrap(), &Law::of(&b).unwrap(), Power::Square);
+        check(&a, &b, (2.0 * area.value).sqrt());
+    }
+
+    #[test]
+    fn neighbours_keep_their_digits() {
+        let near = energy(&Normal { mean: 0.0, std: 1.0 }, &Normal { mean: 1e-6, std: 1.0 }).unwrap();
+        // 2 ∫ (density × shift)² = shift² / √π.
+        assert!((near.value / (1e-6 / PI.sqrt().sqrt()) - 1.0).abs() < 1e-6, "{near:?}");
+    }
+}

@@ -1,0 +1,97 @@
+//! Jensen–Shannon divergence and its root, the metric. Kullback–Leibler is in `kullback_leibler.rs`.
+
+use std::f64::consts::LN_2;
+
+use driftworld_spec::Distribution;
+
+use super::measured::Measured;
+use super::overlap;
+
+/// The root of [`jensen_shannon_divergence`].
+///
+/// A metric in `0..=1`. Takes and costs the same; by quadrature it is mostly known within 1e-6, the root of a sum known
+/// within 1e-9 or better. `scipy.spatial.distance.jensenshannon` is this root, but in nats unless `base=2`.
+///
+/// Source: Endres & Schindelin 2003, "A new metric for probability distributions".
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::distribution::jensen_shannon;
+/// use driftworld_spec::Distribution::Uniform;
+/// let apart = jensen_shannon(&Uniform { low: 0.0, high: 1.0 }, &Uniform { low: 5.0, high: 6.0 });
+/// assert_eq!(apart.unwrap().value, 1.0);
+/// ```
+pub fn jensen_shannon(a: &Distribution, b: &Distribution) -> Option<Measured> {
+    jensen_shannon_divergence(a, b).map(Measured::root)
+}
+
+/// ½ KL(P ‖ M) + ½ KL(Q ‖ M) in bits, M being the even mixture of the two: what a draw tells about which of them it is from.
+///
+/// In `0..=1` bits; symmetric, but not a metric. Takes what [`total_variation`](super::total_variation()) takes. Exact for
+/// all that is flat or in steps, otherwise by quadrature, mostly within 1e-9, in tens of microseconds.
+///
+/// Source: Lin 1991, "Divergence measures based on the Shannon entropy".
+pub fn jensen_shannon_divergence(a: &Distribution, b: &Distribution) -> Option<Measured> {
+    if a == b {
+        return overlap::sum(a, b, |_, _| 0.0).map(|_| Measured::closed(0.0));
+    }
+    let sum = overlap::sum(a, b, term)?.times(1.0 / LN_2);
+    Some(Measured {
+        value: sum.value.clamp(0.0, 1.0),
+        ..sum
+    })
+}
+
+/// ½ p ln(p / m) + ½ q ln(q / m) with m = (p + q) / 2, written in d with p = m (1 + d) so that nothing cancels.
+fn term(p: f64, q: f64) -> f64 {
+    let (p, q) = (libm::exp(p), libm::exp(q));
+    let middle = f64::midpoint(p, q);
+    if middle == 0.0 {
+        return 0.0;
+    }
+    let d = (p - q).abs() / (p + q);
+    let square = d * d;
+    let entropy = if d < 0.01 {
+        square / 2.0 + square * square / 12.0 + square * square * square / 30.0
+    } else if d >= 1.0 {
+        LN_2
+    } else {
+        0.5 * ((1.0 + d) * libm::log1p(d) + (1.0 - d) * libm::log1p(-d))
+    };
+    middle * entropy
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Distribution::{Bernoulli, Normal, Uniform};
+
+    #[track_caller]
+    fn check(a: &Distribution, b: &Distribution, expected: f64) {
+        let found = jensen_shannon_divergence(a, b).unwrap();
+        assert!((found.value - expected).abs() < 1e-12, "{found:?}, expected {expected}");
+        assert!((jensen_shannon(b, a).unwrap().value - expected.sqrt()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn entropies_say_what_it_is() {
+        let entropy = |p: f64| -p * p.log2() - (1.0 - p) * (1.0 - p).log2();
+        check(
+            &Bernoulli { p: 0.1 },
+            &Bernoulli { p: 0.5 },
+            entropy(0.3) - f64::midpoint(entropy(0.1), entropy(0.5)),
+        );
+        // A quarter of all is drawn by one only, on either side.
+        check(&Uniform { low: 0.0, high: 4.0 }, &Uniform { low: 1.0, high: 5.0 }, 0.25);
+    }
+
+    #[test]
+    fn neighbours_keep_their_digits() {
+        // For close normals it comes to (difference of means)² / (8 ln 2) squared deviations.
+        let near = jensen_shannon(&Normal { mean: 0.0, std: 1.0 }, &Normal { mean: 1e-6, std: 1.0 }).unwrap();
+        assert!(
+            (near.value / (1e-12 / (8.0 * LN_2)).sqrt() - 1.0).abs() < 1e-6,
+            "{near:?}"
+        );
+    }
+}

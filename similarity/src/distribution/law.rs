@@ -1,0 +1,322 @@
+//! [`Law`]: any distribution of numbers, or of headings, taken apart into single numbers, runs and densities.
+//!
+//! What is reckoned from two laws is in `overlap.rs`, `gap.rs` and the measures.
+
+use driftworld_spec::Distribution;
+
+use super::part::Part;
+use super::quadrature::Spot;
+use super::values::share;
+
+/// More single numbers than this, and a distribution of counts is not taken apart.
+const MOST_ATOMS: usize = 65_536;
+
+/// Longer runs of whole numbers than this are kept as runs.
+const LONGEST_RUN: f64 = 4096.0;
+
+/// Most turns over which the numbers of a distribution may be strewn and still be taken as headings.
+const MOST_TURNS: f64 = 200.0;
+
+/// Whole numbers that are all alike: those from `low` to `high`, each with a probability.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Run {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) each: f64,
+}
+
+/// A distribution of numbers, taken apart.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Law {
+    /// Single numbers with their probability, each once, in rising order.
+    pub(super) atoms: Vec<(f64, f64)>,
+    pub(super) runs: Vec<Run>,
+    pub(super) parts: Vec<Part>,
+}
+
+/// Whether it draws headings and nothing else can stand for what it draws.
+pub(super) fn draws_headings(distribution: &Distribution) -> bool {
+    match distribution {
+        Distribution::VonMises { .. } => true,
+        Distribution::Mixture { parts, .. } => parts.iter().any(draws_headings),
+        _ => false,
+    }
+}
+
+/// Both taken apart: as headings where either draws such, as numbers otherwise. `None` if either draws no numbers, or too
+/// many different counts.
+pub(super) fn both(a: &Distribution, b: &Distribution) -> Option<(Law, Law)> {
+    if draws_headings(a) || draws_headings(b) {
+        Some((Law::of_headings(a)?, Law::of_headings(b)?))
+    } else {
+        Some((Law::of(a)?, Law::of(b)?))
+    }
+}
+
+impl Law {
+    /// Of a distribution of numbers; a Bernoulli counts as 0 and 1.
+    pub(super) fn of(distribution: &Distribution) -> Option<Self> {
+        if draws_headings(distribution) {
+            return None;
+        }
+        let mut law = Self::default();
+        law.add(1.0, distribution)?;
+        law.merge();
+        Some(law)
+    }
+
+    /// Of a distribution of numbers taken as headings in degrees, from 0 to 360.
+    pub(super) fn of_headings(distribution: &Distribution) -> Option<Self> {
+        let mut open = Self::default();
+        open.add(1.0, distribution)?;
+        let mut law = Self::default();
+        for run in open.runs {
+            if run.high - run.low > 360.0 * MOST_TURNS {
+                return None;
+            }
+            let count = (run.high - run.low) as u32;
+            open.atoms
+                .extend((0..=count).map(|k| (run.low + f64::from(k), run.each)));
+        }
+        law.atoms
+            .extend(open.atoms.into_iter().map(|(x, mass)| (turned(x), mass)));
+        for part in open.parts {
+            law.turn(part)?;
+        }
+        law.merge();
+        Some(law)
+    }
+
+    /// Adds a part, moved by as many full turns as bring it between 0 and 360, in copies.
+    fn turn(&mut self, part: Part) -> Option<()> {
+        if part.draws_headings() {
+            self.parts.push(part);
+            return Some(());
+        }
+        let knots = part.knots();
+        let low = knots.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = knots.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let (first, last) = ((low / 360.0).floor(), (high / 360.0).ceil());
+        if last - first > MOST_TURNS {
+            return None;
+        }
+        self.parts
+            .extend((first as i32..last as i32).map(|turn| part.moved(-360.0 * f64::from(turn))));
+        Some(())
+    }
+
+    fn add(&mut self, scale: f64, distribution: &Distribution) -> Option<()> {
+        match distribution {
+            Distribution::Constant { value } => self.atoms.push((value.as_number()?, scale)),
+            Distribution::Choice { values, weights } => {
+                let weight = |k: usize| weights.as_ref().map_or(1.0, |weights| weights[k]);
+                let total: f64 = (0..values.len()).map(weight).sum();
+                for (k, value) in values.iter().enumerate() {
+                    self.atoms.push((value.as_number()?, scale * weight(k) / total));
+                }
+            }
+            Distribution::Bernoulli { p } => self.atoms.extend([(0.0, scale * (1.0 - p)), (1.0, scale * p)]),
+            Distribution::Normal { mean, std } if *std == 0.0 => self.atoms.push((*mean, scale)),
+            Distribution::LogNormal { mu, sigma } if *sigma == 0.0 => self.atoms.push((libm::exp(*mu), scale)),
+            Distribution::Perturb {
+                value,
+                noise,
+                low,
+                high,
+            } => self.add_perturbed(scale, *value, *noise, [*low, *high]),
+            Distribution::IntegerUniform { low, high } => {
+                let count = high - low + 1.0;
+                let each = scale / count;
+                if count > LONGEST_RUN {
+                    let (low, high) = (*low, *high);
+                    self.runs.push(Run { low, high, each });
+                } else {
+                    self.atoms.extend((0..count as u32).map(|k| (low + f64::from(k), each)));
+                }
+            }
+            Distribution::Binomial { .. } | Distribution::Poisson { .. } | Distribution::Geometric { .. } => {
+                let counts = super::counts::probabilities(distribution, MOST_ATOMS)?;
+                self.atoms.extend(counts.into_iter().map(|(x, mass)| (x, scale * mass)));
+            }
+            Distribution::Mixture { parts, weights } => {
+                for (k, part) in parts.iter().enumerate() {
+                    self.add(scale * share(k, parts.len(), weights.as_deref()), part)?;
+                }
+            }
+            Distribution::Uniform { .. }
+            | Distribution::Normal { .. }
+            | Distribution::TruncatedNormal { .. }
+            | Distribution::LogNormal { .. }
+            | Distribution::Exponential { .. }
+            | Distribution::Beta { .. }
+            | Distribution::Triangular { .. }
+            | Distribution::VonMises { .. } => self.parts.push(Part::new(scale, distribution.clone(), 0.0)),
+            _ => return None,
+        }
+        Some(())
+    }
+
+    /// A flat part between two single numbers.
+    fn add_perturbed(&mut self, scale: f64, value: f64, noise: f64, [low, high]: [Option<f64>; 2]) {
+        let cut = |x: f64| {
+            x.max(low.unwrap_or(f64::NEG_INFINITY))
+                .min(high.unwrap_or(f64::INFINITY))
+        };
+        let (from, to) = (value - noise, value + noise);
+        let (left, right) = (cut(from), cut(to));
+        if left >= right || noise == 0.0 {
+            self.atoms.push((cut(value), scale));
+            return;
+        }
+        let width = to - from;
+        self.atoms.extend([
+            (left, scale * (left - from) / width),
+            (right, scale * (to - right) / width),
+        ]);
+        let flat = Distribution::Uniform { low: left, high: right };
+        self.parts.push(Part::new(scale * (right - left) / width, flat, 0.0));
+    }
+
+    fn merge(&mut self) {
+        self.atoms.sort_by(|a, b| a.0.total_cmp(&b.0));
+        self.atoms.dedup_by(|next, kept| {
+            // −0 is 0.
+            let same = next.0 == kept.0;
+            if same {
+                kept.1 += next.1;
+            }
+            same
+        });
+        self.atoms.retain(|atom| atom.1 > 0.0);
+        self.parts.retain(|part| part.share > 0.0);
+        self.runs.retain(|run| run.each > 0.0);
+    }
+
+    /// Whether every density is flat, so that the cumulative function is made of straight lines and steps.
+    pub(super) fn is_flat(&self) -> bool {
+        self.parts.iter().all(Part::is_uniform)
+    }
+
+    /// Long runs of whole numbers taken as flat densities, and how far that may put a Wasserstein-1 distance wrong.
+    pub(super) fn smoothed(mut self) -> (Self, f64) {
+        let mut error = 0.0;
+        for run in std::mem::take(&mut self.runs) {
+            let count = run.high - run.low + 1.0;
+            let (low, high) = (run.low - 0.5, run.high + 0.5);
+            self.parts
+                .push(Part::new(run.each * count, Distribution::Uniform { low, high }, 0.0));
+            error += 0.25 * run.each * count;
+        }
+        (self, error)
+    }
+
+    /// Logarithm of the density.
+    pub(super) fn log_density(&self, spot: Spot) -> f64 {
+        let log = |part: &Part| libm::log(part.share) + part.log_density(spot);
+        if let [part] = &self.parts[..] {
+            return log(part);
+        }
+        let greatest = self.parts.iter().map(log).fold(f64::NEG_INFINITY, f64::max);
+        if greatest == f64::NEG_INFINITY {
+            return greatest;
+        }
+        let sum: f64 = self.parts.iter().map(|part| libm::exp(log(part) - greatest)).sum();
+        greatest + libm::log(sum)
+    }
+
+    /// Probability of a number up to `x`, single numbers and runs aside.
+    pub(super) fn cumulative_of_parts(&self, x: f64) -> f64 {
+        self.parts.iter().map(|part| part.share * part.cumulative(x)).sum()
+    }
+
+    /// Probability of a number above `x`, single numbers and runs aside.
+    pub(super) fn remaining_of_parts(&self, x: f64) -> f64 {
+        self.parts.iter().map(|part| part.share * part.remaining(x)).sum()
+    }
+
+    /// The ends between which all that it draws lies; infinite where there are none.
+    pub(super) fn ends(&self) -> [f64; 2] {
+        let atoms = self.atoms.iter().map(|atom| [atom.0; 2]);
+        let runs = self.runs.iter().map(|run| [run.low, run.high]);
+        let all = atoms.chain(runs).chain(self.parts.iter().map(Part::ends));
+        all.fold([f64::INFINITY, f64::NEG_INFINITY], |hull, ends| {
+            [hull[0].min(ends[0]), hull[1].max(ends[1])]
+        })
+    }
+
+    /// Whether some density is above 0 somewhere between the two.
+    pub(super) fn reaches(&self, low: f64, high: f64) -> bool {
+        self.parts.iter().any(|part| {
+            let ends = part.ends();
+            ends[0] < high && ends[1] > low
+        })
+    }
+
+    /// The places at which densities and cumulative functions change their form, in no order.
+    pub(super) fn knots(&self) -> Vec<f64> {
+        self.parts.iter().flat_map(Part::knots).collect()
+    }
+}
+
+/// A heading in 0..360.
+fn turned(degrees: f64) -> f64 {
+    let turned = degrees.rem_euclid(360.0);
+    if turned >= 360.0 { 0.0 } else { turned }
+}
+
+/// Numbers in rising order, each once; those that are no numbers are left out.
+pub(super) fn rising(mut numbers: Vec<f64>) -> Vec<f64> {
+    numbers.retain(|x| x.is_finite());
+    numbers.sort_by(f64::total_cmp);
+    numbers.dedup();
+    numbers
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Distribution::{IntegerUniform, Mixture, Perturb, Uniform, VonMises};
+
+    #[test]
+    fn a_cut_off_number_is_a_flat_part_between_two_single_numbers() {
+        let cut = Perturb {
+            value: 1.0,
+            noise: 2.0,
+            low: Some(0.0),
+            high: Some(2.5),
+        };
+        let law = Law::of(&cut).unwrap();
+        assert_eq!(law.atoms, [(0.0, 0.25), (2.5, 0.125)]);
+        assert_eq!(law.parts[0].share, 0.625);
+        assert_eq!(law.parts[0].ends(), [0.0, 2.5]);
+    }
+
+    #[test]
+    fn parts_of_a_mixture_that_draw_the_same_number_are_one() {
+        let dice = IntegerUniform { low: 1.0, high: 2.0 };
+        let mixture = Mixture {
+            parts: vec![
+                dice,
+                IntegerUniform { low: 2.0, high: 3.0 },
+                Uniform { low: 0.0, high: 1.0 },
+            ],
+            weights: Some(vec![1.0, 1.0, 2.0]),
+        };
+        let law = Law::of(&mixture).unwrap();
+        assert_eq!(law.atoms, [(1.0, 0.125), (2.0, 0.25), (3.0, 0.125)]);
+        assert_eq!(law.cumulative_of_parts(0.5), 0.25);
+    }
+
+    #[test]
+    fn a_uniform_number_over_more_than_a_turn_is_strewn_around_the_circle() {
+        let law = Law::of_headings(&Uniform {
+            low: -90.0,
+            high: 630.0,
+        })
+        .unwrap();
+        let mass = |low: f64, high: f64| law.cumulative_of_parts(high) - law.cumulative_of_parts(low);
+        assert!((mass(0.0, 360.0) - 1.0).abs() < 1e-12);
+        assert!((mass(0.0, 90.0) - 0.25).abs() < 1e-12);
+        assert!(Law::of(&VonMises { mean: 0.0, kappa: 1.0 }).is_none());
+    }
+}

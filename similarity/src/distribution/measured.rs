@@ -1,0 +1,118 @@
+//! [`Measured`]: a number with how it was found. The measures that find it are in the files beside.
+
+use std::fmt::{Display, Formatter, Result};
+
+use serde::{Deserialize, Serialize};
+
+/// A distance between two distributions, and how it was found.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::distribution::{How, wasserstein_1};
+/// use driftworld_spec::Distribution::Normal;
+/// let apart = wasserstein_1(&Normal { mean: 0.0, std: 1.0 }, &Normal { mean: 3.0, std: 1.0 }).unwrap();
+/// assert_eq!((apart.value, apart.how), (3.0, How::Closed));
+/// assert_eq!(apart.how.to_string(), "by closed form");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// The number, in the unit of the measure.
+    pub value: f64,
+    /// How it was found.
+    pub how: How,
+}
+
+/// How a number was found.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum How {
+    /// By a formula, exact but for rounding.
+    Closed,
+    /// By a sum over the values that can occur, exact but for rounding and for values less likely than 1e-15.
+    Atoms,
+    /// By numerical integration.
+    Quadrature {
+        /// Estimate of the greatest error, in the unit of the number.
+        tolerance: f64,
+    },
+    /// From points or numbers that stand for each of the two.
+    Samples {
+        /// How many stand for each.
+        count: usize,
+    },
+}
+
+impl Measured {
+    pub(crate) fn closed(value: f64) -> Self {
+        Self {
+            value,
+            how: How::Closed,
+        }
+    }
+
+    pub(crate) fn atoms(value: f64) -> Self {
+        Self { value, how: How::Atoms }
+    }
+
+    pub(crate) fn quadrature(value: f64, tolerance: f64) -> Self {
+        let how = How::Quadrature { tolerance };
+        Self { value, how }
+    }
+
+    pub(crate) fn samples(value: f64, count: usize) -> Self {
+        let how = How::Samples { count };
+        Self { value, how }
+    }
+
+    /// The root, with the error that is left of the square's.
+    pub(crate) fn root(self) -> Self {
+        let value = self.value.max(0.0).sqrt();
+        let how = match self.how {
+            How::Quadrature { tolerance } => How::Quadrature {
+                tolerance: if tolerance == 0.0 {
+                    0.0
+                } else {
+                    tolerance.sqrt().min(tolerance / value)
+                },
+            },
+            other => other,
+        };
+        Self { value, how }
+    }
+
+    /// The number and its error times a factor.
+    pub(crate) fn times(self, factor: f64) -> Self {
+        let how = match self.how {
+            How::Quadrature { tolerance } => How::Quadrature {
+                tolerance: tolerance * factor,
+            },
+            other => other,
+        };
+        let value = self.value * factor;
+        Self { value, how }
+    }
+}
+
+impl Display for How {
+    fn fmt(&self, f: &mut Formatter) -> Result {
+        match self {
+            Self::Closed => f.write_str("by closed form"),
+            Self::Atoms => f.write_str("by sum over values"),
+            Self::Quadrature { tolerance } => write!(f, "by quadrature within {tolerance:.0e}"),
+            Self::Samples { count } => write!(f, "by {count} samples"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_square_leaves_its_root_a_larger_error() {
+        let root = |value| Measured::quadrature(value, 1e-10).root().how;
+        assert_eq!(root(0.25), How::Quadrature { tolerance: 2e-10 });
+        assert_eq!(root(0.0), How::Quadrature { tolerance: 1e-5 });
+        assert_eq!(root(0.25).to_string(), "by quadrature within 2e-10");
+    }
+}

@@ -1,0 +1,146 @@
+//! Sums over what two distributions may both draw, of a term of the two probabilities. The terms are the measures'.
+
+use driftworld_spec::Distribution;
+
+use super::law::{self, Law, Run, draws_headings, rising};
+use super::measured::Measured;
+use super::quadrature::{Spot, integrate, split_at_signs};
+use super::values;
+
+/// Σ term(ln p, ln q) over single values and ∫ term(ln f, ln g) dx over densities, on the circle where either draws headings.
+///
+/// The term must be homogeneous: term of c p and c q is c times that of p and q. `None` if one draws what the other cannot,
+/// such as words and numbers, or points with a density.
+pub(super) fn sum(a: &Distribution, b: &Distribution, term: impl Fn(f64, f64) -> f64) -> Option<Measured> {
+    if let Some((p, q)) = law::both(a, b) {
+        let circle = draws_headings(a) || draws_headings(b);
+        return Some(over_numbers(&p, &q, circle, term));
+    }
+    let pairs = values::side_by_side(&values::probabilities(a)?, &values::probabilities(b)?);
+    Some(Measured::atoms(
+        pairs.into_iter().map(|[p, q]| term(libm::log(p), libm::log(q))).sum(),
+    ))
+}
+
+fn over_numbers(a: &Law, b: &Law, circle: bool, term: impl Fn(f64, f64) -> f64) -> Measured {
+    let mut sum = over_atoms(a, b, &term) + over_runs(a, b, &term);
+    let mut knots = a.knots();
+    knots.extend(b.knots());
+    if circle {
+        knots = knots.into_iter().flat_map(onto_the_circle).collect();
+        knots.extend([0.0, 360.0]);
+    }
+    let mut tolerance = 0.0;
+    for ends in rising(knots).windows(2) {
+        let (value, error) = over_stretch(a, b, [ends[0], ends[1]], &term);
+        sum += value;
+        tolerance += error;
+    }
+    if a.parts.is_empty() && b.parts.is_empty() {
+        Measured::atoms(sum)
+    } else if tolerance == 0.0 {
+        Measured::closed(sum)
+    } else {
+        Measured::quadrature(sum, f64::max(tolerance, 1e-12))
+    }
+}
+
+/// The place that a knot has between 0 and 360; copies outside are of no interest.
+fn onto_the_circle(knot: f64) -> Option<f64> {
+    knot.is_finite().then(|| knot.rem_euclid(360.0))
+}
+
+/// The integral between two neighbouring knots, with its error; 0 where a mass or a formula gives it.
+fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64) -> f64) -> (f64, f64) {
+    let mass = |law: &Law| {
+        let below = law.cumulative_of_parts(high) - law.cumulative_of_parts(low);
+        let above = law.remaining_of_parts(low) - law.remaining_of_parts(high);
+        below.min(above).max(0.0)
+    };
+    let certain = |p: f64, q: f64| {
+        if p <= 0.0 && q <= 0.0 {
+            0.0
+        } else {
+            term(libm::log(p), libm::log(q))
+        }
+    };
+    match (a.reaches(low, high), b.reaches(low, high)) {
+        (false, false) => (0.0, 0.0),
+        (true, false) => (certain(mass(a), 0.0), 0.0),
+        (false, true) => (certain(0.0, mass(b)), 0.0),
+        (true, true) if a.is_flat() && b.is_flat() => (certain(mass(a), mass(b)), 0.0),
+        (true, true) => {
+            let (mut sum, mut error) = (0.0, 0.0);
+            let (mut of_a, mut of_b) = (mass(a), mass(b));
+            if of_a + of_b < 1e-17 {
+                // Far out, where every term but one against nothing at all is next to nothing.
+                return (0.0, 1e-17);
+            }
+            let crossings = split_at_signs(&[low, high], |x| {
+                a.log_density(Spot::at(x)) - b.log_density(Spot::at(x))
+            });
+            for ends in crossings.windows(2) {
+                let ([value, p, q], [miss, ..]) = integrate([ends[0], ends[1]], 1e-11, |spot| {
+                    let (p, q) = (a.log_density(spot), b.log_density(spot));
+                    if p == f64::NEG_INFINITY && q == f64::NEG_INFINITY {
+                        return [0.0; 3];
+                    }
+                    [term(p, q), libm::exp(p), libm::exp(q)]
+                });
+                sum += value;
+                error += miss;
+                of_a -= p;
+                of_b -= q;
+            }
+            // What lies nearer to a steep end than numbers go is known as a whole only.
+            let left = [of_a, of_b].map(|left| if left > 1e-12 { left } else { 0.0 });
+            (sum + certain(left[0], left[1]), error + of_a.abs() + of_b.abs())
+        }
+    }
+}
+
+fn in_runs(runs: &[Run], x: f64) -> f64 {
+    let inside = runs
+        .iter()
+        .filter(|run| x.fract() == 0.0 && run.low <= x && x <= run.high);
+    inside.map(|run| run.each).sum()
+}
+
+fn over_atoms(a: &Law, b: &Law, term: &impl Fn(f64, f64) -> f64) -> f64 {
+    let (mut i, mut j, mut sum) = (0, 0, 0.0);
+    while i < a.atoms.len() || j < b.atoms.len() {
+        let x = match (a.atoms.get(i), b.atoms.get(j)) {
+            (Some(a), Some(b)) => a.0.min(b.0),
+            (Some(only), None) | (None, Some(only)) => only.0,
+            (None, None) => break,
+        };
+        let take = |law: &Law, next: &mut usize| {
+            let mut mass = in_runs(&law.runs, x);
+            if let Some(atom) = law.atoms.get(*next).filter(|atom| atom.0 == x) {
+                mass += atom.1;
+                *next += 1;
+            }
+            mass
+        };
+        let (p, q) = (take(a, &mut i), take(b, &mut j));
+        sum += term(libm::log(p), libm::log(q));
+    }
+    sum
+}
+
+/// Whole numbers in runs, but for those that are single numbers of either law.
+fn over_runs(a: &Law, b: &Law, term: &impl Fn(f64, f64) -> f64) -> f64 {
+    let ends = a.runs.iter().chain(&b.runs).flat_map(|run| [run.low, run.high + 1.0]);
+    let mut singles: Vec<f64> = a.atoms.iter().chain(&b.atoms).map(|atom| atom.0).collect();
+    singles.retain(|x| x.fract() == 0.0);
+    let singles = rising(singles);
+    let mut sum = 0.0;
+    for ends in rising(ends.collect()).windows(2) {
+        let (p, q) = (in_runs(&a.runs, ends[0]), in_runs(&b.runs, ends[0]));
+        if p + q > 0.0 {
+            let taken = singles.partition_point(|x| *x < ends[1]) - singles.partition_point(|x| *x < ends[0]);
+            sum += (ends[1] - ends[0] - taken as f64) * term(libm::log(p), libm::log(q));
+        }
+    }
+    sum
+}

@@ -1,0 +1,169 @@
+//! Total variation: how much probability would have to move. Other comparisons of probabilities are beside.
+
+use std::f64::consts::SQRT_2;
+
+use driftworld_spec::Distribution;
+
+use super::measured::Measured;
+use super::overlap;
+
+/// Largest difference of the probabilities that two distributions give to any event: ½ Σ |p − q|, ½ ∫ |f − g|.
+///
+/// A metric in `0..=1`; 1 exactly when nothing can be drawn by both. Takes distributions of numbers, of headings (on the
+/// circle), and of single values of any type; `None` for one of numbers beside one of words, for points with a density and
+/// for shares. Closed for normal, log-normal and exponential pairs and for all that is flat or in steps; otherwise by
+/// quadrature, mostly within 1e-9, in tens of microseconds.
+///
+/// Source: Levin, Peres & Wilmer 2017, "Markov Chains and Mixing Times", section 4.1.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::distribution::total_variation;
+/// use driftworld_spec::Distribution::Uniform;
+/// let (a, b) = (Uniform { low: 0.0, high: 2.0 }, Uniform { low: 1.5, high: 3.5 });
+/// assert!((total_variation(&a, &b).unwrap().value - 0.75).abs() < 1e-12);
+/// ```
+pub fn total_variation(a: &Distribution, b: &Distribution) -> Option<Measured> {
+    if a == b {
+        return overlap::sum(a, b, |_, _| 0.0).map(|_| Measured::closed(0.0));
+    }
+    if let Some(closed) = closed(a, b) {
+        return Some(Measured::closed(closed));
+    }
+    let sum = overlap::sum(a, b, |p, q| (libm::exp(p) - libm::exp(q)).abs() / 2.0)?;
+    Some(Measured {
+        value: sum.value.clamp(0.0, 1.0),
+        ..sum
+    })
+}
+
+fn closed(a: &Distribution, b: &Distribution) -> Option<f64> {
+    use Distribution::{Exponential, LogNormal, Normal};
+    match (a, b) {
+        (Normal { mean: m, std: s }, Normal { mean: n, std: t }) if *s > 0.0 && *t > 0.0 => {
+            Some(normals(*m, *s, *n, *t))
+        }
+        // The logarithm changes no probability.
+        (LogNormal { mu: m, sigma: s }, LogNormal { mu: n, sigma: t }) if *s > 0.0 && *t > 0.0 => {
+            Some(normals(*m, *s, *n, *t))
+        }
+        (Exponential { rate: r }, Exponential { rate: s }) => {
+            let (slow, fast) = (r.min(*s), r.max(*s));
+            let excess = fast / slow - 1.0;
+            if excess == 0.0 {
+                return Some(0.0);
+            }
+            // The densities cross once.
+            let at = libm::log1p(excess) / (slow * excess);
+            Some(libm::exp(-slow * at) - libm::exp(-fast * at))
+        }
+        _ => None,
+    }
+}
+
+fn normals(m: f64, s: f64, n: f64, t: f64) -> f64 {
+    let apart = (m - n).abs();
+    if s == t {
+        return libm::erf(apart / (2.0 * SQRT_2 * s));
+    }
+    // Measured in the narrower one's deviations, from its mean.
+    let (narrow, wide) = (s.min(t), s.max(t));
+    let (ratio, shift) = (wide / narrow, apart / narrow);
+    let a = ratio * ratio - 1.0;
+    let c = shift * shift + 2.0 * ratio * ratio * libm::log(ratio);
+    // The densities cross where (z − shift)² = ratio² z² − 2 ratio² ln ratio, which is a z² + 2 shift z − c = 0.
+    let root = (shift * shift + a * c).sqrt();
+    let low = -(shift + root) / a;
+    let high = c / (shift + root);
+    let mass = |low: f64, high: f64| super::part::normal_mass(low, high);
+    mass(low, high) - mass((low - shift) / ratio, (high - shift) / ratio)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distribution::How;
+    use Distribution::{Beta, Choice, Exponential, IntegerUniform, LogNormal, Normal, Poisson, Uniform, VonMises};
+    use driftworld_spec::Value;
+
+    #[track_caller]
+    fn check(a: &Distribution, b: &Distribution, expected: f64) {
+        let found = total_variation(a, b).unwrap();
+        assert!((found.value - expected).abs() < 1e-9, "{found:?}, expected {expected}");
+        assert!((total_variation(b, a).unwrap().value - expected).abs() < 1e-9);
+    }
+
+    #[test]
+    fn closed_forms_are_those_of_the_quadrature() {
+        let pairs = [
+            (Normal { mean: 1.0, std: 2.0 }, Normal { mean: 4.0, std: 0.5 }),
+            (Normal { mean: 1.0, std: 2.0 }, Normal { mean: 1.5, std: 2.0 }),
+            (LogNormal { mu: 1.0, sigma: 0.5 }, LogNormal { mu: 0.0, sigma: 2.0 }),
+            (Exponential { rate: 1.0 }, Exponential { rate: 5.0 }),
+        ];
+        for (a, b) in pairs {
+            let sum = overlap::sum(&a, &b, |p, q| (libm::exp(p) - libm::exp(q)).abs() / 2.0).unwrap();
+            assert!(matches!(sum.how, How::Quadrature { .. }));
+            check(&a, &b, sum.value);
+        }
+    }
+
+    #[test]
+    fn what_cannot_both_be_drawn_is_1_apart() {
+        let uniform = Uniform { low: 0.0, high: 1.0 };
+        check(&uniform, &Uniform { low: 1.0, high: 2.0 }, 1.0);
+        check(&uniform, &Poisson { mean: 3.0 }, 1.0);
+        check(
+            &uniform,
+            &Beta {
+                alpha: 1.0,
+                beta: 1.0,
+                low: None,
+                high: None,
+            },
+            0.0,
+        );
+    }
+
+    #[test]
+    fn long_runs_are_counted_not_listed() {
+        let run = |low: f64, high: f64| IntegerUniform { low, high };
+        check(&run(1.0, 1e9), &run(5e8 + 1.0, 1.5e9), 0.5);
+        // Of the thousand million whole numbers of the one, the other draws three.
+        check(&run(1.0, 1e9), &run(1.0, 3.0), 1.0 - 3e-9);
+    }
+
+    #[test]
+    fn headings_are_compared_around_the_circle() {
+        let all = VonMises { mean: 77.0, kappa: 0.0 };
+        check(
+            &all,
+            &Uniform {
+                low: -90.0,
+                high: 270.0,
+            },
+            0.0,
+        );
+        check(
+            &all,
+            &Uniform {
+                low: 350.0,
+                high: 370.0,
+            },
+            1.0 - 20.0 / 360.0,
+        );
+        let at = |mean: f64| VonMises { mean, kappa: 4.0 };
+        let near = total_variation(&at(350.0), &at(10.0)).unwrap().value;
+        check(&at(30.0), &at(50.0), near);
+    }
+
+    #[test]
+    fn words_are_compared_by_their_probabilities() {
+        let words = |weights: Option<Vec<f64>>| Choice {
+            values: vec![Value::Text("a".into()), Value::Text("b".into())],
+            weights,
+        };
+        check(&words(None), &words(Some(vec![1.0, 3.0])), 0.25);
+        assert_eq!(total_variation(&words(None), &Uniform { low: 0.0, high: 1.0 }), None);
+    }
+}

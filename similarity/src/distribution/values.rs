@@ -1,0 +1,157 @@
+//! Distributions of single values of any type: words, colours, truths, points. Those of numbers are in `law.rs`.
+
+use std::cmp::Ordering;
+
+use driftworld_spec::{Distribution, Value};
+
+/// Most values that are gone through.
+const MOST_VALUES: f64 = 100_000.0;
+
+/// Share of the entry `k` among so many, by weight where there are weights.
+pub(super) fn share(k: usize, count: usize, weights: Option<&[f64]>) -> f64 {
+    weights.map_or(1.0 / count as f64, |weights| weights[k] / weights.iter().sum::<f64>())
+}
+
+/// Every value that can occur with its probability, each once, in a fixed order; `None` for distributions with a density.
+///
+/// Of places taken in turn those of one round.
+pub(super) fn probabilities(distribution: &Distribution) -> Option<Vec<(Value, f64)>> {
+    let mut found = Vec::new();
+    add(&mut found, 1.0, distribution)?;
+    found.sort_by(|a, b| compare(&a.0, &b.0));
+    found.dedup_by(|next, kept| {
+        let same = compare(&next.0, &kept.0).is_eq();
+        if same {
+            kept.1 += next.1;
+        }
+        same
+    });
+    found.retain(|(_, mass)| *mass > 0.0);
+    Some(found)
+}
+
+fn add(found: &mut Vec<(Value, f64)>, scale: f64, distribution: &Distribution) -> Option<()> {
+    let nested = |value: &Value| matches!(value, Value::Distribution(_));
+    match distribution {
+        Distribution::Constant { value } if nested(value) => return None,
+        Distribution::Choice { values, .. } if values.iter().any(nested) => return None,
+        Distribution::Constant { value } => found.push((value.clone(), scale)),
+        Distribution::Choice { values, weights } => {
+            let total: f64 = weights
+                .as_ref()
+                .map_or(values.len() as f64, |weights| weights.iter().sum());
+            let weight = |k: usize| weights.as_ref().map_or(1.0, |weights| weights[k]);
+            let each = values.iter().enumerate();
+            found.extend(each.map(|(k, value)| (value.clone(), scale * weight(k) / total)));
+        }
+        Distribution::Bernoulli { p } => {
+            found.extend([
+                (Value::Boolean(false), scale * (1.0 - p)),
+                (Value::Boolean(true), scale * p),
+            ]);
+        }
+        Distribution::Points { values, .. } => {
+            let each = scale / values.len() as f64;
+            found.extend(values.iter().map(|point| (Value::Point(*point), each)));
+        }
+        Distribution::Grid {
+            low,
+            high,
+            columns,
+            rows,
+            jitter,
+            ..
+        } if jitter.unwrap_or(0.0) == 0.0 && columns * rows <= MOST_VALUES => {
+            let (columns, rows) = (*columns as u32, *rows as u32);
+            let along = |axis: usize, cell: u32, count: u32| {
+                low[axis] + (high[axis] - low[axis]) * (f64::from(cell) + 0.5) / f64::from(count)
+            };
+            let each = scale / (f64::from(columns) * f64::from(rows));
+            for cell in 0..columns * rows {
+                let point = [along(0, cell % columns, columns), along(1, cell / columns, rows)];
+                found.push((Value::Point(point), each));
+            }
+        }
+        Distribution::Mixture { parts, weights } => {
+            for (k, part) in parts.iter().enumerate() {
+                add(found, scale * share(k, parts.len(), weights.as_deref()), part)?;
+            }
+        }
+        _ => return None,
+    }
+    Some(())
+}
+
+/// Probabilities of the same value side by side, 0 where one cannot draw it; both lists are in order.
+pub(super) fn side_by_side(a: &[(Value, f64)], b: &[(Value, f64)]) -> Vec<[f64; 2]> {
+    let (mut i, mut j) = (0, 0);
+    let mut pairs = Vec::with_capacity(a.len().max(b.len()));
+    while i < a.len() || j < b.len() {
+        let order = match (a.get(i), b.get(j)) {
+            (Some(a), Some(b)) => compare(&a.0, &b.0),
+            (Some(_), None) => Ordering::Less,
+            _ => Ordering::Greater,
+        };
+        let p = if order.is_le() { a[i].1 } else { 0.0 };
+        let q = if order.is_ge() { b[j].1 } else { 0.0 };
+        i += usize::from(order.is_le());
+        j += usize::from(order.is_ge());
+        pairs.push([p, q]);
+    }
+    pairs
+}
+
+/// A fixed order of values: by type, then by content. Whole and real numbers are of one type.
+fn compare(a: &Value, b: &Value) -> Ordering {
+    let numbers = |a: &[f64], b: &[f64]| {
+        let each = a.iter().zip(b).map(|(a, b)| (a + 0.0).total_cmp(&(b + 0.0)));
+        each.fold(a.len().cmp(&b.len()), Ordering::then)
+    };
+    let rank = |value: &Value| match value {
+        Value::Boolean(_) => 0,
+        Value::Integer(_) | Value::Number(_) => 1,
+        Value::Text(_) => 2,
+        Value::Point(_) => 3,
+        Value::Color(_) => 4,
+        _ => 5,
+    };
+    match (a, b) {
+        (Value::Boolean(a), Value::Boolean(b)) => a.cmp(b),
+        (Value::Text(a), Value::Text(b)) => a.cmp(b),
+        _ => match (a.as_number(), b.as_number()) {
+            (Some(a), Some(b)) => (a + 0.0).total_cmp(&(b + 0.0)),
+            _ => rank(a).cmp(&rank(b)).then_with(|| {
+                let (a, b) = (a.as_vector().unwrap_or_default(), b.as_vector().unwrap_or_default());
+                numbers(a, b)
+            }),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_same_words_in_another_order_stand_side_by_side() {
+        let words = |words: &[&str], weights: &[f64]| Distribution::Choice {
+            values: words.iter().map(|word| Value::Text((*word).into())).collect(),
+            weights: Some(weights.to_vec()),
+        };
+        let a = probabilities(&words(&["b", "a"], &[1.0, 3.0])).unwrap();
+        let b = probabilities(&words(&["c", "b", "b"], &[2.0, 1.0, 1.0])).unwrap();
+        assert_eq!(side_by_side(&a, &b), [[0.75, 0.0], [0.25, 0.5], [0.0, 0.5]]);
+    }
+
+    #[test]
+    fn a_bernoulli_is_a_choice_of_truths() {
+        let choice = Distribution::Choice {
+            values: vec![Value::Boolean(true), Value::Boolean(false)],
+            weights: Some(vec![1.0, 3.0]),
+        };
+        assert_eq!(
+            probabilities(&choice),
+            probabilities(&Distribution::Bernoulli { p: 0.25 })
+        );
+    }
+}

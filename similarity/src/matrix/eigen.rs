@@ -1,0 +1,263 @@
+//! The largest eigenvalue of a symmetric matrix that is only known by what it makes of a vector. Which matrix is the callers'.
+//!
+//! Lanczos' method with full reorthogonalisation, in plain sums and square roots: the same bits on every machine, however many
+//! threads the callers' products use.
+
+use crate::order::SplitMix64;
+
+/// The most steps between two beginnings.
+const MAX_STEPS: usize = 160;
+/// How often it begins anew from the best vector found.
+const MAX_RESTARTS: usize = 12;
+/// How small the error of `A v = λ v` has to be, against the largest `λ`.
+const PRECISION: f64 = 1e-12;
+
+/// The largest eigenvalue of the part of a symmetric matrix that is orthogonal to some orthonormal vectors, and its eigenvector
+/// of length 1, whose entry of largest size is positive. `multiply(x, y)` puts the matrix times `x` into `y`.
+///
+/// None if nothing is orthogonal to those vectors. Eigenvalues that occur twice are found one after the other, by handing the
+/// first vector in again.
+pub(crate) fn largest(
+    n: usize,
+    multiply: &impl Fn(&[f64], &mut [f64]),
+    against: &[Vec<f64>],
+) -> Option<(f64, Vec<f64>)> {
+    // Another start each time: the old one has no part left in an eigenspace that it has led into before.
+    let mut chance = SplitMix64(against.len() as u64);
+    let mut start: Vec<f64> = (0..n).map(|_| chance.unit() - 0.5).collect();
+    let mut best = None;
+    for _ in 0..MAX_RESTARTS {
+        let Some(found) = climb(n, multiply, against, start.clone()) else {
+            break;
+        };
+        let done = found.error <= PRECISION * found.scale;
+        start.clone_from(&found.vector);
+        best = Some((found.value, found.vector));
+        if done {
+            break;
+        }
+    }
+    let (value, vector) = best?;
+    Some((value, with_fixed_sign(vector)))
+}
+
+struct Climb {
+    value: f64,
+    vector: Vec<f64>,
+    error: f64,
+    scale: f64,
+}
+
+/// One series of steps from a start.
+fn climb(n: usize, multiply: &impl Fn(&[f64], &mut [f64]), against: &[Vec<f64>], mut start: Vec<f64>) -> Option<Climb> {
+    let most = MAX_STEPS.min(n.saturating_sub(against.len()));
+    remove(&mut start, against);
+    remove(&mut start, against);
+    let length = dot(&start, &start).sqrt();
+    if most == 0 || length < 1e-9 {
+        return None;
+    }
+    let mut basis = vec![scaled(&start, 1.0 / length)];
+    let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
+    let mut next = vec![0.0; n];
+    loop {
+        let here = &basis[basis.len() - 1];
+        multiply(here, &mut next);
+        diagonal.push(dot(here, &next));
+        for _ in 0..2 {
+            remove(&mut next, against);
+            remove(&mut next, &basis);
+        }
+        let rest = dot(&next, &next).sqrt();
+        let steps = basis.len();
+        let scale = diagonal
+            .iter()
+            .chain(&beside)
+            .fold(0.0_f64, |a, b: &f64| a.max(b.abs()));
+        let ended = steps == most || rest <= 1e-14 * scale;
+        if ended || steps % 8 == 0 {
+            // Of each eigenvector of the small matrix only the last entry is needed to judge the error.
+            let mut last = vec![vec![0.0; steps]];
+            last[0][steps - 1] = 1.0;
+            let values = tridiagonal(&diagonal, &beside, &mut last);
+            let top = top_of(&values);
+            let error = (rest * last[0][top]).abs();
+            if ended || error <= PRECISION * scale {
+                let mut rows: Vec<Vec<f64>> = (0..steps).map(|row| unit(steps, row)).collect();
+                let values = tridiagonal(&diagonal, &beside, &mut rows);
+                let top = top_of(&values);
+                let mut vector = vec![0.0; n];
+                for (direction, row) in basis.iter().zip(&rows) {
+                    vector
+                        .iter_mut()
+                        .zip(direction)
+                        .for_each(|(to, from)| *to += row[top] * from);
+                }
+                let length = dot(&vector, &vector).sqrt();
+                return Some(Climb {
+                    value: values[top],
+                    vector: scaled(&vector, 1.0 / length),
+                    error: if rest <= 1e-14 * scale { 0.0 } else { error },
+                    scale,
+                });
+            }
+        }
+        basis.push(scaled(&next, 1.0 / rest));
+        beside.push(rest);
+    }
+}
+
+/// The eigenvalues of a symmetric tridiagonal matrix by the implicit QL method; `rows` of the identity become rows of the
+/// matrix of eigenvectors, which stand in its columns.
+///
+/// Source: Bowdler, Martin, Reinsch and Wilkinson 1968 (`tql2` of EISPACK).
+fn tridiagonal(diagonal: &[f64], beside: &[f64], rows: &mut [Vec<f64>]) -> Vec<f64> {
+    let n = diagonal.len();
+    let mut d = diagonal.to_vec();
+    let mut e = beside.to_vec();
+    e.resize(n, 0.0);
+    for low in 0..n {
+        // Three or so are enough for each; the bound only keeps a matrix of no numbers from going on for ever.
+        for _ in 0..64 {
+            let small = |k: usize| e[k].abs() <= f64::EPSILON * (d[k].abs() + d[k + 1].abs());
+            let high = (low..n - 1).find(|k| small(*k)).unwrap_or(n - 1);
+            if high == low {
+                break;
+            }
+            sweep(&mut d, &mut e, rows, low, high);
+        }
+    }
+    d
+}
+
+/// One QL step on the block from `low` to `high`.
+fn sweep(d: &mut [f64], e: &mut [f64], rows: &mut [Vec<f64>], low: usize, high: usize) {
+    let mut g = (d[low + 1] - d[low]) / (2.0 * e[low]);
+    let mut r = libm::hypot(g, 1.0);
+    g = d[high] - d[low] + e[low] / (g + r.copysign(g));
+    let (mut s, mut c, mut p) = (1.0, 1.0, 0.0);
+    for k in (low..high).rev() {
+        let (f, b) = (s * e[k], c * e[k]);
+        r = libm::hypot(f, g);
+        e[k + 1] = r;
+        if r == 0.0 {
+            d[k + 1] -= p;
+            e[high] = 0.0;
+            return;
+        }
+        (s, c) = (f / r, g / r);
+        g = d[k + 1] - p;
+        r = (d[k] - g) * s + 2.0 * c * b;
+        p = s * r;
+        d[k + 1] = g + p;
+        g = c * r - b;
+        for row in rows.iter_mut() {
+            let (left, right) = (row[k], row[k + 1]);
+            row[k + 1] = s * left + c * right;
+            row[k] = c * left - s * right;
+        }
+    }
+    d[low] -= p;
+    e[low] = g;
+    e[high] = 0.0;
+}
+
+fn top_of(values: &[f64]) -> usize {
+    let mut top = 0;
+    for (index, value) in values.iter().enumerate() {
+        if *value > values[top] {
+            top = index;
+        }
+    }
+    top
+}
+
+fn unit(n: usize, index: usize) -> Vec<f64> {
+    let mut vector = vec![0.0; n];
+    vector[index] = 1.0;
+    vector
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn scaled(vector: &[f64], by: f64) -> Vec<f64> {
+    vector.iter().map(|value| value * by).collect()
+}
+
+/// Takes from a vector its parts along some orthonormal ones.
+fn remove(vector: &mut [f64], directions: &[Vec<f64>]) {
+    for direction in directions {
+        let part = dot(vector, direction);
+        vector
+            .iter_mut()
+            .zip(direction)
+            .for_each(|(to, from)| *to -= part * from);
+    }
+}
+
+/// The vector or its opposite: that whose first entry of (within rounding) largest size is positive.
+fn with_fixed_sign(vector: Vec<f64>) -> Vec<f64> {
+    let largest = vector.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+    let leads = vector.iter().find(|value| value.abs() >= largest * (1.0 - 1e-9));
+    if leads.is_some_and(|value| *value < 0.0) {
+        scaled(&vector, -1.0)
+    } else {
+        vector
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(matrix: &[&[f64]], expected: &[f64]) {
+        let n = matrix.len();
+        let multiply = |x: &[f64], y: &mut [f64]| {
+            for (row, y) in matrix.iter().zip(y) {
+                *y = dot(row, x);
+            }
+        };
+        let mut found: Vec<Vec<f64>> = Vec::new();
+        for value in expected {
+            let (top, vector) = largest(n, &multiply, &found).unwrap();
+            assert!((top - value).abs() < 1e-10, "{top} for {value}");
+            let mut image = vec![0.0; n];
+            multiply(&vector, &mut image);
+            assert!(image.iter().zip(&vector).all(|(y, x)| (y - value * x).abs() < 1e-9));
+            found.push(vector);
+        }
+        assert!(largest(n, &multiply, &found).is_none(), "there are no more than {n}");
+    }
+
+    #[test]
+    fn eigenvalues_come_from_the_top_each_as_often_as_it_is_there() {
+        check(&[&[2.0, 0.0], &[0.0, 3.0]], &[3.0, 2.0]);
+        check(
+            &[&[0.0, 1.0, 1.0], &[1.0, 0.0, 1.0], &[1.0, 1.0, 0.0]],
+            &[2.0, -1.0, -1.0],
+        );
+        check(
+            &[&[1.0, 0.0, 0.0], &[0.0, 1.0, 0.0], &[0.0, 0.0, 1.0]],
+            &[1.0, 1.0, 1.0],
+        );
+        check(&[&[0.0, 0.0], &[0.0, 0.0]], &[0.0, 0.0]);
+        check(&[&[-4.0]], &[-4.0]);
+    }
+
+    #[test]
+    fn the_second_difference_has_its_known_eigenvalues() {
+        // 2 - 2 cos(k π / (n + 1)): close together at the top, which is what makes it hard.
+        let n = 400;
+        let multiply = |x: &[f64], y: &mut [f64]| {
+            for k in 0..n {
+                let before = if k > 0 { x[k - 1] } else { 0.0 };
+                y[k] = 2.0 * x[k] - before - x.get(k + 1).unwrap_or(&0.0);
+            }
+        };
+        let (found, _) = largest(n, &multiply, &[]).unwrap();
+        let expected = 2.0 + 2.0 * libm::cos(std::f64::consts::PI / (n + 1) as f64);
+        assert!((found - expected).abs() < 1e-9, "{found} for {expected}");
+    }
+}

@@ -1,0 +1,79 @@
+//! Earth mover's distance of two grids of the same mass. Of grids of different masses it is in `earth_movers_hat.rs`, of points in
+//! `transport/`.
+
+use super::grid::{Grid, GridShape};
+use crate::SimilarityError;
+use crate::transport::{Units, solve, taken};
+
+/// Least work that turns one grid into the other: mass times metres, between the centres of cells (Wasserstein-1 with the
+/// Euclidean distance).
+///
+/// Both grids must hold the same mass, in each plane: take [`Grid::normalised`] of both where only the places matter. In
+/// `0..=` the diameter times the mass, metres for a mass of 1. A metric. Mass does not move between planes; their work is added up.
+///
+/// Exact: what a cell has in both grids stays (with a metric no plan is better than one that leaves it), the rest is moved by
+/// network simplex. Two grids of 25 × 25 random masses take some milliseconds.
+///
+/// # Errors
+/// [`SimilarityError::GridsDiffer`] when the shapes do, [`SimilarityError::UnequalMasses`] when a plane's masses do by more than 1e-9
+/// of them, [`SimilarityError::TooMany`] when more than [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED) cells have to give, or take.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::{Grid, GridShape, grid_earth_movers_distance};
+/// let shape = GridShape::new(2, 2, 1, 10.0)?;
+/// let (a, b) = (Grid::new(shape, vec![3.0, 0.0, 0.0, 1.0])?, Grid::new(shape, vec![1.0, 2.0, 0.0, 1.0])?);
+/// assert_eq!(grid_earth_movers_distance(&a, &b)?, 20.0);
+/// # Ok::<(), driftworld_similarity::SimilarityError>(())
+/// ```
+/// Source: Rubner, Tomasi and Guibas 2000. Same numbers as `ot.emd2` (POT 0.9), see `tests/oracle/occupancy.json`.
+pub fn grid_earth_movers_distance(a: &Grid, b: &Grid) -> Result<f64, SimilarityError> {
+    let shape = a.shape();
+    shape.check(b.shape())?;
+    let planes = a.planes().zip(b.planes());
+    planes.map(|(a, b)| least_work(shape, Units::of(a, b)?)).sum()
+}
+
+/// The work between the cells of a plane. A unit beyond the last cell is nowhere: it is moved from and to any cell for nothing.
+pub(super) fn least_work(shape: GridShape, mut units: Units) -> Result<f64, SimilarityError> {
+    for (a, b) in units.from.iter_mut().zip(&mut units.to) {
+        let stays = (*a).min(*b);
+        *a -= stays;
+        *b -= stays;
+    }
+    let (from, to) = (taken(&units.from)?, taken(&units.to)?);
+    if from.is_empty() {
+        return Ok(0.0);
+    }
+    let costs = distances(shape, &from, &to);
+    let pick = |units: &[i64], cells: &[usize]| cells.iter().map(|&cell| units[cell]).collect::<Vec<i64>>();
+    let found = solve(&pick(&units.from, &from), &pick(&units.to, &to), &costs);
+    let work = found
+        .moves
+        .iter()
+        .map(|&(source, sink, flow)| flow as f64 * costs[source * to.len() + sink]);
+    Ok(work.sum::<f64>() * units.unit)
+}
+
+/// Distances in metres between cells of a plane, `(from, to)`; 0 from and to what is beyond the last.
+pub(super) fn distances(shape: GridShape, from: &[usize], to: &[usize]) -> Vec<f64> {
+    let (columns, rows) = (shape.columns(), shape.rows());
+    let mut table = Vec::with_capacity(columns * rows);
+    for y in 0..rows {
+        table.extend((0..columns).map(|x| ((x * x + y * y) as f64).sqrt() * shape.cell()));
+    }
+    let place = |cell: usize| (cell < columns * rows).then_some((cell % columns, cell / columns));
+    let ends: Vec<Option<(usize, usize)>> = to.iter().map(|&cell| place(cell)).collect();
+    let mut costs = Vec::with_capacity(from.len() * to.len());
+    for &cell in from {
+        let Some((x, y)) = place(cell) else {
+            costs.extend(std::iter::repeat_n(0.0, to.len()));
+            continue;
+        };
+        costs.extend(ends.iter().map(|end| match end {
+            Some((ex, ey)) => table[y.abs_diff(*ey) * columns + x.abs_diff(*ex)],
+            None => 0.0,
+        }));
+    }
+    costs
+}

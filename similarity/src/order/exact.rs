@@ -1,0 +1,96 @@
+//! The best path of few items, by dynamic programming over sets (Held and Karp 1962). What a step costs is handed in.
+
+use super::items::{Ends, Items};
+use crate::SimilarityError;
+
+/// The most items for which the best path is searched exactly. It takes 4 MB and some milliseconds; each item more doubles both.
+pub const MAX_EXACT: usize = 15;
+
+/// What makes up the cost of a path.
+#[derive(Clone, Copy)]
+pub(super) enum Total {
+    /// All steps together.
+    Sum,
+    /// The largest step alone.
+    Largest,
+}
+
+impl Total {
+    fn join(self, step: f64, rest: f64) -> f64 {
+        match self {
+            Self::Sum => step + rest,
+            Self::Largest => step.max(rest),
+        }
+    }
+}
+
+pub(super) fn order(items: &Items) -> Result<Vec<usize>, SimilarityError> {
+    if items.len() > MAX_EXACT {
+        return Err(SimilarityError::TooManyForMethod {
+            method: "exact",
+            found: items.len(),
+            limit: MAX_EXACT,
+        });
+    }
+    Ok(best_path(items.len(), &|a, b| items.gap(a, b), items.ends, Total::Sum))
+}
+
+/// The path of least total; of equal ones (within rounding) that with the lowest numbers first. Steps of infinite cost are
+/// taken only where no path does without. Time `O(2ⁿ n²)`, memory `2ⁿ n` numbers; `n` is at most [`MAX_EXACT`].
+pub(super) fn best_path(n: usize, cost: &impl Fn(usize, usize) -> f64, ends: Ends, total: Total) -> Vec<usize> {
+    debug_assert!(n <= MAX_EXACT, "larger sets are refused before");
+    let costs: Vec<f64> = (0..n * n).map(|k| cost(k / n, k % n)).collect();
+    let rest = rests(n, &costs, ends.last, total);
+    let largest = costs
+        .iter()
+        .filter(|cost| cost.is_finite())
+        .fold(0.0_f64, |a, b| a.max(b.abs()));
+    let slack = 1e-12 * largest * n as f64;
+    // Rounding must not decide between equal paths: whoever comes within it, and has the lowest number, is taken.
+    let lowest = |values: &[(usize, f64)]| {
+        let least = values.iter().map(|(_, value)| *value).fold(f64::INFINITY, f64::min);
+        values
+            .iter()
+            .find(|(_, value)| *value <= least + slack)
+            .map(|(item, _)| *item)
+    };
+    let full = (1_usize << n) - 1;
+    let starts: Vec<(usize, f64)> = (0..n)
+        .filter(|item| ends.first.is_none_or(|first| first == *item))
+        .map(|item| (item, rest[full * n + item]))
+        .collect();
+    let mut path: Vec<usize> = lowest(&starts).into_iter().collect();
+    let mut set = full;
+    while path.len() < n {
+        let here = path[path.len() - 1];
+        set &= !(1 << here);
+        let choices: Vec<(usize, f64)> = (0..n)
+            .filter(|item| set >> item & 1 == 1)
+            .map(|item| (item, total.join(costs[here * n + item], rest[set * n + item])))
+            .collect();
+        path.push(lowest(&choices).expect("some item is left"));
+    }
+    path
+}
+
+/// For each set and each item of it: the least total of a path that begins there, visits the set, and ends where it has to.
+fn rests(n: usize, costs: &[f64], last: Option<usize>, total: Total) -> Vec<f64> {
+    let mut rest = vec![f64::INFINITY; (1 << n) * n];
+    for end in (0..n).filter(|end| last.is_none_or(|last| last == *end)) {
+        rest[(1 << end) * n + end] = 0.0;
+    }
+    for set in 1_usize..1 << n {
+        if set.is_power_of_two() {
+            continue;
+        }
+        for start in (0..n).filter(|start| set >> start & 1 == 1) {
+            let others = set & !(1 << start);
+            let mut least = f64::INFINITY;
+            for next in (0..n).filter(|next| others >> next & 1 == 1) {
+                least = least.min(total.join(costs[start * n + next], rest[others * n + next]));
+            }
+            rest[set * n + start] = least;
+        }
+    }
+    rest
+}

@@ -1,0 +1,120 @@
+//! [`Items`]: the items of a matrix by the order of their names, which is how the methods see them. Finds no order itself.
+
+use super::OrderOptions;
+use crate::{DistanceMatrix, SimilarityError};
+
+/// Which items stand at the ends of a path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Ends {
+    pub(super) first: Option<usize>,
+    pub(super) last: Option<usize>,
+}
+
+/// The items of a matrix, numbered by their names: of equal choices a method takes that with the lowest number, and the order
+/// in which a matrix happens to hold its items changes nothing.
+pub(super) struct Items<'a> {
+    pub(super) matrix: &'a DistanceMatrix,
+    /// The fixed ends, as ranks.
+    pub(super) ends: Ends,
+    by_name: Vec<usize>,
+}
+
+impl<'a> Items<'a> {
+    pub(super) fn new(matrix: &'a DistanceMatrix, options: &OrderOptions) -> Result<Self, SimilarityError> {
+        let n = matrix.len();
+        if n == 0 {
+            return Err(SimilarityError::Empty);
+        }
+        for (end, item) in [("first", options.first), ("last", options.last)] {
+            if let Some(found) = item.filter(|item| *item >= n) {
+                return Err(SimilarityError::NoSuchEnd {
+                    end,
+                    found,
+                    most: n - 1,
+                });
+            }
+        }
+        if let (Some(first), Some(last)) = (options.first, options.last)
+            && first == last
+            && n > 1
+        {
+            let label = matrix.labels()[first].clone();
+            return Err(SimilarityError::EqualEnds { label });
+        }
+        let mut by_name: Vec<usize> = (0..n).collect();
+        by_name.sort_by(|a, b| matrix.labels()[*a].cmp(&matrix.labels()[*b]));
+        let rank = |index: usize| by_name.iter().position(|item| *item == index);
+        // A single item is its own first; naming it twice adds nothing.
+        let last = if n == 1 { None } else { options.last.and_then(rank) };
+        let first = options.first.and_then(rank);
+        Ok(Self {
+            matrix,
+            ends: Ends { first, last },
+            by_name,
+        })
+    }
+
+    /// How many items there are.
+    pub(super) fn len(&self) -> usize {
+        self.by_name.len()
+    }
+
+    /// The distance between two items, by rank.
+    pub(super) fn gap(&self, a: usize, b: usize) -> f64 {
+        self.matrix.get(self.by_name[a], self.by_name[b])
+    }
+
+    /// The largest distance.
+    pub(super) fn largest_gap(&self) -> f64 {
+        self.matrix.values().iter().copied().fold(0.0, f64::max)
+    }
+
+    /// An item's label, by rank.
+    pub(super) fn label(&self, rank: usize) -> &str {
+        &self.matrix.labels()[self.by_name[rank]]
+    }
+
+    /// From ranks to indices in the matrix.
+    pub(super) fn indices(&self, ranks: &[usize]) -> Vec<usize> {
+        ranks.iter().map(|rank| self.by_name[*rank]).collect()
+    }
+
+    /// The ranks of the items as they stand in the matrix.
+    pub(super) fn as_given(&self) -> Vec<usize> {
+        let mut ranks = vec![0; self.len()];
+        for (rank, index) in self.by_name.iter().enumerate() {
+            ranks[*index] = rank;
+        }
+        ranks
+    }
+
+    /// The same order but for the fixed ends, which are put where they belong.
+    pub(super) fn with_ends_outside(&self, mut ranks: Vec<usize>) -> Vec<usize> {
+        let Ends { first, last } = self.ends;
+        ranks.retain(|rank| Some(*rank) != first && Some(*rank) != last);
+        first.into_iter().chain(ranks).chain(last).collect()
+    }
+
+    /// Refuses fixed ends for a method that chooses its own.
+    pub(super) fn refuse_ends(&self, method: &'static str) -> Result<(), SimilarityError> {
+        for (end, item) in [("first", self.ends.first), ("last", self.ends.last)] {
+            if let Some(rank) = item {
+                let label = self.label(rank).to_owned();
+                return Err(SimilarityError::CannotFixEnds { method, end, label });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Ranks by rising value. Values closer than a thousand-millionth of their span count as equal, so that rounding decides no
+/// tie; then the name does.
+pub(super) fn by_rising(values: &[f64]) -> Vec<usize> {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let span = if high > low { high - low } else { 1.0 };
+    let key = |rank: usize| ((values[rank] - low) / span * 1e9).round() as i64;
+    let mut ranks: Vec<usize> = (0..values.len()).collect();
+    ranks.sort_by_key(|rank| key(*rank));
+    ranks
+}

@@ -1,0 +1,114 @@
+//! [`Method`]: the names of the ways to an order, and which is taken where none is asked for. What they do is in their files.
+
+use std::str::FromStr;
+
+use serde::Serialize;
+
+use super::MAX_EXACT;
+use crate::SimilarityError;
+
+/// How items are put into an order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Each time the nearest that is left. Simple, and often far from the shortest.
+    Nearest,
+    /// The shortest path, by dynamic programming (Held and Karp 1962). For up to 15 items.
+    Exact,
+    /// The nearest walk, then stretches are turned round (2-opt) and moved (Or-opt), and the path shaken, while that shortens it.
+    TwoOpt,
+    /// Along the axis on which similar items lie together (spectral seriation by the Fiedler vector). Chooses its own ends.
+    Spectral,
+    /// A walk round the minimum spanning tree: at most twice the shortest path, for which the distances must be a metric.
+    Tree,
+    /// The leaves of a clustering (average linkage), turned so that neighbours are as near as they can be (optimal leaf ordering).
+    Leaf,
+    /// The longest path: neighbours unlike each other. Exact for up to 15 items.
+    Contrast,
+    /// The least typical first, the most typical last: by mean distance to all, falling.
+    TypicalLast,
+    /// Each time what is farthest from everything met so far: as new as can be (farthest-first traversal).
+    FarthestFirst,
+    /// By chance, from a seed: a control.
+    Random,
+    /// The largest step as small as can be, and then the path as short. Exact for up to 15 items.
+    Bottleneck,
+    /// Every step close to a wanted one. Exact for up to 15 items.
+    TargetStep,
+    /// As the items stand in the matrix.
+    Given,
+}
+
+impl Method {
+    /// Every method.
+    pub const ALL: [Self; 13] = [
+        Self::Nearest,
+        Self::Exact,
+        Self::TwoOpt,
+        Self::Spectral,
+        Self::Tree,
+        Self::Leaf,
+        Self::Contrast,
+        Self::TypicalLast,
+        Self::FarthestFirst,
+        Self::Random,
+        Self::Bottleneck,
+        Self::TargetStep,
+        Self::Given,
+    ];
+
+    /// Exact where that is possible, 2-opt beyond.
+    pub fn default_for(items: usize) -> Self {
+        if items <= MAX_EXACT { Self::Exact } else { Self::TwoOpt }
+    }
+
+    /// The word by which the command line calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Nearest => "nearest",
+            Self::Exact => "exact",
+            Self::TwoOpt => "two-opt",
+            Self::Spectral => "spectral",
+            Self::Tree => "tree",
+            Self::Leaf => "leaf",
+            Self::Contrast => "contrast",
+            Self::TypicalLast => "typical-last",
+            Self::FarthestFirst => "farthest-first",
+            Self::Random => "random",
+            Self::Bottleneck => "bottleneck",
+            Self::TargetStep => "target-step",
+            Self::Given => "given",
+        }
+    }
+
+    /// All names, for messages and help.
+    pub fn names() -> String {
+        Self::ALL.map(Self::name).join(", ")
+    }
+}
+
+impl FromStr for Method {
+    type Err = SimilarityError;
+
+    fn from_str(word: &str) -> Result<Self, SimilarityError> {
+        let found = Self::ALL.into_iter().find(|method| method.name() == word);
+        found.ok_or_else(|| SimilarityError::UnknownMethod { found: word.to_owned() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_leads_back_to_its_method_and_serialises_as_such() {
+        for method in Method::ALL {
+            assert_eq!(method.name().parse(), Ok(method));
+            assert_eq!(
+                serde_json::to_string(&method).unwrap(),
+                format!("\"{}\"", method.name())
+            );
+        }
+        assert!("Exact".parse::<Method>().is_err());
+    }
+}

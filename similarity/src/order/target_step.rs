@@ -1,0 +1,27 @@
+//! Paths whose every step is close to a wanted one. Short paths are in `two_opt.rs`, even ones in `bottleneck.rs`.
+
+use super::exact::{MAX_EXACT, Total, best_path};
+use super::items::Items;
+use super::two_opt::from_the_lower_end;
+use super::{local_search, nearest};
+use crate::SimilarityError;
+
+/// How many times the path is shaken, for each item.
+const SHAKES_PER_ITEM: usize = 20;
+
+/// Minimises the sum of `|step - wanted|`.
+pub(super) fn order(items: &Items, wanted: Option<f64>) -> Result<Vec<usize>, SimilarityError> {
+    let sound = wanted.filter(|step| step.is_finite() && *step >= 0.0);
+    let Some(step) = sound else {
+        let found = wanted.map_or_else(|| "none".to_owned(), |step| step.to_string());
+        return Err(SimilarityError::BadTargetStep { found });
+    };
+    let n = items.len();
+    let cost = |a: usize, b: usize| (items.gap(a, b) - step).abs();
+    if n <= MAX_EXACT {
+        return Ok(best_path(n, &cost, items.ends, Total::Sum));
+    }
+    let walk = nearest::walk(n, &cost, items.ends);
+    let path = local_search::improve(walk, &cost, items.ends, SHAKES_PER_ITEM * n);
+    Ok(from_the_lower_end(path, items))
+}

@@ -1,0 +1,254 @@
+//! Laws that every method keeps, and answers found by trying everything. What a single file does is tested there.
+
+use super::*;
+use proptest::prelude::*;
+
+fn matrix(points: &[[f64; 2]]) -> DistanceMatrix {
+    let labels = (0..points.len()).map(|k| format!("{k:03}")).collect();
+    let distance = |a: usize, b: usize| (points[a][0] - points[b][0]).hypot(points[a][1] - points[b][1]);
+    DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>(distance(a, b))).unwrap()
+}
+
+fn points(most: usize) -> impl Strategy<Value = Vec<[f64; 2]>> {
+    prop::collection::vec(prop::array::uniform2(0.0..10.0), 1..most)
+}
+
+fn options(points: &[[f64; 2]], fixed: [bool; 2]) -> OrderOptions {
+    OrderOptions {
+        first: fixed[0].then_some(points.len() - 1),
+        last: (fixed[1] && points.len() > 1).then_some(0),
+        seed: 3,
+        target_step: Some(2.0),
+    }
+}
+
+/// The least value over all paths that keep to the ends, by trying all.
+fn least(matrix: &DistanceMatrix, options: &OrderOptions, value: &impl Fn(&Ordering) -> f64) -> f64 {
+    fn extend(
+        matrix: &DistanceMatrix,
+        options: &OrderOptions,
+        value: &impl Fn(&Ordering) -> f64,
+        path: &mut Vec<usize>,
+    ) -> f64 {
+        let n = matrix.len();
+        if path.len() == n {
+            let keeps = options.first.is_none_or(|first| path[0] == first)
+                && options.last.is_none_or(|last| path[n - 1] == last);
+            return if keeps {
+                value(&Ordering::given(matrix, path.clone()))
+            } else {
+                f64::INFINITY
+            };
+        }
+        let mut least = f64::INFINITY;
+        for item in 0..n {
+            if !path.contains(&item) {
+                path.push(item);
+                least = least.min(extend(matrix, options, value, path));
+                path.pop();
+            }
+        }
+        least
+    }
+    extend(matrix, options, value, &mut Vec::new())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn exact_methods_are_as_good_as_trying_everything(points in points(7), fixed in any::<[bool; 2]>()) {
+        let matrix = matrix(&points);
+        let options = options(&points, fixed);
+        let found = |method| order(&matrix, method, &options).unwrap();
+        let near = |found: f64, least: f64| (found - least).abs() < 1e-9;
+        let deviation = |path: &Ordering| path.steps.iter().map(|step| (step - 2.0).abs()).sum::<f64>();
+        prop_assert!(near(found(Method::Exact).length, least(&matrix, &options, &|path| path.length)));
+        prop_assert!(near(-found(Method::Contrast).length, least(&matrix, &options, &|path| -path.length)));
+        prop_assert!(near(deviation(&found(Method::TargetStep)), least(&matrix, &options, &deviation)));
+        let even = found(Method::Bottleneck);
+        let bound = least(&matrix, &options, &Ordering::largest_step);
+        prop_assert!(near(even.largest_step(), bound));
+        let kept = |path: &Ordering| if path.largest_step() <= bound + 1e-9 { path.length } else { f64::INFINITY };
+        prop_assert!(near(even.length, least(&matrix, &options, &kept)));
+    }
+
+    #[test]
+    fn every_method_visits_each_item_once_and_keeps_the_ends(points in points(24), fixed in any::<[bool; 2]>()) {
+        let matrix = matrix(&points);
+        let options = options(&points, fixed);
+        for method in Method::ALL {
+            let found = match order(&matrix, method, &options) {
+                Ok(found) => found,
+                Err(SimilarityError::TooManyForMethod { .. }) => {
+                    prop_assert!(method == Method::Exact && points.len() > MAX_EXACT);
+                    continue;
+                }
+                Err(SimilarityError::CannotFixEnds { .. }) => {
+                    let both = options.first.is_some() && options.last.is_some();
+                    let any = options.first.is_some() || options.last.is_some();
+                    prop_assert!(method == Method::Spectral && any || method == Method::Leaf && both, "{:?}", method);
+                    continue;
+                }
+                Err(error) => return Err(TestCaseError::fail(error.to_string())),
+            };
+            let mut sorted = found.indices.clone();
+            sorted.sort_unstable();
+            prop_assert_eq!(sorted, (0..points.len()).collect::<Vec<_>>(), "{:?}", method);
+            prop_assert!(options.first.is_none_or(|first| found.indices[0] == first), "{:?}", method);
+            prop_assert!(options.last.is_none_or(|last| found.indices[points.len() - 1] == last), "{:?}", method);
+            prop_assert_eq!(&found, &order(&matrix, method, &options).unwrap());
+        }
+    }
+
+    #[test]
+    fn lengths_stand_as_the_methods_promise(points in points(MAX_EXACT + 1), fixed in any::<[bool; 2]>()) {
+        let matrix = matrix(&points);
+        let options = options(&points, fixed);
+        let length = |method| order(&matrix, method, &options).unwrap().length;
+        let exact = length(Method::Exact);
+        prop_assert!(exact <= length(Method::TwoOpt) + 1e-9);
+        prop_assert!(length(Method::TwoOpt) <= length(Method::Nearest) + 1e-9);
+        prop_assert!(length(Method::Tree) <= 2.0 * exact + 1e-9);
+        prop_assert!(length(Method::Nearest) <= length(Method::Contrast) + 1e-9);
+    }
+
+    /// Where the items stand in the matrix must not matter: only their names and distances do.
+    #[test]
+    fn a_matrix_in_another_order_gives_the_same_order(points in points(20), shift in 0_usize..20) {
+        let n = points.len();
+        let moved: Vec<usize> = (0..n).map(|k| (k + shift) % n).collect();
+        let matrix = matrix(&points);
+        let labels = moved.iter().map(|index| matrix.labels()[*index].clone()).collect();
+        let other = DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>(matrix.get(moved[a], moved[b]))).unwrap();
+        let options = OrderOptions { target_step: Some(2.0), ..OrderOptions::default() };
+        for method in Method::ALL.into_iter().filter(|method| *method != Method::Given) {
+            if method == Method::Exact && n > MAX_EXACT {
+                continue;
+            }
+            let here = order(&matrix, method, &options).unwrap();
+            let there = order(&other, method, &options).unwrap();
+            let there: Vec<usize> = there.indices.iter().map(|index| moved[*index]).collect();
+            prop_assert_eq!(here.indices, there, "{:?}", method);
+        }
+    }
+}
+
+/// Items on a line: the one order along which all similar ones are neighbours.
+#[test]
+fn methods_for_similar_neighbours_find_the_line() {
+    let at = [3.0, 9.0, 0.0, 5.5, 1.0, 7.0, 2.2, 14.0];
+    let line: Vec<[f64; 2]> = at.iter().map(|x| [*x, 0.0]).collect();
+    let matrix = matrix(&line);
+    let expected = [2, 4, 6, 0, 3, 5, 1, 7];
+    for method in [
+        Method::Nearest,
+        Method::Exact,
+        Method::TwoOpt,
+        Method::Spectral,
+        Method::Tree,
+        Method::Leaf,
+        Method::Bottleneck,
+    ] {
+        let found = order(&matrix, method, &OrderOptions::default()).unwrap();
+        let backwards: Vec<usize> = found.indices.iter().rev().copied().collect();
+        assert!(
+            found.indices == expected || backwards == expected,
+            "{method:?}: {found:?}"
+        );
+        assert_eq!(found.length, 14.0);
+    }
+}
+
+#[test]
+fn the_least_typical_comes_first_and_the_medoid_last() {
+    let line: Vec<[f64; 2]> = [0.0, 1.0, 2.0, 3.5, 20.0].iter().map(|x| [*x, 0.0]).collect();
+    let found = order(&matrix(&line), Method::TypicalLast, &OrderOptions::default()).unwrap();
+    // Sums of distances: 26.5, 23.5, 22.5, 24, 73.5.
+    assert_eq!(found.indices, [4, 0, 3, 1, 2]);
+}
+
+#[test]
+fn farthest_first_always_takes_what_is_newest() {
+    let line: Vec<[f64; 2]> = [0.0, 1.0, 4.0, 10.0].iter().map(|x| [*x, 0.0]).collect();
+    let found = |options: OrderOptions| order(&matrix(&line), Method::FarthestFirst, &options).unwrap().indices;
+    assert_eq!(found(OrderOptions::default()), [0, 3, 2, 1]);
+    assert_eq!(found(OrderOptions::default().with_first(1)), [1, 3, 2, 0]);
+    assert_eq!(found(OrderOptions::default().with_last(3)), [0, 2, 1, 3]);
+}
+
+#[test]
+fn chance_follows_its_seed_and_given_keeps_the_order() {
+    let matrix = matrix(&[[0.0, 0.0]; 9]);
+    let random = |seed| {
+        let options = OrderOptions {
+            seed,
+            ..OrderOptions::default()
+        };
+        order(&matrix, Method::Random, &options).unwrap().indices
+    };
+    assert_eq!(random(7), random(7));
+    assert_ne!(random(7), random(8));
+    let given = |options: OrderOptions| order(&matrix, Method::Given, &options).unwrap().indices;
+    assert_eq!(given(OrderOptions::default()), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
+    assert_eq!(
+        given(OrderOptions::default().with_first(4).with_last(0)),
+        [4, 1, 2, 3, 5, 6, 7, 8, 0]
+    );
+}
+
+/// Equal items leave every path equal: then the names decide.
+#[test]
+fn ties_fall_to_the_first_names() {
+    let matrix = matrix(&[[0.0, 0.0]; 9]);
+    let options = OrderOptions {
+        target_step: Some(1.0),
+        ..OrderOptions::default()
+    };
+    for method in Method::ALL.into_iter().filter(|method| *method != Method::Random) {
+        let found = order(&matrix, method, &options).unwrap();
+        if !matches!(method, Method::Leaf) {
+            assert_eq!(found.indices, [0, 1, 2, 3, 4, 5, 6, 7, 8], "{method:?}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_ordered_says_why() {
+    let said = |matrix: &DistanceMatrix, method, options: &OrderOptions| {
+        order(matrix, method, options).unwrap_err().to_string()
+    };
+    let many = matrix(&[[0.0, 0.0]; 16]);
+    let free = OrderOptions::default();
+    assert_eq!(
+        said(&many, Method::Exact, &free),
+        "method exact: found 16 items, expected at most 15; use the method two-opt"
+    );
+    assert_eq!(
+        said(&many, Method::Nearest, &free.with_first(16)),
+        "order: found 16 as the first item, expected one of 0 to 15"
+    );
+    assert_eq!(
+        said(&many, Method::Nearest, &free.with_first(2).with_last(2)),
+        "order: found \"002\" as the first item and as the last, expected two different ones"
+    );
+    assert_eq!(
+        said(&matrix(&[]), Method::Nearest, &free),
+        "order: found no items, expected at least 1"
+    );
+    assert_eq!(
+        said(&many, Method::TargetStep, &free),
+        "method target-step: found none as the wanted step, expected a finite number of at least 0"
+    );
+    let squared = DistanceMatrix::measure(["a", "b", "c"].map(String::from).to_vec(), |a, b| {
+        Ok::<_, SimilarityError>(((b - a) * (b - a)) as f64)
+    })
+    .unwrap();
+    assert_eq!(
+        said(&squared, Method::Tree, &free),
+        "method tree: found \"a\" and \"c\" 4 apart but by way of \"b\" only 2, expected a metric; use the method two-opt"
+    );
+    // The advice of the last one, and a claim, which is trusted.
+    assert!(order(&squared, Method::TwoOpt, &free).is_ok());
+    assert!(order(&squared.with_nature(crate::Nature::Metric), Method::Tree, &free).is_ok());
+}

@@ -1,0 +1,114 @@
+//! Distance between two sets of pictures, pose by pose. The poses are chosen, and the pictures made, by whoever calls.
+
+use super::{Picture, picture_oklab, structural_similarity};
+use crate::{Nature, SimilarityError};
+
+/// How two pictures are compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PictureMeasure {
+    /// [`picture_oklab`]: colours where they stand. A metric.
+    #[default]
+    Oklab,
+    /// `(1 − SSIM) / 2` by [`structural_similarity`]: edges and shading, less so their colours. Half for unrelated pictures.
+    Structure,
+}
+
+impl PictureMeasure {
+    /// Its name in tables and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Oklab => "oklab",
+            Self::Structure => "ssim",
+        }
+    }
+
+    /// Which laws it keeps.
+    pub fn nature(self) -> Nature {
+        match self {
+            Self::Oklab => Nature::Metric,
+            Self::Structure => Nature::Distance,
+        }
+    }
+
+    /// How far two pictures are apart, in `0..=1`.
+    ///
+    /// # Errors
+    /// As [`picture_oklab`] and [`structural_similarity`].
+    pub fn between(self, a: Picture, b: Picture) -> Result<f64, SimilarityError> {
+        match self {
+            Self::Oklab => picture_oklab(a, b),
+            // Rounding makes the similarity of equals a little more than 1 now and then.
+            Self::Structure => Ok(((1.0 - structural_similarity(a, b)?) / 2.0).clamp(0.0, 1.0)),
+        }
+    }
+}
+
+/// Mean distance of pictures in pairs: the first of each, the second of each, and so on, as seen from the same poses.
+///
+/// In `0..=1`, of the nature of the measure. Both sets must have as many pictures, pair by pair of one size. The sum of the costs of
+/// the pairs.
+///
+/// # Errors
+/// [`SimilarityError::NoPictures`] without any, [`SimilarityError::Shape`] when one set has more; otherwise as
+/// [`PictureMeasure::between`].
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::picture::{Picture, PictureMeasure, views_distance};
+/// let (black, white) = ([0; 3], [255; 3]);
+/// let (black, white) = (Picture::new(&black, 1, 1)?, Picture::new(&white, 1, 1)?);
+/// let distance = views_distance(&[black, black], &[black, white], PictureMeasure::Oklab)?;
+/// assert!((distance - 0.5).abs() < 1e-6);
+/// # Ok::<(), driftworld_similarity::SimilarityError>(())
+/// ```
+pub fn views_distance(a: &[Picture], b: &[Picture], measure: PictureMeasure) -> Result<f64, SimilarityError> {
+    if a.len() != b.len() {
+        return Err(SimilarityError::Shape {
+            of: "pictures of the second set",
+            found: b.len(),
+            expected: a.len(),
+        });
+    }
+    if a.is_empty() {
+        return Err(SimilarityError::NoPictures);
+    }
+    let mut sum = 0.0;
+    for (&a, &b) in a.iter().zip(b) {
+        sum += measure.between(a, b)?;
+    }
+    Ok(sum / a.len() as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn sets_have_as_many_pictures() {
+        let rgb = [0; 3];
+        let picture = Picture::new(&rgb, 1, 1).unwrap();
+        let code = |a: &[Picture], b: &[Picture]| views_distance(a, b, PictureMeasure::Oklab).unwrap_err().code();
+        assert_eq!(code(&[picture], &[]), "similarity/shape");
+        assert_eq!(code(&[], &[]), "similarity/no-pictures");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+
+        #[test]
+        fn each_measure_keeps_its_laws(bytes in prop::collection::vec(any::<u8>(), 6 * 11 * 11 * 3)) {
+            let pictures: Vec<Picture> = bytes.chunks(11 * 11 * 3).map(|rgb| Picture::new(rgb, 11, 11).unwrap()).collect();
+            let (a, b, c) = (&pictures[..2], &pictures[2..4], &pictures[4..]);
+            for measure in [PictureMeasure::Oklab, PictureMeasure::Structure] {
+                let d = |a, b| views_distance(a, b, measure).unwrap();
+                prop_assert!(d(a, a) < 1e-12);
+                prop_assert_eq!(d(a, b), d(b, a));
+                prop_assert!((0.0..=1.0).contains(&d(a, b)));
+                if measure.nature().is_metric() {
+                    prop_assert!(d(a, c) <= d(a, b) + d(b, c) + 1e-12);
+                }
+            }
+        }
+    }
+}

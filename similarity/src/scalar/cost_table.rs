@@ -1,0 +1,196 @@
+//! [`CostTable`]: how far each choice is from each other, as its author says. Choices without a table are in `choice.rs`.
+
+use std::collections::BTreeMap;
+
+use crate::{Nature, SimilarityError};
+
+/// Most choices of a table.
+pub const MAX_CHOICES: usize = 256;
+
+/// A table of how far choices are apart, checked: costs are finite and at least 0, 0 for equals, and the same there and back.
+///
+/// [`CostTable::nature`] says whether it is a metric: whether no two choices are 0 apart and no detour is cheaper than the straight way.
+/// In `0..=`[`CostTable::largest`], in the unit of its author. Making it takes `O(n³)` for n choices, a look-up two searches by name.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::{Nature, scalar::CostTable};
+/// let names = ["walk", "run", "fly"].map(str::to_owned).to_vec();
+/// let table = CostTable::new(names, &[0.0, 1.0, 5.0, 1.0, 0.0, 4.0, 5.0, 4.0, 0.0])?;
+/// assert_eq!(table.between("fly", "run")?, 4.0);
+/// assert_eq!(table.nature(), Nature::Metric);
+/// # Ok::<(), driftworld_similarity::SimilarityError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct CostTable {
+    choices: BTreeMap<String, usize>,
+    costs: Vec<f64>,
+    nature: Nature,
+}
+
+impl CostTable {
+    /// From the names of the choices and the costs, `(choices, choices)`, row after row in the order of the names.
+    ///
+    /// # Errors
+    /// [`SimilarityError::TooMany`] above [`MAX_CHOICES`]; [`SimilarityError::Shape`] when the costs do not fill the table;
+    /// [`SimilarityError::TwiceNamed`] for a name that is there twice; [`SimilarityError::BadTable`] for a cost that is negative or not
+    /// finite, is not 0 between a choice and itself, or is not the same there and back.
+    pub fn new(names: Vec<String>, costs: &[f64]) -> Result<Self, SimilarityError> {
+        let count = names.len();
+        if count > MAX_CHOICES {
+            return Err(SimilarityError::TooMany {
+                found: count,
+                limit: MAX_CHOICES,
+            });
+        }
+        if costs.len() != count * count {
+            return Err(SimilarityError::Shape {
+                of: "cost table",
+                found: costs.len(),
+                expected: count * count,
+            });
+        }
+        check(&names, costs)?;
+        let nature = nature(count, costs);
+        let mut choices = BTreeMap::new();
+        for (index, name) in names.into_iter().enumerate() {
+            if choices.contains_key(&name) {
+                return Err(SimilarityError::TwiceNamed { name });
+            }
+            choices.insert(name, index);
+        }
+        Ok(Self {
+            choices,
+            costs: costs.to_vec(),
+            nature,
+        })
+    }
+
+    /// How far two choices are apart.
+    ///
+    /// # Errors
+    /// [`SimilarityError::UnknownChoice`] for a choice that the table does not have.
+    pub fn between(&self, a: &str, b: &str) -> Result<f64, SimilarityError> {
+        Ok(self.costs[self.index(a)? * self.choices.len() + self.index(b)?])
+    }
+
+    /// How far the two choices that are farthest apart are apart: what to divide by for a share in `0..=1`. 0 for a table of one choice.
+    pub fn largest(&self) -> f64 {
+        self.costs.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Which laws it keeps.
+    pub fn nature(&self) -> Nature {
+        self.nature
+    }
+
+    fn index(&self, name: &str) -> Result<usize, SimilarityError> {
+        self.choices
+            .get(name)
+            .copied()
+            .ok_or_else(|| SimilarityError::UnknownChoice {
+                found: name.to_owned(),
+                expected: self.choices.keys().cloned().collect::<Vec<_>>().join(", "),
+            })
+    }
+}
+
+fn check(names: &[String], costs: &[f64]) -> Result<(), SimilarityError> {
+    let count = names.len();
+    for (index, &found) in costs.iter().enumerate() {
+        let (row, column) = (index / count, index % count);
+        let back = costs[column * count + row];
+        let expected = if !found.is_finite() || found < 0.0 {
+            "a finite number of at least 0".to_owned()
+        } else if row == column && found != 0.0 {
+            "0, for nothing is apart from itself".to_owned()
+        } else if back.is_finite() && found != back {
+            format!("{back} as on the way back")
+        } else {
+            continue;
+        };
+        return Err(SimilarityError::BadTable {
+            a: names[row].clone(),
+            b: names[column].clone(),
+            found,
+            expected,
+        });
+    }
+    Ok(())
+}
+
+fn nature(count: usize, costs: &[f64]) -> Nature {
+    let cost = |a: usize, b: usize| costs[a * count + b];
+    let kept = (0..count).all(|a| {
+        (0..count).filter(|&b| b != a).all(|b| {
+            // Sums of decimal fractions miss by their rounding.
+            let straight = cost(a, b) * (1.0 - 1e-12);
+            straight > 0.0 && (0..count).all(|via| straight <= cost(a, via) + cost(via, b))
+        })
+    });
+    if kept { Nature::Metric } else { Nature::Distance }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn table(costs: &[f64]) -> Result<CostTable, SimilarityError> {
+        CostTable::new(["a", "b", "c"].map(str::to_owned).to_vec(), costs)
+    }
+
+    #[track_caller]
+    fn check(costs: &[f64], code: &str) {
+        assert_eq!(table(costs).unwrap_err().code(), code, "{costs:?}");
+    }
+
+    #[test]
+    fn a_table_that_is_none_is_refused() {
+        check(&[0.0, 1.0, 1.0, 0.0], "similarity/shape");
+        check(&[0.0, 1.0, 2.0, 1.5, 0.0, 1.0, 2.0, 1.0, 0.0], "similarity/bad-table");
+        check(&[0.5, 1.0, 2.0, 1.0, 0.0, 1.0, 2.0, 1.0, 0.0], "similarity/bad-table");
+        check(&[0.0, -1.0, 2.0, -1.0, 0.0, 1.0, 2.0, 1.0, 0.0], "similarity/bad-table");
+        check(
+            &[0.0, f64::NAN, 2.0, 1.0, 0.0, 1.0, 2.0, 1.0, 0.0],
+            "similarity/bad-table",
+        );
+        let error = CostTable::new(vec!["a".into(), "a".into()], &[0.0; 4]).unwrap_err();
+        assert_eq!(error.code(), "similarity/twice-named");
+        let names = (0..=MAX_CHOICES).map(|k| k.to_string()).collect();
+        assert_eq!(CostTable::new(names, &[]).unwrap_err().code(), "similarity/too-many");
+    }
+
+    #[test]
+    fn a_choice_that_is_not_there_is_named() {
+        let error = table(&[0.0; 9]).unwrap().between("a", "d").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "choice: found \"d\", expected one of a, b, c; add it to the cost table"
+        );
+    }
+
+    #[test]
+    fn a_shorter_detour_makes_it_a_distance() {
+        let nature = |ac: f64| table(&[0.0, 0.1, ac, 0.1, 0.0, 0.2, ac, 0.2, 0.0]).unwrap().nature();
+        assert_eq!(nature(0.3), Nature::Metric);
+        assert_eq!(nature(0.31), Nature::Distance);
+        assert_eq!(nature(0.0), Nature::Distance, "two choices that are 0 apart");
+    }
+
+    proptest! {
+        #[test]
+        fn what_says_that_it_is_a_metric_is_one(costs in prop::array::uniform3(0.0..2.0)) {
+            let [ab, ac, bc] = costs;
+            let table = table(&[0.0, ab, ac, ab, 0.0, bc, ac, bc, 0.0]).unwrap();
+            let triangles = ab <= ac + bc && ac <= ab + bc && bc <= ab + ac;
+            let apart = costs.iter().all(|&cost| cost > 0.0);
+            prop_assert_eq!(table.nature().is_metric(), triangles && apart);
+            for (a, b, expected) in [("a", "b", ab), ("c", "a", ac), ("b", "c", bc), ("b", "b", 0.0)] {
+                prop_assert_eq!(table.between(a, b).unwrap(), expected);
+                prop_assert_eq!(table.between(b, a).unwrap(), expected);
+            }
+            prop_assert_eq!(table.largest(), ab.max(ac).max(bc));
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! Difference of how many there are of each kind. Where they stand is in `occupancy/`.
+
+use std::collections::BTreeMap;
+
+/// Share of the things that have no counterpart: Σ |aₖ − bₖ| / Σ max(aₖ, bₖ) over all kinds k; 0 where there is nothing.
+///
+/// A metric (Ruzicka's, the weighted form of Jaccard's), in `0..=1`, no unit. For a single kind the difference as a share of the larger
+/// count. Kinds that are missing count 0. Time in proportion to the number of kinds.
+///
+/// Source: Ruzicka 1958; the triangle inequality as for Jaccard, Kosub 2019.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::scalar::counts_distance;
+/// use std::collections::BTreeMap;
+/// let (a, b) = (BTreeMap::from([("tree", 4), ("rock", 1)]), BTreeMap::from([("tree", 3)]));
+/// assert_eq!(counts_distance(&a, &b), 0.4);
+/// ```
+pub fn counts_distance<K: Ord>(a: &BTreeMap<K, usize>, b: &BTreeMap<K, usize>) -> f64 {
+    let of = |counts: &BTreeMap<K, usize>, kind: &K| counts.get(kind).copied().unwrap_or(0);
+    let only_b = b.iter().filter(|(kind, _)| !a.contains_key(kind));
+    let pairs = a.iter().map(|(kind, &count)| (count, of(b, kind)));
+    let (mut apart, mut all) = (0.0, 0.0);
+    for (mine, theirs) in pairs.chain(only_b.map(|(_, &count)| (0, count))) {
+        apart += mine.abs_diff(theirs) as f64;
+        all += mine.max(theirs) as f64;
+    }
+    if all == 0.0 { 0.0 } else { apart / all }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn counts() -> impl Strategy<Value = BTreeMap<u8, usize>> {
+        prop::collection::btree_map(0u8..4, 0usize..6, 0..4)
+    }
+
+    #[test]
+    fn nothing_is_like_nothing_and_unlike_anything() {
+        let (none, some) = (BTreeMap::from([(1, 0)]), BTreeMap::from([(1, 2)]));
+        assert_eq!(counts_distance(&none, &BTreeMap::new()), 0.0);
+        assert_eq!(counts_distance(&some, &BTreeMap::new()), 1.0);
+    }
+
+    proptest! {
+        #[test]
+        fn it_is_a_metric(a in counts(), b in counts(), c in counts()) {
+            let d = counts_distance;
+            prop_assert_eq!(d(&a, &a), 0.0);
+            prop_assert_eq!(d(&a, &b), d(&b, &a));
+            prop_assert!(d(&a, &c) <= d(&a, &b) + d(&b, &c) + 1e-12);
+            prop_assert!((0.0..=1.0).contains(&d(&a, &b)));
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! The exact optimum of a transport problem by pivots of a spanning tree. Masses come in whole units from `masses.rs`.
+
+use super::candidates::{Arc, nearest};
+use super::spanning_tree::SpanningTree;
+use super::start::greedy;
+
+/// Pivots, as a multiple of the nodes, after which prices are worked out anew and the tolerance is doubled: rounding cannot keep
+/// the search from ending. Problems of random masses need 2 to 4.
+const ROUND: usize = 64;
+
+/// A cheapest way to move the mass, in units.
+pub(crate) struct Solution {
+    /// Source, sink, units: only what moves something.
+    pub(crate) moves: Vec<(usize, usize, i64)>,
+    /// The price at each sink. That at a source is the least of what a cost exceeds them by.
+    pub(crate) sink_prices: Vec<f64>,
+}
+
+/// Moves units from sources to sinks at the least cost.
+///
+/// All units are above 0 and both sides have as many; `costs`: `(sources, sinks)`, finite, row after row.
+///
+/// Network simplex over a short list of arcs: block search (as LEMON has it, Király and Kovács 2012) finds those that enter. When
+/// none of the list would, all arcs are priced, and those that would lower the cost join the list, until there is none: the
+/// prices then prove that the plan is best.
+pub(crate) fn solve(sources: &[i64], sinks: &[i64], costs: &[f64]) -> Solution {
+    let mut arcs = nearest(costs, sinks.len());
+    let mut tree = greedy(sources, sinks, costs, &arcs);
+    let largest = costs.iter().fold(0.0, |largest: f64, cost| largest.max(cost.abs()));
+    let mut search = Search {
+        next: 0,
+        tolerance: 64.0 * f64::EPSILON * largest,
+        pivots: 0,
+        round: ROUND * (sources.len() + sinks.len()),
+    };
+    let cost = |source: usize, sink: usize| costs[source * sinks.len() + sink];
+    loop {
+        while let Some((arc, reduced_cost)) = search.entering(&arcs, &tree, sources.len()) {
+            tree.pivot(arc.source as usize, arc.sink as usize, reduced_cost);
+            search.pivots += 1;
+            if search.pivots % search.round == 0 {
+                tree.reprice(cost);
+                search.tolerance *= 2.0;
+            }
+        }
+        tree.reprice(cost);
+        let before = arcs.len();
+        price_all(&mut arcs, &tree, sources.len(), sinks.len(), costs, search.tolerance);
+        if arcs.len() == before {
+            return finished(&tree, sources.len(), sinks.len());
+        }
+        search.next = before;
+    }
+}
+
+struct Search {
+    /// Where in the list the search goes on.
+    next: usize,
+    /// What a reduced cost must be below, negated, to be no work of rounding.
+    tolerance: f64,
+    pivots: usize,
+    round: usize,
+}
+
+impl Search {
+    /// The arc of the most negative reduced cost in the first block that has one.
+    fn entering(&mut self, arcs: &[Arc], tree: &SpanningTree, sources: usize) -> Option<(Arc, f64)> {
+        let block = (2.0 * (arcs.len() as f64).sqrt()) as usize + 10;
+        let mut left = arcs.len();
+        while left > 0 {
+            if self.next >= arcs.len() {
+                self.next = 0;
+            }
+            let end = (self.next + block.min(left)).min(arcs.len());
+            let (mut least, mut found) = (-self.tolerance, None);
+            for arc in &arcs[self.next..end] {
+                let reduced = arc.cost - tree.price(arc.source as usize) - tree.price(sources + arc.sink as usize);
+                if reduced < least {
+                    (least, found) = (reduced, Some(*arc));
+                }
+            }
+            left -= end - self.next;
+            self.next = end;
+            if let Some(arc) = found {
+                return Some((arc, least));
+            }
+        }
+        None
+    }
+}
+
+/// Adds arcs that would lower the cost to the list: of each source the one that would most, and those at least half as good.
+fn price_all(arcs: &mut Vec<Arc>, tree: &SpanningTree, sources: usize, sinks: usize, costs: &[f64], tolerance: f64) {
+    let prices: Vec<f64> = (0..sinks).map(|sink| tree.price(sources + sink)).collect();
+    for (source, row) in costs.chunks_exact(sinks).enumerate() {
+        let price = tree.price(source);
+        let least = cheapest(row, &prices) - price;
+        if least < -tolerance {
+            let limit = (least / 2.0).min(-tolerance);
+            for (sink, (&cost, &at_sink)) in row.iter().zip(&prices).enumerate() {
+                if cost - at_sink - price < limit {
+                    let (source, sink) = (source as u32, sink as u32);
+                    arcs.push(Arc { cost, source, sink });
+                }
+            }
+        }
+    }
+}
+
+/// The least difference of a cost and a price. Four at a time, which the compiler turns into vectors.
+fn cheapest(row: &[f64], prices: &[f64]) -> f64 {
+    let mut least = [f64::INFINITY; 4];
+    let (rows, prices) = (row.chunks_exact(4), prices.chunks_exact(4));
+    let rest = rows.remainder().iter().zip(prices.remainder());
+    let rest = rest.fold(f64::INFINITY, |least, (cost, price)| least.min(cost - price));
+    for (costs, prices) in rows.zip(prices) {
+        for lane in 0..4 {
+            let difference = costs[lane] - prices[lane];
+            least[lane] = if difference < least[lane] {
+                difference
+            } else {
+                least[lane]
+            };
+        }
+    }
+    least.into_iter().fold(rest, f64::min)
+}
+
+fn finished(tree: &SpanningTree, sources: usize, sinks: usize) -> Solution {
+    let mut moves: Vec<(usize, usize, i64)> = tree.arcs().filter(|arc| arc.2 > 0).collect();
+    moves.sort_unstable();
+    Solution {
+        moves,
+        sink_prices: (0..sinks).map(|sink| tree.price(sources + sink)).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Marginals to the unit, and prices as high as costs allow that are equal to the cost wherever something moves: that proves the
+    /// optimum.
+    fn check(sources: &[i64], sinks: &[i64], costs: &[f64]) -> f64 {
+        let found = solve(sources, sinks, costs);
+        let (mut given, mut taken) = (vec![0; sources.len()], vec![0; sinks.len()]);
+        let scale = costs.iter().fold(1e-300, |largest: f64, cost| largest.max(cost.abs()));
+        let rows = costs.chunks(sinks.len());
+        let source_prices: Vec<f64> = rows.map(|row| cheapest(row, &found.sink_prices)).collect();
+        let mut total = 0.0;
+        for &(source, sink, units) in &found.moves {
+            assert!(units > 0);
+            given[source] += units;
+            taken[sink] += units;
+            let cost = costs[source * sinks.len() + sink];
+            total += units as f64 * cost;
+            let slack = cost - source_prices[source] - found.sink_prices[sink];
+            assert!(
+                slack.abs() <= 1e-11 * scale,
+                "an arc that carries flow has slack {slack}"
+            );
+        }
+        assert_eq!((given.as_slice(), taken.as_slice()), (sources, sinks));
+        total
+    }
+
+    /// The same number of units on both sides.
+    fn sides() -> impl Strategy<Value = (Vec<i64>, Vec<i64>)> {
+        let side = || prop::collection::vec(1i64..6, 1..30);
+        (side(), side()).prop_map(|(mut a, mut b)| {
+            let (of_a, of_b): (i64, i64) = (a.iter().sum(), b.iter().sum());
+            a[0] += (of_b - of_a).max(0);
+            b[0] += (of_a - of_b).max(0);
+            (a, b)
+        })
+    }
+
+    #[test]
+    fn two_by_two_goes_the_short_ways() {
+        assert_eq!(check(&[1, 1], &[1, 1], &[0.0, 5.0, 5.0, 0.0]), 0.0);
+        assert_eq!(check(&[3, 1], &[1, 3], &[1.0, 4.0, 2.0, 1.0]), 1.0 + 8.0 + 1.0);
+        assert_eq!(check(&[7], &[7], &[2.0]), 14.0);
+    }
+
+    #[test]
+    fn nearest_sinks_that_are_all_full_do_not_keep_it_from_the_optimum() {
+        // Fifty sources on a heap: the candidates of all are the same few sinks.
+        let costs: Vec<f64> = (0..50 * 200)
+            .map(|k| f64::from(k % 200) + f64::from(k / 200) * 1e-3)
+            .collect();
+        let total = check(&[4; 50], &[1; 200], &costs);
+        let expected = (0..200).map(f64::from).sum::<f64>() + 4.0 * 1e-3 * (0..50).map(f64::from).sum::<f64>();
+        assert!((total - expected).abs() < 1e-6, "{total}, expected {expected}");
+    }
+
+    proptest! {
+        #[test]
+        fn prices_prove_every_plan_best((sources, sinks) in sides(), numbers in prop::collection::vec(0.0f64..1.0, 900)) {
+            check(&sources, &sinks, &numbers[..sources.len() * sinks.len()]);
+        }
+
+        #[test]
+        fn ties_end_as_well((sources, sinks) in sides(), numbers in prop::collection::vec(0u8..3, 900)) {
+            let costs: Vec<f64> = numbers.into_iter().map(f64::from).collect();
+            check(&sources, &sinks, &costs[..sources.len() * sinks.len()]);
+        }
+
+        #[test]
+        fn one_unit_each_is_an_assignment(n in 1usize..30, numbers in prop::collection::vec(-1.0f64..1.0, 900)) {
+            check(&vec![1; n], &vec![1; n], &numbers[..n * n]);
+        }
+    }
+}

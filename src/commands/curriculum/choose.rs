@@ -1,0 +1,124 @@
+//! The variants of a curriculum and their order: all that are named, those of a probe, or a sequence of steps.
+
+use driftworld::curriculum::{Choice, Hypothesis, Picked, Steps, arrange, distances, probe, steps};
+use driftworld::similarity::DistanceMatrix;
+use driftworld::spec::{DEFAULT_VARIANT, Element, Variant};
+
+use super::{Curriculum, tables};
+use crate::commands::order::matrix;
+use crate::commands::{Failure, input};
+
+/// Variants and the order in which they are met.
+pub(super) struct Chosen {
+    pub(super) variants: Vec<Choice>,
+    pub(super) matrix: DistanceMatrix,
+    pub(super) order: Vec<usize>,
+    /// A table that proves of the variants what was asked for.
+    pub(super) proof: Option<String>,
+}
+
+impl Chosen {
+    /// The variants in an order.
+    pub(super) fn in_order(&self, order: &[usize]) -> Vec<Choice> {
+        order.iter().map(|index| self.variants[*index].clone()).collect()
+    }
+}
+
+impl Curriculum {
+    pub(super) fn choose(&self) -> Result<Chosen, Failure> {
+        let named = input::variants(&self.tasks)?;
+        if let Some(distance) = self.step_distance {
+            let wanted = Steps {
+                distance,
+                tolerance: self.tolerance,
+                count: self.steps,
+                element: self.probe,
+            };
+            let (task, pool, anchor) = self.one_task(&named)?;
+            let picked = steps(&task, &pool, &anchor, &wanted)?;
+            let order = (0..picked.len()).collect();
+            let proof = tables::steps(&picked, &wanted)?;
+            return chosen(&picked, self.probe, order, Some(proof));
+        }
+        if let Some(element) = self.probe {
+            let (task, pool, anchor) = self.one_task(&named)?;
+            let picked = probe(&task, &pool, &anchor, element, self.variants)?;
+            let matrix = distances(&picked, Some(element))?;
+            // A method that was asked for, or the order of a hypothesis: by default the gradual one.
+            let order = if self.ordering.method.is_some() {
+                self.ordering.order(&matrix, self.seed)?.1.indices
+            } else {
+                arrange(&matrix, self.order.map_or(Hypothesis::Gradual, Hypothesis::from), 0)?
+            };
+            let shown: Vec<&Picked> = order.iter().map(|index| &picked[*index]).collect();
+            let proof = tables::probe(&shown, &picked[0], element)?;
+            return chosen(&picked, Some(element), order, Some(proof));
+        }
+        let matrix = matrix(&named)?;
+        let order = match self.order {
+            Some(order) => {
+                let first = self.ordering.options(&matrix, self.seed)?.first.unwrap_or(0);
+                arrange(&matrix, order.into(), first)?
+            }
+            None => self.ordering.order(&matrix, self.seed)?.1.indices,
+        };
+        let variants = named
+            .iter()
+            .map(|(task, variant)| Choice::new(task, variant.name()))
+            .collect();
+        Ok(Chosen {
+            variants,
+            matrix,
+            order,
+            proof: None,
+        })
+    }
+
+    /// The task that all variants are of, by the name that it was called by; its variants; and the one to begin with.
+    fn one_task(&self, named: &[(String, Variant)]) -> Result<(String, Vec<Variant>, Variant), Failure> {
+        let (task, first) = &named[0];
+        if let Some((other, _)) = named.iter().find(|(other, _)| other != task) {
+            return Err(Failure::input(format!(
+                "found variants of {task} and of {other}, expected those of one task: --probe and --step-distance measure within a task"
+            )));
+        }
+        let pool: Vec<Variant> = named.iter().map(|(_, variant)| variant.clone()).collect();
+        let anchor = match &self.ordering.start {
+            Some(start) => {
+                let own = pool
+                    .iter()
+                    .find(|variant| format!("{task}#{}", variant.name()) == *start);
+                let names = || pool.iter().map(|variant| format!("{task}#{}", variant.name()));
+                own.cloned().ok_or_else(|| {
+                    let names: Vec<String> = names().collect();
+                    Failure::input(format!(
+                        "--start: found {start:?}, expected one of {}",
+                        names.join(", ")
+                    ))
+                })?
+            }
+            None if pool.len() == 1 => first.clone(),
+            // The variant in which everything has its default, by the name that the task gives it if it does.
+            None => {
+                let default = first.task().variant(DEFAULT_VARIANT)?;
+                let declared = pool.iter().find(|variant| variant.values() == default.values());
+                declared.cloned().unwrap_or(default)
+            }
+        };
+        Ok((task.clone(), pool, anchor))
+    }
+}
+
+fn chosen(
+    picked: &[Picked],
+    element: Option<Element>,
+    order: Vec<usize>,
+    proof: Option<String>,
+) -> Result<Chosen, Failure> {
+    Ok(Chosen {
+        variants: picked.iter().map(|picked| picked.choice.clone()).collect(),
+        matrix: distances(picked, element)?,
+        order,
+        proof,
+    })
+}

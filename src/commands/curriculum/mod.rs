@@ -1,0 +1,303 @@
+//! `driftworld curriculum`: learning and evaluation blocks of variants in the order of their distances. Which variants and which
+//! order is found in `choose.rs`, what is shown of them in `tables.rs` and `timeline.rs`; the design is the library's.
+
+mod choose;
+mod tables;
+mod timeline;
+mod words;
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use driftworld::curriculum::{Control, Design, Drifting, Evaluate, Hypothesis, control, design, experts};
+use driftworld::spec::{DriftSchedule, DriftSwitch, Element, Scenario, ScenarioForm, TaskLabel};
+
+use super::order::OrderArgs;
+use super::{Failure, output};
+pub(crate) use tables::{blocks, choices};
+
+/// Design learning and evaluation blocks from variants and their distances.
+///
+/// By default the variants named are learned one after the other in the order that --method finds. --probe takes, and where the
+/// task declares too few makes, variants that differ in one element of the decision process only, and prints the proof;
+/// --step-distance makes a sequence of even steps; --form arranges the blocks as lifelong learning knows them.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld curriculum find_objects --start find_objects#blue -o scenario.json
+  driftworld curriculum find_objects --probe reward --order gradual --controls controls -o reward.json --plot reward.png
+  driftworld curriculum find_objects#blue --probe observation --step-distance 0.1 --steps 5 -o steps.json
+  driftworld curriculum find_objects#blue find_objects#dusk --form alternating --blocks 6 --drift cosine -o drift.json
+  driftworld curriculum find_objects --form expert -o experts
+  driftworld run scenario.json --agent random --logs log")]
+pub(crate) struct Curriculum {
+    /// Variants, or tasks, which stand for all their variants.
+    #[arg(required = true, value_name = "TASK")]
+    tasks: Vec<String>,
+    #[command(flatten)]
+    ordering: OrderArgs,
+    /// Probe one element: variants that differ from the start in it and in nothing else. state, action, transition, reward or
+    /// observation.
+    #[arg(long, value_parser = words::element, value_name = "ELEMENT")]
+    probe: Option<Element>,
+    /// How many variants the probe takes; all that are declared, and at least 4, if not said.
+    #[arg(long, requires = "probe", conflicts_with = "step_distance", value_name = "N")]
+    variants: Option<usize>,
+    /// The order of the variants, from --start on.
+    #[arg(long, value_enum, conflicts_with_all = ["method", "step_distance", "end"])]
+    order: Option<Order>,
+    /// Make a sequence of variants of which each is this far from the one before: in the probed element, or in all.
+    #[arg(long, value_name = "DISTANCE", conflicts_with_all = ["method", "end"])]
+    step_distance: Option<f64>,
+    /// How far off each step may be.
+    #[arg(long, requires = "step_distance", default_value_t = 0.001)]
+    tolerance: f64,
+    /// How many steps: one fewer than variants.
+    #[arg(long, requires = "step_distance", default_value_t = 4, value_name = "N")]
+    steps: u32,
+    /// How learning blocks are arranged; the variants one after the other, beginning anew when there are more blocks, if not said.
+    #[arg(long, value_enum)]
+    form: Option<Form>,
+    /// How many learning blocks; as many as the form has of itself if not said.
+    #[arg(long, value_name = "N")]
+    blocks: Option<u32>,
+    /// Write so many lifetimes of the permuted form, each in an order of its own, into the folder --output.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    lifetimes: Option<u64>,
+    /// Learning blocks drift from each variant to the next: linear, cosine, step:N or sawtooth:N. With --blocks the whole way is
+    /// shared out among so many blocks, across their borders.
+    #[arg(long, value_parser = words::schedule, value_name = "SCHEDULE")]
+    drift: Option<DriftSchedule>,
+    /// Values with nothing in between switch by chance, more likely as the drift goes on, not at a point.
+    #[arg(long, requires = "drift")]
+    mix: bool,
+    /// The scenario's name.
+    #[arg(long, default_value = "curriculum")]
+    name: String,
+    /// Experiences of each learning block.
+    #[arg(long, default_value_t = 20, value_name = "N")]
+    learn: u32,
+    /// Experiences of the first variant in a block before deployment.
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pre_deployment: u32,
+    /// Experiences of each variant in each evaluation block.
+    #[arg(long, visible_alias = "evaluate-with", default_value_t = 5, value_name = "N")]
+    eval_episodes: u32,
+    /// When the agent is evaluated, frozen, in all variants, seen and to come.
+    #[arg(long, value_enum, default_value_t = When::Every)]
+    evaluate: When,
+    /// Evaluate after so many learning blocks each instead; 0 is before the first.
+    #[arg(long, value_delimiter = ',', value_name = "N,…", conflicts_with = "evaluate")]
+    evaluate_after: Option<Vec<u32>>,
+    /// Whether the learner is told which task it is in.
+    #[arg(long, value_enum, default_value_t = Label::None)]
+    task_label: Label,
+    /// What all worlds of the scenario follow from; evaluation and learning never share one.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Write the controls into this folder: the same variants, worlds and counts in reversed, random and contrasting order.
+    #[arg(long, value_name = "DIR", conflicts_with = "lifetimes")]
+    controls: Option<PathBuf>,
+    /// Draw the blocks over the experiences into this PNG file.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    /// The scenario file, or - for standard output; a folder where there are several scenarios.
+    #[arg(short, long, default_value = "-", value_name = "FILE")]
+    output: PathBuf,
+}
+
+/// When the agent is evaluated.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum When {
+    /// Before the first learning block and after each.
+    Every,
+    /// Before the first and after the last.
+    Ends,
+}
+
+/// The order of the variants.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Order {
+    /// By growing distance from the first: the unlike come last.
+    Gradual,
+    /// The longest path from the first: neighbours as unlike as can be.
+    Abrupt,
+    /// The shortest path from the first: neighbours as alike as can be.
+    Path,
+    /// Each time what is farthest from everything met so far.
+    Farthest,
+}
+
+/// How learning blocks are arranged.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Form {
+    /// Each variant once, in one long block.
+    Condensed,
+    /// Each variant again and again, in several short blocks: 3 if --blocks does not say.
+    Dispersed,
+    /// Each variant once, in an order drawn by chance: another in each of --lifetimes.
+    Permuted,
+    /// Two variants in turn, 3 times each if --blocks does not say.
+    Alternating,
+    /// Single-task experts: a scenario for every variant, in which it alone is learned.
+    Expert,
+    /// One after the other, and anew when there are more blocks.
+    Custom,
+}
+
+/// Whether the learner is told which task it is in.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Label {
+    /// It is not.
+    None,
+    /// Beside its observations.
+    Info,
+    /// As part of its observations.
+    Observation,
+}
+
+impl Curriculum {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let several = self.form == Some(Form::Expert) || self.lifetimes.is_some();
+        self.check_arguments(several)?;
+        let chosen = self.choose()?;
+        // What is printed beside a scenario on standard output would spoil it.
+        let say = |text: String| {
+            if self.output.as_os_str() == "-" {
+                output::note(text);
+                return Ok(());
+            }
+            output::line(text)
+        };
+        if let Some(proof) = &chosen.proof {
+            say(proof.clone())?;
+        }
+        let options = self.design();
+        let picked = chosen.in_order(&chosen.order);
+        if several {
+            return self.write_several(&chosen, &options);
+        }
+        let scenario = design(&picked, &options)?;
+        write_checked(&self.output, &scenario)?;
+        if self.output.as_os_str() != "-" {
+            output::line(blocks(&scenario, Some(&chosen.matrix)))?;
+        }
+        if let Some(path) = &self.plot {
+            timeline::picture(&scenario)?.write(path)?;
+        }
+        if let Some(folder) = &self.controls {
+            for kind in Control::ALL {
+                let order = control(&chosen.matrix, &chosen.order, kind, self.seed)?;
+                let options = Design {
+                    name: format!("{}-{}", self.name, kind.name()),
+                    ..options.clone()
+                };
+                let scenario = design(&chosen.in_order(&order), &options)?;
+                let path = folder.join(format!("{}.json", options.name));
+                write_checked(&path, &scenario)?;
+                say(format!("{}: {}", path.display(), tables::path(&chosen, &order)))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_arguments(&self, several: bool) -> Result<(), Failure> {
+        if self.lifetimes.is_some() && self.form != Some(Form::Permuted) {
+            return Err(Failure::usage(
+                "--lifetimes are of the permuted form: add --form permuted",
+            ));
+        }
+        if several && self.output.as_os_str() == "-" {
+            return Err(Failure::usage(
+                "several scenarios are written: name a folder with --output",
+            ));
+        }
+        if several && (self.plot.is_some() || self.controls.is_some()) {
+            return Err(Failure::usage(
+                "--plot and --controls are of one scenario: leave them out, or --lifetimes and --form expert",
+            ));
+        }
+        if self.form == Some(Form::Expert) && self.drift.is_some() {
+            return Err(Failure::usage("an expert learns one variant alone: leave --drift out"));
+        }
+        Ok(())
+    }
+
+    fn design(&self) -> Design {
+        Design {
+            name: self.name.clone(),
+            learn: self.learn,
+            evaluate: self.eval_episodes,
+            evaluation: match (&self.evaluate_after, self.evaluate) {
+                (Some(places), _) => Evaluate::After(places.clone()),
+                (None, When::Every) => Evaluate::Every,
+                (None, When::Ends) => Evaluate::Ends,
+            },
+            form: self.form.map(|form| match form {
+                Form::Condensed => ScenarioForm::Condensed,
+                Form::Dispersed => ScenarioForm::Dispersed,
+                Form::Permuted => ScenarioForm::Permuted,
+                Form::Alternating => ScenarioForm::Alternating,
+                Form::Expert => ScenarioForm::Expert,
+                Form::Custom => ScenarioForm::Custom,
+            }),
+            blocks: self.blocks,
+            lifetime: 0,
+            drifting: self.drift.map(|schedule| Drifting {
+                schedule,
+                switch: if self.mix {
+                    DriftSwitch::Mixture
+                } else {
+                    DriftSwitch::AtPoint
+                },
+            }),
+            pre_deployment: self.pre_deployment,
+            task_label: match self.task_label {
+                Label::None => TaskLabel::None,
+                Label::Info => TaskLabel::Info,
+                Label::Observation => TaskLabel::Observation,
+            },
+            seed: self.seed,
+        }
+    }
+
+    /// Experts, or lifetimes of the permuted form: each in a file named after it.
+    fn write_several(&self, chosen: &choose::Chosen, options: &Design) -> Result<(), Failure> {
+        let picked = chosen.in_order(&chosen.order);
+        let lifetime = |lifetime: u64| {
+            let options = Design {
+                name: format!("{}-{}", self.name, lifetime + 1),
+                lifetime,
+                ..options.clone()
+            };
+            design(&picked, &options)
+        };
+        let scenarios = match self.lifetimes {
+            Some(lifetimes) => (0..lifetimes).map(lifetime).collect::<Result<Vec<_>, _>>()?,
+            None => experts(&picked, options)?,
+        };
+        for scenario in &scenarios {
+            let path = self.output.join(format!("{}.json", scenario.name));
+            write_checked(&path, scenario)?;
+            output::line(format!("{}: {}", path.display(), tables::learned(scenario)))?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes a scenario. What the schema refuses, such as a name that no folder can have, is refused before it is written.
+fn write_checked(path: &Path, scenario: &Scenario) -> Result<(), Failure> {
+    let text = scenario.to_json_pretty();
+    Scenario::from_json("scenario", &text)?;
+    output::write_or_print(path, &text)
+}
+
+impl From<Order> for Hypothesis {
+    fn from(order: Order) -> Self {
+        match order {
+            Order::Gradual => Self::Gradual,
+            Order::Abrupt => Self::Abrupt,
+            Order::Path => Self::Path,
+            Order::Farthest => Self::Farthest,
+        }
+    }
+}

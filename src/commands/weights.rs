@@ -1,0 +1,39 @@
+//! `--weight R=2`: what the elements of the decision process weigh in a distance. Distances are `similarity`'s.
+
+use clap::Args;
+use driftworld::similarity::Weights;
+use driftworld::spec::Element;
+
+use super::Failure;
+
+/// What elements weigh; shared by the commands that measure.
+#[derive(Args, Clone, Default)]
+pub(crate) struct WeightArgs {
+    /// What an element weighs in the whole distance, over what the task says: S, A, T, R or O, and a number, such as R=2.
+    /// Repeatable.
+    #[arg(long, value_name = "ELEMENT=WEIGHT", value_parser = weight)]
+    weight: Vec<(Element, f64)>,
+}
+
+impl WeightArgs {
+    /// Weights with these laid over them.
+    pub(crate) fn over(&self, mut weights: Weights) -> Result<Weights, Failure> {
+        for (element, weight) in &self.weight {
+            weights = weights.with(*element, *weight)?;
+        }
+        Ok(weights)
+    }
+}
+
+fn weight(text: &str) -> Result<(Element, f64), String> {
+    let expected = || "expected S, A, T, R or O, then = and a number of at least 0, such as R=2".to_owned();
+    let (element, weight) = text.split_once('=').ok_or_else(expected)?;
+    let weight: f64 = weight.parse().map_err(|_| expected())?;
+    let known = |known: &Element| known.letter().eq_ignore_ascii_case(element) || known.name() == element;
+    let element = Element::ALL.into_iter().find(known).ok_or_else(expected)?;
+    if weight.is_finite() && weight >= 0.0 {
+        Ok((element, weight))
+    } else {
+        Err(expected())
+    }
+}
