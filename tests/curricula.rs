@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use driftworld::similarity::{Weights, variant_distance};
-use driftworld::spec::{BlockKind, Element, Scenario, Variant};
+use driftworld::spec::{BlockKind, Element, Regime, Scenario, Variant};
 use driftworld::tasks;
 use serde_json::Value;
 
@@ -25,10 +25,11 @@ fn scenario(name: &str) -> Scenario {
 fn learned(scenario: &Scenario) -> Vec<Variant> {
     let learning = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
     let regimes = learning.flat_map(|block| &block.regimes);
-    let variant = |task: &str, variant: &str| tasks::variant(&format!("{task}#{variant}"));
-    regimes
-        .map(|regime| variant(&regime.task, &regime.variant).unwrap_or_else(|error| panic!("{error}")))
-        .collect()
+    let variant = |regime: &Regime| {
+        let task = tasks::task(&regime.task).unwrap_or_else(|error| panic!("{error}"));
+        regime.resolve(&task).unwrap_or_else(|error| panic!("{error}"))
+    };
+    regimes.map(variant).collect()
 }
 
 /// The elements in which two variants differ, by their letters.
