@@ -67,7 +67,7 @@ fn each_assessment_curriculum_changes_its_element_and_no_other() {
 #[test]
 fn the_example_of_the_paper_changes_what_it_says() {
     let variants = learned(&scenario("blue_red_green"));
-    let names: Vec<&str> = variants.iter().map(|variant| variant.name()).collect();
+    let names: Vec<&str> = variants.iter().map(Variant::name).collect();
     assert_eq!(names, ["a", "b", "c", "d"]);
     let steps: Vec<String> = variants.windows(2).map(|pair| differs(&pair[0], &pair[1])).collect();
     assert_eq!(
