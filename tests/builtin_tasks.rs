@@ -41,7 +41,7 @@ fn check(task: &str) {
                 let (earned, steps, last) = live(&variant, index, &mut still);
                 let haste = variant
                     .value("haste")
-                    .and_then(|value| value.as_number())
+                    .and_then(driftworld::spec::Value::as_number)
                     .unwrap_or(-0.1);
                 !last.success && (earned - haste * f64::from(steps)).abs() < 1e-6
             } else {
@@ -108,7 +108,7 @@ fn each_task_of_the_paper_has_variants_that_differ_from_its_first_in_one_element
             let alone = variants[1..]
                 .iter()
                 .filter(|variant| only_element(&variants[0], variant) == Some(element));
-            let names: Vec<&str> = alone.map(|variant| variant.name()).collect();
+            let names: Vec<&str> = alone.map(Variant::name).collect();
             assert!(names.len() >= 3, "{task}: in {} alone differ {names:?}", element.name());
         }
     }

@@ -116,7 +116,8 @@ fn usage_errors_exit_with_2() {
 #[test]
 fn validate_accepts_the_examples_and_the_maps_of_the_original() {
     let said = succeed(&["validate", "examples/tasks"]);
-    assert_eq!(said.lines().count(), 3, "{said}");
+    assert_eq!(said.lines().count(), 7, "{said}");
+    assert_eq!(succeed(&["validate", "examples/curricula"]).lines().count(), 6);
     for map in ["map_findobjects_0.json", "map_simple.json", "map_spawning.json"] {
         let Some(path) = reference(map) else { return };
         succeed(&["validate", "--l2explorer", text(&path)]);
@@ -244,6 +245,33 @@ fn render_draws_a_map_of_the_original() {
     ]);
     let bytes = std::fs::read(&picture).expect("the picture was written");
     assert_eq!(&bytes[1..4], b"PNG");
+}
+
+#[test]
+fn a_sheet_shows_variants_or_what_a_scenario_learns() {
+    let folder = scratch();
+    let path = folder.path().join("sheet.png");
+    let small = ["--size", "32", "-o", text(&path)];
+    let said = succeed(&[&["sheet", "find_objects#red", "get_to_goal#soft"], &small[..]].concat());
+    assert!(said.contains("188 × 102 pixels"), "two beside each other: {said}");
+    let scenario = [
+        "sheet",
+        "--scenario",
+        "examples/curricula/reward.json",
+        "--columns",
+        "1",
+    ];
+    let said = succeed(&[&scenario[..], &small[..]].concat());
+    assert!(said.contains("100 × 372 pixels"), "four below each other: {said}");
+    let error = fail(
+        1,
+        &["sheet", "find_objects", "get_to_goal", "select_object", "moving_object"],
+    );
+    assert!(error.contains("expected 1 to 60"), "{error}");
+    fail(
+        2,
+        &["sheet", "find_objects", "--scenario", "examples/curricula/reward.json"],
+    );
 }
 
 #[test]
@@ -462,7 +490,8 @@ fn a_variant_is_found_at_a_distance_and_what_is_printed_can_be_pasted() {
         found["variant"]["found"],
         serde_json::json!({ "extends": "red", "target_reward": 0.0 })
     );
-    let error = fail(1, &["vary", "find_objects#red", "--element", "T", "--distance", "0.5"]);
+    let settled = "examples/tasks/settlement.json#near";
+    let error = fail(1, &["vary", settled, "--element", "T", "--distance", "0.5"]);
     assert!(error.contains("affect T alone"), "{error}");
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use driftworld::similarity::{Weights, variant_distance};
-use driftworld::spec::{BlockKind, Element, Scenario, Variant};
+use driftworld::spec::{BlockKind, Element, Regime, Scenario, Variant};
 use driftworld::tasks;
 use serde_json::Value;
 
@@ -25,10 +25,11 @@ fn scenario(name: &str) -> Scenario {
 fn learned(scenario: &Scenario) -> Vec<Variant> {
     let learning = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
     let regimes = learning.flat_map(|block| &block.regimes);
-    let variant = |task: &str, variant: &str| tasks::variant(&format!("{task}#{variant}"));
-    regimes
-        .map(|regime| variant(&regime.task, &regime.variant).unwrap_or_else(|error| panic!("{error}")))
-        .collect()
+    let variant = |regime: &Regime| {
+        let task = tasks::task(&regime.task).unwrap_or_else(|error| panic!("{error}"));
+        regime.resolve(&task).unwrap_or_else(|error| panic!("{error}"))
+    };
+    regimes.map(variant).collect()
 }
 
 /// The elements in which two variants differ, by their letters.
@@ -66,7 +67,7 @@ fn each_assessment_curriculum_changes_its_element_and_no_other() {
 #[test]
 fn the_example_of_the_paper_changes_what_it_says() {
     let variants = learned(&scenario("blue_red_green"));
-    let names: Vec<&str> = variants.iter().map(|variant| variant.name()).collect();
+    let names: Vec<&str> = variants.iter().map(Variant::name).collect();
     assert_eq!(names, ["a", "b", "c", "d"]);
     let steps: Vec<String> = variants.windows(2).map(|pair| differs(&pair[0], &pair[1])).collect();
     assert_eq!(

@@ -1,11 +1,12 @@
-//! The tables of `docs/tasks.md` say what the specs of the built-in tasks say. `DRIFTWORLD_UPDATE_GOLDEN=1` writes them anew.
+//! The tables of `docs/tasks.md` and `docs/curricula.md` say what the specs of the built-in tasks and the curricula in
+//! `examples/curricula/` say. `DRIFTWORLD_UPDATE_GOLDEN=1` writes them anew.
 
 use std::fmt::Write;
 
-use driftworld::spec::{Domain, Element, Parameter, Role, TaskSpec, Value, Variant};
+use driftworld::spec::{BlockKind, Domain, Element, Parameter, Role, Scenario, TaskSpec, Value, Variant};
 use driftworld::tasks;
 
-const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/tasks.md");
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// The tables of a task: its parameters, and its variants beside the first.
 fn tables(task: &std::sync::Arc<TaskSpec>) -> String {
@@ -74,44 +75,81 @@ fn changed<'a>(first: &Variant, variant: &'a Variant) -> Vec<(&'a String, String
         .collect()
 }
 
-/// A text with what stands between a task's marks replaced.
-fn with_tables(docs: &str) -> String {
-    let mut docs = docs.to_owned();
-    for name in tasks::built_in_names() {
-        let (begin, end) = (
-            format!("<!-- tables of {name} -->\n"),
-            format!("<!-- end of {name} -->"),
-        );
-        let from = docs
-            .find(&begin)
-            .unwrap_or_else(|| panic!("docs/tasks.md has no line {begin:?}"))
-            + begin.len();
-        let to = docs
-            .find(&end)
-            .unwrap_or_else(|| panic!("docs/tasks.md has no line {end:?}"));
-        let task = tasks::task(name).unwrap_or_else(|error| panic!("{error}"));
-        docs.replace_range(from..to, &tables(&task));
-    }
-    docs
+/// A text with what stands between two marks replaced.
+fn replaced(docs: &mut String, name: &str, text: &str) {
+    let (begin, end) = (
+        format!("<!-- tables of {name} -->\n"),
+        format!("<!-- end of {name} -->"),
+    );
+    let from = docs
+        .find(&begin)
+        .unwrap_or_else(|| panic!("the docs have no line {begin:?}"))
+        + begin.len();
+    let to = docs
+        .find(&end)
+        .unwrap_or_else(|| panic!("the docs have no line {end:?}"));
+    docs.replace_range(from..to, text);
 }
 
-#[test]
-fn the_tables_of_tasks_are_those_of_the_specs() {
-    let found = std::fs::read_to_string(DOCS).expect("the docs are committed");
-    let expected = with_tables(&found);
+/// Holds a page to what its tables should be, or writes them.
+fn check(page: &str, write: impl Fn(&mut String)) {
+    let path = format!("{ROOT}/{page}");
+    let found = std::fs::read_to_string(&path).expect("the docs are committed");
+    let mut expected = found.clone();
+    write(&mut expected);
     if std::env::var_os("DRIFTWORLD_UPDATE_GOLDEN").is_some() {
-        std::fs::write(DOCS, &expected).expect("the docs can be written");
+        std::fs::write(path, &expected).expect("the docs can be written");
         return;
     }
     for (number, (found, expected)) in found.lines().zip(expected.lines()).enumerate() {
         let line = number + 1;
         assert_eq!(
             found, expected,
-            "docs/tasks.md:{line}; DRIFTWORLD_UPDATE_GOLDEN=1 writes the tables anew"
+            "{page}:{line}; DRIFTWORLD_UPDATE_GOLDEN=1 writes the tables anew"
         );
     }
     assert_eq!(
         found, expected,
-        "docs/tasks.md; DRIFTWORLD_UPDATE_GOLDEN=1 writes the tables anew"
+        "{page}; DRIFTWORLD_UPDATE_GOLDEN=1 writes the tables anew"
     );
+}
+
+#[test]
+fn the_tables_of_tasks_are_those_of_the_specs() {
+    check("docs/tasks.md", |docs| {
+        for name in tasks::built_in_names() {
+            let task = tasks::task(name).unwrap_or_else(|error| panic!("{error}"));
+            replaced(docs, name, &tables(&task));
+        }
+    });
+}
+
+/// The curricula, one a row: what each learns, and how often.
+fn curricula() -> String {
+    let mut text = "| file | learned, in this order | experiences | |\n|---|---|---|---|\n".to_owned();
+    for name in [
+        "reward",
+        "state",
+        "transition",
+        "observation",
+        "action",
+        "blue_red_green",
+    ] {
+        let path = format!("{ROOT}/examples/curricula/{name}.json");
+        let document = std::fs::read_to_string(path).expect("the curricula are committed");
+        let scenario = Scenario::from_json(name, &document).unwrap_or_else(|error| panic!("{error}"));
+        let learning = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
+        let regimes: Vec<_> = learning.flat_map(|block| &block.regimes).collect();
+        let task = regimes.first().map_or("", |regime| regime.task.as_str());
+        let learned: Vec<String> = regimes.iter().map(|regime| format!("`{}`", regime.variant)).collect();
+        let (learned, count, said) = (learned.join(", "), scenario.num_experiences(), &scenario.description);
+        let file = format!("[{name}.json](../examples/curricula/{name}.json)");
+        let _ = writeln!(text, "| {file} | `{task}`: {learned} | {count} | {said} |");
+    }
+    text
+}
+
+#[test]
+fn the_table_of_curricula_is_that_of_the_files() {
+    check("docs/curricula.md", |docs| replaced(docs, "curricula", &curricula()));
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use driftworld::generator::Sampler;
-use driftworld::spec::{BlockKind, Scenario, Variant};
+use driftworld::spec::{BlockKind, Regime, Scenario, Variant};
 use driftworld::tasks;
 
 use super::pictures::{SheetRow, sheet};
@@ -65,7 +65,7 @@ impl Sheet {
         };
         if variants.is_empty() || variants.len() > MOST_VARIANTS {
             return Err(Failure::input(format!(
-                "found {} variants, expected 1 to {MOST_VARIANTS} for one picture",
+                "found {} variants, expected 1 to {MOST_VARIANTS} for one picture; name some as TASK#VARIANT",
                 variants.len()
             )));
         }
@@ -98,8 +98,6 @@ impl Sheet {
 fn learned(scenario: &Scenario) -> Result<Vec<Variant>, Failure> {
     let learning = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
     let regimes = learning.flat_map(|block| &block.regimes);
-    let variant = |task: &str, variant: &str| tasks::variant(&format!("{task}#{variant}"));
-    Ok(regimes
-        .map(|regime| variant(&regime.task, &regime.variant))
-        .collect::<Result<_, _>>()?)
+    let variant = |regime: &Regime| Ok(regime.resolve(&tasks::task(&regime.task)?)?);
+    regimes.map(variant).collect()
 }
