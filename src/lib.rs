@@ -1,7 +1,7 @@
 //! Driftworld: typed task specs to worlds, distances between them, curricula, and a first-person environment to live them in.
 //!
 //! This crate re-exports the rooms of the house under one roof and adds what joins them: the built-in tasks, the names
-//! by which tasks are called, worlds as tables, and how different worlds look. Algorithms are in the rooms.
+//! by which tasks are called, worlds as tables, distances among variants of any tasks, and how different worlds look. Algorithms are in the rooms.
 //!
 //! ```
 //! use driftworld::{generator, tasks};
@@ -19,6 +19,7 @@ pub use driftworld_similarity as similarity;
 pub use driftworld_spec as spec;
 
 pub mod columns;
+pub mod distances;
 pub mod picture_distance;
 pub mod tasks;
 

@@ -5,6 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 
+/// Whether a file's name is that of a table of a log.
+fn is_table(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|ending| ending == "tsv")
+}
+
 fn driftworld(arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_driftworld"));
     command.args(arguments).current_dir(env!("CARGO_MANIFEST_DIR"));
@@ -89,7 +94,7 @@ fn files(log: &Path) -> BTreeMap<String, String> {
                 .display()
                 .to_string();
             let text = fs::read_to_string(&path).expect("logs are text");
-            let text = if name.ends_with(".tsv") { timeless(&text) } else { text };
+            let text = if is_table(&name) { timeless(&text) } else { text };
             found.insert(name, text);
         }
     }
@@ -217,7 +222,7 @@ fn a_run_told_to_stop_finishes_its_row_and_says_how_to_go_on() {
 
 /// How many rows a log has, all of them with a line end.
 fn num_rows(log: &Path) -> usize {
-    let tables = files(log).into_iter().filter(|(name, _)| name.ends_with(".tsv"));
+    let tables = files(log).into_iter().filter(|(name, _)| is_table(name));
     tables.map(|(_, text)| text.lines().count() - 1).sum()
 }
 
@@ -489,7 +494,7 @@ fn worlds_that_a_scenario_draws_become_maps_that_are_lived_alike() {
 
 /// The rewards of a log, in order.
 fn rewards(log: &Path) -> Vec<String> {
-    let tables = files(log).into_iter().filter(|(name, _)| name.ends_with(".tsv"));
+    let tables = files(log).into_iter().filter(|(name, _)| is_table(name));
     tables
         .flat_map(|(_, table)| {
             let header: Vec<String> = table

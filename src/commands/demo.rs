@@ -19,6 +19,7 @@ use super::render::Views;
 use super::run::{Life, Start, processors};
 use super::scenario_file;
 use super::table::wide_table;
+use super::weights::WeightArgs;
 use super::who::Who;
 use super::{Failure, output};
 
@@ -61,7 +62,7 @@ impl Demo {
         self.pictures(&shown)?;
 
         heading("2", "How far apart the variants are, from 0 to 1")?;
-        let matrix = matrix(&variants)?;
+        let matrix = matrix(&variants, &WeightArgs::default())?;
         let ordering = order(&matrix, Method::Exact, &OrderOptions::default().with_first(0))?;
         output::write(&folder.join("distances.csv"), matrix.to_csv().as_bytes())?;
         let short: Vec<String> = variants.iter().map(|(_, variant)| variant.name().to_owned()).collect();

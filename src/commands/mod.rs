@@ -11,6 +11,7 @@ mod doctor;
 mod draw_maps;
 mod input;
 mod interrupt;
+mod matrix_file;
 mod metrics;
 mod modality;
 mod order;

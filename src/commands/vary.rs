@@ -2,7 +2,7 @@
 
 use clap::Args;
 use driftworld::generator::{Subject, at_distance};
-use driftworld::similarity::{Weights, variant_distance};
+use driftworld::similarity::{VariantMeasure, Weights};
 use driftworld::spec::{Element, Variant};
 use driftworld::tasks;
 use serde_json::{Map, json};
@@ -60,9 +60,9 @@ impl Vary {
             Some(element) => Subject::Element(element),
             None => Subject::Parameters(self.parameters.clone()),
         };
-        let weights = Weights::default();
+        let measured = VariantMeasure::new(from.task(), Weights::of_task(from.task()));
         let measure = |other: &Variant| {
-            let distance = variant_distance(&from, other, &weights).expect("both are variants of one task");
+            let distance = measured.between(&from, other).expect("both are variants of one task");
             match self.element {
                 Some(element) => distance.element(element).unwrap_or(0.0),
                 None => distance.total,

@@ -1,10 +1,8 @@
 //! `--weight R=2`: what the elements of the decision process weigh in a distance. Distances are `similarity`'s.
 
 use clap::Args;
-use driftworld::similarity::Weights;
+use driftworld::similarity::{SimilarityError, Weights};
 use driftworld::spec::Element;
-
-use super::Failure;
 
 /// What elements weigh; shared by the commands that measure.
 #[derive(Args, Clone, Default)]
@@ -17,7 +15,7 @@ pub(crate) struct WeightArgs {
 
 impl WeightArgs {
     /// Weights with these laid over them.
-    pub(crate) fn over(&self, mut weights: Weights) -> Result<Weights, Failure> {
+    pub(crate) fn over(&self, mut weights: Weights) -> Result<Weights, SimilarityError> {
         for (element, weight) in &self.weight {
             weights = weights.with(*element, *weight)?;
         }

@@ -61,7 +61,7 @@ pub(super) fn apart(a: &Variant, b: &Variant, element: Option<Element>) -> Resul
 }
 
 pub(super) fn distance(a: &Variant, b: &Variant) -> Result<Distance, CurriculumError> {
-    Ok(variant_distance(a, b, &Weights::default())?)
+    Ok(variant_distance(a, b, &Weights::of_task(a.task()))?)
 }
 
 /// A distance in an element, 0 where nothing could differ, or the whole.

@@ -1,6 +1,7 @@
 //! A scenario made ready to be lived: every variant and world found, every experience known by its number. Living it is in `mod.rs`.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 use driftworld_env::Label;
@@ -66,8 +67,8 @@ enum Source {
     Drift {
         from: Variant,
         to: Variant,
-        way: Drift,
-        drift: RegimeDrift,
+        way: Box<Drift>,
+        drift: Box<RegimeDrift>,
     },
     World {
         world: Arc<World>,
@@ -215,8 +216,8 @@ impl Plan {
             Ok(world.map_err(|source| planned.wrong(source))?.hash())
         };
         let mut take = |id: String, hash: &dyn Fn() -> Result<String, CurriculumError>| {
-            if !self.prints.contains_key(&id) {
-                self.prints.insert(id, hash()?);
+            if let Entry::Vacant(place) = self.prints.entry(id) {
+                place.insert(hash()?);
             }
             Ok(())
         };
@@ -416,8 +417,8 @@ impl Finder<'_, '_> {
         Ok(Source::Drift {
             from,
             to,
-            way,
-            drift: drift.clone(),
+            way: Box::new(way),
+            drift: Box::new(drift.clone()),
         })
     }
 }

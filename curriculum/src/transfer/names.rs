@@ -1,4 +1,4 @@
-//! Which variant of a distance matrix a name in a log means. How logs name variants is decided in `run.rs`.
+//! Which variant of a distance matrix a name in a log means. How logs name variants is decided in `run/plan.rs`.
 
 use std::collections::BTreeMap;
 
@@ -36,24 +36,12 @@ fn log_name_of_label(label: &str) -> String {
         return label.to_lowercase();
     };
     let file = task.rsplit(['/', '\\']).next().unwrap_or(task);
-    format!(
-        "{}_{}",
-        plain(file.strip_suffix(".json").unwrap_or(file)),
-        plain(variant)
-    )
-}
-
-/// Letters and digits alone, small: see [`log_name`](crate::log_name).
-fn plain(text: &str) -> String {
-    let kept = text.chars().filter(char::is_ascii_alphanumeric);
-    kept.collect::<String>().to_lowercase()
+    crate::log_name(file.strip_suffix(".json").unwrap_or(file), variant)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use driftworld_spec::TaskSpec;
-    use std::sync::Arc;
 
     #[test]
     fn a_label_is_found_by_the_name_that_logs_give_it() {
@@ -64,10 +52,6 @@ mod tests {
         ] {
             assert_eq!(log_name_of_label(label), name);
         }
-        let text = r#"{ "name": "find_objects", "parameters": {}, "variants": { "deep-red": {} } }"#;
-        let task = TaskSpec::from_json("t.json", text).expect("a sound task");
-        let variant = Arc::new(task).variant("deep-red").expect("it is declared");
-        assert_eq!(log_name_of_label("find_objects#deep-red"), crate::log_name(&variant));
         let names = Names::of(&["a#b".to_owned(), "a#c".to_owned()]).expect("they differ");
         assert_eq!((names.index("A_C"), names.index("a_d")), (Some(1), None));
     }

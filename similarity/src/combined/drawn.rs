@@ -66,13 +66,12 @@ impl DrawnMeasure {
             ("same or not", None, raw, raw)
         };
         let asked = match self.measure {
-            None => None,
             Some(MeasureName::Wasserstein2) => found("wasserstein-2 / width", wasserstein_2(a, b), &over_width),
             Some(MeasureName::TotalVariation) => found("total variation", total_variation(a, b), &as_it_is),
             Some(MeasureName::Hellinger) => found("hellinger", hellinger(a, b), &as_it_is),
             Some(MeasureName::JensenShannon) => found("jensen-shannon", jensen_shannon(a, b), &as_it_is),
             Some(MeasureName::SameOrNot) => Some(same_or_not()),
-            Some(_) => None,
+            _ => None,
         };
         if let Some(asked) = asked {
             return asked;

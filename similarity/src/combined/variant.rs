@@ -103,7 +103,7 @@ impl VariantMeasure {
     /// [`SimilarityError::DifferentTasks`] if one is not a variant of this task.
     pub fn between(&self, a: &Variant, b: &Variant) -> Result<Distance, SimilarityError> {
         for variant in [a, b] {
-            if !self.is_of_this_task(variant) {
+            if !self.takes(variant) {
                 let (a, b) = (a.task().name().to_owned(), b.task().name().to_owned());
                 return Err(SimilarityError::DifferentTasks { a, b });
             }
@@ -138,6 +138,13 @@ impl VariantMeasure {
         Ok(Distance::new(parts, &self.weights))
     }
 
+    /// Whether it is a variant of this task: of the same name, with the same parameters.
+    pub fn takes(&self, variant: &Variant) -> bool {
+        let task = variant.task();
+        Arc::ptr_eq(&self.task, task)
+            || (self.task.name() == task.name() && self.task.parameters() == task.parameters())
+    }
+
     /// Whether the whole distance is a metric, up to variants that have all values alike: it is unless a measure that counts
     /// is none.
     pub fn nature(&self) -> Nature {
@@ -155,12 +162,6 @@ impl VariantMeasure {
         } else {
             Nature::Distance
         }
-    }
-
-    fn is_of_this_task(&self, variant: &Variant) -> bool {
-        let task = variant.task();
-        Arc::ptr_eq(&self.task, task)
-            || (self.task.name() == task.name() && self.task.parameters() == task.parameters())
     }
 }
 

@@ -460,7 +460,7 @@ fn share(raw: f64, whole: f64) -> f64 {
     }
 }
 
-fn differs<T: PartialEq>(a: T, b: T) -> f64 {
+fn differs(a: u32, b: u32) -> f64 {
     f64::from(u8::from(a != b))
 }
 

@@ -276,7 +276,7 @@ mod tests {
     #[test]
     fn sums_of_products_take_every_number() {
         let numbers: Vec<f64> = (1..=19).map(f64::from).collect();
-        assert_eq!(dot(&numbers, &vec![2.0; 19]), 380.0);
+        assert_eq!(dot(&numbers, &[2.0; 19]), 380.0);
         let mut sums = vec![0.0; 2];
         times_transposed(&[1.0, 2.0, 3.0, 4.0], &[10.0, 1.0], &mut sums);
         assert_eq!(sums, [13.0, 24.0]);

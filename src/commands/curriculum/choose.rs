@@ -6,6 +6,7 @@ use driftworld::spec::{DEFAULT_VARIANT, Element, Variant};
 
 use super::{Curriculum, tables};
 use crate::commands::order::matrix;
+use crate::commands::weights::WeightArgs;
 use crate::commands::{Failure, input};
 
 /// Variants and the order in which they are met.
@@ -54,7 +55,7 @@ impl Curriculum {
             let proof = tables::probe(&shown, &picked[0], element)?;
             return chosen(&picked, Some(element), order, Some(proof));
         }
-        let matrix = matrix(&named)?;
+        let matrix = matrix(&named, &WeightArgs::default())?;
         let order = match self.order {
             Some(order) => {
                 let first = self.ordering.options(&matrix, self.seed)?.first.unwrap_or(0);

@@ -2,16 +2,13 @@
 
 mod arguments;
 mod compare;
-mod files;
 mod plot;
 
 use std::path::PathBuf;
 
 use clap::Args;
-use driftworld::generator::Sampler;
-use driftworld::similarity::{
-    DistanceMatrix, Method, Ordering, SimilarityError, Weights, variant_distance, world_sets_distance,
-};
+use driftworld::distances::variant_matrix;
+use driftworld::similarity::{DistanceMatrix, Method, Ordering};
 use driftworld::spec::Variant;
 use serde_json::{Value, json};
 
@@ -19,14 +16,13 @@ pub(crate) use arguments::OrderArgs;
 use compare::Comparison;
 
 use super::table::table;
-use super::{Failure, input, output, pictures};
-
-/// How many worlds of each variant are compared where variants of different tasks meet.
-const WORLDS: u64 = 16;
+use super::weights::WeightArgs;
+use super::{Failure, input, matrix_file, output, pictures};
 
 /// Put variants into an order by their distances.
 ///
-/// Variants of one task are compared parameter by parameter, those of several tasks by 16 worlds each.
+/// Variants of one task are compared parameter by parameter, at the weights that the task declares, those of several tasks by
+/// 16 worlds each.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld order find_objects
@@ -42,6 +38,8 @@ pub(crate) struct Order {
     from_matrix: Option<PathBuf>,
     #[command(flatten)]
     ordering: OrderArgs,
+    #[command(flatten)]
+    weights: WeightArgs,
     /// What the method random draws from.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -62,11 +60,11 @@ pub(crate) struct Order {
 impl Order {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let matrix = match &self.from_matrix {
-            Some(path) => files::read("--from-matrix", path)?,
-            None => matrix(&input::variants(&self.tasks)?)?,
+            Some(path) => matrix_file::read("--from-matrix", path)?,
+            None => matrix(&input::variants(&self.tasks)?, &self.weights)?,
         };
         if let Some(path) = &self.matrix {
-            files::write("--matrix", path, &matrix)?;
+            matrix_file::write("--matrix", path, &matrix)?;
         }
         if self.compare {
             return self.compare(&matrix);
@@ -112,31 +110,13 @@ fn json_of(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) -> Valu
     })
 }
 
-/// Every distance among variants: parameter by parameter within one task, by sampled worlds otherwise.
-pub(crate) fn matrix(variants: &[(String, Variant)]) -> Result<DistanceMatrix, Failure> {
-    let labels = variants
+/// Every distance among variants, under the names that commands know them by.
+pub(crate) fn matrix(variants: &[(String, Variant)], weights: &WeightArgs) -> Result<DistanceMatrix, Failure> {
+    let labelled: Vec<(String, Variant)> = variants
         .iter()
-        .map(|(task, variant)| format!("{task}#{}", variant.name()))
+        .map(|(task, variant)| (format!("{task}#{}", variant.name()), variant.clone()))
         .collect();
-    let weights = Weights::default();
-    let one_task = variants
-        .windows(2)
-        .all(|pair| pair[0].1.task().name() == pair[1].1.task().name());
-    if one_task {
-        let measure = |a: usize, b: usize| Ok(variant_distance(&variants[a].1, &variants[b].1, &weights)?.total);
-        return Ok(DistanceMatrix::measure(labels, measure).map_err(|error: SimilarityError| error)?);
-    }
-    let mut worlds = Vec::with_capacity(variants.len());
-    for (_, variant) in variants {
-        let sampler = Sampler::new(variant, 0);
-        worlds.push(
-            (0..WORLDS)
-                .map(|index| sampler.world(index))
-                .collect::<Result<Vec<_>, _>>()?,
-        );
-    }
-    let measure = |a: usize, b: usize| Ok(world_sets_distance(&worlds[a], &worlds[b], &weights).unwrap_or(0.0));
-    Ok(DistanceMatrix::measure(labels, measure).map_err(|error: SimilarityError| error)?)
+    Ok(variant_matrix(&labelled, |declared| weights.over(declared))?)
 }
 
 /// The items of an order with the step that leads to each.

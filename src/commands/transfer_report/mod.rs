@@ -2,7 +2,6 @@
 //! correlation `similarity`'s, their meeting `curriculum`'s.
 
 mod logs;
-mod matrix;
 mod words;
 
 use std::path::PathBuf;
@@ -14,7 +13,7 @@ use driftworld::similarity::MAX_RELABELLINGS;
 
 use super::metrics::score_log;
 use super::pictures::scatter;
-use super::{Failure, output};
+use super::{Failure, matrix_file, output};
 
 /// Ask whether similar variants transferred more: correlate distances with the transfer that logs measured.
 ///
@@ -37,7 +36,7 @@ pub(crate) struct TransferReport {
     /// Folders of logs in l2logger's format, or folders of such folders.
     #[arg(required = true, value_name = "LOGS")]
     logs: Vec<PathBuf>,
-    /// The distance matrix: a CSV file as `driftworld order --matrix` writes it.
+    /// The distance matrix, as `driftworld order --matrix` writes it: .csv, .json or .npy.
     #[arg(long, value_name = "FILE")]
     distances: PathBuf,
     /// The column that holds the performance.
@@ -87,7 +86,7 @@ impl From<Measure> for TransferMethod {
 
 impl TransferReport {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let distances = matrix::read(&self.distances)?;
+        let distances = matrix_file::read("--distances", &self.distances)?;
         let measure = self.transfer_method.into();
         let options = Options {
             perf_measure: self.perf_measure,

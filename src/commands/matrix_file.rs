@@ -27,7 +27,7 @@ fn format(option: &str, path: &Path) -> Result<Format, Failure> {
 }
 
 /// Writes a matrix. The labels, for which numpy's format has no place, come into a JSON file beside it.
-pub(super) fn write(option: &str, path: &Path, matrix: &DistanceMatrix) -> Result<(), Failure> {
+pub(crate) fn write(option: &str, path: &Path, matrix: &DistanceMatrix) -> Result<(), Failure> {
     match format(option, path)? {
         Format::Csv => output::write(path, matrix.to_csv().as_bytes()),
         Format::Json => output::write(path, matrix.to_json().as_bytes()),
@@ -39,7 +39,7 @@ pub(super) fn write(option: &str, path: &Path, matrix: &DistanceMatrix) -> Resul
 }
 
 /// Reads a matrix. Without a file of labels beside it, the items of an array are called by their numbers.
-pub(super) fn read(option: &str, path: &Path) -> Result<DistanceMatrix, Failure> {
+pub(crate) fn read(option: &str, path: &Path) -> Result<DistanceMatrix, Failure> {
     let named = |error: SimilarityError| Failure::input(format!("{}: {error}", path.display()));
     match format(option, path)? {
         Format::Csv => DistanceMatrix::from_csv(&input::text(path)?).map_err(named),
