@@ -226,7 +226,7 @@ fn what_cannot_be_reported_says_what_is_needed() {
     let error = fail(folder.path(), 1, &["--perf-measure", "joy"]);
     assert!(error.contains("\"joy\"") && error.contains("reward"), "{error}");
     std::fs::write(folder.path().join("distances.csv"), "nothing").expect("the folder can be written");
-    assert!(fail(folder.path(), 1, &[]).contains("distances.csv:1: found no line of labels"));
+    assert!(fail(folder.path(), 1, &[]).contains("distances.csv: matrix, line 1: found \"nothing\""));
     std::fs::remove_dir_all(folder.path().join("logs")).expect("it is there");
     std::fs::create_dir(folder.path().join("logs")).expect("it is gone");
     write_matrix(folder.path(), vec!["line#v0".to_owned(), "line#v1".to_owned()]);

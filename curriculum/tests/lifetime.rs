@@ -439,10 +439,13 @@ fn what_a_limit_cuts_off_is_truncated_and_the_end_of_a_block_is_no_end() {
     );
 }
 
+/// The label of each experience, by its number.
+type Told = Vec<(u64, Option<Label>)>;
+
 /// Writes down what it is told; learns, and can be copied.
 #[derive(Clone, Default)]
 struct Pupil {
-    told: Arc<Mutex<Vec<(u64, Option<Label>)>>>,
+    told: Arc<Mutex<Told>>,
     label: Option<Label>,
     learned: u64,
 }

@@ -107,10 +107,13 @@ impl Drop for Closing<'_> {
 mod tests {
     use super::*;
 
+    /// How going through the items ended.
+    type End = Result<ControlFlow<()>, String>;
+
     /// Squares 10..200; even items take longer than odd ones. Returns what was taken until `last`, and how it ended.
-    fn squares(jobs: usize, last: u64) -> (Vec<(u64, u64)>, Result<ControlFlow<()>, String>) {
+    fn squares(jobs: usize, last: u64) -> (Vec<(u64, u64)>, End) {
         let mut taken = Vec::new();
-        let work = |_: &mut (), item: u64| {
+        let work = |(): &mut (), item: u64| {
             let turns = if item.is_multiple_of(2) { 20_000 } else { 1 };
             (0..turns).fold(0_u64, |sum, turn| sum.wrapping_add(std::hint::black_box(turn)));
             item * item

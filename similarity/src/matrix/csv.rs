@@ -42,6 +42,10 @@ impl DistanceMatrix {
         let Some((heading, rows)) = rows.split_first() else {
             return Err(bad(1, "no lines", "a line of labels behind an empty cell"));
         };
+        if heading.cells.len() < 2 || !heading.cells[0].is_empty() {
+            let found = format!("{:?} in the first cell of {}", heading.cells[0], heading.cells.len());
+            return Err(bad(heading.line, found, "a line of labels behind an empty cell"));
+        }
         let labels = heading.cells[1..].to_vec();
         let n = Self::bounded(labels.len())?;
         if rows.len() != n {
