@@ -142,7 +142,10 @@ fn by_element(distance: &Measured) -> String {
     table(["element", "distance"], rows, &[1])
 }
 
+/// Every part, those that matter most first.
 fn parts(distance: &Measured) -> String {
+    let mut parts: Vec<&Part> = distance.parts.iter().collect();
+    parts.sort_by(|a, b| b.share.total_cmp(&a.share));
     let row = |part: &Part| {
         [
             part.name.clone(),
@@ -167,7 +170,7 @@ fn parts(distance: &Measured) -> String {
             "weight",
             "share",
         ],
-        distance.parts.iter().map(row).collect(),
+        parts.into_iter().map(row).collect(),
         &[4, 5, 6, 7],
     )
 }

@@ -6,6 +6,7 @@
 
 use crate::SimilarityError;
 use crate::color::lab::{Lab, LabTable};
+use crate::color::rows::fill;
 
 /// The farthest apart that two sRGB colours are: a dark blue (0, 0, 0.4303) and a yellowish green (0.5589, 1, 0); rounded up.
 pub(crate) const CIEDE2000_DIAMETER: f64 = 119.484_76;
@@ -70,7 +71,14 @@ pub fn ciede2000_to_each(from: Lab, to: &LabTable, distances: &mut [f64]) -> Res
             expected: count,
         });
     }
-    let chroma = from.chroma();
+    fill(from.0, from.chroma(), to, distances);
+    Ok(())
+}
+
+/// The distances from a colour to each of a table, of which there are as many as places for distances.
+#[inline(always)]
+pub(super) fn row(from: [f64; 3], chroma: f64, to: &LabTable, distances: &mut [f64]) {
+    let count = distances.len();
     // One length for all, so that the compiler needs no check inside the loop and takes several colours at once.
     let (lightness, a, b, chromas) = (
         &to.lightness[..count],
@@ -79,9 +87,8 @@ pub fn ciede2000_to_each(from: Lab, to: &LabTable, distances: &mut [f64]) -> Res
         &to.chroma[..count],
     );
     for (k, distance) in distances.iter_mut().enumerate() {
-        *distance = between(from.0, chroma, [lightness[k], a[k], b[k]], chromas[k]);
+        *distance = between(from, chroma, [lightness[k], a[k], b[k]], chromas[k]);
     }
-    Ok(())
 }
 
 /// No branches and no calls: only what whole vectors can do.

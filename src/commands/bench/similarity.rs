@@ -30,6 +30,7 @@ pub(super) fn measure(round: Duration) -> Result<Figures, Failure> {
     add("emd_20_points", points(round)?);
     add("emd_25x25", grids(round)?);
     add("wasserstein1_256", samples(round)?);
+    add("wasserstein1_256_sorted_anew", samples_sorted_anew(round)?);
     let mut add = |name: &str, seconds: f64| {
         figures.insert(name.to_owned(), json!((seconds * 1000.0).round() / 1000.0));
     };
@@ -123,8 +124,27 @@ fn grids(round: Duration) -> Result<f64, Failure> {
     })?)
 }
 
-/// Sorting included, as for the peer: each pair sorts its first set anew.
+/// Each of 100 sets with each, the sorting of every set included.
 fn samples(round: Duration) -> Result<f64, Failure> {
+    let mut numbers = Numbers(4);
+    let sets: Vec<Vec<f64>> = (0..100).map(|_| numbers.many(256)).collect();
+    let jobs = rate(round, |_| {
+        let sorted = sets
+            .iter()
+            .map(|set| SortedSamples::new(set))
+            .collect::<Result<Vec<_>, _>>()?;
+        for (index, a) in sorted.iter().enumerate() {
+            for b in &sorted[..index] {
+                std::hint::black_box(a.wasserstein_1(b));
+            }
+        }
+        Ok::<(), SimilarityError>(())
+    })?;
+    Ok(jobs * (100.0 * 99.0 / 2.0))
+}
+
+/// Both sets sorted anew for every pair.
+fn samples_sorted_anew(round: Duration) -> Result<f64, Failure> {
     let mut numbers = Numbers(4);
     let sets: Vec<Vec<f64>> = (0..100).map(|_| numbers.many(256)).collect();
     let (mut a, mut b) = (SortedSamples::new(&sets[0])?, SortedSamples::new(&sets[0])?);
