@@ -149,7 +149,8 @@ pub fn picture_matrix(
         .iter()
         .map(|world| Views::new(world, &poses, options))
         .collect::<Result<Vec<_>, _>>()?;
-    DistanceMatrix::measure(labels, |a, b| views[a].distance(&views[b], options.measure))
+    let matrix = DistanceMatrix::measure(labels, |a, b| views[a].distance(&views[b], options.measure));
+    Ok::<_, PictureDistanceError>(matrix?.with_nature(Views::nature(options.measure)))
 }
 
 /// The same places and directions for all of these worlds.

@@ -5,7 +5,9 @@
 #[non_exhaustive]
 pub enum SimilarityError {
     /// Variants of different tasks have no parameters to compare.
-    #[error("found variants of the tasks {a:?} and {b:?}, expected two of one task; compare sampled worlds instead")]
+    #[error(
+        "found variants of the tasks {a:?} and {b:?}, expected two of one task, of one and the same document; compare sampled worlds instead"
+    )]
     DifferentTasks {
         /// The first variant's task.
         a: String,
@@ -13,7 +15,7 @@ pub enum SimilarityError {
         b: String,
     },
     /// A distance is not a number that a distance can be.
-    #[error("distance of {a:?} to {b:?}: found {found}, expected a finite number of at least 0")]
+    #[error("distance of {a:?} to {b:?}: found {found}, expected a number from 0 to 1e100")]
     NotADistance {
         /// The first label.
         a: String,
@@ -278,7 +280,7 @@ pub enum SimilarityError {
         limit: u64,
     },
     /// A weight that cannot be one.
-    #[error("weight of {name}: found {found}, expected a finite number of at least 0")]
+    #[error("weight of {name}: found {found}, expected a number from 0 to 1000000")]
     BadWeight {
         /// What it weighs.
         name: String,

@@ -29,13 +29,15 @@ pub use color::sets::color_sets_distance;
 pub use color::srgb::srgb_distance;
 pub use combined::variant::{VariantMeasure, variant_distance};
 pub use combined::world::{Worlds, world_distance, world_sets_distance, world_sets_explained};
-pub use combined::{Distance, Part, Weights};
+pub use combined::{Distance, MAX_WEIGHT, Part, Weights};
 pub use correlation::{
     Correlation, MAX_MANTEL_ITEMS, MAX_RELABELLINGS, MIN_CORRELATED, MantelTest, PairValue, mantel, pearson, ranks,
     spearman,
 };
 pub use error::SimilarityError;
-pub use matrix::{DistanceMatrix, Embedding, MAX_FEATURES, MAX_ITEMS, PlanarMap, Triangles, Violation, classical_map};
+pub use matrix::{
+    DistanceMatrix, Embedding, MAX_DISTANCE, MAX_FEATURES, MAX_ITEMS, PlanarMap, Triangles, Violation, classical_map,
+};
 pub use nature::Nature;
 pub use occupancy::{
     BitGrid, Classes, Extent, Grid, GridShape, MAX_CELLS, Occupancy, Ospa, Raster, grid_chamfer_distance,

@@ -10,6 +10,8 @@ use driftworld::similarity::{
 use driftworld::spec::{Element, Variant, World};
 use driftworld::tasks;
 
+use serde_json::json;
+
 use super::table::table;
 use super::weights::WeightArgs;
 use super::{Failure, input, output};
@@ -70,7 +72,9 @@ impl Distance {
         }
         let (distance, how) = self.measure()?;
         if self.json {
-            return output::json(&distance);
+            let mut found = serde_json::to_value(&distance)?;
+            found["compared"] = json!(how);
+            return output::json(&found);
         }
         output::line(format!("{} to {}, {how}\n", self.a, self.b))?;
         output::line(by_element(&distance))?;
@@ -83,14 +87,16 @@ impl Distance {
 
     fn measure(&self) -> Result<(Measured, String), Failure> {
         let (a, b) = (self.side(&self.a)?, self.side(&self.b)?);
-        if let (Side::Variant(a), Side::Variant(b), None) = (&a, &b, self.worlds)
-            && a.task().name() == b.task().name()
-        {
-            let weights = self.weights.over(Weights::of_task(a.task()))?;
+        let task = match (&a, &b) {
+            (Side::Variant(a), Side::Variant(b)) if a.task().is_same_as(b.task()) => Some((a, b)),
+            _ => None,
+        };
+        let declared = task.map_or_else(Weights::default, |(a, _)| Weights::of_task(a.task()));
+        let weights = self.weights.over(declared)?;
+        if let (Some((a, b)), None) = (task, self.worlds) {
             let distance = VariantMeasure::new(a.task(), weights).between(a, b)?;
             return Ok((distance, "parameter by parameter".to_owned()));
         }
-        let weights = self.weights.over(Weights::default())?;
         if let (Side::World(a), Side::World(b)) = (&a, &b) {
             return Ok((world_distance(a, b, &weights), "world to world".to_owned()));
         }

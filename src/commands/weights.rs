@@ -1,7 +1,7 @@
 //! `--weight R=2`: what the elements of the decision process weigh in a distance. Distances are `similarity`'s.
 
 use clap::Args;
-use driftworld::similarity::{SimilarityError, Weights};
+use driftworld::similarity::{MAX_WEIGHT, SimilarityError, Weights};
 use driftworld::spec::Element;
 
 /// What elements weigh; shared by the commands that measure.
@@ -24,12 +24,12 @@ impl WeightArgs {
 }
 
 fn weight(text: &str) -> Result<(Element, f64), String> {
-    let expected = || "expected S, A, T, R or O, then = and a number of at least 0, such as R=2".to_owned();
+    let expected = || "expected S, A, T, R or O, then = and a number from 0 to 1000000, such as R=2".to_owned();
     let (element, weight) = text.split_once('=').ok_or_else(expected)?;
     let weight: f64 = weight.parse().map_err(|_| expected())?;
     let known = |known: &Element| known.letter().eq_ignore_ascii_case(element) || known.name() == element;
     let element = Element::ALL.into_iter().find(known).ok_or_else(expected)?;
-    if weight.is_finite() && weight >= 0.0 {
+    if (0.0..=MAX_WEIGHT).contains(&weight) {
         Ok((element, weight))
     } else {
         Err(expected())

@@ -6,6 +6,9 @@ use serde::Serialize;
 use crate::SimilarityError;
 use crate::distribution::How;
 
+/// The most that an element can weigh: what a task spec may say, too.
+pub const MAX_WEIGHT: f64 = 1e6;
+
 /// What the elements of the decision process weigh in the whole. Each 1 by default.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Weights([f64; 5]);
@@ -25,9 +28,9 @@ impl Weights {
     /// The same weights but for one element.
     ///
     /// # Errors
-    /// [`SimilarityError::BadWeight`] unless the weight is finite and at least 0.
+    /// [`SimilarityError::BadWeight`] unless the weight is in `0..=`[`MAX_WEIGHT`].
     pub fn with(mut self, element: Element, weight: f64) -> Result<Self, SimilarityError> {
-        if !weight.is_finite() || weight < 0.0 {
+        if !(0.0..=MAX_WEIGHT).contains(&weight) {
             return Err(SimilarityError::BadWeight {
                 name: element.name().to_owned(),
                 found: weight,
@@ -93,7 +96,8 @@ pub struct Part {
 pub struct Distance {
     /// All elements together.
     pub total: f64,
-    /// State, action, transition, reward, observation; `None` where nothing could differ.
+    /// State, action, transition, reward, observation; `None` where nothing could differ. As JSON an object with their names.
+    #[serde(serialize_with = "by_name")]
     pub elements: [Option<f64>; 5],
     /// What it is made of.
     pub parts: Vec<Part>,
@@ -139,6 +143,11 @@ impl Distance {
         let differs = |element: &Element| self.element(*element).is_some_and(|distance| distance > 0.0);
         Element::ALL.into_iter().filter(differs).collect()
     }
+}
+
+/// The elements under their names, in order.
+fn by_name<S: serde::Serializer>(elements: &[Option<f64>; 5], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(Element::ALL.iter().map(|element| element.name()).zip(elements))
 }
 
 pub(super) fn position(element: Element) -> usize {

@@ -7,8 +7,8 @@ use driftworld_spec::{Distribution, MeasureName, Parameter, ParameterType};
 
 use crate::combined::value::share;
 use crate::distribution::{
-    How, Measured, circular_wasserstein_1, extent, hellinger, jensen_shannon, planar_wasserstein_2, total_variation,
-    wasserstein_1, wasserstein_2,
+    How, Measured, circular_wasserstein_1, draws_headings, extent, hellinger, jensen_shannon, planar_wasserstein_2,
+    total_variation, wasserstein_1, wasserstein_2,
 };
 
 /// How two distributions of one parameter are compared.
@@ -30,7 +30,9 @@ impl DrawnMeasure {
     pub(super) fn of(parameter: &Parameter, all: impl Iterator<Item = Distribution>) -> Self {
         let mut corners: Option<[[f64; 2]; 2]> = None;
         let mut families = BTreeSet::new();
+        let mut headings = parameter.kind == ParameterType::Heading;
         for distribution in all {
+            headings |= draws_headings(&distribution);
             families.insert(distribution.planar_moments().map(|_| distribution.name()));
             if let Some([low, high]) = bounds(&distribution) {
                 let [least, most] = corners.unwrap_or([low, high]);
@@ -41,7 +43,7 @@ impl DrawnMeasure {
         }
         Self {
             measure: parameter.compare.as_ref().and_then(|compare| compare.measure),
-            headings: parameter.kind == ParameterType::Heading,
+            headings,
             width: corners.map(|[low, high]| (high[0] - low[0]).hypot(high[1] - low[1])),
             mixed: families.iter().flatten().count() > 1,
         }

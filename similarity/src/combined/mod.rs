@@ -7,4 +7,4 @@ mod value;
 pub(crate) mod variant;
 pub(crate) mod world;
 
-pub use distance::{Distance, Part, Weights};
+pub use distance::{Distance, MAX_WEIGHT, Part, Weights};

@@ -44,6 +44,8 @@ pub(super) struct Sketch {
 #[derive(Clone, Debug)]
 pub(super) struct Thing {
     pub(super) place: [f64; 2],
+    /// In degrees.
+    pub(super) heading: f64,
     pub(super) motion: u32,
     pub(super) body: u32,
     pub(super) reward: f64,
@@ -157,6 +159,7 @@ impl Sketcher {
         );
         Thing {
             place: object.coordinates,
+            heading: object.heading,
             motion: self.number(("motion", motion)),
             body: self.number(("body", body)),
             reward: object.reward,

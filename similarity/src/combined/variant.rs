@@ -23,7 +23,7 @@ use crate::{Nature, SimilarityError};
 /// [`VariantMeasure::nature`] says so. To compare many variants, make a [`VariantMeasure`] once.
 ///
 /// # Errors
-/// [`SimilarityError::DifferentTasks`].
+/// As [`VariantMeasure::between`].
 pub fn variant_distance(a: &Variant, b: &Variant, weights: &Weights) -> Result<Distance, SimilarityError> {
     VariantMeasure::new(a.task(), weights.clone()).between(a, b)
 }
@@ -100,7 +100,8 @@ impl VariantMeasure {
     /// How far apart two variants of the task are.
     ///
     /// # Errors
-    /// [`SimilarityError::DifferentTasks`] if one is not a variant of this task.
+    /// [`SimilarityError::DifferentTasks`] if one is not a variant of this task, [`SimilarityError::NotADistance`] for
+    /// distributions of numbers so large that their distance is not finite.
     pub fn between(&self, a: &Variant, b: &Variant) -> Result<Distance, SimilarityError> {
         for variant in [a, b] {
             if !self.takes(variant) {
@@ -124,6 +125,10 @@ impl VariantMeasure {
             let Some((measure, how, raw, normalised)) = found else {
                 continue;
             };
+            if !raw.is_finite() || !normalised.is_finite() {
+                let [a, b] = [a, b].map(|variant| format!("{} ({name})", variant.id()));
+                return Err(SimilarityError::NotADistance { a, b, found: raw });
+            }
             parts.extend(compared.affects.iter().map(|element| Part {
                 name: name.clone(),
                 element: *element,
@@ -138,11 +143,9 @@ impl VariantMeasure {
         Ok(Distance::new(parts, &self.weights))
     }
 
-    /// Whether it is a variant of this task: of the same name, with the same parameters.
+    /// Whether it is a variant of this task: of the very same document.
     pub fn takes(&self, variant: &Variant) -> bool {
-        let task = variant.task();
-        Arc::ptr_eq(&self.task, task)
-            || (self.task.name() == task.name() && self.task.parameters() == task.parameters())
+        self.task.is_same_as(variant.task())
     }
 
     /// Whether the whole distance is a metric, up to variants that have all values alike: it is unless a measure that counts

@@ -25,7 +25,7 @@ const HALF_WAY: f64 = 10.0;
 ///
 /// | element | parts |
 /// |---|---|
-/// | state | places of objects (OSPA within each class, cut off at 10 m), cells of 2 m taken (Jaccard), numbers of objects of each class (Jaccard of counts), the agent's start and heading |
+/// | state | places of objects (OSPA within each class, cut off at 10 m), cells of 2 m taken (Jaccard), numbers of objects of each class (Jaccard of counts), their headings, the agent's start and heading |
 /// | action | action model, action space, greatest speeds |
 /// | transition | how things move, how solid they are, time step, the agent's width, map and walls, size of the arena |
 /// | reward | what objects pay, for what, at which odds; step reward, rules, limit of steps |
@@ -37,7 +37,7 @@ const HALF_WAY: f64 = 10.0;
 /// is the same for all worlds.
 ///
 /// Each part is 0 on equal worlds, symmetric and in 0..=1, and so is the whole. Among worlds that have the same classes in
-/// the same numbers it is a metric up to worlds that differ in what is not compared (names, tags); among others the triangle
+/// the same numbers it is a metric up to worlds that differ in what is not compared (names, tags, the mode of the game, what has happened so far); among others the triangle
 /// inequality may fail, because what has no counterpart is passed over. Time: some microseconds for 20 objects, growing with
 /// the cube of the objects of one class.
 pub fn world_distance(a: &World, b: &World, weights: &Weights) -> Distance {
@@ -238,6 +238,7 @@ struct Objects {
     fewer: f64,
     more: f64,
     /// Sums over objects that have a counterpart.
+    turn: f64,
     motion: f64,
     body: f64,
     reward: f64,
@@ -265,6 +266,7 @@ impl Objects {
     }
 
     fn add(&mut self, a: &Thing, b: &Thing) {
+        self.turn += turn(a.heading, b.heading);
         self.motion += differs(a.motion, b.motion);
         self.body += differs(a.body, b.body);
         self.reward += (a.reward - b.reward).abs();
@@ -324,8 +326,13 @@ fn state(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
         metres,
         metres / (metres + HALF_WAY),
     );
-    let turn = (a.heading - b.heading).rem_euclid(360.0);
-    let turn = turn.min(360.0 - turn);
+    let turns = objects.mean(objects.turn);
+    sink.add(
+        part!("headings of objects", S, "turn / 180 degrees"),
+        turns,
+        turns / 180.0,
+    );
+    let turn = turn(a.heading, b.heading);
     sink.add(part!("agent's heading", S, "turn / 180 degrees"), turn, turn / 180.0);
 }
 
@@ -423,6 +430,12 @@ fn observation(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) 
     let around = apart.sum::<f64>() / 4.0;
     sink.add(part!("colours of surroundings", O, "oklab"), around, around);
     same(part!("camera and weather", O, "same or not"), a.camera, b.camera, sink);
+}
+
+/// The lesser angle between two headings, in degrees.
+fn turn(a: f64, b: f64) -> f64 {
+    let turn = (a - b).rem_euclid(360.0);
+    turn.min(360.0 - turn)
 }
 
 /// Share of the cells taken in either that are not taken in both; both in rising order.

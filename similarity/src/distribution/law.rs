@@ -35,7 +35,7 @@ pub(super) struct Law {
 }
 
 /// Whether it draws headings and nothing else can stand for what it draws.
-pub(super) fn draws_headings(distribution: &Distribution) -> bool {
+pub(crate) fn draws_headings(distribution: &Distribution) -> bool {
     match distribution {
         Distribution::VonMises { .. } => true,
         Distribution::Mixture { parts, .. } => parts.iter().any(draws_headings),

@@ -99,6 +99,7 @@ impl Display for How {
             Self::Closed => f.write_str("by closed form"),
             Self::Atoms => f.write_str("by sum over values"),
             Self::Quadrature { tolerance } => write!(f, "by quadrature within {tolerance:.0e}"),
+            Self::Samples { count: 1 } => write!(f, "by 1 sample"),
             Self::Samples { count } => write!(f, "by {count} samples"),
         }
     }

@@ -30,6 +30,7 @@ pub use extent::{extent, widest};
 pub use hellinger::hellinger;
 pub use jensen_shannon::{jensen_shannon, jensen_shannon_divergence};
 pub use kullback_leibler::kullback_leibler;
+pub(crate) use law::draws_headings;
 pub use maximum_mean_discrepancy::maximum_mean_discrepancy;
 pub use measured::{How, Measured};
 pub use planar::bures_wasserstein;

@@ -103,7 +103,7 @@ mod tests {
         );
         check_error(
             r#"{"labels": ["a", "b"], "values": [[0, -1], [-1, 0]]}"#,
-            "distance of \"a\" to \"b\": found -1, expected a finite number of at least 0",
+            "distance of \"a\" to \"b\": found -1, expected a number from 0 to 1e100",
         );
     }
 }

@@ -4,6 +4,7 @@
 mod csv;
 pub(crate) mod eigen;
 mod embedding;
+mod features;
 mod json;
 mod mds;
 mod npy;
@@ -21,6 +22,9 @@ pub use triangles::{Triangles, Violation};
 
 /// The most items that a matrix holds.
 pub const MAX_ITEMS: usize = 20_000;
+
+/// The largest distance: sums of as many as there can be stay finite.
+pub const MAX_DISTANCE: f64 = 1e100;
 
 /// Every distance among labelled items: symmetric, finite, at least 0, and 0 on the diagonal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -59,6 +63,7 @@ impl DistanceMatrix {
         E: From<SimilarityError> + Send,
     {
         let n = Self::bounded(labels.len())?;
+        Self::distinct(&labels)?;
         let mut values = Array2::zeros((n, n));
         let row = |(a, mut row): (usize, ndarray::ArrayViewMut1<f64>)| -> Result<(), E> {
             for b in a + 1..n {
@@ -81,12 +86,13 @@ impl DistanceMatrix {
     /// halves differ by less than a thousand-millionth, the upper one is kept.
     ///
     /// # Errors
-    /// [`SimilarityError::BadMatrix`] for another shape, a diagonal that is not 0, halves that differ;
+    /// [`SimilarityError::BadMatrix`] for another shape, a label that stands twice, a diagonal that is not 0, halves that differ;
     /// [`SimilarityError::NotADistance`] for a number that is none; [`SimilarityError::TooMany`] for more than [`MAX_ITEMS`].
     pub fn from_values(labels: Vec<String>, values: Array2<f64>) -> Result<Self, SimilarityError> {
         let n = Self::bounded(labels.len())?;
         let bad =
             |place: String, found: String, expected: String| SimilarityError::BadMatrix { place, found, expected };
+        Self::distinct(&labels)?;
         if values.dim() != (n, n) {
             let found = format!("{} × {}", values.nrows(), values.ncols());
             return Err(bad("size".to_owned(), found, format!("{n} × {n}, one for each label")));
@@ -117,8 +123,21 @@ impl DistanceMatrix {
         Ok(found)
     }
 
+    fn distinct(labels: &[String]) -> Result<(), SimilarityError> {
+        let mut sorted: Vec<&String> = labels.iter().collect();
+        sorted.sort_unstable();
+        let twice = sorted.array_windows().find(|[a, b]| a == b);
+        twice.map_or(Ok(()), |[label, _]| {
+            Err(SimilarityError::BadMatrix {
+                place: "labels".to_owned(),
+                found: format!("{label:?} twice"),
+                expected: "each label once".to_owned(),
+            })
+        })
+    }
+
     fn sound(labels: &[String], a: usize, b: usize, found: f64) -> Result<f64, SimilarityError> {
-        if found.is_finite() && found >= 0.0 {
+        if (0.0..=MAX_DISTANCE).contains(&found) {
             return Ok(found);
         }
         let (a, b) = (labels[a].clone(), labels[b].clone());
@@ -205,7 +224,7 @@ mod tests {
         });
         assert_eq!(
             found.unwrap_err().to_string(),
-            "distance of \"item 1\" to \"item 2\": found NaN, expected a finite number of at least 0"
+            "distance of \"item 1\" to \"item 2\": found NaN, expected a number from 0 to 1e100"
         );
         let many = DistanceMatrix::measure(labels(MAX_ITEMS + 1), |_, _| Ok::<_, SimilarityError>(0.0));
         assert_eq!(
@@ -232,7 +251,12 @@ mod tests {
         );
         assert_eq!(
             said([0.0, f64::INFINITY, 3.0, 0.0]).unwrap_err(),
-            "distance of \"item 0\" to \"item 1\": found inf, expected a finite number of at least 0"
+            "distance of \"item 0\" to \"item 1\": found inf, expected a number from 0 to 1e100"
+        );
+        let twice = DistanceMatrix::from_values(vec!["a".to_owned(); 2], Array2::zeros((2, 2)));
+        assert_eq!(
+            twice.unwrap_err().to_string(),
+            "matrix, labels: found \"a\" twice, expected each label once"
         );
         let narrow = DistanceMatrix::from_values(labels(2), Array2::zeros((2, 3)));
         assert_eq!(

@@ -74,7 +74,7 @@ impl GridShape {
     }
 
     /// Refuses two shapes that differ.
-    pub(super) fn check(self, other: Self) -> Result<(), SimilarityError> {
+    pub(crate) fn check(self, other: Self) -> Result<(), SimilarityError> {
         if self == other {
             return Ok(());
         }

@@ -23,7 +23,8 @@ impl Ordering {
     pub fn given(matrix: &DistanceMatrix, indices: Vec<usize>) -> Self {
         let steps: Vec<f64> = indices.windows(2).map(|pair| matrix.get(pair[0], pair[1])).collect();
         Self {
-            length: steps.iter().sum(),
+            // Not `sum`, whose empty sum is −0.
+            length: steps.iter().fold(0.0, |sum, step| sum + step),
             anchor_correlation: anchor_correlation(matrix, &indices),
             indices,
             steps,

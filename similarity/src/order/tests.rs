@@ -289,3 +289,32 @@ fn a_thousand_items_come_within_six_percent_of_a_routing_library() {
     let found = order(&drawn(1, 1000), Method::TwoOpt, &OrderOptions::default()).unwrap();
     assert!(found.length <= 1.06 * golden, "{} for {golden}", found.length);
 }
+
+#[test]
+fn the_largest_distances_there_can_be_are_ordered_by_every_method() {
+    for n in [3, 4, 40] {
+        let labels = (0..n).map(|k| format!("{k:03}")).collect();
+        let far = |_, _| Ok::<_, SimilarityError>(crate::MAX_DISTANCE);
+        let matrix = DistanceMatrix::measure(labels, far).unwrap();
+        for method in Method::ALL {
+            let options = OrderOptions {
+                target_step: Some(2.0),
+                ..OrderOptions::default()
+            };
+            match order(&matrix, method, &options) {
+                Ok(found) => assert!(
+                    (found.length / ((n - 1) as f64 * crate::MAX_DISTANCE) - 1.0).abs() < 1e-9,
+                    "{method:?}"
+                ),
+                Err(error) => assert!(n > MAX_EXACT && method == Method::Exact, "{method:?}: {error}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_single_item_is_a_path_of_length_0_and_not_of_minus_0() {
+    let matrix = matrix(&[[1.0, 1.0]]);
+    let found = order(&matrix, Method::Exact, &OrderOptions::default()).unwrap();
+    assert_eq!(found.length.to_string(), "0");
+}

@@ -34,7 +34,7 @@ pub(crate) struct Order {
     #[arg(required_unless_present = "from_matrix", value_name = "TASK")]
     tasks: Vec<String>,
     /// Take the distances from this file (.csv, .json or .npy) instead of measuring variants.
-    #[arg(long, value_name = "FILE", conflicts_with = "tasks")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["tasks", "weight"])]
     from_matrix: Option<PathBuf>,
     #[command(flatten)]
     ordering: OrderArgs,

@@ -48,8 +48,8 @@ pub(super) fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Order
             ordering.mean_step()
         ),
         format!(
-            "From orange to blue. The map is flat: it shows {:.0} % of what the distances say.",
-            100.0 * map.explained
+            "From orange to blue. The map is flat: it keeps {:.0} % of the distances' eigenvalues, squared.",
+            (100.0 * map.explained).floor()
         ),
     ];
     let names = names(matrix, ordering, &path, many);

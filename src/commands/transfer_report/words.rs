@@ -203,7 +203,7 @@ fn summary(direction: &DirectionReport) -> String {
             test.pairs,
             test.items
         ),
-        None => format!("{}: too few to test", count(direction.pairs.len(), "pair")),
+        None => format!("{}: not tested, see the text", count(direction.pairs.len(), "pair")),
     }
 }
 
