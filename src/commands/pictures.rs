@@ -114,7 +114,17 @@ impl Picture {
     }
 
     /// Writes the picture as a PNG file.
+    ///
+    /// A name that ends like another kind of picture is refused: it would lie.
     pub(crate) fn write(&self, path: &Path) -> Result<(), Failure> {
+        const OTHERS: [&str; 9] = ["jpg", "jpeg", "gif", "bmp", "webp", "tif", "tiff", "svg", "pdf"];
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        if OTHERS.iter().any(|other| ending.eq_ignore_ascii_case(other)) {
+            return Err(Failure::usage(format!(
+                "{}: found a name that ends with .{ending}, expected .png: pictures are written as PNG",
+                path.display()
+            )));
+        }
         output::write(path, &self.to_png()?)
     }
 

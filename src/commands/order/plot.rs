@@ -39,9 +39,14 @@ pub(super) fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Order
         }
         Ok(())
     })?;
+    let of_task = match common_task(matrix.labels()) {
+        "" => String::new(),
+        task => format!("{}, ", task.trim_end_matches('#')),
+    };
     let titles = [
         format!(
-            "{}: length {:.4}, largest step {:.4}, mean step {:.4}",
+            "{}{}: length {:.4}, largest step {:.4}, mean step {:.4}",
+            of_task,
             method.name(),
             ordering.length,
             ordering.largest_step(),
@@ -64,6 +69,18 @@ pub(super) fn path_map(matrix: &DistanceMatrix, method: Method, ordering: &Order
     );
     picture.label(&labels)?;
     Ok(picture.halved())
+}
+
+/// What all labels begin with, up to the `#` behind a task's name; nothing if they are of several tasks.
+fn common_task(labels: &[String]) -> &str {
+    let task = |label: &str| label.rfind('#').map_or(0, |at| at + 1);
+    let Some(first) = labels.first() else { return "" };
+    let common = &first[..task(first)];
+    if labels.iter().all(|label| label[..task(label)] == *common) {
+        common
+    } else {
+        ""
+    }
 }
 
 fn label(text: &str, at: (i32, i32), size: u32, color: RGBColor, side: HPos) -> Label<'_> {
@@ -142,12 +159,14 @@ fn names(matrix: &DistanceMatrix, ordering: &Ordering, path: &[(i32, i32)], ends
     let mut taken: Vec<[i32; 4]> = path.iter().map(|(x, y)| [x - 12, y - 12, x + 12, y + 12]).collect();
     taken.extend(path.windows(2).flat_map(|pair| along_step(pair[0], pair[1])));
     let last = path.len().saturating_sub(1);
+    let task = common_task(matrix.labels());
+    let short = |label: &str| label[task.len()..].to_owned();
     let mut names = Vec::new();
     for (place, (x, y)) in path.iter().enumerate() {
         if ends_only && place != 0 && place != last {
             continue;
         }
-        let text = format!("{} {}", place + 1, matrix.labels()[ordering.indices[place]]);
+        let text = format!("{} {}", place + 1, short(&matrix.labels()[ordering.indices[place]]));
         let wide = TEXT.1 * text.chars().count() as i32;
         let (gap, high) = (18, TEXT.0 + 4);
         // Right, left, below and above, and then the same farther off.
