@@ -428,7 +428,7 @@ fn called(regime: &Regime) -> String {
     let to = regime
         .drift
         .as_ref()
-        .map_or_else(String::new, |drift| format!("..{}", drift.to));
+        .map_or_else(String::new, |drift| format!("..{}", drift.variant_name()));
     format!("{}#{}{to}", regime.task, regime.variant_name())
 }
 

@@ -150,7 +150,7 @@ fn named(regime: &Regime) -> String {
         None => name,
         Some(drift) => format!(
             "{name} to {}, {:.0}% to {:.0}%",
-            drift.to,
+            drift.variant_name(),
             100.0 * drift.from,
             100.0 * drift.until
         ),
