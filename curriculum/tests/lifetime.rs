@@ -549,8 +549,10 @@ fn a_label_is_told_only_where_the_scenario_says_so() {
         let told: Vec<Label> = told(wanted).into_iter().filter_map(|(_, label)| label).collect();
         assert_eq!(
             (told.len(), told[8].name.as_str(), told[8].number),
-            (15, "find_objects#red..dusk", 3)
+            (15, "find_objects#red", 2),
+            "a drift has the label of its nearer end"
         );
+        assert_eq!((told[10].name.as_str(), told[10].number), ("find_objects#dusk", 3));
         assert!(
             told.iter()
                 .all(|label| label.of == 4 && label.observed == (wanted == TaskLabel::Observation))
