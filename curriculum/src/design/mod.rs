@@ -103,8 +103,9 @@ pub fn design(variants: &[Choice], options: &Design) -> Result<Scenario, Curricu
 ///
 /// `order` says in which order the control meets the variants, by their places in `variants`. Every variant is learned as often
 /// as in the design itself: where the blocks are no whole number of rounds, those that the design has once more are learned once
-/// more here, before the first round, or after the last where one of them would else come twice in a row. The reversed order
-/// is the design backwards.
+/// more here, before the first round, or after the last where one of them would else come twice in a row or the control would
+/// be the design itself. The reversed order is the design backwards. Two variants in turn, an odd number of times, have one
+/// order only.
 ///
 /// # Errors
 /// As [`design`]; [`CurriculumError::BadForm`] for the permuted form, which draws an order of its own, and for an `order` that
