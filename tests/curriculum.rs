@@ -253,7 +253,7 @@ fn controls_learn_as_often_and_before_deployment_the_same() {
     let table = String::from_utf8(said.stdout).expect("the command prints UTF-8");
     let main = read(&main);
     let worlds = |scenario: &Value| {
-        let mut worlds: Vec<String> = regimes(scenario, "learning").iter().map(|r| r.to_string()).collect();
+        let mut worlds: Vec<String> = regimes(scenario, "learning").iter().map(ToString::to_string).collect();
         worlds.sort();
         worlds
     };
