@@ -232,6 +232,81 @@ fn orders_differ_and_controls_are_matched_in_everything_else() {
 }
 
 #[test]
+fn controls_learn_as_often_and_before_deployment_the_same() {
+    let folder = scratch();
+    let main = folder.path().join("main.json");
+    let controls = folder.path().join("controls");
+    let said = driftworld(&[
+        park("#blue"),
+        park("#red"),
+        park("#dusk"),
+        "--blocks",
+        "5",
+        "--pre-deployment",
+        "4",
+        "--controls",
+        text(&controls),
+        "-o",
+        text(&main),
+    ]);
+    assert_eq!(said.status.code(), Some(0));
+    let table = String::from_utf8(said.stdout).expect("the command prints UTF-8");
+    let main = read(&main);
+    let worlds = |scenario: &Value| {
+        let mut worlds: Vec<String> = regimes(scenario, "learning").iter().map(ToString::to_string).collect();
+        worlds.sort();
+        worlds
+    };
+    for kind in ["reversed", "random", "contrast"] {
+        let control = read(&controls.join(format!("curriculum-{kind}.json")));
+        assert_eq!(worlds(&control), worlds(&main), "{kind}");
+        assert_eq!(control["blocks"][0], main["blocks"][0]);
+        let written = learned(&control)[1..].join(", ");
+        assert!(
+            table.contains(&format!("curriculum-{kind}.json: {written}; length")),
+            "{table}"
+        );
+    }
+    let permuted = fail(2, &[park(""), "--form", "permuted", "--controls", text(&controls)]);
+    assert!(permuted.contains("leave one of them out"), "{permuted}");
+}
+
+#[test]
+fn experts_of_two_tasks_are_written_side_by_side() {
+    let folder = scratch();
+    let output = driftworld(&[
+        "find_objects#dusk",
+        "get_to_goal#dusk",
+        "--form",
+        "expert",
+        "-o",
+        text(folder.path()),
+    ]);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    for task in ["find_objects", "get_to_goal"] {
+        let expert = read(&folder.path().join(format!("curriculum-{task}-dusk.json")));
+        assert!(regimes(&expert, "learning").iter().all(|regime| regime["task"] == task));
+    }
+}
+
+#[test]
+fn a_probe_ends_where_it_is_asked_to() {
+    let (scenario, _) = designed(&[park(""), "--probe", "observation", "--end", park("#blue")]);
+    assert_eq!(learned(&scenario).last().map(String::as_str), Some("blue"));
+    let error = fail(1, &[park(""), "--probe", "observation", "--end", park("#bleu")]);
+    assert!(error.contains("--end: found"), "{error}");
+    for wanted in ["0", "1", "201"] {
+        let error = fail(1, &[park(""), "--probe", "reward", "--variants", wanted]);
+        assert!(error.contains("variants wanted, expected 2 to 200"), "{error}");
+    }
+}
+
+#[test]
 fn evaluation_never_draws_what_is_learned_and_stands_where_it_is_wanted() {
     let three = [park("#blue"), park("#red"), park("#green"), "--method", "given"];
     let with = |more: &[&str]| designed(&[&three[..], more].concat()).0;

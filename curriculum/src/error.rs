@@ -81,6 +81,46 @@ pub enum CurriculumError {
         /// The other.
         b: String,
     },
+    /// Two experts would have one name.
+    #[error(
+        "experts: found {a} and {b}, which would both be named {name}, expected a name for each; leave one of them out, or \
+         give it another name"
+    )]
+    SameName {
+        /// The one.
+        a: String,
+        /// The other.
+        b: String,
+        /// The name.
+        name: String,
+    },
+    /// A number of variants that a probe cannot have.
+    #[error("probing: found {found} variants wanted, expected 2 to {limit}")]
+    BadProbe {
+        /// The number.
+        found: usize,
+        /// The most there can be.
+        limit: usize,
+    },
+    /// A search for a sequence of steps was ended before it was over.
+    #[error(
+        "steps from {anchor}: found at most {found} of {distance} ± {tolerance} in {limit} comparisons, expected {wanted}; ask \
+         for fewer or larger steps, or a larger tolerance"
+    )]
+    StepsGivenUp {
+        /// The variant that the sequence begins with.
+        anchor: String,
+        /// How far each step was to go.
+        distance: f64,
+        /// How far off it may be.
+        tolerance: f64,
+        /// The most steps that were found.
+        found: usize,
+        /// How many were wanted.
+        wanted: u32,
+        /// After how many comparisons the search ends.
+        limit: u64,
+    },
     /// Not enough variants differ in an element alone.
     #[error(
         "probing the {element}: found {found} variants that differ from {anchor} in it alone, expected {wanted}; ask for \
@@ -296,6 +336,9 @@ impl CurriculumError {
             Self::NoWay => "curriculum/no-way",
             Self::DriftBetweenTasks { .. } => "curriculum/drift-between-tasks",
             Self::SeveralTasks { .. } => "curriculum/several-tasks",
+            Self::SameName { .. } => "curriculum/same-name",
+            Self::BadProbe { .. } => "curriculum/bad-probe",
+            Self::StepsGivenUp { .. } => "curriculum/steps-given-up",
             Self::TooFew { .. } => "curriculum/too-few",
             Self::BadSteps { .. } => "curriculum/bad-steps",
             Self::TooFewSteps { .. } => "curriculum/too-few-steps",
@@ -350,6 +393,20 @@ mod tests {
             CurriculumError::SeveralTasks {
                 a: "t#v".into(),
                 b: "u#v".into(),
+            },
+            CurriculumError::SameName {
+                a: "t#v".into(),
+                b: "u#v".into(),
+                name: "c-v".into(),
+            },
+            CurriculumError::BadProbe { found: 1, limit: 9 },
+            CurriculumError::StepsGivenUp {
+                anchor: "t#v".into(),
+                distance: 0.002,
+                tolerance: 0.0001,
+                found: 2,
+                wanted: 3,
+                limit: 9,
             },
             CurriculumError::TooFew {
                 anchor: "t#v".into(),

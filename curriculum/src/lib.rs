@@ -10,8 +10,8 @@ mod run;
 mod transfer;
 
 pub use design::{
-    Choice, Control, Design, Drifting, Evaluate, Hypothesis, MAX_BLOCKS, MAX_SEED, MAX_STEPS, Picked, Steps, arrange,
-    control, design, distances, experts, probe, steps,
+    Choice, Control, Design, Drifting, Evaluate, Hypothesis, MAX_BLOCKS, MAX_PROBED, MAX_SEED, MAX_STEPS, Picked,
+    Steps, arrange, control, design, design_control, distances, experts, probe, steps,
 };
 pub use error::CurriculumError;
 pub use run::{

@@ -6,11 +6,15 @@ use std::path::Path;
 use std::sync::{Arc, Mutex};
 
 use driftworld_curriculum::{
-    Choice, CurriculumError, Design, FoundWorld, Journal, Plan, Progress, Sources, Summary, Surroundings, design, run,
+    Choice, CurriculumError, Design, Drifting, FoundWorld, Journal, Plan, Progress, Sources, Summary, Surroundings,
+    design, run,
 };
 use driftworld_env::{Action, Agent, Catalogue, Environment, Label, OnRailsAgent, RandomAgent, Step};
 use driftworld_metrics::{MaintenanceMethod, Options, Record, Timestamp, read_log, score};
-use driftworld_spec::{Block, BlockKind, Phase, Regime, RegimeDrift, Scenario, TaskLabel, TaskSpec, World};
+use driftworld_similarity::{Weights, variant_distance};
+use driftworld_spec::{
+    Block, BlockKind, Element, Phase, Regime, RegimeDrift, Scenario, TaskLabel, TaskSpec, Value, World,
+};
 
 fn task() -> Arc<TaskSpec> {
     let path = format!("{}/../examples/tasks/find_objects.json", env!("CARGO_MANIFEST_DIR"));
@@ -400,6 +404,47 @@ fn every_row_says_how_far_its_variant_is_from_what_was_learned_last() {
 }
 
 #[test]
+fn a_drift_to_a_made_variant_is_logged_with_the_distances_of_its_end() {
+    let bright = Choice {
+        values: [("light".to_owned(), Value::Number(4.0))].into_iter().collect(),
+        name: Some("bright".to_owned()),
+        ..Choice::new("find_objects", "blue")
+    };
+    let options = Design {
+        learn: 3,
+        evaluate: 1,
+        drifting: Some(Drifting::default()),
+        task_label: TaskLabel::Info,
+        ..Design::default()
+    };
+    let scenario = design(&[Choice::new("find_objects", "blue"), bright], &options).expect("the design is sound");
+    Scenario::from_json("designed", &scenario.to_json_pretty()).expect("what is designed is a valid document");
+    let folder = scratch();
+    let log = folder.path().join("log");
+    live(&scenario, &mut RandomAgent::new(0), &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    let read = read_log(&log).unwrap_or_else(|error| panic!("{error}"));
+    let task = task();
+    let blue = task.variant("blue").expect("the task has it");
+    let end = blue
+        .with("bright", [("light".to_owned(), Value::Number(4.0))])
+        .expect("the light goes to 4");
+    let apart = variant_distance(&blue, &end, &Weights::of_task(&task)).expect("both are of one task");
+    assert!(apart.total > 0.0);
+    // 0-1 blue and bright, 2-4 blue to bright, 5-6 blue and bright: from bright, the end of the drift.
+    let logged = |row: usize| {
+        let metric = |name: &str| read.records[row].metrics[name];
+        (metric("distance"), metric("distance_observation"))
+    };
+    let expected = (apart.total, apart.element(Element::O).expect("it has a light"));
+    assert_eq!(logged(5), expected, "blue is what the drift left");
+    assert_eq!(logged(6), (0.0, 0.0), "bright is where it ended");
+    let made_from = &read.scenario_info.extra["made_from"];
+    assert!(made_from["find_objects#blue"].is_string() && made_from["find_objects#bright"].is_string());
+    assert_ne!(made_from["find_objects#blue"], made_from["find_objects#bright"]);
+    assert_eq!(read.records[2].task_params["to"], "bright");
+}
+
+#[test]
 fn what_a_limit_cuts_off_is_truncated_and_the_end_of_a_block_is_no_end() {
     /// What was told of the last step of each experience.
     struct Witness(Vec<Step>);
@@ -504,8 +549,10 @@ fn a_label_is_told_only_where_the_scenario_says_so() {
         let told: Vec<Label> = told(wanted).into_iter().filter_map(|(_, label)| label).collect();
         assert_eq!(
             (told.len(), told[8].name.as_str(), told[8].number),
-            (15, "find_objects#red..dusk", 3)
+            (15, "find_objects#red", 2),
+            "a drift has the label of its nearer end"
         );
+        assert_eq!((told[10].name.as_str(), told[10].number), ("find_objects#dusk", 3));
         assert!(
             told.iter()
                 .all(|label| label.of == 4 && label.observed == (wanted == TaskLabel::Observation))

@@ -48,6 +48,7 @@ pub(super) fn lessons(
                 let progress = |part: u64| (part - way * num_blocks) as f64 / num_blocks as f64;
                 let drift = RegimeDrift {
                     values: variants[to].values.clone(),
+                    name: variants[to].name.clone(),
                     schedule: drifting.schedule,
                     switch: drifting.switch,
                     from: progress(here),

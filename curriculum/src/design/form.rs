@@ -84,6 +84,44 @@ pub(super) fn sequence(
     Ok(places.iter().copied().cycle().take(num_blocks as usize).collect())
 }
 
+/// The learning blocks of a control: those of `path`, each variant as often, in rounds of another order.
+pub(super) fn reordered(
+    form: Option<ScenarioForm>,
+    path: &[usize],
+    order: &[usize],
+    count: usize,
+) -> Result<Vec<usize>, CurriculumError> {
+    let wrong = |form, expected: &str| CurriculumError::BadForm {
+        form,
+        variants: count,
+        blocks: None,
+        expected: expected.to_owned(),
+    };
+    if form == Some(ScenarioForm::Permuted) {
+        let expected = "a form whose order is not drawn by chance; its lifetimes are each other's controls";
+        return Err(wrong("permuted", expected));
+    }
+    let mut sorted = order.to_vec();
+    sorted.sort_unstable();
+    if !sorted.into_iter().eq(0..count) {
+        return Err(wrong("of a control", "an order with each of them once"));
+    }
+    // All forms that are not drawn by chance go round through the variants.
+    let (rounds, rest) = (path.len() / count, &path[path.len() / count * count..]);
+    let rest: Vec<usize> = order.iter().copied().filter(|variant| rest.contains(variant)).collect();
+    let round = order.iter().copied().cycle().take(rounds * count);
+    let first: Vec<usize> = rest.iter().copied().chain(round.clone()).collect();
+    let last: Vec<usize> = round.chain(rest).collect();
+    let twice_in_a_row = |path: &[usize]| path.windows(2).any(|pair| pair[0] == pair[1]);
+    // A rotated order may come out as the design itself where the rest is learned first.
+    let other = |found: &Vec<usize>| !twice_in_a_row(found) && *found != path;
+    Ok(if other(&first) || (twice_in_a_row(&last) && !twice_in_a_row(&first)) {
+        first
+    } else {
+        last
+    })
+}
+
 /// The order in which a lifetime meets its variants where chance decides.
 fn permutation(count: usize, seed: u64, lifetime: u64) -> Result<Vec<usize>, CurriculumError> {
     // The names are as long as each other, so that they sort as the numbers do.
@@ -129,6 +167,28 @@ mod tests {
             sorted.sort_unstable();
             assert_eq!(sorted, [0, 1, 2, 3, 4, 5]);
         }
+    }
+
+    #[test]
+    fn a_control_has_every_variant_as_often_as_the_design() {
+        let check = |path: &[usize], order: &[usize], expected: &[usize]| {
+            assert_eq!(reordered(None, path, order, order.len()).unwrap(), expected);
+        };
+        check(&[0, 1, 2], &[2, 0, 1], &[2, 0, 1]);
+        check(&[0, 1, 2, 0, 1], &[2, 1, 0], &[1, 0, 2, 1, 0]);
+        check(&[0, 1, 2, 0], &[0, 2, 1], &[0, 2, 1, 0]);
+        check(&[0, 1, 2, 0, 1], &[2, 0, 1], &[2, 0, 1, 0, 1]);
+        // There is no other order of these in which none comes twice in a row.
+        check(&[0, 1, 0], &[1, 0], &[0, 1, 0]);
+        check(&[0, 1], &[2, 1, 0], &[1, 0]);
+        for order in [[0, 1], [0, 0], [1, 2]] {
+            let said = reordered(None, &[0, 1, 2], &order, 3).unwrap_err().to_string();
+            assert!(said.ends_with("an order with each of them once"), "{said}");
+        }
+        let said = reordered(Some(ScenarioForm::Permuted), &[1, 0], &[0, 1], 2)
+            .unwrap_err()
+            .to_string();
+        assert!(said.contains("the form permuted"), "{said}");
     }
 
     #[test]

@@ -9,6 +9,9 @@ mod picked;
 mod probe;
 mod steps;
 
+use std::collections::BTreeMap;
+use std::path::Path;
+
 use driftworld_spec::{Block, BlockKind, MAX_EXPERIENCES, Phase, Regime, Scenario, ScenarioForm, TaskLabel};
 
 pub use choice::Choice;
@@ -17,7 +20,7 @@ pub use evaluation::Evaluate;
 pub use form::MAX_BLOCKS;
 pub use hypothesis::{Control, Hypothesis, arrange, control};
 pub use picked::{Picked, distances};
-pub use probe::probe;
+pub use probe::{MAX_PROBED, probe};
 pub use steps::{MAX_STEPS, Steps, steps};
 
 use crate::CurriculumError;
@@ -92,8 +95,28 @@ impl Default for Design {
 /// # Ok::<(), driftworld_curriculum::CurriculumError>(())
 /// ```
 pub fn design(variants: &[Choice], options: &Design) -> Result<Scenario, CurriculumError> {
+    arranged(variants, options, None)
+}
+
+/// A control of the design of the same variants and options: the same learning blocks in another order, after the same block
+/// before deployment, between the same evaluations.
+///
+/// `order` says in which order the control meets the variants, by their places in `variants`. Every variant is learned as often
+/// as in the design itself: where the blocks are no whole number of rounds, those that the design has once more are learned once
+/// more here, before the first round, or after the last where one of them would else come twice in a row or the control would
+/// be the design itself. The reversed order is the design backwards. Two variants in turn, an odd number of times, have one
+/// order only.
+///
+/// # Errors
+/// As [`design`]; [`CurriculumError::BadForm`] for the permuted form, which draws an order of its own, and for an `order` that
+/// is none of the variants.
+pub fn design_control(variants: &[Choice], order: &[usize], options: &Design) -> Result<Scenario, CurriculumError> {
+    arranged(variants, options, Some(order))
+}
+
+fn arranged(variants: &[Choice], options: &Design, control: Option<&[usize]>) -> Result<Scenario, CurriculumError> {
     check(variants, options)?;
-    let (path, lessons) = lessons(variants, options)?;
+    let (path, lessons) = lessons(variants, options, control)?;
     let num_lessons = lessons.len() as u32;
     let places = options.evaluation.places(num_lessons)?;
     let mut blocks = Vec::new();
@@ -126,25 +149,32 @@ pub fn design(variants: &[Choice], options: &Design) -> Result<Scenario, Curricu
 }
 
 /// A scenario for each variant in which it alone is learned, as often and as long as `options` say: single-task experts, with
-/// which a lifelong learner is compared. They are named `NAME-VARIANT`, and draw the worlds that the lifelong learner does.
+/// which a lifelong learner is compared. They are named `NAME-VARIANT`, or `NAME-TASK-VARIANT` if there are several tasks, and draw the worlds that
+/// the lifelong learner does.
 ///
 /// # Errors
-/// As [`design`].
+/// As [`design`]; [`CurriculumError::SameName`] if two would have the same name.
 pub fn experts(variants: &[Choice], options: &Design) -> Result<Vec<Scenario>, CurriculumError> {
     check(variants, options)?;
+    let several_tasks = variants.iter().any(|choice| choice.task != variants[0].task);
+    let mut named: BTreeMap<String, String> = BTreeMap::new();
     let expert = |choice: &Choice| {
-        let named = choice.name().chars();
-        let plain: String = named
-            .map(|c| {
-                if c.is_ascii_alphanumeric() || "_.-".contains(c) {
-                    c
-                } else {
-                    '-'
-                }
-            })
-            .collect();
+        let variant = plain(choice.name());
+        // A task may be the path of its file.
+        let task = Path::new(&choice.task).file_stem().and_then(|stem| stem.to_str());
+        let name = match task.filter(|_| several_tasks) {
+            Some(task) => format!("{}-{}-{variant}", options.name, plain(task)),
+            None => format!("{}-{variant}", options.name),
+        };
+        if let Some(other) = named.insert(name.clone(), choice.id()) {
+            return Err(CurriculumError::SameName {
+                a: other,
+                b: choice.id(),
+                name,
+            });
+        }
         let options = Design {
-            name: format!("{}-{plain}", options.name),
+            name,
             form: Some(ScenarioForm::Expert),
             drifting: None,
             ..options.clone()
@@ -152,6 +182,12 @@ pub fn experts(variants: &[Choice], options: &Design) -> Result<Vec<Scenario>, C
         design(std::slice::from_ref(choice), &options)
     };
     variants.iter().map(expert).collect()
+}
+
+/// Text as a scenario's name may have it.
+fn plain(text: &str) -> String {
+    let allowed = |c: char| c.is_ascii_alphanumeric() || "_.-".contains(c);
+    text.chars().map(|c| if allowed(c) { c } else { '-' }).collect()
 }
 
 fn check(variants: &[Choice], options: &Design) -> Result<(), CurriculumError> {
@@ -182,8 +218,18 @@ fn check(variants: &[Choice], options: &Design) -> Result<(), CurriculumError> {
 }
 
 /// The variants of the learning blocks in their order, and the regimes of each block.
-fn lessons(variants: &[Choice], options: &Design) -> Result<(Vec<usize>, Vec<Vec<Regime>>), CurriculumError> {
+///
+/// In a control the variants are still those of the design itself, whose first is learned before deployment.
+fn lessons(
+    variants: &[Choice],
+    options: &Design,
+    control: Option<&[usize]>,
+) -> Result<(Vec<usize>, Vec<Vec<Regime>>), CurriculumError> {
     let chance = (options.seed, options.lifetime);
+    let own = |path: &[usize]| match control {
+        Some(order) => form::reordered(options.form, path, order, variants.len()),
+        None => Ok(path.to_vec()),
+    };
     let Some(drifting) = options.drifting else {
         let path = form::sequence(options.form, variants.len(), options.blocks, chance)?;
         let mut taken = vec![0; variants.len()];
@@ -192,7 +238,7 @@ fn lessons(variants: &[Choice], options: &Design) -> Result<(Vec<usize>, Vec<Vec
             taken[*variant] += u64::from(options.learn);
             vec![regime]
         };
-        let lessons = path.iter().map(lesson).collect();
+        let lessons = own(&path)?.iter().map(lesson).collect();
         return Ok((path, lessons));
     };
     // The form says which variants the drift leads through; how many blocks it is shared out among is said by `blocks`.
@@ -207,7 +253,7 @@ fn lessons(variants: &[Choice], options: &Design) -> Result<(Vec<usize>, Vec<Vec
             limit: MAX_BLOCKS,
         });
     }
-    let lessons = drifting::lessons(variants, &path, u64::from(num_blocks), options, drifting)?;
+    let lessons = drifting::lessons(variants, &own(&path)?, u64::from(num_blocks), options, drifting)?;
     Ok((path, lessons))
 }
 

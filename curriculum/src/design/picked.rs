@@ -1,6 +1,7 @@
 //! [`Picked`]: a variant that was chosen or made, with its distances. Which ones are picked is said by `probe.rs` and `steps.rs`.
 
-use driftworld_similarity::{Distance, DistanceMatrix, Weights, variant_distance};
+use driftworld_generator::{GeneratorError, Subject, at_distance};
+use driftworld_similarity::{Distance, DistanceMatrix, VariantMeasure, Weights};
 use driftworld_spec::{Element, Variant};
 
 use super::Choice;
@@ -42,7 +43,7 @@ impl Picked {
     /// # Errors
     /// [`CurriculumError::Similarity`] for variants of different tasks.
     pub fn distance(&self, other: &Self) -> Result<Distance, CurriculumError> {
-        distance(&self.variant, &other.variant)
+        Ok(measure_of(&self.variant).between(&self.variant, &other.variant)?)
     }
 }
 
@@ -52,16 +53,43 @@ impl Picked {
 /// [`CurriculumError::Similarity`] for variants of different tasks, or too many of them.
 pub fn distances(picked: &[Picked], element: Option<Element>) -> Result<DistanceMatrix, CurriculumError> {
     let labels = picked.iter().map(|picked| picked.choice.id()).collect();
-    DistanceMatrix::measure(labels, |a, b| apart(&picked[a].variant, &picked[b].variant, element))
+    // Without variants the matrix says so before anything is measured.
+    let measure = picked.first().map(|first| measure_of(&first.variant));
+    DistanceMatrix::measure(labels, |a, b| match &measure {
+        Some(measure) => apart(measure, &picked[a].variant, &picked[b].variant, element),
+        None => Ok(0.0),
+    })
+}
+
+/// Compares variants of the same task as this one, at the weights that the task declares: made once for many comparisons.
+pub(super) fn measure_of(variant: &Variant) -> VariantMeasure {
+    VariantMeasure::new(variant.task(), Weights::of_task(variant.task()))
 }
 
 /// How far two variants are apart: in an element, or in all together.
-pub(super) fn apart(a: &Variant, b: &Variant, element: Option<Element>) -> Result<f64, CurriculumError> {
-    Ok(in_element(&distance(a, b)?, element))
+pub(super) fn apart(
+    measure: &VariantMeasure,
+    a: &Variant,
+    b: &Variant,
+    element: Option<Element>,
+) -> Result<f64, CurriculumError> {
+    Ok(in_element(&measure.between(a, b)?, element))
 }
 
-pub(super) fn distance(a: &Variant, b: &Variant) -> Result<Distance, CurriculumError> {
-    Ok(variant_distance(a, b, &Weights::of_task(a.task()))?)
+/// How far the farthest variant is that the generator finds by moving a subject, in an element or in all together.
+pub(super) fn farthest(
+    measure: &VariantMeasure,
+    anchor: &Variant,
+    subject: &Subject,
+    element: Option<Element>,
+) -> Result<f64, GeneratorError> {
+    let distance = |other: &Variant| apart(measure, anchor, other, element).unwrap_or(0.0);
+    // No distance is above 1, so this finds the farthest.
+    match at_distance(anchor, subject, 2.0, 0.0, distance) {
+        Err(GeneratorError::TooFar { farthest, .. }) => Ok(farthest),
+        Err(other) => Err(other),
+        Ok(found) => Ok(found.distance),
+    }
 }
 
 /// A distance in an element, 0 where nothing could differ, or the whole.

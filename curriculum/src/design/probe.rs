@@ -4,10 +4,13 @@
 use driftworld_generator::{GeneratorError, Subject, at_distance};
 use driftworld_spec::{Domain, Element, Role, Value, Variant};
 
-use driftworld_similarity::{Method, OrderOptions, order};
+use driftworld_similarity::{Method, OrderOptions, VariantMeasure, order};
 
-use super::picked::{Picked, apart, distance, distances, in_element, is_alone};
+use super::picked::{Picked, apart, distances, farthest, in_element, is_alone, measure_of};
 use crate::CurriculumError;
+
+/// The most variants that a probe can be asked for: each is compared with every other.
+pub const MAX_PROBED: usize = 200;
 
 /// How many variants there are at least where nobody says how many.
 const ENOUGH: usize = 4;
@@ -24,7 +27,7 @@ const ALIKE: f64 = 1e-9;
 /// `task` is what scenarios call the task.
 ///
 /// # Errors
-/// [`CurriculumError::SeveralTasks`] if the pool has a variant of another task; [`CurriculumError::TooFew`] if not enough are
+/// [`CurriculumError::BadProbe`] if fewer than 2 or more than [`MAX_PROBED`] are wanted; [`CurriculumError::SeveralTasks`] if the pool has a variant of another task; [`CurriculumError::TooFew`] if not enough are
 /// found and made; [`CurriculumError::Generator`] if no parameter affects the element alone.
 pub fn probe(
     task: &str,
@@ -33,7 +36,14 @@ pub fn probe(
     element: Element,
     wanted: Option<usize>,
 ) -> Result<Vec<Picked>, CurriculumError> {
+    if let Some(found) = wanted.filter(|wanted| !(2..=MAX_PROBED).contains(wanted)) {
+        return Err(CurriculumError::BadProbe {
+            found,
+            limit: MAX_PROBED,
+        });
+    }
     let mut search = Search {
+        measure: measure_of(anchor),
         task,
         anchor,
         element,
@@ -87,6 +97,7 @@ fn spread_out(found: Vec<Picked>, element: Element, wanted: usize) -> Result<Vec
 }
 
 struct Search<'a> {
+    measure: VariantMeasure,
     task: &'a str,
     anchor: &'a Variant,
     element: Element,
@@ -98,7 +109,7 @@ impl Search<'_> {
     /// Whether a variant differs in the element alone, from everything that was found.
     fn is_new(&self, variant: &Variant) -> Result<bool, CurriculumError> {
         for picked in &self.found {
-            let apart = distance(&picked.variant, variant)?;
+            let apart = self.measure.between(&picked.variant, variant)?;
             if in_element(&apart, Some(self.element)) <= ALIKE || !is_alone(&apart, self.element) {
                 return Ok(false);
             }
@@ -116,13 +127,9 @@ impl Search<'_> {
         }
         let subject = Subject::Element(self.element);
         let (anchor, element) = (self.anchor, self.element);
-        let measure = |other: &Variant| apart(anchor, other, Some(element)).unwrap_or(0.0);
-        // No distance in an element is above 1, so this finds the farthest.
-        let farthest = match at_distance(anchor, &subject, 2.0, 0.0, measure) {
-            Err(GeneratorError::TooFar { farthest, .. }) => farthest,
-            Err(other) => return Err(other.into()),
-            Ok(found) => found.distance,
-        };
+        let by = self.measure.clone();
+        let measure = |other: &Variant| apart(&by, anchor, other, Some(element)).unwrap_or(0.0);
+        let farthest = farthest(&by, anchor, &subject, Some(element))?;
         let missing = enough.saturating_sub(self.found.len());
         for parts in [missing, 2 * missing, 4 * missing, 8 * missing] {
             for part in 1..=parts {
@@ -297,6 +304,10 @@ mod tests {
             "probing the transition: found 3 variants that differ from t#base in it alone, expected 5; \
              ask for fewer, or give the task parameters that affect it alone"
         );
+        for (wanted, found) in [(0, "0"), (1, "1"), (201, "201")] {
+            let expected = format!("probing: found {found} variants wanted, expected 2 to 200");
+            assert_eq!(said(Element::O, Some(wanted)), expected);
+        }
         let other = TaskSpec::from_json("u", r#"{ "name": "u" }"#).unwrap();
         let mixed = [other.variant("default").unwrap()];
         let error = probe("t", &mixed, &base, Element::R, None).unwrap_err().to_string();

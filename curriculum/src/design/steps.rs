@@ -1,9 +1,12 @@
 //! A sequence of variants whose neighbours are a wanted distance apart. One variant at a wanted distance is the generator's to find.
 
+use std::cell::Cell;
+
 use driftworld_generator::{Drift, Subject, at_distance};
+use driftworld_similarity::VariantMeasure;
 use driftworld_spec::{Domain, Element, Parameter, ParameterType, Role, Value, Variant};
 
-use super::picked::{Picked, apart, distance, in_element, is_alone};
+use super::picked::{Picked, apart, farthest, in_element, is_alone, measure_of};
 use crate::CurriculumError;
 
 /// The most steps of a sequence.
@@ -11,6 +14,9 @@ pub const MAX_STEPS: u32 = 1000;
 
 /// The most variants that a sequence is tried to go on from.
 const MOST_TRIES: u32 = 4000;
+
+/// The most comparisons of two variants in a search for a sequence.
+const MOST_COMPARISONS: u64 = 4_000_000;
 
 /// Halvings of a stretch before it is given up.
 const HALVINGS: u32 = 60;
@@ -37,7 +43,7 @@ pub struct Steps {
 ///
 /// # Errors
 /// [`CurriculumError::BadSteps`] for numbers that make no sequence; [`CurriculumError::SeveralTasks`];
-/// [`CurriculumError::TooFewSteps`] with the longest sequence that was found, and how far from the anchor anything is.
+/// [`CurriculumError::StepsGivenUp`] where the search takes too long; [`CurriculumError::TooFewSteps`] with the longest sequence that was found, and how far from the anchor anything is.
 pub fn steps(task: &str, pool: &[Variant], anchor: &Variant, wanted: &Steps) -> Result<Vec<Picked>, CurriculumError> {
     let sound = wanted.distance > 0.0
         && wanted.distance <= 1.0
@@ -65,11 +71,22 @@ pub fn steps(task: &str, pool: &[Variant], anchor: &Variant, wanted: &Steps) -> 
         wanted,
         path: vec![Picked::declared(task, anchor.clone())],
         longest: 0,
-        farthest: 0.0,
         tries: 0,
+        measure: measure_of(anchor),
+        comparisons: Cell::new(0),
     };
     if walk.go_on()? {
         return Ok(walk.path);
+    }
+    if walk.is_tired() {
+        return Err(CurriculumError::StepsGivenUp {
+            anchor: anchor.id(),
+            distance: wanted.distance,
+            tolerance: wanted.tolerance,
+            found: walk.longest,
+            wanted: wanted.count,
+            limit: MOST_COMPARISONS,
+        });
     }
     Err(CurriculumError::TooFewSteps {
         anchor: anchor.id(),
@@ -77,7 +94,7 @@ pub fn steps(task: &str, pool: &[Variant], anchor: &Variant, wanted: &Steps) -> 
         tolerance: wanted.tolerance,
         found: walk.longest,
         wanted: wanted.count,
-        farthest: walk.farthest,
+        farthest: walk.farthest()?,
     })
 }
 
@@ -88,8 +105,10 @@ struct Walk<'a> {
     wanted: &'a Steps,
     path: Vec<Picked>,
     longest: usize,
-    farthest: f64,
     tries: u32,
+    measure: VariantMeasure,
+    /// How many were made so far.
+    comparisons: Cell<u64>,
 }
 
 impl Walk<'_> {
@@ -100,7 +119,7 @@ impl Walk<'_> {
             return Ok(true);
         }
         self.tries += 1;
-        if self.tries > MOST_TRIES {
+        if self.tries > MOST_TRIES || self.is_tired() {
             return Ok(false);
         }
         for next in self.nexts()? {
@@ -109,11 +128,48 @@ impl Walk<'_> {
                 return Ok(true);
             }
             self.path.pop();
-            if self.tries > MOST_TRIES {
+            if self.tries > MOST_TRIES || self.is_tired() {
                 break;
             }
         }
         Ok(false)
+    }
+
+    fn is_tired(&self) -> bool {
+        self.comparisons.get() >= MOST_COMPARISONS
+    }
+
+    fn apart(&self, a: &Variant, b: &Variant) -> Result<f64, CurriculumError> {
+        self.comparisons.set(self.comparisons.get() + 1);
+        apart(&self.measure, a, b, self.wanted.element)
+    }
+
+    /// The parameters that may change, and the subject that they are.
+    fn free(&self) -> (Vec<(&String, &Parameter)>, Subject) {
+        let belongs = |parameter: &Parameter| {
+            parameter.role == Role::Variant && self.wanted.element.is_none_or(|element| parameter.affects == [element])
+        };
+        let parameters = self.anchor.task().parameters().iter();
+        let free: Vec<(&String, &Parameter)> = parameters.filter(|(_, parameter)| belongs(parameter)).collect();
+        let subject = match self.wanted.element {
+            Some(element) => Subject::Element(element),
+            None => Subject::Parameters(free.iter().map(|(name, _)| (*name).clone()).collect()),
+        };
+        (free, subject)
+    }
+
+    /// How far from the anchor anything is, whatever the search has met.
+    fn farthest(&self) -> Result<f64, CurriculumError> {
+        // Where nothing can move there is still the pool.
+        let made = farthest(&self.measure, self.anchor, &self.free().1, self.wanted.element).unwrap_or(0.0);
+        let mut all = made;
+        for variant in self.pool {
+            let (apart, alone) = self.measure(self.anchor, variant)?;
+            if alone {
+                all = all.max(apart);
+            }
+        }
+        Ok(all)
     }
 
     fn here(&self) -> Variant {
@@ -137,6 +193,9 @@ impl Walk<'_> {
         });
         let mut made: Vec<(f64, Picked)> = Vec::new();
         for target in self.targets(&here)? {
+            if self.is_tired() {
+                break;
+            }
             let Some(variant) = self.on_the_way(&here, &target)? else {
                 continue;
             };
@@ -152,7 +211,8 @@ impl Walk<'_> {
 
     /// How far two variants are apart, and whether in nothing but what may change.
     fn measure(&self, a: &Variant, b: &Variant) -> Result<(f64, bool), CurriculumError> {
-        let apart = distance(a, b)?;
+        self.comparisons.set(self.comparisons.get() + 1);
+        let apart = self.measure.between(a, b)?;
         let alone = self.wanted.element.is_none_or(|element| is_alone(&apart, element));
         Ok((in_element(&apart, self.wanted.element), alone))
     }
@@ -161,19 +221,15 @@ impl Walk<'_> {
     fn nearest_met(&self, variant: &Variant) -> Result<f64, CurriculumError> {
         let mut nearest = f64::INFINITY;
         for met in &self.path {
-            nearest = nearest.min(apart(&met.variant, variant, self.wanted.element)?);
+            nearest = nearest.min(self.apart(&met.variant, variant)?);
         }
         Ok(nearest)
     }
 
     /// Variants in whose direction a step may go: the ends and choices of each parameter, both ends of all, those of the pool,
     /// and the one that the generator finds.
-    fn targets(&mut self, here: &Variant) -> Result<Vec<Variant>, CurriculumError> {
-        let belongs = |parameter: &Parameter| {
-            parameter.role == Role::Variant && self.wanted.element.is_none_or(|element| parameter.affects == [element])
-        };
-        let parameters = here.task().parameters().iter();
-        let free: Vec<(&String, &Parameter)> = parameters.filter(|(_, parameter)| belongs(parameter)).collect();
+    fn targets(&self, here: &Variant) -> Result<Vec<Variant>, CurriculumError> {
+        let (free, subject) = self.free();
         let mut changes: Vec<Vec<(String, Value)>> = Vec::new();
         let mut corners = [Vec::new(), Vec::new()];
         for (name, parameter) in &free {
@@ -194,23 +250,16 @@ impl Walk<'_> {
                 targets.push(variant.clone());
             }
         }
-        let subject = match self.wanted.element {
-            Some(element) => Subject::Element(element),
-            None => Subject::Parameters(free.iter().map(|(name, _)| (*name).clone()).collect()),
-        };
-        let measure = |other: &Variant| apart(here, other, self.wanted.element).unwrap_or(0.0);
+        let measure = |other: &Variant| self.apart(here, other).unwrap_or(0.0);
         let found = at_distance(here, &subject, self.wanted.distance, self.wanted.tolerance, measure);
         targets.extend(found.ok().map(|found| found.variant));
-        for target in &targets {
-            self.farthest = self.farthest.max(apart(self.anchor, target, self.wanted.element)?);
-        }
         Ok(targets)
     }
 
     /// The variant at the wanted distance on the way to a target; `None` if there is none.
     fn on_the_way(&self, here: &Variant, target: &Variant) -> Result<Option<Variant>, CurriculumError> {
         let (wanted, tolerance) = (self.wanted.distance, self.wanted.tolerance);
-        let whole = apart(here, target, self.wanted.element)?;
+        let whole = self.apart(here, target)?;
         if whole < wanted - tolerance {
             return Ok(None);
         }
@@ -225,7 +274,7 @@ impl Walk<'_> {
                 let Ok(variant) = drift.at(middle, 0) else {
                     return Ok(None);
                 };
-                let apart = apart(here, &variant, self.wanted.element)?;
+                let apart = self.apart(here, &variant)?;
                 let miss = (apart - wanted).abs();
                 if miss < best.0 {
                     best = (miss, variant);

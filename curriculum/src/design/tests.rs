@@ -119,6 +119,46 @@ fn an_expert_learns_one_variant_and_is_named_after_it() {
 }
 
 #[test]
+fn experts_of_several_tasks_have_names_of_their_own() {
+    let names = |choices: &[Choice]| {
+        let experts = experts(choices, &Design::default());
+        experts.map(|experts| experts.into_iter().map(|scenario| scenario.name).collect::<Vec<_>>())
+    };
+    let found = names(&[Choice::new("t", "dusk"), Choice::new("tasks/u.json", "dusk")]).unwrap();
+    assert_eq!(found, ["curriculum-t-dusk", "curriculum-u-dusk"]);
+    let error = names(&[Choice::new("t", "a b"), Choice::new("t", "a-b")]).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("t#a b and t#a-b, which would both be named curriculum-a-b"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_control_learns_the_same_worlds_after_the_same_pre_deployment() {
+    let options = Design {
+        blocks: Some(5),
+        pre_deployment: 4,
+        ..Design::default()
+    };
+    let variants = choices(3);
+    let worlds = |scenario: &Scenario| {
+        let of = |regime: &&Regime| (regime.variant.clone(), regime.seed, regime.first_index, regime.count);
+        let mut worlds: Vec<_> = learned(scenario).iter().map(of).collect();
+        worlds.sort();
+        worlds
+    };
+    let main = design(&variants, &options).unwrap();
+    for order in [[2, 1, 0], [1, 2, 0], [2, 0, 1]] {
+        let control = design_control(&variants, &order, &options).unwrap();
+        assert_eq!(worlds(&control), worlds(&main), "{order:?}");
+        assert_eq!((kinds(&control), &control.blocks[0]), (kinds(&main), &main.blocks[0]));
+        assert_ne!(control.blocks, main.blocks);
+    }
+}
+
+#[test]
 fn what_is_designed_is_a_valid_scenario_that_reads_back_the_same() {
     let options = Design {
         form: Some(ScenarioForm::Alternating),

@@ -142,7 +142,7 @@ impl<'a> Desk<'a> {
         };
         let briefing = Briefing {
             seed: number,
-            label: planned.label.as_ref(),
+            label: planned.label(number),
             learn: planned.kind == BlockKind::Learning,
         };
         Ok(Lived {

@@ -5,7 +5,7 @@ use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 use driftworld_env::Label;
-use driftworld_generator::{Drift, GeneratorError, Sampler};
+use driftworld_generator::{Drift, GeneratorError, Sampler, Schedule};
 use driftworld_metrics::TaskParams;
 use driftworld_spec::{Block, BlockKind, Phase, Regime, RegimeDrift, Scenario, TaskLabel, TaskSpec, Variant, World};
 use serde_json::{Map, Value, json};
@@ -58,7 +58,8 @@ pub(super) struct Planned {
     source: Source,
     /// The regime that the agent learned in last before this one.
     pub(super) learned: Option<usize>,
-    pub(super) label: Option<Label>,
+    /// The label of its variant, and of the one that its drift leads to.
+    labels: Option<[Label; 2]>,
 }
 
 /// Where its worlds come from.
@@ -198,7 +199,7 @@ impl Plan {
             max_steps: regime.max_steps,
             source,
             learned,
-            label: None,
+            labels: None,
         };
         self.print(&planned)?;
         if let Source::World { path, .. } = &planned.source
@@ -239,25 +240,44 @@ impl Plan {
         }
         let mut names: Vec<String> = Vec::new();
         let mut numbers: BTreeMap<String, usize> = BTreeMap::new();
-        for planned in &self.regimes {
+        for id in self.regimes.iter().flat_map(Planned::ends) {
             let next = names.len();
-            numbers.entry(planned.id.clone()).or_insert_with(|| {
-                names.push(planned.id.clone());
+            numbers.entry(id.clone()).or_insert_with(|| {
+                names.push(id);
                 next
             });
         }
         for planned in &mut self.regimes {
-            planned.label = Some(Label {
-                name: planned.id.clone(),
-                number: numbers[&planned.id],
+            planned.labels = Some(planned.ends().map(|name| Label {
+                number: numbers[&name],
                 of: names.len(),
                 observed: wanted == TaskLabel::Observation,
-            });
+                name,
+            }));
         }
     }
 }
 
 impl Planned {
+    /// The names of the variants that it begins with and ends with, which are one unless it drifts.
+    fn ends(&self) -> [String; 2] {
+        match &self.source {
+            Source::Drift { from, to, .. } => [from.id(), to.id()],
+            _ => [self.id.clone(), self.id.clone()],
+        }
+    }
+
+    /// The label of experience `number`: in a drift that of the nearer end, by how far the drift has come; in the middle the
+    /// one that it leads to.
+    pub(super) fn label(&self, number: u64) -> Option<&Label> {
+        let [from, to] = self.labels.as_ref()?;
+        let Source::Drift { drift, .. } = &self.source else {
+            return Some(from);
+        };
+        let come = Schedule::from(drift.schedule).at(drift.progress((number - self.first) as u32, self.count));
+        Some(if come < 0.5 { from } else { to })
+    }
+
     pub(super) fn wrong(&self, source: GeneratorError) -> CurriculumError {
         CurriculumError::World {
             block: self.block,
@@ -428,7 +448,7 @@ fn called(regime: &Regime) -> String {
     let to = regime
         .drift
         .as_ref()
-        .map_or_else(String::new, |drift| format!("..{}", drift.to));
+        .map_or_else(String::new, |drift| format!("..{}", drift.variant_name()));
     format!("{}#{}{to}", regime.task, regime.variant_name())
 }
 

@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use indexmap::IndexMap;
+
 use super::{Phase, Regime, Scenario};
 use crate::error::{Problem, SpecError, nearest};
-use crate::task::TaskSpec;
+use crate::task::{TaskSpec, Value};
 
 /// Each regime with the pointer to it.
 fn regimes(scenario: &Scenario) -> impl Iterator<Item = (String, &Regime)> {
@@ -19,10 +21,74 @@ fn regimes(scenario: &Scenario) -> impl Iterator<Item = (String, &Regime)> {
     })
 }
 
+/// A variant as a regime or its drift makes it.
+struct Made<'a> {
+    pointer: String,
+    /// The key that names what it is made of.
+    key: &'static str,
+    variant: &'a str,
+    values: &'a IndexMap<String, Value>,
+    name: Option<&'a str>,
+    world: Option<&'a str>,
+}
+
+/// The variant that a regime begins with, and the one that its drift leads to.
+fn made<'a>(pointer: &str, regime: &'a Regime) -> impl Iterator<Item = Made<'a>> {
+    let start = Made {
+        pointer: pointer.to_owned(),
+        key: "variant",
+        variant: &regime.variant,
+        values: &regime.values,
+        name: regime.name.as_deref(),
+        world: regime.world.as_deref(),
+    };
+    let end = regime.drift.as_ref().map(|drift| Made {
+        pointer: format!("{pointer}/drift"),
+        key: "to",
+        variant: &drift.to,
+        values: &drift.values,
+        name: drift.name.as_deref(),
+        world: None,
+    });
+    [start].into_iter().chain(end)
+}
+
+impl<'a> Made<'a> {
+    fn called(&self) -> &'a str {
+        self.name.unwrap_or(self.variant)
+    }
+
+    fn pointer_to_name(&self) -> String {
+        let key = if self.name.is_some() { "name" } else { self.key };
+        format!("{}/{key}", self.pointer)
+    }
+
+    fn same(&self, other: &Self) -> bool {
+        (self.variant, self.values, self.world) == (other.variant, other.values, other.world)
+    }
+
+    /// A name without values, or values without a name.
+    fn unnamed(&self) -> Option<Problem> {
+        let (name, values) = (format!("{}/name", self.pointer), format!("{}/values", self.pointer));
+        match (self.name, self.values.is_empty()) {
+            (Some(found), true) => {
+                let found = format!("the name {found:?} and no values");
+                let problem = Problem::new("spec/value", name, found, "a name together with values");
+                Some(problem.advise("remove it: the variant has a name of its own"))
+            }
+            (None, false) => {
+                let problem = Problem::new("spec/missing-key", values, "values and no name", "the key \"name\"");
+                Some(problem.advise("give the variant that they make a name"))
+            }
+            _ => None,
+        }
+    }
+}
+
 /// Everything wrong in a scenario that needs no task to be seen.
 pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
     let mut problems = phases(scenario);
-    let mut called: BTreeMap<(&str, &str), (&Regime, String)> = BTreeMap::new();
+    let mut called: BTreeMap<(&str, &str), Made> = BTreeMap::new();
     for (pointer, regime) in regimes(scenario) {
         if regime.first_index.checked_add(u64::from(regime.count)).is_none() {
             let found = regime.first_index.to_string();
@@ -34,7 +100,6 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
                 expected,
             ));
         }
-        let name = regime.variant_name();
         if regime.world.is_some() && (regime.drift.is_some() || !regime.values.is_empty()) {
             let key = if regime.drift.is_some() { "drift" } else { "values" };
             let found = format!("a world file and {key}");
@@ -42,38 +107,26 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
             problems.push(problem.advise("a world file is lived as it is: write what is to change into it"));
             continue;
         }
-        if regime.name.is_some() && regime.values.is_empty() {
-            let found = format!("the name {name:?} and no values");
-            let problem = Problem::new(
-                "spec/value",
-                format!("{pointer}/name"),
-                found,
-                "a name together with values",
-            );
-            problems.push(problem.advise("remove it: the variant has a name of its own"));
+        let mut sound = true;
+        for made in made(&pointer, regime) {
+            if let Some(problem) = made.unnamed() {
+                problems.push(problem);
+                sound = false;
+                break;
+            }
+        }
+        if !sound {
             continue;
         }
-        if regime.name.is_none() && !regime.values.is_empty() {
-            let found = "values and no name";
-            let problem = Problem::new(
-                "spec/missing-key",
-                format!("{pointer}/values"),
-                found,
-                "the key \"name\"",
-            );
-            problems.push(problem.advise("give the variant that they make a name"));
-            continue;
+        for made in made(&pointer, regime) {
+            let key = (regime.task.as_str(), made.called());
+            if let Some(first) = called.get(&key).filter(|first| !made.same(first)) {
+                let found = format!("{:?}, which is another variant at {}", made.called(), first.pointer);
+                let expected = "one variant of a task under each name";
+                problems.push(Problem::new("spec/value", made.pointer_to_name(), found, expected));
+            }
+            called.entry(key).or_insert(made);
         }
-        let made_of = |regime: &Regime| (regime.variant.clone(), regime.values.clone(), regime.world.clone());
-        let same = |other: &Regime| made_of(other) == made_of(regime);
-        let key = (regime.task.as_str(), name);
-        if let Some((_, first)) = called.get(&key).filter(|(other, _)| !same(other)) {
-            let key = if regime.name.is_some() { "name" } else { "variant" };
-            let found = format!("{name:?}, which is another variant at {first}");
-            let expected = "one variant of a task under each name";
-            problems.push(Problem::new("spec/value", format!("{pointer}/{key}"), found, expected));
-        }
-        called.entry(key).or_insert((regime, pointer));
     }
     problems
 }
@@ -204,6 +257,31 @@ mod tests {
     }
 
     #[test]
+    fn the_end_of_a_drift_is_named_as_every_other_variant_is() {
+        let drift = |end: &str| format!(r#"{{ "task": "t", "variant": "day", "drift": {{ {end} }}, "count": 1 }}"#);
+        let dim = drift(r#""to": "day", "values": { "light": 1 }, "name": "dim""#);
+        check(&dim, "");
+        check(
+            &drift(r#""to": "day", "values": { "light": 1 }"#),
+            "(/blocks/0/regimes/0/drift/values): found values and no name, expected the key \"name\"",
+        );
+        check(
+            &drift(r#""to": "dusk", "name": "dim""#),
+            "(/blocks/0/regimes/0/drift/name): found the name \"dim\" and no values",
+        );
+        check(
+            &drift(r#""to": "day", "values": { "light": 1 }, "name": "day""#),
+            "(/blocks/0/regimes/0/drift/name): found \"day\", which is another variant at /blocks/0/regimes/0",
+        );
+        let lived = r#"{ "task": "t", "variant": "day", "values": { "light": 1 }, "name": "dim", "count": 1 }"#;
+        check(&format!("{dim}, {lived}"), "");
+        check(
+            &format!("{dim}, {}", lived.replace("\"light\": 1", "\"light\": 1.5")),
+            "(/blocks/0/regimes/1/name): found \"dim\", which is another variant at /blocks/0/regimes/0/drift",
+        );
+    }
+
+    #[test]
     fn a_world_file_is_lived_as_it_is() {
         let world = r#"{ "task": "t", "variant": "yard", "world": "maps/yard.json", "max_steps": 20, "count": 1 }"#;
         check(world, "");
@@ -233,7 +311,7 @@ mod tests {
             "(/blocks/0/regimes/0/drift/to): found \"night\", expected a variant of t: day, dusk",
         );
         check(
-            r#"{ "task": "t", "variant": "day", "drift": { "to": "dusk", "values": { "lihgt": 1 } }, "count": 1 }"#,
+            r#"{ "task": "t", "variant": "day", "drift": { "to": "dusk", "values": { "lihgt": 1 }, "name": "dim" }, "count": 1 }"#,
             "did you mean \"light\"?",
         );
     }

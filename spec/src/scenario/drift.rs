@@ -19,6 +19,10 @@ pub struct RegimeDrift {
     #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
     #[schemars(schema_with = "super::regime::values_schema")]
     pub values: IndexMap<String, Value>,
+    /// What the variant with these values is called in tables and logs; goes with `values` only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1, max = 100), regex(pattern = r"^[^#/\\\s]+$"))]
+    pub name: Option<String>,
     /// How far it has come, as a function of its progress.
     #[serde(default, skip_serializing_if = "is_default")]
     pub schedule: DriftSchedule,
@@ -67,11 +71,17 @@ impl RegimeDrift {
         Self {
             to: variant.into(),
             values: IndexMap::new(),
+            name: None,
             schedule: DriftSchedule::default(),
             switch: DriftSwitch::default(),
             from: 0.0,
             until: 1.0,
         }
+    }
+
+    /// What the variant that it leads to is called in tables and logs: its name if it has one, else the variant's.
+    pub fn variant_name(&self) -> &str {
+        self.name.as_deref().unwrap_or(&self.to)
     }
 
     /// The drift's progress, 0..=1, at experience number `experience`, from 0, of a regime of `count`.
@@ -130,7 +140,7 @@ mod tests {
     fn a_drift_is_written_without_what_goes_without_saying() {
         let json = |drift: &RegimeDrift| serde_json::to_string(drift).unwrap();
         assert_eq!(json(&RegimeDrift::to("dusk")), r#"{"to":"dusk"}"#);
-        let all = r#"{"to":"dusk","values":{"light":0.5},"schedule":{"steps":4},"switch":"mixture","from":0.25,"until":0.75}"#;
+        let all = r#"{"to":"dusk","values":{"light":0.5},"name":"dim","schedule":{"steps":4},"switch":"mixture","from":0.25,"until":0.75}"#;
         assert_eq!(json(&serde_json::from_str(all).unwrap()), all);
     }
 }

@@ -110,7 +110,7 @@ impl Regime {
     pub fn resolve_end(&self, task: &Arc<TaskSpec>) -> Result<Option<Variant>, SpecError> {
         self.drift
             .as_ref()
-            .map(|drift| laid_over(task, &drift.to, &drift.values, &drift.to))
+            .map(|drift| laid_over(task, &drift.to, &drift.values, drift.variant_name()))
             .transpose()
     }
 }

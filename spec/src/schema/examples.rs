@@ -176,6 +176,7 @@ const EXAMPLES: &[(&str, &[&str])] = &[
         "RegimeDrift",
         &[
             r#"{ "to": "dusk" }"#,
+            r#"{ "to": "dusk", "values": { "light": 1.2 }, "name": "dim" }"#,
             r#"{ "to": "dusk", "schedule": { "steps": 4 }, "switch": "mixture", "from": 0, "until": 0.5 }"#,
         ],
     ),

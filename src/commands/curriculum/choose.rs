@@ -45,8 +45,8 @@ impl Curriculum {
             let (task, pool, anchor) = self.one_task(&named)?;
             let picked = probe(&task, &pool, &anchor, element, self.variants)?;
             let matrix = distances(&picked, Some(element))?;
-            // A method that was asked for, or the order of a hypothesis: by default the gradual one.
-            let order = if self.ordering.method.is_some() {
+            // A method or an end that was asked for, or the order of a hypothesis: by default the gradual one.
+            let order = if self.ordering.method.is_some() || self.ordering.end.is_some() {
                 self.ordering.order(&matrix, self.seed)?.1.indices
             } else {
                 arrange(&matrix, self.order.map_or(Hypothesis::Gradual, Hypothesis::from), 0)?

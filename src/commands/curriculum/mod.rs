@@ -9,7 +9,9 @@ mod words;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use driftworld::curriculum::{Control, Design, Drifting, Evaluate, Hypothesis, control, design, experts};
+use driftworld::curriculum::{
+    Control, Design, Drifting, Evaluate, Hypothesis, control, design, design_control, experts,
+};
 use driftworld::spec::{DriftSchedule, DriftSwitch, Element, Scenario, ScenarioForm, TaskLabel};
 
 use super::order::OrderArgs;
@@ -94,7 +96,8 @@ pub(crate) struct Curriculum {
     /// What all worlds of the scenario follow from; evaluation and learning never share one.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Write the controls into this folder: the same variants, worlds and counts in reversed, random and contrasting order.
+    /// Write the controls into this folder: the same variants, worlds and counts in reversed, random and contrasting order,
+    /// after the same block before deployment.
     #[arg(long, value_name = "DIR", conflicts_with = "lifetimes")]
     controls: Option<PathBuf>,
     /// Draw the blocks over the experiences into this PNG file.
@@ -191,10 +194,17 @@ impl Curriculum {
                     name: format!("{}-{}", self.name, kind.name()),
                     ..options.clone()
                 };
-                let scenario = design(&chosen.in_order(&order), &options)?;
+                // By their places in the order that the design itself has.
+                let place = |index: &usize| chosen.order.iter().position(|own| own == index);
+                let order: Vec<usize> = order.iter().filter_map(place).collect();
+                let scenario = design_control(&picked, &order, &options)?;
                 let path = folder.join(format!("{}.json", options.name));
                 write_checked(&path, &scenario)?;
-                say(format!("{}: {}", path.display(), tables::path(&chosen, &order)))?;
+                say(format!(
+                    "{}: {}",
+                    path.display(),
+                    tables::path(&scenario, &chosen.matrix)
+                ))?;
             }
         }
         Ok(())
@@ -214,6 +224,12 @@ impl Curriculum {
         if several && (self.plot.is_some() || self.controls.is_some()) {
             return Err(Failure::usage(
                 "--plot and --controls are of one scenario: leave them out, or --lifetimes and --form expert",
+            ));
+        }
+        if self.form == Some(Form::Permuted) && self.controls.is_some() {
+            return Err(Failure::usage(
+                "the permuted form draws its own order, and --controls are of an order that was chosen: leave one of them out; \
+                 --lifetimes are each other's controls",
             ));
         }
         if self.form == Some(Form::Expert) && self.drift.is_some() {

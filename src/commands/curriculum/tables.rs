@@ -4,7 +4,6 @@ use driftworld::curriculum::{Choice, Picked, Steps};
 use driftworld::similarity::{Distance, DistanceMatrix};
 use driftworld::spec::{Block, BlockKind, Element, Phase, Regime, Scenario, Variant};
 
-use super::choose::Chosen;
 use crate::commands::Failure;
 use crate::commands::table::{table, wide_table};
 
@@ -77,11 +76,64 @@ fn exact(distance: f64) -> String {
     }
 }
 
-/// An order in a line: names, and how long the way is.
-pub(super) fn path(chosen: &Chosen, order: &[usize]) -> String {
-    let names: Vec<&str> = order.iter().map(|index| chosen.variants[*index].name()).collect();
-    let length: f64 = order.windows(2).map(|pair| chosen.matrix.get(pair[0], pair[1])).sum();
+/// What a scenario learns in deployment, in a line: names, and how long the way is.
+pub(super) fn path(scenario: &Scenario, matrix: &DistanceMatrix) -> String {
+    let learning = |block: &&Block| block.kind == BlockKind::Learning && block.phase == Phase::Deployment;
+    let blocks = scenario.blocks.iter().filter(learning);
+    let mut stops: Vec<(&str, Option<usize>)> = Vec::new();
+    for regime in blocks.flat_map(|block| &block.regimes) {
+        let start = (regime.variant_name(), label(matrix, regime, regime.variant_name()));
+        let (begins, end) = match &regime.drift {
+            None => (true, None),
+            Some(drift) => {
+                let name = drift.variant_name();
+                (
+                    drift.from == 0.0,
+                    (drift.until == 1.0).then(|| (name, label(matrix, regime, name))),
+                )
+            }
+        };
+        // Where one drift ends the next begins.
+        if begins && (regime.drift.is_none() || stops.last() != Some(&start)) {
+            stops.push(start);
+        }
+        stops.extend(end);
+    }
+    let step = |pair: &[(&str, Option<usize>)]| pair[0].1.zip(pair[1].1).map_or(0.0, |(a, b)| matrix.get(a, b));
+    let length: f64 = stops.windows(2).map(step).sum();
+    let names: Vec<&str> = stops.iter().map(|(name, _)| *name).collect();
     format!("{}; length {length:.4}", names.join(", "))
+}
+
+/// The place of a regime's variant in a matrix.
+fn label(matrix: &DistanceMatrix, regime: &Regime, name: &str) -> Option<usize> {
+    let id = format!("{}#{name}", regime.task);
+    matrix.labels().iter().position(|label| *label == id)
+}
+
+/// Where a regime is at its first or last experience: at a variant of the matrix, or so far on the way from one to another.
+fn place(matrix: &DistanceMatrix, regime: &Regime, experience: u32) -> Option<(usize, usize, f64)> {
+    let start = label(matrix, regime, regime.variant_name())?;
+    let Some(drift) = &regime.drift else {
+        return Some((start, start, 0.0));
+    };
+    let end = label(matrix, regime, drift.variant_name())?;
+    let progress = drift.progress(experience, regime.count);
+    Some(if progress == 0.0 {
+        (start, start, 0.0)
+    } else if progress == 1.0 {
+        (end, end, 0.0)
+    } else {
+        (start, end, progress)
+    })
+}
+
+/// How far two places are apart; unknown between two places of which one is on the way.
+fn step(matrix: &DistanceMatrix, from: (usize, usize, f64), to: (usize, usize, f64)) -> Option<f64> {
+    if from == to {
+        return Some(0.0);
+    }
+    (from.0 == from.1 && to.0 == to.1).then(|| matrix.get(from.0, to.0))
 }
 
 /// The variants that a scenario learns, in a line.
@@ -94,24 +146,23 @@ pub(super) fn learned(scenario: &Scenario) -> String {
     names.join(", ")
 }
 
-/// The blocks of a scenario as a table, with the distance of each learning block from the one before.
+/// The blocks of a scenario as a table, with the distance of each learning block's beginning from the end of the one before.
 pub(crate) fn blocks(scenario: &Scenario, matrix: Option<&DistanceMatrix>) -> String {
-    let mut before: Option<usize> = None;
+    let mut before: Option<(usize, usize, f64)> = None;
     let rows = scenario.blocks.iter().enumerate().map(|(index, block)| {
         let names: Vec<String> = block.regimes.iter().map(named).collect();
-        let mut step = String::new();
+        let mut shown = String::new();
         if block.kind == BlockKind::Learning
             && let Some(matrix) = matrix
         {
-            let first = block
-                .regimes
-                .first()
-                .map(|r| format!("{}#{}", r.task, r.variant_name()));
-            let here = matrix.labels().iter().position(|label| first.as_ref() == Some(label));
-            if let (Some(a), Some(b)) = (before, here) {
-                step = format!("{:.4}", matrix.get(a, b));
+            let here = block.regimes.first().and_then(|regime| place(matrix, regime, 0));
+            if let Some(apart) = before.zip(here).and_then(|(before, here)| step(matrix, before, here)) {
+                shown = format!("{apart:.4}");
             }
-            before = here.or(before);
+            before = block
+                .regimes
+                .last()
+                .and_then(|regime| place(matrix, regime, regime.count.saturating_sub(1)));
         }
         let what = if names.len() > 2 && block.kind == BlockKind::Evaluation {
             format!("all {} variants", names.len())
@@ -119,7 +170,7 @@ pub(crate) fn blocks(scenario: &Scenario, matrix: Option<&DistanceMatrix>) -> St
             names.join(", ")
         };
         let experiences = block.num_experiences().to_string();
-        [index.to_string(), kind(block).to_owned(), what, experiences, step]
+        [index.to_string(), kind(block).to_owned(), what, experiences, shown]
     });
     table(
         [
@@ -150,9 +201,45 @@ fn named(regime: &Regime) -> String {
         None => name,
         Some(drift) => format!(
             "{name} to {}, {:.0}% to {:.0}%",
-            drift.to,
+            drift.variant_name(),
             100.0 * drift.from,
             100.0 * drift.until
         ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_block_is_as_far_as_its_beginning_is_from_the_end_of_the_last() {
+        let at = [0.0_f64, 1.0, 3.0];
+        let names = ["t#a", "t#b", "t#c"].map(str::to_owned).to_vec();
+        let matrix = DistanceMatrix::measure(names, |a, b| {
+            Ok::<_, driftworld::curriculum::CurriculumError>((at[a] - at[b]).abs() / 4.0)
+        });
+        let matrix = matrix.unwrap();
+        let block =
+            |regime: &str| format!(r#"{{ "type": "learning", "regimes": [{{ "task": "t", "count": 4, {regime} }}] }}"#);
+        let blocks_of = [
+            r#""variant": "a", "drift": { "to": "a", "values": { "x": 1 }, "name": "b", "until": 0.5 }"#,
+            r#""variant": "a", "drift": { "to": "a", "values": { "x": 1 }, "name": "b", "from": 0.5 }"#,
+            r#""variant": "a", "values": { "x": 1 }, "name": "b""#,
+            r#""variant": "c""#,
+        ]
+        .map(block)
+        .join(", ");
+        let text = format!(r#"{{ "name": "s", "blocks": [{blocks_of}] }}"#);
+        let scenario = Scenario::from_json("s", &text).unwrap();
+        let shown = blocks(&scenario, Some(&matrix));
+        let steps: Vec<&str> = shown
+            .lines()
+            .skip(2)
+            .filter_map(|line| line.split_whitespace().last())
+            .collect();
+        assert_eq!(steps, ["0.0000", "0.0000", "0.5000"], "{shown}");
+        assert!(shown.contains("t#a to b, 50% to 100%"), "{shown}");
+        assert_eq!(path(&scenario, &matrix), "a, b, b, c; length 0.7500");
     }
 }

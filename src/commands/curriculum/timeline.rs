@@ -175,7 +175,7 @@ fn stretches(scenario: &Scenario) -> (Vec<String>, Vec<Stretch>) {
             let from = lived;
             lived += f64::from(regime.count);
             let drift = regime.drift.as_ref().map(|drift| {
-                let end = end_of(scenario, regime).unwrap_or_else(|| format!("{}#{}", regime.task, drift.to));
+                let end = format!("{}#{}", regime.task, drift.variant_name());
                 (row_of(end), [drift.from, drift.until])
             });
             stretches.push(Stretch {
@@ -193,14 +193,6 @@ fn stretches(scenario: &Scenario) -> (Vec<String>, Vec<Stretch>) {
 
 fn id(regime: &Regime) -> String {
     format!("{}#{}", regime.task, regime.variant_name())
-}
-
-/// The name that the scenario itself has for the variant that a drift leads to, where it has one.
-fn end_of(scenario: &Scenario, regime: &Regime) -> Option<String> {
-    let drift = regime.drift.as_ref()?;
-    let mut all = scenario.blocks.iter().flat_map(|block| &block.regimes);
-    all.find(|other| other.task == regime.task && other.variant == drift.to && other.values == drift.values)
-        .map(id)
 }
 
 /// Round numbers from 0 to the last experience, at most a dozen.
@@ -230,9 +222,9 @@ mod tests {
     }
 
     #[test]
-    fn a_drift_leads_to_the_row_of_the_variant_with_its_values() {
+    fn a_drift_leads_to_the_row_of_the_variant_at_its_end() {
         let text = r#"{ "name": "s", "blocks": [
-            { "type": "learning", "regimes": [{ "task": "t", "variant": "a", "count": 4, "drift": { "to": "a", "values": { "x": 1 } } }] },
+            { "type": "learning", "regimes": [{ "task": "t", "variant": "a", "count": 4, "drift": { "to": "a", "values": { "x": 1 }, "name": "b" } }] },
             { "type": "evaluation", "regimes": [{ "task": "t", "variant": "a", "values": { "x": 1 }, "name": "b", "count": 1 }] } ] }"#;
         let (rows, stretches) = stretches(&Scenario::from_json("s", text).unwrap());
         assert_eq!(rows, ["t#a", "t#b"]);
