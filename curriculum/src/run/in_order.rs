@@ -165,7 +165,7 @@ mod tests {
                 };
                 done.send(std::panic::catch_unwind(all).is_err())
             });
-            let panicked = ended.recv_timeout(std::time::Duration::from_secs(60));
+            let panicked = ended.recv_timeout(std::time::Duration::from_mins(1));
             assert_eq!(panicked, Ok(true), "{jobs} threads: it ends, by the panic");
         }
     }
