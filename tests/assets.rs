@@ -143,6 +143,26 @@ fn packing_twice_gives_the_same_bytes_and_adding_goes_on_counting() {
 }
 
 #[test]
+fn a_run_is_not_taken_up_with_other_libraries() {
+    let folder = scratch();
+    let library = packed(&folder);
+    let scenario = folder.path().join("scenario.json");
+    let regime = r#"{ "task": "get_to_goal", "variant": "default", "count": 1, "max_steps": 3 }"#;
+    let json = format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#);
+    std::fs::write(&scenario, json).expect("the scratch folder can be written");
+    let log = folder.path().join("log");
+    let resume = ["run", text(&scenario), "--logs", text(&log), "--resume"];
+    let with = [&resume[..], &["--assets", text(&library)]].concat();
+    succeed(&with);
+    succeed(&with);
+    let error = fail(&resume);
+    assert!(error.contains("/made_from/assets: found"), "{error}");
+    succeed(&["assets", "pack", MODEL, "--class", "beacon", "-o", text(&library)]);
+    let error = fail(&with);
+    assert!(error.contains("/made_from/assets/0/sha256: found"), "{error}");
+}
+
+#[test]
 fn models_are_listed_and_drawn() {
     let folder = scratch();
     let library = packed(&folder);

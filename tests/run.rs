@@ -285,7 +285,77 @@ fn a_task_that_was_changed_between_is_noticed() {
     succeed(&["run", text(&scenario), "--logs", text(&log)]);
     write(&task, &spec.replace("intensity\": 2", "intensity\": 3"));
     let error = fail(1, &["run", text(&scenario), "--logs", text(&log), "--resume"]);
-    assert!(error.contains("/made_from/lamps#dim: found"), "{error}");
+    assert!(error.contains("/made_from/lamps#dim/variant: found"), "{error}");
+}
+
+#[test]
+fn a_task_whose_first_world_stays_the_same_is_noticed_too() {
+    let folder = scratch();
+    let task = folder.path().join("lamps.json");
+    let spec = r#"{ "name": "lamps", "world": { "max_steps": 5 }, "parameters": {
+        "light": { "role": "randomized", "type": "number", "affects": ["O"],
+            "distribution": { "choice": { "values": [1, 2], "weights": [1, 1] } } } } }"#;
+    let first = |weights: &str| {
+        write(&task, &spec.replace("[1, 1]", weights));
+        succeed(&["sample", text(&task), "--seed", "0"])
+    };
+    let (odd, even) = (first("[5, 1]"), first("[1, 1]"));
+    assert_eq!(odd, even, "the light is not used, so that the worlds are the same");
+    let scenario = folder.path().join("scenario.json");
+    let regime = format!(r#"{{ "task": {:?}, "variant": "default", "count": 2 }}"#, text(&task));
+    write(
+        &scenario,
+        &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),
+    );
+    let log = folder.path().join("log");
+    let run = ["run", text(&scenario), "--logs", text(&log), "--resume"];
+    succeed(&run);
+    write(&task, &spec.replace("\"max_steps\"", "  \"max_steps\""));
+    succeed(&run);
+    write(&task, &spec.replace("[1, 1]", "[5, 1]"));
+    let error = fail(1, &run);
+    assert!(error.contains("/made_from/lamps#default/variant: found"), "{error}");
+}
+
+#[test]
+fn a_script_that_was_edited_between_is_noticed() {
+    let folder = scratch();
+    let (scenario, log) = (scenario(folder.path()), folder.path().join("log"));
+    let script = folder.path().join("way.txt");
+    let agent = format!("scripted:{}", text(&script));
+    let run = [
+        "run",
+        text(&scenario),
+        "--agent",
+        &agent,
+        "--logs",
+        text(&log),
+        "--resume",
+    ];
+    write(&script, "step 3 1 0 0\n");
+    succeed(&run);
+    let before = files(&log);
+    succeed(&run);
+    write(&script, "step 4 1 0 0\n");
+    let error = fail(1, &run);
+    assert!(error.contains("/made_from/script: found"), "{error}");
+    assert_eq!(files(&log), before);
+}
+
+#[test]
+fn every_variant_that_is_not_there_is_named() {
+    let folder = scratch();
+    let scenario = folder.path().join("scenario.json");
+    let regime = |variant: &str| format!(r#"{{ "task": "find_objects", "variant": "{variant}", "count": 1 }}"#);
+    let regimes = ["rde", "red", "bleu"].map(regime).join(", ");
+    write(
+        &scenario,
+        &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regimes}] }}] }}"#),
+    );
+    let log = folder.path().join("log");
+    let error = fail(1, &["run", text(&scenario), "--logs", text(&log)]);
+    assert!(error.contains("rde") && error.contains("bleu"), "{error}");
+    assert!(!log.exists(), "nothing was begun");
 }
 
 #[cfg(target_os = "linux")]
@@ -400,26 +470,24 @@ fn the_originals_scenario_is_lived_as_it_stands() {
     // As it stands beside us: one map lies beside the scenario, the other is nowhere.
     let error = fail(
         1,
-        &["run", text(&original), "--logs", text(&folder.path().join("none"))],
+        &[
+            "run",
+            text(&original),
+            "--no-stand-in",
+            "--logs",
+            text(&folder.path().join("none")),
+        ],
     );
     assert!(
         error.contains("found no file \"../map_findobjects_1.json\", looked for"),
         "{error}"
     );
     assert!(
-        error.contains("map_findobjects_0.json stand in for it with --stand-in"),
+        error.contains("map_findobjects_0.json stand in for it without --no-stand-in"),
         "{error}"
     );
     let stand_in = folder.path().join("stand-in");
-    let run = [
-        "run",
-        text(&original),
-        "--agent",
-        "random",
-        "--stand-in",
-        "--logs",
-        text(&stand_in),
-    ];
+    let run = ["run", text(&original), "--agent", "random", "--logs", text(&stand_in)];
     let output = output(&run);
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");

@@ -541,7 +541,7 @@ fn a_label_is_told_only_where_the_scenario_says_so() {
         let log = folder.path().join(format!("{label:?}"));
         live(&scenario, &mut pupil, &log, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
         let told = pupil.told.lock().expect("no test panics with it").clone();
-        assert!(told.iter().map(|(seed, _)| *seed).eq(0..15));
+        assert_eq!(told.len(), 15);
         told
     };
     assert!(told(TaskLabel::None).iter().all(|(_, label)| label.is_none()));
@@ -558,6 +558,35 @@ fn a_label_is_told_only_where_the_scenario_says_so() {
                 .all(|label| label.of == 4 && label.observed == (wanted == TaskLabel::Observation))
         );
     }
+}
+
+#[test]
+fn every_evaluation_of_a_variant_has_the_same_chance_and_learning_has_its_own() {
+    let (folder, scenario) = (scratch(), scenario(&["blue", "red"]));
+    for jobs in [1, 3] {
+        let log = folder.path().join(format!("{jobs}"));
+        let living = Living { jobs, ..WHOLE };
+        live_by(&scenario, &mut RandomAgent::new(0), &log, &living).unwrap_or_else(|error| panic!("{error}"));
+        let rows = rows(&log);
+        for name in ["findobjects_blue", "findobjects_red"] {
+            let tests = rows
+                .iter()
+                .filter(|row| row.task_name == name && row.block_num % 2 == 0);
+            let earned: Vec<f64> = tests.map(|row| row.metrics["reward"]).collect();
+            assert_eq!(earned.len(), 6, "three evaluations of two worlds each");
+            assert!(earned.chunks(2).all(|pair| pair == &earned[..2]), "{name}: {earned:?}");
+        }
+    }
+    let mut pupil = Pupil::default();
+    live(&varied(), &mut pupil, &folder.path().join("seeds"), u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    let told = pupil.told.lock().expect("no test panics with it");
+    let mut seeds: Vec<u64> = told.iter().map(|(seed, _)| *seed).collect();
+    seeds.sort_unstable();
+    seeds.dedup();
+    assert!(
+        seeds.len() > 7,
+        "seven experiences of learning, each with its own: {seeds:?}"
+    );
 }
 
 #[test]

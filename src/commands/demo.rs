@@ -83,7 +83,7 @@ impl Demo {
         remove_old_log(&logs)?;
         let life = Life {
             plan: &scenario_file::plan(&scenario, &mut |_| Err("the demo has no world files".to_owned()))?,
-            who: &Who::Onrails,
+            who: Who::Onrails.agent()?,
             logs: &logs,
             start: Start::New,
             jobs: processors(),

@@ -9,6 +9,7 @@ use driftworld::generator::Sampler;
 use driftworld::spec::maps::MapLibrary;
 use driftworld::spec::{Variant, Warning, World};
 use driftworld::tasks;
+use sha2::{Digest, Sha256};
 
 use super::{Failure, output};
 
@@ -23,6 +24,12 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
             path.display()
         ))
     })
+}
+
+/// The SHA-256 of a file's bytes, in hexadecimal.
+pub(crate) fn checksum(bytes: &[u8]) -> String {
+    let digest = Sha256::digest(bytes);
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// A world file, in our form or in the original's.

@@ -14,7 +14,7 @@ use super::assets::LibraryChoice;
 use super::interrupt::Interrupt;
 use super::scenario_file::{Missing, ScenarioFile};
 use super::table::table;
-use super::who::Who;
+use super::who::{Hired, Who};
 use super::{Failure, output};
 
 /// The most experiences that are lived at the same time.
@@ -44,9 +44,12 @@ pub(crate) struct Run {
     /// How many experiences are lived at the same time, from 1 to 256; as many as there are processors if not given. The log is the same.
     #[arg(long, value_name = "N", value_parser = jobs)]
     jobs: Option<NonZeroUsize>,
-    /// Live the world file with the nearest name in place of one that is nowhere, and say so in the log.
+    /// Live the world file with the nearest name in place of one that is nowhere, and say so in the log; always done for L2Explorer's scenarios.
     #[arg(long)]
     stand_in: bool,
+    /// Refuse a world file that is nowhere also in one of L2Explorer's scenarios.
+    #[arg(long, conflicts_with = "stand_in")]
+    no_stand_in: bool,
     #[command(flatten)]
     libraries: LibraryChoice,
     /// Print the summary as JSON.
@@ -62,15 +65,24 @@ fn jobs(text: &str) -> Result<NonZeroUsize, String> {
 impl Run {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let file = ScenarioFile::read(&self.scenario)?;
-        let missing = if self.stand_in {
+        // The original's own scenario names a map that it does not come with, and has to run as it stands.
+        let missing = if self.stand_in || (file.original && !self.no_stand_in) {
             Missing::StandIn
         } else {
             Missing::Refused
         };
-        let plan = file.plan(missing)?;
+        let mut plan = file.plan(missing)?;
+        let hired = self.agent.agent()?;
+        if let Some(script) = &hired.script {
+            plan.made_from("script", script.as_str());
+        }
+        let libraries = self.libraries.prints()?;
+        if !libraries.is_empty() {
+            plan.made_from("assets", libraries);
+        }
         let life = Life {
             plan: &plan,
-            who: &self.agent,
+            who: hired,
             logs: &self.logs,
             start: if self.resume { Start::Resumed } else { Start::New },
             jobs: self.jobs.unwrap_or_else(processors),
@@ -107,7 +119,7 @@ pub(crate) enum Start {
 /// A lifetime that is to be lived.
 pub(crate) struct Life<'a> {
     pub(crate) plan: &'a Plan,
-    pub(crate) who: &'a Who,
+    pub(crate) who: Hired,
     pub(crate) logs: &'a Path,
     pub(crate) start: Start,
     pub(crate) jobs: NonZeroUsize,
@@ -116,8 +128,7 @@ pub(crate) struct Life<'a> {
 
 impl Life<'_> {
     /// Lives it, with a bar on a terminal. Whatever stops it, the log holds whole experiences, and the message says how to go on.
-    pub(crate) fn live(self) -> Result<Summary, Failure> {
-        let mut agent = self.who.agent()?;
+    pub(crate) fn live(mut self) -> Result<Summary, Failure> {
         // Before there is a log, so that whoever sees one may ask for its end.
         let interrupt = Interrupt::listen()?;
         let mut journal = self.journal()?;
@@ -138,7 +149,7 @@ impl Life<'_> {
             catalogue: self.catalogue.clone(),
             jobs: self.jobs,
         };
-        let lived = run(self.plan, agent.as_mut(), &mut journal, &mut around);
+        let lived = run(self.plan, self.who.agent.as_mut(), &mut journal, &mut around);
         bar.finish_and_clear();
         let done = journal.num_experiences();
         let finished = journal.finish();
@@ -152,10 +163,9 @@ impl Life<'_> {
     }
 
     fn journal(&self) -> Result<Journal, Failure> {
-        let name = self.who.name();
         let opened = match self.start {
-            Start::New => Journal::create(self.logs, self.plan, &name),
-            Start::Resumed => Journal::resume(self.logs, self.plan, &name),
+            Start::New => Journal::create(self.logs, self.plan, &self.who.name),
+            Start::Resumed => Journal::resume(self.logs, self.plan, &self.who.name),
         };
         opened.map_err(|error| match error {
             CurriculumError::Log(MetricsError::LogExists { path }) => Failure::input(format!(

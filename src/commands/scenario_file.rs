@@ -31,7 +31,8 @@ impl ScenarioFile {
             }
             scenario
         } else {
-            Scenario::from_json(&name, &text)?
+            // With the tasks that can be found, so that every variant that they lack is named at once.
+            Scenario::from_json_with(&name, &text, |task| tasks::task(task).ok())?
         };
         Ok(Self {
             scenario,
@@ -92,8 +93,13 @@ impl ScenarioFile {
                 })
             }
             (stand_in, _) => {
+                let how = if self.original {
+                    "without --no-stand-in"
+                } else {
+                    "with --stand-in"
+                };
                 let advice = stand_in.map_or_else(String::new, |file| {
-                    format!("; or let {} stand in for it with --stand-in", file.display())
+                    format!("; or let {} stand in for it {how}", file.display())
                 });
                 Err(format!(
                     "found no file {:?}, looked for {looked}, expected a world file; put it there{advice}",

@@ -1,6 +1,6 @@
 //! `--agent`: which of the agents lives a scenario or a world, and how its name is read. What agents do is `env`'s.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use driftworld::env::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent};
@@ -34,17 +34,28 @@ impl Who {
     }
 
     /// The agent at the start of its life.
-    pub(crate) fn agent(&self) -> Result<Box<dyn Agent>, Failure> {
-        Ok(match self {
-            Self::Random => Box::new(RandomAgent::new(0)),
-            Self::Onrails => Box::new(OnRailsAgent::new()),
-            Self::Scripted(path) => Box::new(scripted(path)?),
-        })
+    pub(crate) fn agent(&self) -> Result<Hired, Failure> {
+        let (agent, script): (Box<dyn Agent>, _) = match self {
+            Self::Random => (Box::new(RandomAgent::new(0)), None),
+            Self::Onrails => (Box::new(OnRailsAgent::new()), None),
+            Self::Scripted(path) => {
+                let text = input::text(path)?;
+                let agent = ScriptedAgent::parse(&path.display().to_string(), &text)?;
+                (Box::new(agent), Some(input::checksum(text.as_bytes())))
+            }
+        };
+        let name = self.name();
+        Ok(Hired { name, agent, script })
     }
 }
 
-fn scripted(path: &Path) -> Result<ScriptedAgent, Failure> {
-    Ok(ScriptedAgent::parse(&path.display().to_string(), &input::text(path)?)?)
+/// An agent that is ready to live.
+pub(crate) struct Hired {
+    /// What logs call it.
+    pub(crate) name: String,
+    pub(crate) agent: Box<dyn Agent>,
+    /// The checksum of its script, if it follows one.
+    pub(crate) script: Option<String>,
 }
 
 impl FromStr for Who {

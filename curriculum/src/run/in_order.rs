@@ -26,6 +26,8 @@ pub(super) fn in_order<W: Send, T: Send, E>(
         for mut worker in workers {
             let (results, gate, work) = (results.clone(), &gate, &work);
             scope.spawn(move || {
+                // If this one panics, the others must not wait for its result for ever.
+                let _closing = Closing(gate);
                 while let Some(item) = gate.next(window) {
                     if results.send((item, work(&mut worker, item))).is_err() {
                         break;
@@ -94,7 +96,7 @@ impl Gate {
     }
 }
 
-/// Closes the gate when it goes, also by an error.
+/// Closes the gate when it goes, also by an error or a panic. That of a worker goes when there is nothing left to begin.
 struct Closing<'a>(&'a Gate);
 
 impl Drop for Closing<'_> {
@@ -144,6 +146,27 @@ mod tests {
             assert_eq!((taken.len(), end), (11, Ok(ControlFlow::Break(()))));
             let (taken, end) = squares(jobs, 150);
             assert_eq!((taken.len(), end), (141, Err("stopped".to_owned())));
+        }
+    }
+
+    #[test]
+    fn a_worker_that_panics_leaves_nobody_waiting() {
+        for jobs in [1, 2, 8] {
+            let (done, ended) = mpsc::channel();
+            thread::spawn(move || {
+                let work = |(): &mut (), item: u64| {
+                    assert_ne!(item, 3, "this one is too hard");
+                    item
+                };
+                let all = || {
+                    in_order(0..10_000, vec![(); jobs], work, |_, _| {
+                        Ok::<_, ()>(ControlFlow::Continue(()))
+                    })
+                };
+                done.send(std::panic::catch_unwind(all).is_err())
+            });
+            let panicked = ended.recv_timeout(std::time::Duration::from_mins(1));
+            assert_eq!(panicked, Ok(true), "{jobs} threads: it ends, by the panic");
         }
     }
 

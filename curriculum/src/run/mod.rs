@@ -141,7 +141,7 @@ impl<'a> Desk<'a> {
             none => none.insert(Environment::with_catalogue(assignment.world, self.catalogue.clone()).map_err(failed)?),
         };
         let briefing = Briefing {
-            seed: number,
+            seed: planned.chance(number),
             label: planned.label(number),
             learn: planned.kind == BlockKind::Learning,
         };

@@ -9,6 +9,7 @@ use driftworld_generator::{Drift, GeneratorError, Sampler, Schedule};
 use driftworld_metrics::TaskParams;
 use driftworld_spec::{Block, BlockKind, Phase, Regime, RegimeDrift, Scenario, TaskLabel, TaskSpec, Variant, World};
 use serde_json::{Map, Value, json};
+use sha2::{Digest, Sha256};
 
 use super::gap::Subject;
 use crate::CurriculumError;
@@ -34,8 +35,9 @@ pub struct FoundWorld {
 pub struct Plan {
     pub(super) scenario: Scenario,
     pub(super) regimes: Vec<Planned>,
-    /// What must be the same when a log is taken up again: for each variant and world its name and a hash of what it is.
-    pub(super) prints: BTreeMap<String, String>,
+    /// What must be the same when a log is taken up again: for each variant and world its name and hashes of what it is, and what
+    /// [`Plan::made_from`] was told.
+    pub(super) prints: BTreeMap<String, Value>,
     /// What has to be known about world files, by path.
     pub(super) notes: BTreeMap<String, String>,
 }
@@ -128,6 +130,12 @@ impl Plan {
         Ok(plan)
     }
 
+    /// Notes something else that its lifetime depends on, such as the bytes of an agent's script: a log is taken up again only if
+    /// it is still the same. `what` is a name that is no variant's, so one without `#`.
+    pub fn made_from(&mut self, what: &str, print: impl Into<Value>) {
+        self.prints.insert(what.to_owned(), print.into());
+    }
+
     /// The scenario that it was made from.
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
@@ -214,9 +222,11 @@ impl Plan {
     fn print(&mut self, planned: &Planned) -> Result<(), CurriculumError> {
         let draw = |variant: &Variant| {
             let world = Sampler::new(variant, planned.seed).world(planned.first_index);
-            Ok(world.map_err(|source| planned.wrong(source))?.hash())
+            let world = world.map_err(|source| planned.wrong(source))?.hash();
+            // The variant says what all worlds are made from, the first world that they are still made in the same way.
+            Ok(json!({ "variant": variant.hash(), "first_world": world }))
         };
-        let mut take = |id: String, hash: &dyn Fn() -> Result<String, CurriculumError>| {
+        let mut take = |id: String, hash: &dyn Fn() -> Result<Value, CurriculumError>| {
             if let Entry::Vacant(place) = self.prints.entry(id) {
                 place.insert(hash()?);
             }
@@ -228,7 +238,7 @@ impl Plan {
                 take(from.id(), &|| draw(from))?;
                 take(to.id(), &|| draw(to))
             }
-            Source::World { world, .. } => take(planned.id.clone(), &|| Ok(world.hash())),
+            Source::World { world, .. } => take(planned.id.clone(), &|| Ok(json!(world.hash()))),
         }
     }
 
@@ -311,6 +321,24 @@ impl Planned {
             world.max_steps = max_steps;
         }
         Ok(Assignment { world, between })
+    }
+
+    /// The number that an agent begins an experience with.
+    ///
+    /// Every evaluation of a world has the same, so that an agent that has not changed earns the same in it; what is learned in
+    /// the same world again has another, so that a learner does not try the same again.
+    pub(super) fn chance(&self, number: u64) -> u64 {
+        let index = self.first_index + (number - self.first);
+        let mut hash = Sha256::new();
+        hash.update(self.log_name.as_bytes());
+        hash.update([0]);
+        hash.update(self.seed.to_le_bytes());
+        hash.update(index.to_le_bytes());
+        if self.kind == BlockKind::Learning {
+            hash.update(number.to_le_bytes());
+        }
+        let digest = hash.finalize();
+        digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte))
     }
 
     /// The variant of an experience of a drift.

@@ -18,7 +18,10 @@ pub trait Agent {
     /// The action for the environment's next step.
     fn act(&mut self, environment: &Environment) -> Action;
 
-    /// Told before each episode, with a number that is the episode's own.
+    /// Told before each episode, with a number to draw all chance in it from.
+    ///
+    /// In a lifetime, every evaluation of the same world comes with the same number, so that an agent that has not changed acts
+    /// alike in it; every experience of learning comes with a number of its own.
     fn begin(&mut self, _seed: u64) {}
 
     /// Told before [`begin`](Self::begin) what the coming task is called, where the scenario lets the agent know.

@@ -103,9 +103,7 @@ fn command(name: &str, words: &[&str]) -> Result<Command, Problem> {
         ("action", ["-a", action @ ..]) if [1, 3].contains(&action.len()) => act(1, action),
         ("touch", [object, rest @ ..]) if rest.len() < 2 => go(object, Until::Touched, rest),
         ("interact", [object, rest @ ..]) if rest.len() < 2 => go(object, Until::Interacted, rest),
-        ("near", [object, metres, rest @ ..]) if rest.len() < 2 => {
-            go(object, Until::Near(number(metres)? as f32), rest)
-        }
+        ("near", [object, metres, rest @ ..]) if rest.len() < 2 => go(object, Until::Near(self::metres(metres)?), rest),
         ("tour", []) => Ok(Command::Tour { steps: MOST_STEPS }),
         ("tour", [count]) => Ok(Command::Tour { steps: steps(count)? }),
         ("repeat", []) => Ok(Command::Repeat),
@@ -147,6 +145,14 @@ fn row(word: &str) -> Result<usize, Problem> {
 fn number(word: &str) -> Result<f64, Problem> {
     let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
     number.ok_or_else(|| (format!("{word:?}"), "a number".to_owned()))
+}
+
+fn metres(word: &str) -> Result<f32, Problem> {
+    let metres = word
+        .parse::<f32>()
+        .ok()
+        .filter(|metres| metres.is_finite() && *metres > 0.0);
+    metres.ok_or_else(|| (format!("{word:?}"), "how many metres, more than 0".to_owned()))
 }
 
 fn steps(word: &str) -> Result<u32, Problem> {
@@ -229,6 +235,12 @@ mod tests {
             "near goal",
             "way.txt:1: found \"near goal\", expected near NAME METRES [N]",
         );
+        for metres in ["-1", "0", "inf", "far"] {
+            refuse(
+                &format!("near goal {metres}"),
+                &format!("way.txt:1: found {metres:?}, expected how many metres, more than 0"),
+            );
+        }
         refuse(
             "tour\nrepeat\nstep",
             "way.txt:3: found \"step\", expected nothing after repeat, which begins anew",

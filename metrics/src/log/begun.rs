@@ -110,6 +110,24 @@ mod tests {
         check(&[scenario, ("logger_info.json", "{ \"metr")]);
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn of_two_that_begin_at_the_same_moment_one_is_kept_away_before_it_writes() {
+        let (dir, info) = (tempfile::tempdir().unwrap(), LoggerInfo::new(["reward"]).unwrap());
+        let create = || LogWriter::create(dir.path(), &info, &ScenarioInfo::default());
+        let held = fs::File::open(dir.path()).unwrap();
+        held.try_lock().unwrap();
+        assert_eq!(create().unwrap_err().code(), "metrics/in-use");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0, "nothing was written");
+        drop(held);
+        let first = create().unwrap();
+        assert_eq!(create().unwrap_err().code(), "metrics/in-use");
+        assert_eq!(LogWriter::resume(dir.path()).unwrap_err().code(), "metrics/in-use");
+        first.finish().unwrap();
+        assert_eq!(create().unwrap_err().code(), "metrics/log-exists");
+        LogWriter::resume(dir.path()).unwrap();
+    }
+
     #[test]
     fn what_is_not_left_of_a_log_is_never_written_over() {
         let check = |files: &[(&str, &str)], code: &str| {

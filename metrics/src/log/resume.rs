@@ -24,9 +24,11 @@ impl LogWriter {
     /// one with columns of its own.
     pub fn resume(dir: impl AsRef<Path>) -> Result<Self, MetricsError> {
         let dir = dir.as_ref();
+        // What may not be a directory is told first.
+        data_files::find(dir)?;
+        let lock = writer::lock(dir)?;
         let files = data_files::find(dir)?;
         let logger_info = LoggerInfo::read(dir)?;
-        let lock = writer::lock(dir)?;
         begun::remove_leftovers(dir)?;
         let mut params = ParamsReader::default();
         let mut columns: Option<Vec<String>> = None;

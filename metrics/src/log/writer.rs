@@ -60,12 +60,13 @@ impl LogWriter {
     ) -> Result<Self, MetricsError> {
         let dir = dir.as_ref();
         fs::create_dir_all(dir).map_err(MetricsError::io(dir, "make this directory"))?;
+        // Before anything is looked at or written: two that begin at the same moment would both find the directory free.
+        let lock = lock(dir)?;
         if !begun::is_free(dir)? {
             return Err(MetricsError::LogExists { path: dir.to_owned() });
         }
         json_file::write_json(&dir.join(scenario_info::FILE_NAME), scenario_info)?;
         json_file::write_json(&dir.join(logger_info::FILE_NAME), logger_info)?;
-        let lock = lock(dir)?;
         begun::remove_leftovers(dir)?;
         Ok(Self::with_progress(dir, logger_info, Progress::default(), lock))
     }
@@ -226,15 +227,15 @@ impl BlockFile {
     }
 }
 
-/// Keeps a second writer away, as long as the file that comes back is open. Where the system has no such locks, there is none.
+/// Keeps a second writer away from a directory, as long as the file that comes back is open. Where the system has no such locks, there is none.
 ///
-/// Only where locks are advice: elsewhere they would keep readers away, too.
+/// It is the directory that is locked: it is there before any file of the log, and no file is put in its place. Only where locks
+/// are advice: elsewhere they would keep readers away, too.
 pub(super) fn lock(dir: &Path) -> Result<Option<File>, MetricsError> {
     if !cfg!(unix) {
         return Ok(None);
     }
-    let path = dir.join(logger_info::FILE_NAME);
-    let file = File::open(&path).map_err(MetricsError::io(&path, "open this file"))?;
+    let file = File::open(dir).map_err(MetricsError::io(dir, "open this directory"))?;
     match file.try_lock() {
         Ok(()) => Ok(Some(file)),
         Err(TryLockError::WouldBlock) => Err(MetricsError::InUse { path: dir.to_owned() }),

@@ -5,7 +5,7 @@
 //!     [{ "task": "Task1", "count": 2, "params": { "map": "../map.json", "maxsteps": 200 } }] }] }
 //! ```
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Map, Value as Json, json};
 
@@ -73,7 +73,9 @@ struct Reader {
     problems: Vec<Problem>,
     /// The variant that each map of a task has become, and by task the plain names that are taken.
     variants: BTreeMap<(String, String), String>,
-    taken: BTreeMap<String, Vec<String>>,
+    taken: BTreeMap<String, BTreeSet<String>>,
+    /// The number behind the last name made from a stem, by task and stem.
+    numbers: BTreeMap<(String, String), u32>,
 }
 
 impl Reader {
@@ -164,14 +166,14 @@ impl Reader {
             letters.collect::<String>().to_ascii_lowercase()
         };
         let taken = self.taken.entry(task.to_owned()).or_default();
+        let number = self.numbers.entry((task.to_owned(), stem.clone())).or_insert(1);
         let mut name = stem.clone();
-        for number in 2.. {
-            if !taken.contains(&plain(&name)) {
-                break;
-            }
+        // What was taken once stays taken: the search goes on where it ended for the last map of this name.
+        while taken.contains(&plain(&name)) {
+            *number += 1;
             name = format!("{stem}-v{number}");
         }
-        taken.push(plain(&name));
+        taken.insert(plain(&name));
         self.variants.insert(key, name.clone());
         name
     }
@@ -390,6 +392,20 @@ mod tests {
             Scenario::from_json("s.json", &scenario.to_json_pretty()).unwrap(),
             scenario
         );
+    }
+
+    #[test]
+    fn thousands_of_maps_of_one_name_are_told_apart_at_once() {
+        let one = |number: u32| format!(r#"{{ "task": "a", "count": 1, "params": {{ "map": "{number}/m.json" }} }}"#);
+        let regimes: Vec<String> = (1..=20_000).map(one).collect();
+        let text = format!(
+            r#"{{ "logging_base_dir": "l", "scenario": [{{ "type": "test", "regimes": [{}] }}] }}"#,
+            regimes.join(", ")
+        );
+        let (scenario, _) = Scenario::from_l2explorer("s.json", &text).unwrap();
+        let regimes = &scenario.blocks[0].regimes;
+        assert_eq!(regimes[0].variant, "m");
+        assert_eq!(regimes[19_999].variant, "m-v20000");
     }
 
     #[test]

@@ -276,6 +276,16 @@ impl TaskSpec {
         names.into_iter().filter_map(|name| self.variant(name).ok()).collect()
     }
 
+    /// The document in one way of writing it, without what changes no world and no distance: descriptions, and the variants.
+    pub(crate) fn canonical(&self) -> Json {
+        let mut json = serde_json::to_value(&self.document).expect("a document that was read serialises");
+        if let Some(map) = json.as_object_mut() {
+            map.shift_remove("description");
+            map.shift_remove("variants");
+        }
+        json
+    }
+
     /// What keeps a variant with these values from being drawn: distributions with a fault, requirements that do not hold.
     pub(crate) fn problems_of(&self, values: &IndexMap<String, Value>) -> Vec<Problem> {
         let mut problems = Vec::new();

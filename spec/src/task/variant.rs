@@ -1,11 +1,13 @@
 //! One variant of a task: every fixed and variant parameter has its value. Drawing the randomized ones is the generator's job.
 
 use std::collections::BTreeSet;
+use std::fmt::Write;
 use std::sync::Arc;
 
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
 use super::TaskSpec;
 use super::family::{Sweep, Variants};
@@ -51,6 +53,35 @@ impl Variant {
     /// The name by which every command knows it: `find_objects#red`.
     pub fn id(&self) -> String {
         format!("{}#{}", self.task.name(), self.name)
+    }
+
+    /// A hash of everything that its worlds and its distances are made from: the task's document in the current version without
+    /// descriptions and without the other variants, and the values of this one. Variants of one hash have the same worlds.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::TaskSpec;
+    /// let hash = |light: &str, about: &str| {
+    ///     let text = format!(
+    ///         r#"{{ "name": "a", "description": "{about}",
+    ///              "world": {{ "environment_params": {{ "light_intensity": {light} }} }} }}"#
+    ///     );
+    ///     Ok::<_, driftworld_spec::SpecError>(TaskSpec::from_json("a", &text)?.variant("default")?.hash())
+    /// };
+    /// assert_eq!(hash("2", "old")?, hash("2", "new")?);
+    /// assert_ne!(hash("2", "old")?, hash("3", "old")?);
+    /// # Ok::<(), driftworld_spec::SpecError>(())
+    /// ```
+    pub fn hash(&self) -> String {
+        let values = self.values.iter().map(|(name, value)| (name, value.to_json()));
+        let values: Vec<(&String, serde_json::Value)> = values.collect();
+        let whole = serde_json::json!({ "task": self.task.canonical(), "variant": self.name, "values": values });
+        Sha256::digest(whole.to_string())
+            .iter()
+            .fold(String::with_capacity(64), |mut hash, byte| {
+                write!(hash, "{byte:02x}").expect("writing to a String does not fail");
+                hash
+            })
     }
 
     /// The task that it is a variant of.

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use driftworld::env::{Catalogue, Library, MAX_IMPORT_BYTES};
+use serde_json::{Value, json};
 
-use super::super::Failure;
+use super::super::{Failure, input};
 
 /// The largest library in bytes.
 const MAX_LIBRARY_BYTES: usize = 1 << 30;
@@ -28,6 +29,16 @@ impl LibraryChoice {
             catalogue = catalogue.with_library(&library);
         }
         Ok(catalogue)
+    }
+
+    /// The checksum of each chosen library by its file's name, in the order they were named in; nothing if none was chosen.
+    pub(crate) fn prints(&self) -> Result<Vec<Value>, Failure> {
+        let print = |path: &PathBuf| {
+            let bytes = bytes(path, MAX_LIBRARY_BYTES).map_err(|reason| unreadable(path, &reason))?;
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            Ok(json!({ "library": name, "sha256": input::checksum(&bytes) }))
+        };
+        self.libraries.iter().map(print).collect()
     }
 
     /// The chosen libraries, in the order they were named in.
