@@ -343,6 +343,40 @@ fn a_script_that_was_edited_between_is_noticed() {
 }
 
 #[test]
+fn a_task_beside_the_scenario_is_found_from_any_folder() {
+    let folder = scratch();
+    let task = r#"{ "name": "lamps", "world": { "max_steps": 5 } }"#;
+    write(&folder.path().join("own/tasks/lamps.json"), task);
+    let scenario = folder.path().join("own/scenario.json");
+    let regime = r#"{ "task": "tasks/lamps.json", "variant": "default", "count": 1 }"#;
+    write(
+        &scenario,
+        &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),
+    );
+    let said = succeed(&["run", text(&scenario), "--logs", text(&folder.path().join("log"))]);
+    assert!(said.contains("lamps#default"), "{said}");
+}
+
+#[test]
+fn a_scenario_converted_away_from_its_worlds_is_warned_about() {
+    let folder = scratch();
+    let scenario = folder.path().join("scenario.json");
+    let regime = r#"{ "task": "a", "variant": "v", "world": "yard.json", "count": 1 }"#;
+    write(
+        &scenario,
+        &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),
+    );
+    write(&folder.path().join("yard.json"), "{}");
+    let said = |to: &str| {
+        let to = folder.path().join(to);
+        let output = output(&["convert", text(&scenario), "-o", text(&to)]);
+        String::from_utf8_lossy(&output.stderr).contains("names the world file \"yard.json\", which is not there")
+    };
+    assert!(said("elsewhere/scenario.json"));
+    assert!(!said("again.json"));
+}
+
+#[test]
 fn every_variant_that_is_not_there_is_named() {
     let folder = scratch();
     let scenario = folder.path().join("scenario.json");

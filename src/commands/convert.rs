@@ -1,8 +1,10 @@
 //! `driftworld convert`: a world or a scenario from one dialect to the other. Both are read and written by the spec.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use driftworld::spec::Scenario;
 
 use super::draw_maps::draw_maps;
 use super::input::WorldChoice;
@@ -57,12 +59,29 @@ impl Convert {
         output::write_or_print(&self.output, &text)
     }
 
+    /// Warns of the world files that the output names by paths that lead nowhere from its own folder.
+    fn warn_of_lost_worlds(&self, scenario: &Scenario) {
+        if self.output == Path::new("-") {
+            return;
+        }
+        let folder = self.output.parent().unwrap_or(Path::new(""));
+        let worlds = scenario.blocks.iter().flat_map(|block| &block.regimes);
+        let worlds: BTreeSet<&str> = worlds.filter_map(|regime| regime.world.as_deref()).collect();
+        for world in worlds.into_iter().filter(|world| !folder.join(world).is_file()) {
+            output::note(format!(
+                "warning: {}: names the world file {world:?}, which is not there from its folder; put it there, or beside it",
+                self.output.display()
+            ));
+        }
+    }
+
     fn scenario(&self, file: &ScenarioFile) -> Result<(), Failure> {
+        self.warn_of_lost_worlds(&file.scenario);
         if self.to == Form::World {
             return output::write_or_print(&self.output, &file.scenario.to_json_pretty());
         }
         let mut scenario = file.scenario.clone();
-        let draws = |scenario: &driftworld::spec::Scenario| {
+        let draws = |scenario: &Scenario| {
             let mut regimes = scenario.blocks.iter().flat_map(|block| &block.regimes);
             regimes.any(|regime| regime.world.is_none())
         };

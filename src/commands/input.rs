@@ -1,5 +1,6 @@
 //! What arguments name: tasks, variants, worlds. Names of tasks are read by the library's `tasks`.
 
+use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -29,7 +30,10 @@ pub(crate) fn text(path: &Path) -> Result<String, Failure> {
 /// The SHA-256 of a file's bytes, in hexadecimal.
 pub(crate) fn checksum(bytes: &[u8]) -> String {
     let digest = Sha256::digest(bytes);
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+    digest.iter().fold(String::with_capacity(64), |mut text, byte| {
+        write!(text, "{byte:02x}").expect("writing to a String does not fail");
+        text
+    })
 }
 
 /// A world file, in our form or in the original's.

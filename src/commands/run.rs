@@ -22,7 +22,8 @@ const MAX_JOBS: usize = 256;
 
 /// Live a curriculum with an agent and log every experience.
 ///
-/// The scenario is a file of ours, or one of L2Explorer's. A run that was interrupted, in whatever way, goes on with --resume
+/// The scenario is a file of ours, or one of L2Explorer's. Tasks and worlds that it names by their paths are looked for from its
+/// own folder first. A run that was interrupted, in whatever way, goes on with --resume
 /// at the first experience that is not in the log, and writes what it would have written undisturbed.
 #[derive(Args)]
 #[command(after_help = "Example:
@@ -44,17 +45,24 @@ pub(crate) struct Run {
     /// How many experiences are lived at the same time, from 1 to 256; as many as there are processors if not given. The log is the same.
     #[arg(long, value_name = "N", value_parser = jobs)]
     jobs: Option<NonZeroUsize>,
+    #[command(flatten)]
+    missing: MissingChoice,
+    #[command(flatten)]
+    libraries: LibraryChoice,
+    /// Print the summary as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What becomes of world files that are nowhere.
+#[derive(Args)]
+struct MissingChoice {
     /// Live the world file with the nearest name in place of one that is nowhere, and say so in the log; always done for L2Explorer's scenarios.
     #[arg(long)]
     stand_in: bool,
     /// Refuse a world file that is nowhere also in one of L2Explorer's scenarios.
     #[arg(long, conflicts_with = "stand_in")]
     no_stand_in: bool,
-    #[command(flatten)]
-    libraries: LibraryChoice,
-    /// Print the summary as JSON.
-    #[arg(long)]
-    json: bool,
 }
 
 fn jobs(text: &str) -> Result<NonZeroUsize, String> {
@@ -66,7 +74,7 @@ impl Run {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let file = ScenarioFile::read(&self.scenario)?;
         // The original's own scenario names a map that it does not come with, and has to run as it stands.
-        let missing = if self.stand_in || (file.original && !self.no_stand_in) {
+        let missing = if self.missing.stand_in || (file.original && !self.missing.no_stand_in) {
             Missing::StandIn
         } else {
             Missing::Refused

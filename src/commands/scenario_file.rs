@@ -2,10 +2,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use driftworld::curriculum::{FoundWorld, Plan, Sources};
-use driftworld::spec::{Scenario, World, nearest};
-use driftworld::tasks;
+use driftworld::spec::{Scenario, TaskSpec, World, nearest};
+use driftworld::tasks::{self, TaskError};
 use serde_json::Value;
 
 use super::{Failure, input, output};
@@ -32,7 +33,7 @@ impl ScenarioFile {
             scenario
         } else {
             // With the tasks that can be found, so that every variant that they lack is named at once.
-            Scenario::from_json_with(&name, &text, |task| tasks::task(task).ok())?
+            Scenario::from_json_with(&name, &text, |task| task_from(path, task).ok())?
         };
         Ok(Self {
             scenario,
@@ -50,7 +51,11 @@ impl ScenarioFile {
 
     /// The scenario with everything that it names.
     pub(crate) fn plan(&self, missing: Missing) -> Result<Plan, Failure> {
-        plan(&self.scenario, &mut |path| self.world(path, missing))
+        let mut sources = Sources {
+            task: &mut |name| task_from(&self.path, name).map_err(|error| error.to_string()),
+            world: &mut |path| self.world(path, missing),
+        };
+        Ok(Plan::new(&self.scenario, &mut sources)?)
     }
 
     /// The world file that a regime names, from the scenario's folder; beside the scenario if it is not there.
@@ -138,6 +143,18 @@ impl ScenarioFile {
             },
         }
     }
+}
+
+/// The task that a scenario names: a built-in one, a file from the scenario's folder, else one from the working folder.
+pub(crate) fn task_from(scenario: &Path, name: &str) -> Result<Arc<TaskSpec>, TaskError> {
+    let there = scenario.parent().unwrap_or(Path::new("")).join(name);
+    if !tasks::built_in_names().contains(&name)
+        && there.is_file()
+        && let Some(path) = there.to_str()
+    {
+        return tasks::task(path);
+    }
+    tasks::task(name)
 }
 
 /// What becomes of a world file that is nowhere.

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use driftworld::spec::maps::MapLibrary;
 use driftworld::spec::{Problem, Scenario, SpecError, TaskSpec, World};
-use driftworld::tasks;
 use serde_json::{Value, json};
 
+use super::scenario_file::task_from;
 use super::{Failure, input, output};
 
 /// Check task specs, worlds, scenarios and maps files, and name every problem with its place.
@@ -72,7 +72,7 @@ impl Validate {
             "scenario" => {
                 let read = Scenario::from_json_with(&name, &text, |called| {
                     let unchecked = |error| format!("{name}: the variants of {called} are not checked: {error}");
-                    tasks::task(called)
+                    task_from(&path, called)
                         .map_err(|error| warnings.push(unchecked(error)))
                         .ok()
                 });
