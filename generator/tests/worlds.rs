@@ -96,7 +96,7 @@ fn a_new_parameter_group_or_object_moves_nothing_that_was_there() {
     );
     assert_eq!(world(&load(&with_parameter), "red", 7, 9), before);
     let group = r#"{ "name": "bags", "count": 3, "object": { "class": "bag" }, "placement": { "disc": { "center": [0, 0], "radius": 25 } } }"#;
-    let with_group = text.replacen("  ],\n  \"variants\"", &format!("  , {group} ],\n  \"variants\""), 1);
+    let with_group = text.replacen("  ],\n  \"require\"", &format!("  , {group} ],\n  \"require\""), 1);
     let after = world(&load(&with_group), "red", 7, 9);
     assert_eq!(after.objects[..before.objects.len()], before.objects[..]);
     assert_eq!(after.objects.len(), before.objects.len() + 3);
