@@ -178,6 +178,6 @@ pub(crate) fn plan(
     Ok(Plan::new(scenario, &mut sources)?)
 }
 
-fn is_original(text: &str) -> bool {
+pub(crate) fn is_original(text: &str) -> bool {
     serde_json::from_str(text).is_ok_and(|json: Value| Scenario::is_l2explorer(&json))
 }

@@ -1,14 +1,15 @@
 //! `driftworld sheet`: one picture of many variants, or of a curriculum. Pictures of one world are `render`'s.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use driftworld::generator::Sampler;
-use driftworld::spec::{BlockKind, Regime, Scenario, Variant};
+use driftworld::spec::{BlockKind, Regime, Scenario, Value, Variant};
 use driftworld::tasks;
 
 use super::pictures::{SheetRow, sheet};
 use super::render::Views;
+use super::scenario_file::is_original;
 use super::{Failure, input, output};
 
 /// The most variants that one picture shows.
@@ -31,12 +32,12 @@ pub(crate) struct Sheet {
     /// The variants that a scenario learns, in its order, in place of variants.
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
-    /// The seed of the worlds.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
-    /// The number of each variant's world.
-    #[arg(long, default_value_t = 0)]
-    index: u64,
+    /// The seed of the worlds; 0 if not said, in a scenario each block's own.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// The number of each variant's world; 0 if not said, in a scenario the first of each block.
+    #[arg(long)]
+    index: Option<u64>,
     /// Turn the first-person cameras this many degrees clockwise from the agent's heading.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     turn: f64,
@@ -54,13 +55,10 @@ pub(crate) struct Sheet {
 impl Sheet {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let variants = match &self.scenario {
-            Some(file) => {
-                let scenario = Scenario::from_json(&file.display().to_string(), &input::text(file)?)?;
-                learned(&scenario)?
-            }
+            Some(file) => learned(file)?,
             None => input::variants(&self.tasks)?
                 .into_iter()
-                .map(|(_, variant)| variant)
+                .map(|(_, variant)| Shown::declared(variant))
                 .collect(),
         };
         if variants.is_empty() || variants.len() > MOST_VARIANTS {
@@ -70,34 +68,109 @@ impl Sheet {
             )));
         }
         let bar = output::progress(variants.len() as u64, "drawing");
-        let row = |variant: &Variant| {
+        let row = |shown: &Shown| {
             bar.inc(1);
-            self.row(variant)
+            self.row(shown)
         };
         let rows = variants.iter().map(row).collect::<Result<Vec<_>, _>>()?;
         bar.finish_and_clear();
         sheet(&rows, usize::from(self.columns))?.write_and_tell(&self.output)
     }
 
-    fn row(&self, variant: &Variant) -> Result<SheetRow, Failure> {
-        let world = Sampler::new(variant, self.seed).world(self.index)?;
+    fn row(&self, shown: &Shown) -> Result<SheetRow, Failure> {
+        let (seed, index) = (self.seed.unwrap_or(shown.seed), self.index.unwrap_or(shown.index));
+        let world = Sampler::new(&shown.variant, seed).world(index)?;
         let views = Views::new(&world, self.size, self.turn as f32);
         Ok(SheetRow {
-            title: variant.id(),
-            words: variant
-                .task()
-                .variant_description(variant.name())
-                .unwrap_or_default()
-                .to_owned(),
+            title: shown.variant.id(),
+            words: shown.words.clone(),
             pictures: vec![views.first_person()?.rgb, views.top_down()],
         })
     }
 }
 
-/// The variants that a scenario learns, each as often as it comes.
-fn learned(scenario: &Scenario) -> Result<Vec<Variant>, Failure> {
-    let learning = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
-    let regimes = learning.flat_map(|block| &block.regimes);
-    let variant = |regime: &Regime| Ok(regime.resolve(&tasks::task(&regime.task)?)?);
-    regimes.map(variant).collect()
+/// A variant, and which of its worlds is drawn if nothing is said.
+struct Shown {
+    variant: Variant,
+    words: String,
+    seed: u64,
+    index: u64,
+}
+
+impl Shown {
+    fn declared(variant: Variant) -> Self {
+        let words = variant
+            .task()
+            .variant_description(variant.name())
+            .unwrap_or_default()
+            .to_owned();
+        Self {
+            variant,
+            words,
+            seed: 0,
+            index: 0,
+        }
+    }
+
+    /// What a regime shows: the values that make a variant that no task declares are its words.
+    fn of_regime<'a>(
+        variant: Variant,
+        values: impl IntoIterator<Item = (&'a String, &'a Value)>,
+        regime: &Regime,
+        index: u64,
+    ) -> Self {
+        let listed: Vec<String> = values
+            .into_iter()
+            .map(|(name, value)| format!("{name} {value}"))
+            .collect();
+        let declared = Self::declared(variant);
+        Self {
+            words: if listed.is_empty() {
+                declared.words
+            } else {
+                listed.join(", ")
+            },
+            seed: regime.seed,
+            index,
+            ..declared
+        }
+    }
+}
+
+/// The variants that a scenario learns, each as often as it comes; of a drift both ends.
+fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
+    let text = input::text(file)?;
+    if is_original(&text) {
+        return Err(Failure::input(format!(
+            "{}: found a scenario of L2Explorer, which lives map files, expected one of ours; draw its maps with driftworld render --l2explorer",
+            file.display()
+        )));
+    }
+    let scenario = Scenario::from_json(&file.display().to_string(), &text)?;
+    let mut shown = Vec::new();
+    for (number, block) in scenario.blocks.iter().enumerate() {
+        if block.kind != BlockKind::Learning {
+            continue;
+        }
+        for regime in &block.regimes {
+            if let Some(world) = &regime.world {
+                return Err(Failure::input(format!(
+                    "{}: block {number} lives the world file {world}, expected variants of tasks; draw it with driftworld render",
+                    file.display()
+                )));
+            }
+            let task = tasks::task(&regime.task)?;
+            shown.push(Shown::of_regime(
+                regime.resolve(&task)?,
+                &regime.values,
+                regime,
+                regime.first_index,
+            ));
+            if let (Some(end), Some(drift)) = (regime.resolve_end(&task)?, &regime.drift) {
+                let last = regime.first_index + u64::from(regime.count) - 1;
+                shown.push(Shown::of_regime(end, &drift.values, regime, last));
+            }
+        }
+    }
+    Ok(shown)
 }
