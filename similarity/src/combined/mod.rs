@@ -2,6 +2,7 @@
 
 mod distance;
 mod drawn;
+mod parts;
 mod sketch;
 mod value;
 pub(crate) mod variant;
