@@ -85,7 +85,13 @@ fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64
                     if p == f64::NEG_INFINITY && q == f64::NEG_INFINITY {
                         return [0.0; 3];
                     }
-                    [term(p, q), libm::exp(p), libm::exp(q)]
+                    let found = [term(p, q), libm::exp(p), libm::exp(q)];
+                    // So near to a steep end that the density is beyond all numbers: what lies there is left over below.
+                    if found.iter().all(|x| x.is_finite()) {
+                        found
+                    } else {
+                        [0.0; 3]
+                    }
                 });
                 sum += value;
                 error += miss;

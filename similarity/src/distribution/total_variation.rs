@@ -166,4 +166,19 @@ mod tests {
         check(&words(None), &words(Some(vec![1.0, 3.0])), 0.25);
         assert_eq!(total_variation(&words(None), &Uniform { low: 0.0, high: 1.0 }), None);
     }
+
+    #[test]
+    fn where_a_density_is_beyond_all_numbers_its_mass_is_taken_as_a_whole() {
+        // Half a sum of differences of scipy's cumulative functions over 700,000 stretches, evenly wide in ln x.
+        for (alpha, sigma, expected) in [(0.03, 30.0, 0.514_766_196_057), (0.001, 10.0, 0.971_931_609_412)] {
+            let beta = Distribution::Beta {
+                alpha,
+                beta: 5.0,
+                low: None,
+                high: None,
+            };
+            let found = total_variation(&beta, &Distribution::LogNormal { mu: 0.0, sigma }).unwrap();
+            assert!((found.value - expected).abs() < 1e-8, "{found:?}");
+        }
+    }
 }
