@@ -80,16 +80,6 @@ pub enum SimilarityError {
         /// Those that there are.
         expected: String,
     },
-    /// A setting out of its range.
-    #[error("{name}: found {found}, expected {expected}")]
-    BadSetting {
-        /// What is set.
-        name: &'static str,
-        /// What to.
-        found: f64,
-        /// What it may be.
-        expected: &'static str,
-    },
     /// A matrix would not fit.
     #[error("found {found} items, expected at most {limit}; compare fewer at a time")]
     TooMany {
@@ -382,7 +372,6 @@ impl SimilarityError {
             Self::GridsDiffer { .. } => "similarity/grids-differ",
             Self::TooFine { .. } => "similarity/too-fine",
             Self::UnknownClass { .. } => "similarity/unknown-class",
-            Self::BadSetting { .. } => "similarity/bad-setting",
             Self::TooMany { .. } => "similarity/too-many",
             Self::NoSamples => "similarity/no-samples",
             Self::NotASample { .. } => "similarity/not-a-sample",
@@ -458,11 +447,6 @@ mod tests {
             SimilarityError::UnknownClass {
                 found: "lamp".into(),
                 expected: "rock, tree".into(),
-            },
-            SimilarityError::BadSetting {
-                name: "regularisation",
-                found: 0.0,
-                expected: "a number from 1e-200 to 1e200",
             },
             SimilarityError::TooMany {
                 found: 30_000,

@@ -28,7 +28,7 @@ pub use color::oklab::{Oklab, oklab_distance};
 pub use color::sets::color_sets_distance;
 pub use color::srgb::srgb_distance;
 pub use combined::variant::{VariantMeasure, variant_distance};
-pub use combined::world::{Worlds, world_distance, world_sets_distance, world_sets_explained};
+pub use combined::world::{Worlds, world_distance, world_sets_distance};
 pub use combined::{Distance, MAX_WEIGHT, Part, Weights};
 pub use correlation::{
     Correlation, MAX_MANTEL_ITEMS, MAX_RELABELLINGS, MIN_CORRELATED, MantelTest, PairValue, mantel, pearson, ranks,
@@ -40,10 +40,9 @@ pub use matrix::{
 };
 pub use nature::Nature;
 pub use occupancy::{
-    BitGrid, Classes, Extent, Grid, GridShape, MAX_CELLS, Occupancy, Ospa, Raster, grid_chamfer_distance,
-    grid_dice_distance, grid_earth_movers_distance, grid_earth_movers_hat, grid_hamming_distance, grid_hausdorff_95,
+    BitGrid, Classes, Extent, Grid, GridShape, MAX_CELLS, Ospa, Raster, grid_chamfer_distance, grid_dice_distance,
+    grid_earth_movers_distance, grid_earth_movers_hat, grid_hamming_distance, grid_hausdorff_95,
     grid_hausdorff_distance, grid_jaccard_distance, grid_ruzicka_distance, grid_sinkhorn, grid_sliced_wasserstein,
-    hamming_distance, jaccard_distance,
 };
 pub use order::{MAX_EXACT, MAX_LEAVES, Method, OrderOptions, Ordering, order};
 pub use transport::{

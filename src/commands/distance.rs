@@ -5,7 +5,7 @@ mod pictures;
 use clap::Args;
 use driftworld::generator::Sampler;
 use driftworld::similarity::{
-    Distance as Measured, Part, VariantMeasure, Weights, world_distance, world_sets_explained,
+    Distance as Measured, Part, VariantMeasure, Weights, world_distance, world_sets_distance,
 };
 use driftworld::spec::{Element, Variant, World};
 use driftworld::tasks;
@@ -102,7 +102,7 @@ impl Distance {
         }
         let count = self.worlds.unwrap_or(WORLDS);
         let (a, b) = (self.draw(a, count)?, self.draw(b, count)?);
-        let distance = world_sets_explained(&a, &b, &weights)?;
+        let distance = world_sets_distance(&a, &b, &weights)?;
         let plural = if count == 1 { "" } else { "s" };
         let drawn = format!("mean of {count} world{plural} of each, drawn under seed {}", self.seed);
         Ok((distance, drawn))

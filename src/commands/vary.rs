@@ -62,7 +62,10 @@ impl Vary {
         };
         let measured = VariantMeasure::new(from.task(), Weights::of_task(from.task()));
         let measure = |other: &Variant| {
-            let distance = measured.between(&from, other).expect("both are variants of one task");
+            // Distributions of numbers beyond all bounds have no finite distance: farther than any that can be asked for.
+            let Ok(distance) = measured.between(&from, other) else {
+                return f64::INFINITY;
+            };
             match self.element {
                 Some(element) => distance.element(element).unwrap_or(0.0),
                 None => distance.total,

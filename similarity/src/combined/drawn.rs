@@ -10,6 +10,7 @@ use crate::distribution::{
     How, Measured, circular_wasserstein_1, draws_headings, extent, hellinger, jensen_shannon, planar_wasserstein_2,
     total_variation, wasserstein_1, wasserstein_2,
 };
+use crate::scalar::choice_mismatch;
 
 /// How two distributions of one parameter are compared.
 #[derive(Clone, Debug)]
@@ -64,7 +65,7 @@ impl DrawnMeasure {
             Some((name, Some(measured.how), measured.value, normalise(measured)))
         };
         let same_or_not = || {
-            let raw = if a == b { 0.0 } else { 1.0 };
+            let raw = choice_mismatch(a, b);
             ("same or not", None, raw, raw)
         };
         let asked = match self.measure {

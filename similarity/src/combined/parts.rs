@@ -8,6 +8,7 @@ use driftworld_spec::Element;
 use crate::assignment::Assignment;
 use crate::combined::distance::{Part, position};
 use crate::combined::sketch::{Sketch, Thing};
+use crate::scalar::{circular_difference, relative_difference};
 
 /// Objects this far apart, in metres, are no more like each other than one that is there and one that is not.
 const CUT_OFF: f64 = 10.0;
@@ -118,7 +119,7 @@ impl Objects {
     }
 
     fn add(&mut self, a: &Thing, b: &Thing) {
-        self.turn += turn(a.heading, b.heading);
+        self.turn += circular_difference(a.heading, b.heading);
         self.motion += differs(a.motion, b.motion);
         self.body += differs(a.body, b.body);
         self.reward += (a.reward - b.reward).abs();
@@ -127,7 +128,7 @@ impl Objects {
         self.odds += (a.odds - b.odds).abs();
         self.look += differs(a.look, b.look);
         self.color += match (a.color, b.color) {
-            (Some(a), Some(b)) => euclidean(a, b),
+            (Some(a), Some(b)) => a.distance(b),
             (None, None) => 0.0,
             _ => 1.0,
         };
@@ -184,7 +185,7 @@ fn state(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
         turns,
         turns / 180.0,
     );
-    let turn = turn(a.heading, b.heading);
+    let turn = circular_difference(a.heading, b.heading);
     sink.add(part!("agent's heading", S, "turn / 180 degrees"), turn, turn / 180.0);
 }
 
@@ -274,20 +275,10 @@ fn observation(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) 
     let looks = objects.mean(objects.look);
     sink.add(part!("models of objects", O, "share that differs"), looks, looks);
     relative(part!("light", O, "difference / larger"), a.light, b.light, sink);
-    let apart = a
-        .surroundings
-        .iter()
-        .zip(&b.surroundings)
-        .map(|(a, b)| euclidean(*a, *b));
+    let apart = a.surroundings.iter().zip(&b.surroundings).map(|(a, b)| a.distance(*b));
     let around = apart.sum::<f64>() / 4.0;
     sink.add(part!("colours of surroundings", O, "oklab"), around, around);
     same(part!("camera and weather", O, "same or not"), a.camera, b.camera, sink);
-}
-
-/// The lesser angle between two headings, in degrees.
-fn turn(a: f64, b: f64) -> f64 {
-    let turn = (a - b).rem_euclid(360.0);
-    turn.min(360.0 - turn)
 }
 
 /// Share of the cells taken in either that are not taken in both; both in rising order.
@@ -314,7 +305,7 @@ fn same(kind: &'static Kind, a: u32, b: u32, sink: &mut impl Sink) {
 /// Difference of two numbers of at least 0, and its share of the larger one: a metric.
 fn relative(kind: &'static Kind, a: f64, b: f64, sink: &mut impl Sink) {
     let raw = (a - b).abs();
-    sink.add(kind, raw, share(raw, a.abs().max(b.abs())));
+    sink.add(kind, raw, relative_difference(a, b));
 }
 
 fn share(raw: f64, whole: f64) -> f64 {
@@ -332,8 +323,4 @@ fn differs(a: u32, b: u32) -> f64 {
 fn length(a: [f64; 2], b: [f64; 2]) -> f64 {
     let [x, y] = [a[0] - b[0], a[1] - b[1]];
     (x * x + y * y).sqrt()
-}
-
-fn euclidean(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt()
 }

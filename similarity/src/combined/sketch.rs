@@ -3,8 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use driftworld_spec::{Color, Object, World};
+use driftworld_spec::{Object, World};
 use serde::Serialize;
+
+use crate::Oklab;
 
 /// Worlds reduced alike: what is the same thing has the same number in each.
 #[derive(Clone, Debug, Default)]
@@ -35,8 +37,8 @@ pub(super) struct Sketch {
     pub(super) rules: u32,
     pub(super) max_steps: u32,
     pub(super) light: f64,
-    /// Wall, sky, ground, sunlight in Oklab.
-    pub(super) surroundings: [[f64; 3]; 4],
+    /// Wall, sky, ground, sunlight.
+    pub(super) surroundings: [Oklab; 4],
     pub(super) camera: u32,
 }
 
@@ -51,8 +53,7 @@ pub(super) struct Thing {
     pub(super) reward: f64,
     pub(super) paid_for: u32,
     pub(super) odds: f64,
-    /// In Oklab.
-    pub(super) color: Option<[f64; 3]>,
+    pub(super) color: Option<Oklab>,
     pub(super) look: u32,
 }
 
@@ -117,7 +118,7 @@ impl Sketcher {
                 around.ground_color,
                 around.light_color,
             ]
-            .map(oklab),
+            .map(Oklab::from),
             camera: self.number((
                 "camera",
                 (
@@ -165,7 +166,7 @@ impl Sketcher {
             reward: object.reward,
             paid_for: self.number(("paid for", paid_for)),
             odds: object.reward_probability,
-            color: object.color.map(oklab),
+            color: object.color.map(Oklab::from),
             look: self.number(("look", &object.model, object.scale)),
         }
     }
@@ -197,10 +198,6 @@ impl Sketch {
             Some((take(self, &mut i), take(other, &mut j)))
         })
     }
-}
-
-fn oklab(color: Color) -> [f64; 3] {
-    crate::color::oklab::Oklab::from(color).0
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use driftworld_spec::{Domain, MeasureName, Parameter, ParameterType, Value};
 
 use crate::ColorMeasure;
+use crate::scalar::{CostTable, choice_mismatch, circular_difference};
 
 /// How two values of one parameter are compared.
 #[derive(Clone, Debug)]
@@ -15,12 +16,8 @@ pub(super) enum ValueMeasure {
     Turn,
     /// A distance of colours over the largest there is.
     Color { measure: &'static str, of: ColorMeasure },
-    /// A table of costs over the largest of them.
-    Costs {
-        choices: Vec<Value>,
-        costs: Vec<Vec<f64>>,
-        largest: f64,
-    },
+    /// A table of costs, by the words for the choices, over the largest of them.
+    Costs(CostTable),
     /// 0 or 1.
     SameOrNot,
 }
@@ -29,17 +26,11 @@ impl ValueMeasure {
     /// What the parameter asks for, or what its type has.
     pub(super) fn of(parameter: &Parameter) -> Self {
         let compare = parameter.compare.as_ref();
-        if let Some(costs) = compare.and_then(|compare| compare.costs.clone()) {
-            let largest = costs.iter().flatten().copied().fold(0.0, f64::max);
-            let choices = match parameter.domain() {
-                Some(Domain::Choices(choices)) => choices,
-                _ => Vec::new(),
-            };
-            return Self::Costs {
-                choices,
-                costs,
-                largest,
-            };
+        if let (Some(costs), Some(choices)) = (compare.and_then(|compare| compare.costs.as_ref()), &parameter.choices) {
+            let names = choices.iter().filter_map(|choice| choice.cast(parameter.kind));
+            let table = CostTable::new(names.map(|choice| choice.to_string()).collect(), &costs.concat());
+            // Loading the task checked the table.
+            return table.map_or(Self::SameOrNot, Self::Costs);
         }
         let color = |measure, of| Self::Color { measure, of };
         match compare.and_then(|compare| compare.measure) {
@@ -83,7 +74,7 @@ impl ValueMeasure {
             Self::Difference { measure, .. } | Self::Color { measure, .. } => measure,
             Self::LogRatio { .. } => "log ratio / range",
             Self::Turn => "turn / 180 degrees",
-            Self::Costs { .. } => "cost / largest",
+            Self::Costs(_) => "cost / largest",
             Self::SameOrNot => "same or not",
         }
     }
@@ -92,13 +83,7 @@ impl ValueMeasure {
     pub(super) fn is_metric(&self) -> bool {
         match self {
             Self::Color { of, .. } => of.nature().is_metric(),
-            Self::Costs { choices, costs, .. } => {
-                let all = 0..choices.len();
-                all.clone().all(|a| {
-                    let detour = |b: usize, c: usize| costs[a][c] <= costs[a][b] + costs[b][c];
-                    all.clone().all(|b| all.clone().all(|c| detour(b, c)))
-                })
-            }
+            Self::Costs(table) => table.nature().is_metric(),
             _ => true,
         }
     }
@@ -106,7 +91,7 @@ impl ValueMeasure {
     /// The measure's own number, and the one that counts; the second may be above 1.
     pub(super) fn between(&self, a: &Value, b: &Value) -> (f64, f64) {
         let same_or_not = || {
-            let raw = if a == b { 0.0 } else { 1.0 };
+            let raw = choice_mismatch(a, b);
             (raw, raw)
         };
         match self {
@@ -119,24 +104,17 @@ impl ValueMeasure {
                 (raw, share(raw, *width))
             }),
             Self::Turn => a.as_number().zip(b.as_number()).map_or_else(same_or_not, |(a, b)| {
-                let turn = (a - b).rem_euclid(360.0);
-                let raw = turn.min(360.0 - turn);
+                let raw = circular_difference(a, b);
                 (raw, raw / 180.0)
             }),
             Self::Color { of, .. } => match (a, b) {
                 (Value::Color(a), Value::Color(b)) => (of.between(*a, *b), of.normalised(*a, *b)),
                 _ => same_or_not(),
             },
-            Self::Costs {
-                choices,
-                costs,
-                largest,
-            } => {
-                let place = |value: &Value| choices.iter().position(|choice| choice == value);
-                place(a)
-                    .zip(place(b))
-                    .map_or_else(same_or_not, |(a, b)| (costs[a][b], share(costs[a][b], *largest)))
-            }
+            // What lies between the choices, as on the way of a drift, is the same or not.
+            Self::Costs(table) => table
+                .between(&a.to_string(), &b.to_string())
+                .map_or_else(|_| same_or_not(), |cost| (cost, share(cost, table.largest()))),
             Self::SameOrNot => same_or_not(),
         }
     }

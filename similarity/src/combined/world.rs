@@ -2,7 +2,6 @@
 //! distances of variants are in `variant.rs`.
 
 use driftworld_spec::World;
-use rayon::prelude::*;
 
 use crate::SimilarityError;
 use crate::combined::distance::{Distance, Weights};
@@ -38,25 +37,15 @@ pub fn world_distance(a: &World, b: &World, weights: &Weights) -> Distance {
     explained(&a, &b, weights)
 }
 
-/// Mean distance of worlds in pairs: the first with the first, and so on; worlds without a partner are left out.
+/// How far apart two sets of worlds are: the mean over pairs, the first with the first and so on; worlds without a partner are left
+/// out. Each part's numbers are means, too.
 ///
 /// Draw both sets under the same seed and indices: then pairs share their chance, and what differs is what differs between
-/// the variants. `None` if there is no pair.
-pub fn world_sets_distance(a: &[World], b: &[World], weights: &Weights) -> Option<f64> {
-    let mut sketcher = Sketcher::default();
-    let totals: Vec<f64> = a
-        .iter()
-        .zip(b)
-        .map(|(a, b)| total(&sketcher.sketch(a, CELL), &sketcher.sketch(b, CELL), weights))
-        .collect();
-    (!totals.is_empty()).then(|| totals.iter().sum::<f64>() / totals.len() as f64)
-}
-
-/// The same, part by part: each part's numbers are means over the pairs.
+/// the variants.
 ///
 /// # Errors
 /// [`SimilarityError::Empty`] if there is no pair.
-pub fn world_sets_explained(a: &[World], b: &[World], weights: &Weights) -> Result<Distance, SimilarityError> {
+pub fn world_sets_distance(a: &[World], b: &[World], weights: &Weights) -> Result<Distance, SimilarityError> {
     let mut sketcher = Sketcher::default();
     let mut sums = Parts(Vec::new());
     for (a, b) in a.iter().zip(b) {
@@ -133,13 +122,6 @@ impl Worlds {
     /// When there is no world of one of the numbers.
     pub fn explain(&self, a: usize, b: usize) -> Distance {
         explained(&self.sketches[a], &self.sketches[b], &self.weights)
-    }
-
-    /// Every pair's distance, one row above the diagonal after the other, in parallel.
-    pub fn all_pairs(&self) -> Vec<Vec<f64>> {
-        let n = self.len();
-        let row = |a: usize| (a + 1..n).map(|b| self.distance(a, b)).collect();
-        (0..n).into_par_iter().map(row).collect()
     }
 }
 
@@ -270,7 +252,8 @@ mod tests {
             let prepared = Worlds::new(&[a.clone(), b.clone()], Weights::default());
             prop_assert_eq!(prepared.distance(0, 1), world_distance(&a, &b, &Weights::default()).total);
             prop_assert_eq!(prepared.explain(0, 1), world_distance(&a, &b, &Weights::default()));
-            prop_assert_eq!(prepared.all_pairs(), vec![vec![prepared.distance(0, 1)], vec![]]);
+            let alone = world_sets_distance(std::slice::from_ref(&a), std::slice::from_ref(&b), &Weights::default()).unwrap();
+            prop_assert_eq!(prepared.distance(0, 1), alone.total);
         }
     }
 }

@@ -26,7 +26,7 @@ mod wasserstein_2;
 
 pub use circular::circular_wasserstein_1;
 pub use energy::energy;
-pub use extent::{extent, widest};
+pub use extent::extent;
 pub use hellinger::hellinger;
 pub use jensen_shannon::{jensen_shannon, jensen_shannon_divergence};
 pub use kullback_leibler::kullback_leibler;

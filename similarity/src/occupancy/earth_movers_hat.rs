@@ -13,7 +13,7 @@ use crate::transport::{Units, sum_of_masses};
 /// what it has left over. Exact, by the same means.
 ///
 /// # Errors
-/// [`SimilarityError::GridsDiffer`] when the shapes do, [`SimilarityError::BadSetting`] for a penalty out of range,
+/// [`SimilarityError::GridsDiffer`] when the shapes do, [`SimilarityError::BadNumber`] for a penalty out of range,
 /// [`SimilarityError::TooMany`] when more than [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED) cells have to give, or take.
 ///
 /// # Example
@@ -31,8 +31,8 @@ pub fn grid_earth_movers_hat(a: &Grid, b: &Grid, penalty: f64) -> Result<f64, Si
     let shape = a.shape();
     shape.check(b.shape())?;
     if !(0.5..=1e6).contains(&penalty) {
-        return Err(SimilarityError::BadSetting {
-            name: "penalty",
+        return Err(SimilarityError::BadNumber {
+            of: "penalty",
             found: penalty,
             expected: "a number from 0.5 to 1e6",
         });

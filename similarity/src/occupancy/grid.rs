@@ -20,11 +20,11 @@ impl GridShape {
     /// all), and the side of a cell in metres, 1e-6 to 1e6.
     ///
     /// # Errors
-    /// [`SimilarityError::TooFine`] for more than [`MAX_CELLS`] cells, [`SimilarityError::BadSetting`] for a side out of range.
+    /// [`SimilarityError::TooFine`] for more than [`MAX_CELLS`] cells, [`SimilarityError::BadNumber`] for a side out of range.
     pub fn new(columns: usize, rows: usize, planes: usize, cell: f64) -> Result<Self, SimilarityError> {
         if !(1e-6..=1e6).contains(&cell) {
-            return Err(SimilarityError::BadSetting {
-                name: "side of a cell",
+            return Err(SimilarityError::BadNumber {
+                of: "side of a cell",
                 found: cell,
                 expected: "a number of metres from 1e-6 to 1e6",
             });
@@ -191,8 +191,8 @@ mod tests {
         let code = |columns, cell| GridShape::new(columns, 2000, 1, cell).unwrap_err().code();
         assert_eq!(code(2000, 1.0), "similarity/too-fine");
         assert_eq!(code(usize::MAX, 1.0), "similarity/too-fine");
-        assert_eq!(code(2, 0.0), "similarity/bad-setting");
-        assert_eq!(code(2, f64::NAN), "similarity/bad-setting");
+        assert_eq!(code(2, 0.0), "similarity/bad-number");
+        assert_eq!(code(2, f64::NAN), "similarity/bad-number");
     }
 
     #[test]

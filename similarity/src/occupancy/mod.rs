@@ -1,7 +1,6 @@
-//! Distances between what stands where: worlds as sets of taken cells, and as grids.
+//! Distances between what stands where: worlds as grids, and as sets of objects.
 
 mod bit_grid;
-mod cells;
 mod chamfer;
 mod dice;
 mod distance_transform;
@@ -19,7 +18,6 @@ mod sinkhorn;
 mod sliced;
 
 pub use bit_grid::BitGrid;
-pub use cells::{Classes, Occupancy, hamming_distance, jaccard_distance};
 pub use chamfer::grid_chamfer_distance;
 pub use dice::grid_dice_distance;
 pub use earth_movers::grid_earth_movers_distance;
@@ -30,7 +28,7 @@ pub use hausdorff::grid_hausdorff_distance;
 pub use hausdorff_95::grid_hausdorff_95;
 pub use jaccard::grid_jaccard_distance;
 pub use ospa::Ospa;
-pub use raster::{Extent, Raster};
+pub use raster::{Classes, Extent, Raster};
 pub use ruzicka::grid_ruzicka_distance;
 pub use sinkhorn::grid_sinkhorn;
 pub use sliced::grid_sliced_wasserstein;

@@ -5,7 +5,6 @@ use std::collections::BTreeSet;
 use driftworld_spec::{Object, World};
 
 use super::bit_grid::BitGrid;
-use super::cells::Classes;
 use super::grid::{Grid, GridShape};
 use crate::SimilarityError;
 
@@ -39,6 +38,15 @@ impl Extent {
     }
 }
 
+/// Whether objects of different classes in one cell are the same to an occupancy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Classes {
+    /// Each class has a grid of its own.
+    Separate,
+    /// All share one grid.
+    Merged,
+}
+
 /// How worlds become grids: an extent, cut into square cells from its south-western corner on, and the classes that are told apart.
 ///
 /// An object on the line between two cells belongs to that in the north or east, on the outer line of the extent to the last cell;
@@ -68,7 +76,7 @@ impl Raster {
     /// One plane for all classes. `cell`: side of a cell in metres; the last cells may reach beyond the extent.
     ///
     /// # Errors
-    /// [`SimilarityError::BadSetting`] for an extent without area or a cell without size, [`SimilarityError::TooFine`] for too many
+    /// [`SimilarityError::BadNumber`] for an extent without area or a cell without size, [`SimilarityError::TooFine`] for too many
     /// cells.
     pub fn merged(extent: Extent, cell: f64) -> Result<Self, SimilarityError> {
         Self::new(extent, cell, None)
@@ -118,8 +126,8 @@ impl Raster {
                 // A few cells more or less than MAX_CELLS are told apart there; far more saturate.
                 return Ok((found / cell).ceil() as usize);
             }
-            Err(SimilarityError::BadSetting {
-                name: "side of the extent",
+            Err(SimilarityError::BadNumber {
+                of: "side of the extent",
                 found,
                 expected: "a number of metres above 0, up to 1e9",
             })
@@ -157,7 +165,7 @@ impl Raster {
     /// the cell of its centre and every cell that its disc overlaps; one that reaches in from outside the extent counts.
     ///
     /// # Errors
-    /// As [`Raster::counts`]; [`SimilarityError::BadSetting`] for a radius that is negative or not finite.
+    /// As [`Raster::counts`]; [`SimilarityError::BadNumber`] for a radius that is negative or not finite.
     pub fn counts_of_footprints(
         &self,
         world: &World,
@@ -190,8 +198,8 @@ impl Raster {
             let plane = self.plane(object)?;
             let reach = radius(object);
             if !(0.0..=1e9).contains(&reach) {
-                return Err(SimilarityError::BadSetting {
-                    name: "radius of an object",
+                return Err(SimilarityError::BadNumber {
+                    of: "radius of an object",
                     found: reach,
                     expected: "a number of metres from 0 to 1e9",
                 });
@@ -337,14 +345,14 @@ mod tests {
             low: [0.0, 0.0],
             high: [0.0, 1.0],
         };
-        assert_eq!(Raster::merged(flat, 1.0).unwrap_err().code(), "similarity/bad-setting");
+        assert_eq!(Raster::merged(flat, 1.0).unwrap_err().code(), "similarity/bad-number");
         assert_eq!(
             Raster::merged(SQUARE, -1.0).unwrap_err().code(),
-            "similarity/bad-setting"
+            "similarity/bad-number"
         );
         assert_eq!(Raster::merged(SQUARE, 1e-5).unwrap_err().code(), "similarity/too-fine");
         let raster = Raster::merged(SQUARE, 1.0).unwrap();
         let found = raster.counts_of_footprints(&world(&[("tree", 0.0, 0.0)]), |_| f64::NAN);
-        assert_eq!(found.unwrap_err().code(), "similarity/bad-setting");
+        assert_eq!(found.unwrap_err().code(), "similarity/bad-number");
     }
 }

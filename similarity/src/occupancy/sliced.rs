@@ -12,7 +12,7 @@ use crate::transport::{Units, directions};
 ///
 /// # Errors
 /// [`SimilarityError::GridsDiffer`] when the shapes do, [`SimilarityError::UnequalMasses`] when a plane's masses do,
-/// [`SimilarityError::BadSetting`] for 0 or too many directions.
+/// [`SimilarityError::BadNumber`] for 0 or too many directions.
 ///
 /// # Example
 /// ```

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::{Nature, SimilarityError};
 
 /// Most choices of a table.
-pub const MAX_CHOICES: usize = 256;
+pub const MAX_CHOICES: usize = 1000;
 
 /// A table of how far choices are apart, checked: costs are finite and at least 0, 0 for equals, and the same there and back.
 ///

@@ -34,7 +34,13 @@ impl SinkhornSettings {
     }
 
     fn check(&self) -> Result<(), SimilarityError> {
-        let bad = |name, found, expected| Err(SimilarityError::BadSetting { name, found, expected });
+        let bad = |name, found, expected| {
+            Err(SimilarityError::BadNumber {
+                of: name,
+                found,
+                expected,
+            })
+        };
         if !(1e-200..=1e200).contains(&self.regularisation) {
             return bad("regularisation", self.regularisation, "a number from 1e-200 to 1e200");
         }
@@ -75,7 +81,7 @@ pub struct Sinkhorn {
 /// enough, it is the better choice.
 ///
 /// # Errors
-/// As [`optimal_transport`](crate::optimal_transport), and [`SimilarityError::BadSetting`].
+/// As [`optimal_transport`](crate::optimal_transport), and [`SimilarityError::BadNumber`].
 ///
 /// # Example
 /// ```
@@ -172,7 +178,7 @@ mod tests {
             },
         ] {
             let found = sinkhorn(&[1.0], &[1.0], &[1.0], &settings).unwrap_err();
-            assert_eq!(found.code(), "similarity/bad-setting");
+            assert_eq!(found.code(), "similarity/bad-number");
         }
     }
 

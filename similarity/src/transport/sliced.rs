@@ -18,7 +18,7 @@ pub const MAX_DIRECTIONS: usize = 10_000;
 /// in finitely many directions: a distance. 32 directions are enough to compare, in time `directions · points · log(points)`.
 ///
 /// # Errors
-/// [`SimilarityError::BadSetting`] for 0 or more than [`MAX_DIRECTIONS`] directions, [`SimilarityError::UnequalMasses`] when one set
+/// [`SimilarityError::BadNumber`] for 0 or more than [`MAX_DIRECTIONS`] directions, [`SimilarityError::UnequalMasses`] when one set
 /// is empty, [`SimilarityError::BadPoint`] for a coordinate that is not within ±1e100.
 ///
 /// # Example
@@ -49,8 +49,8 @@ pub fn sliced_wasserstein(a: &[[f64; 2]], b: &[[f64; 2]], directions: usize) -> 
 /// Unit vectors over half a turn.
 pub(crate) fn directions(number: usize) -> Result<Vec<[f64; 2]>, SimilarityError> {
     if !(1..=MAX_DIRECTIONS).contains(&number) {
-        return Err(SimilarityError::BadSetting {
-            name: "directions",
+        return Err(SimilarityError::BadNumber {
+            of: "directions",
             found: number as f64,
             expected: "from 1 to 10000",
         });
@@ -103,8 +103,8 @@ mod tests {
     #[test]
     fn settings_and_points_that_are_none_are_refused() {
         let code = |a: &[[f64; 2]], b: &[[f64; 2]], n| sliced_wasserstein(a, b, n).unwrap_err().code();
-        assert_eq!(code(&[], &[], 0), "similarity/bad-setting");
-        assert_eq!(code(&[], &[], MAX_DIRECTIONS + 1), "similarity/bad-setting");
+        assert_eq!(code(&[], &[], 0), "similarity/bad-number");
+        assert_eq!(code(&[], &[], MAX_DIRECTIONS + 1), "similarity/bad-number");
         assert_eq!(code(&[[0.0; 2]], &[], 8), "similarity/unequal-masses");
         assert_eq!(code(&[[0.0, f64::NAN]], &[[0.0; 2]], 8), "similarity/bad-point");
         assert_eq!(sliced_wasserstein(&[], &[], 8).unwrap(), 0.0);

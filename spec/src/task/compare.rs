@@ -1,5 +1,7 @@
 //! [`Compare`]: what a task says of how its variants are compared: by which measure, at which weight. The measures are `similarity`'s.
 
+use std::collections::BTreeSet;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -158,6 +160,11 @@ fn cost_problem(costs: &[Vec<f64>], parameter: &Parameter, pointer: &str) -> Opt
         let found = "costs of a parameter without choices".to_owned();
         return wrong(pointer.to_owned(), found, "a variant parameter with choices");
     };
+    let names: BTreeSet<String> = choices.iter().map(ToString::to_string).collect();
+    if names.len() < choices.len() {
+        let found = "costs of choices of which one stands twice".to_owned();
+        return wrong(pointer.to_owned(), found, "each choice once");
+    }
     if costs.len() != choices.len() {
         let found = format!("{} rows", costs.len());
         return wrong(
@@ -321,6 +328,11 @@ mod tests {
             r#"{ "costs": [[0]] }"#,
             NUMBER,
             "/parameters/p/compare/costs): found costs of a parameter without choices, expected a variant parameter with choices",
+        );
+        check(
+            r#"{ "costs": [[0, 1], [1, 0]] }"#,
+            r#""role": "variant", "type": "string", "choices": ["a", "a"], "default": "a""#,
+            "/parameters/p/compare/costs): found costs of choices of which one stands twice, expected each choice once",
         );
         check(
             r#"{ "measure": "same_or_not", "costs": [[0, 1, 1], [1, 0, 1], [1, 1, 0]] }"#,
