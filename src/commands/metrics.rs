@@ -3,46 +3,25 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use driftworld::metrics::{
-    Direction, LifetimeMetrics, MaintenanceMethod, NormalizationMethod, Options, Settings, SmoothingMethod, SummaryRow,
-    TransferMethod, VariantMode, read_log, read_ste_log, score,
-};
+use driftworld::metrics::{Direction, LifetimeMetrics, Options, Settings, SteLog, SummaryRow, read_log, score};
 
+use super::scoring::Scoring;
 use super::table::table;
 use super::{Failure, output};
 
 /// Score the log of a lifetime.
 #[derive(Args)]
 #[command(
-    after_help = "Example:\n  driftworld metrics demo-out/logs/demo\n  driftworld metrics LOG --ste STE_LOG --perf-measure performance -o results"
+    after_help = "Example:\n  driftworld metrics demo-out/logs/demo\n  driftworld metrics LOG --ste STE_LOG --perf-measure performance -O results"
 )]
 pub(crate) struct Metrics {
     /// The folder of a log in l2logger's format.
     log: PathBuf,
-    /// Folders of single-task-expert logs to compare with.
-    #[arg(long, value_name = "DIR", num_args = 1..)]
-    ste: Vec<PathBuf>,
-    /// The column that holds the performance.
-    #[arg(long, default_value = "reward", value_name = "COLUMN")]
-    perf_measure: String,
-    /// Whether variants of a task count as tasks: aware or agnostic.
-    #[arg(long, default_value = "aware", value_name = "MODE")]
-    variant_mode: VariantMode,
-    /// What maintenance compares with: mrlep, mrtlp or both.
-    #[arg(long, default_value = "mrlep", value_name = "METHOD")]
-    maintenance_method: MaintenanceMethod,
-    /// How transfer compares before and after: ratio, contrast or both.
-    #[arg(long, default_value = "ratio", value_name = "METHOD")]
-    transfer_method: TransferMethod,
-    /// How performances are scaled: task, run or none.
-    #[arg(long, default_value = "task", value_name = "METHOD")]
-    normalization_method: NormalizationMethod,
-    /// How learning curves are smoothed: flat, hanning, hamming, bartlett, blackman or none.
-    #[arg(long, default_value = "flat", value_name = "METHOD")]
-    smoothing_method: SmoothingMethod,
+    #[command(flatten)]
+    scoring: Scoring,
     /// Write `NAME_metrics.json`, `NAME_regime.tsv` and `NAME_settings.json` into this folder; NAME is the log's.
-    #[arg(short, long, value_name = "DIR")]
-    output: Option<PathBuf>,
+    #[arg(short = 'O', long, value_name = "DIR")]
+    output_dir: Option<PathBuf>,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
@@ -50,22 +29,14 @@ pub(crate) struct Metrics {
 
 impl Metrics {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let options = Options {
-            perf_measure: self.perf_measure,
-            variant_mode: self.variant_mode,
-            maintenance_method: self.maintenance_method,
-            transfer_method: self.transfer_method,
-            normalization_method: self.normalization_method,
-            smoothing_method: self.smoothing_method,
-            ..Options::default()
-        };
-        let scores = score_log(&self.log, &self.ste, &options)?;
+        let options = self.scoring.options()?;
+        let scores = score_log(&self.log, &self.scoring.experts()?, &options)?;
         if self.json {
             output::json(&scores)?;
         } else {
             output::line(summary(&scores))?;
         }
-        let Some(folder) = self.output else { return Ok(()) };
+        let Some(folder) = self.output_dir else { return Ok(()) };
         let settings = Settings {
             log_dir: self.log.display().to_string(),
             options,
@@ -79,13 +50,12 @@ impl Metrics {
 }
 
 /// Reads a log, with its warnings to standard error, and scores it.
-pub(crate) fn score_log(log: &Path, experts: &[PathBuf], options: &Options) -> Result<LifetimeMetrics, Failure> {
+pub(crate) fn score_log(log: &Path, experts: &[SteLog], options: &Options) -> Result<LifetimeMetrics, Failure> {
     let log = read_log(log)?;
     log.warnings
         .iter()
         .for_each(|warning| output::note(format!("warning: {warning}")));
-    let experts = experts.iter().map(read_ste_log).collect::<Result<Vec<_>, _>>()?;
-    Ok(score(&log, &experts, options)?)
+    Ok(score(&log, experts, options)?)
 }
 
 /// The lifetime's values as a table for a newcomer.

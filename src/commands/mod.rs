@@ -23,6 +23,7 @@ mod run;
 mod sample;
 mod scenario_file;
 mod schema;
+mod scoring;
 mod sheet;
 mod table;
 mod tasks;
