@@ -4,10 +4,12 @@
 
 mod error;
 mod figure;
+mod page;
 mod words;
 
 pub use error::ReportError;
 pub use figure::{Figure, FigureOptions, Figures, Layout, Unit};
+pub use page::{Chapter, ChapterOptions, Comparison, MAX_LIFETIMES, Overall, Report};
 
 use driftworld_metrics::Lifetime;
 

@@ -6,7 +6,7 @@ use indexmap::IndexMap;
 use plotters::prelude::*;
 
 use super::interval::mean_and_reach;
-use super::palette::Look;
+use super::palette::{FAINT, INK, Look};
 use super::panels::{Grid, MOST_PANELS};
 use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, draw_mark};
 use super::scene::{Scene, Stretch, joined, roomy, task_entry};
@@ -36,15 +36,16 @@ fn clusters(scene: &Scene) -> Vec<Cluster> {
 }
 
 fn entries(scene: &Scene, clusters: &[Cluster]) -> Vec<Entry> {
-    let drawn = clusters.iter().take(MOST_PANELS);
+    // A panel with one task has its name already.
+    let drawn = clusters.iter().take(MOST_PANELS).filter(|cluster| cluster.tasks.len() > 1);
     let mut entries: Vec<Entry> = drawn
         .flat_map(|cluster| cluster.tasks.iter())
         .map(|task| task_entry((*task, &scene.names[*task])))
         .take(super::scene::MOST_TASKS)
         .collect();
     entries.push(Entry {
-        name: "learning it".to_owned(),
-        sample: Sample::Area(tint(Look::of(0))),
+        name: "while it was learnt".to_owned(),
+        sample: Sample::Tint(FAINT.light),
     });
     if clusters.len() > MOST_PANELS {
         entries.push(Entry {
@@ -53,10 +54,6 @@ fn entries(scene: &Scene, clusters: &[Cluster]) -> Vec<Entry> {
         });
     }
     entries
-}
-
-fn tint(look: Look) -> RGBColor {
-    look.color
 }
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
@@ -78,7 +75,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
             x: scene.span.clone(),
             y: y.clone(),
             x_name: scene.x_name(),
-            y_name: &cluster.name,
+            y_name: (&cluster.name, INK.light),
             labels: grid.labels(),
         };
         let mut chart = chart(&panel, &axes)?;

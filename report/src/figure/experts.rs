@@ -4,10 +4,10 @@
 
 use plotters::prelude::*;
 
-use super::palette::{FAINT, Look, RIM};
+use super::palette::{FAINT, INK, Look, RIM, TASKS};
 use super::panels::{Grid, MOST_PANELS};
 use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart};
-use super::scene::{Scene, roomy, task_entry};
+use super::scene::{Scene, roomy};
 use super::thinning;
 
 /// Runs of an expert beyond these are left out.
@@ -52,13 +52,17 @@ fn panels(scene: &Scene) -> Vec<Panel> {
     tasks.filter_map(panel).collect()
 }
 
-fn entries(scene: &Scene, panels: &[Panel]) -> Vec<Entry> {
-    let drawn = panels.iter().take(MOST_PANELS);
-    let mut entries: Vec<Entry> = drawn.map(|panel| task_entry((panel.task, &scene.names[panel.task]))).collect();
-    entries.push(Entry {
-        name: "its expert, each run".to_owned(),
-        sample: Sample::Line(FAINT.light),
-    });
+fn entries(panels: &[Panel]) -> Vec<Entry> {
+    let mut entries = vec![
+        Entry {
+            name: "this agent, in the task's colour".to_owned(),
+            sample: Sample::Line(panels.first().map_or(TASKS[0].light, |panel| Look::of(panel.task).color)),
+        },
+        Entry {
+            name: "an expert's run".to_owned(),
+            sample: Sample::Line(FAINT.light),
+        },
+    ];
     if panels.len() > MOST_PANELS {
         entries.push(Entry {
             name: format!("and {} tasks more, not drawn", panels.len() - MOST_PANELS),
@@ -70,12 +74,12 @@ fn entries(scene: &Scene, panels: &[Panel]) -> Vec<Entry> {
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
     let panels = panels(scene);
-    paper.head_height(&entries(scene, &panels)) + Grid::of(panels.len(), paper).height()
+    paper.head_height(&entries(&panels)) + Grid::of(panels.len(), paper).height()
 }
 
 pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &Paper) -> Drawn<DB> {
     let panels = panels(scene);
-    let below = paper.head(area, &entries(scene, &panels))?;
+    let below = paper.head(area, &entries(&panels))?;
     let grid = Grid::of(panels.len(), paper);
     let values = panels.iter().flat_map(|panel| panel.own.iter().chain(panel.runs.iter().flatten()).copied());
     let y = roomy(values);
@@ -85,7 +89,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
             x: 0.0..longest,
             y: y.clone(),
             x_name: "experience of learning it",
-            y_name: &scene.names[panel.task],
+            y_name: (&scene.names[panel.task], INK.light),
             labels: grid.labels(),
         };
         let mut chart = chart(&place, &axes)?;

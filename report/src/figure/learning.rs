@@ -7,7 +7,7 @@ use std::ops::Range;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-use super::palette::{Look, SHADE};
+use super::palette::{FAINT, Look, SHADE};
 use super::paper::{Area, Axes, Chart, Drawn, Entry, Paper, Sample, chart, draw_mark};
 use super::scene::{MOST_TASKS, Scene, Stretch, roomy};
 use super::thinning;
@@ -56,7 +56,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
         x: scene.span.clone(),
         y: roomy(values.chain(evaluated.iter().map(|stretch| stretch.mean()))),
         x_name: scene.x_name(),
-        y_name: &name,
+        y_name: (&name, FAINT.light),
         labels: if paper.is_narrow() { [4, 5] } else { [9, 6] },
     };
     let mut chart = chart(&below, &axes)?;

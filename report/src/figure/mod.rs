@@ -21,7 +21,6 @@ use driftworld_metrics::Lifetime;
 use plotters::prelude::*;
 
 pub(crate) use palette::dark_rules;
-pub(crate) use paper::number;
 pub(crate) use strip::strip;
 
 use crate::ReportError;

@@ -44,6 +44,8 @@ pub(super) enum Sample {
     Task(Look),
     Line(RGBColor),
     Area(RGBColor),
+    /// An area through which the grid is seen.
+    Tint(RGBColor),
     Nothing,
 }
 
@@ -131,6 +133,10 @@ fn sample<DB: DrawingBackend>(area: &Area<DB>, sample: Sample, (x, y): (i32, i32
         Sample::Area(color) => {
             area.draw(&Rectangle::new([(x, y - d(6)), (x + d(16), y + d(6))], color.filled()))?;
         }
+        Sample::Tint(color) => {
+            let style = color.mix(0.25).filled();
+            area.draw(&Rectangle::new([(x, y - d(6)), (x + d(16), y + d(6))], style))?;
+        }
         Sample::Nothing => return Ok(0),
     }
     Ok(d(22))
@@ -165,8 +171,8 @@ pub(super) struct Axes<'a> {
     pub(super) x: Range<f64>,
     pub(super) y: Range<f64>,
     pub(super) x_name: &'a str,
-    /// Written flat above the upright axis.
-    pub(super) y_name: &'a str,
+    /// Written flat above the upright axis, in a colour: the axis's name, or the panel's.
+    pub(super) y_name: (&'a str, RGBColor),
     /// How many numbers there are along each, about.
     pub(super) labels: [usize; 2],
 }
@@ -174,8 +180,8 @@ pub(super) struct Axes<'a> {
 /// A pair of axes with a faint grid and no rim.
 pub(super) fn chart<'a, DB: DrawingBackend + 'a>(area: &'a Area<DB>, axes: &Axes) -> Drawn<DB, Chart<'a, DB>> {
     let d = Paper::dots;
-    let name = Paper::words(12, FAINT.light, HPos::Left, VPos::Center);
-    area.draw_text(axes.y_name, &name, (d(8), d(10)))?;
+    let name = Paper::words(12, axes.y_name.1, HPos::Left, VPos::Center);
+    area.draw_text(axes.y_name.0, &name, (d(8), d(10)))?;
     let mut chart = ChartBuilder::on(area)
         .margin_top(d(24))
         .margin_right(d(16))

@@ -6,7 +6,7 @@ use plotters::prelude::*;
 
 use super::learning::{COLUMNS, shade};
 use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart};
-use super::palette::{Look, SHADE};
+use super::palette::{FAINT, Look, SHADE};
 use super::scene::{Scene, Stretch, roomy};
 use super::thinning;
 use crate::words::shown;
@@ -38,7 +38,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
         x: scene.span.clone(),
         y: roomy(values),
         x_name: scene.x_name(),
-        y_name: &name,
+        y_name: (&name, FAINT.light),
         labels: if paper.is_narrow() { [4, 5] } else { [9, 6] },
     };
     let mut chart = chart(&below, &axes)?;

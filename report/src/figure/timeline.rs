@@ -161,8 +161,10 @@ fn draw_distances<DB: DrawingBackend>(
         let share = distance.map_or(0.0, |distance| if largest > 0.0 { distance / largest } else { 0.0 });
         let top = base - (f64::from(tallest) * share).round() as i32;
         let told = distance.map_or("?".to_owned(), |distance| format!("{distance:.2}"));
-        area.draw(&PathElement::new([(at, base), (at, top)], INK.light.stroke_width(d(1) as u32)))?;
-        area.draw(&Circle::new((at, top), d(3), INK.light.filled()))?;
+        if distance.is_some() {
+            area.draw(&PathElement::new([(at, base), (at, top)], INK.light.stroke_width(d(1) as u32)))?;
+            area.draw(&Circle::new((at, top), d(3), INK.light.filled()))?;
+        }
         let half = d(text_width(&told, 11)) / 2;
         if at - half >= free_from {
             let style = Paper::words(11, INK.light, HPos::Center, VPos::Bottom);
