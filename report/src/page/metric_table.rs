@@ -75,7 +75,7 @@ fn judged(name: &str, value: f64, direction: Direction) -> Markup {
 
 fn good_from(direction: Direction) -> String {
     match verdict::neutral(direction) {
-        Some(neutral) => format!("good above {neutral}; {neutral} means no effect"),
+        Some(neutral) => format!("no effect at {neutral}, good above"),
         None => "the higher the better".to_owned(),
     }
 }

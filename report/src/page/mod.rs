@@ -85,14 +85,7 @@ impl Report {
                     main {
                         (warnings(&self.warnings))
                         (overall::section(&self.overall, &self.comparisons))
-                        @for (index, chapter) in self.chapters.iter().enumerate() {
-                            section.life id=(format!("life-{}", index + 1)) aria-labelledby=(format!("life-{}-name", index + 1)) {
-                                h2 id=(format!("life-{}-name", index + 1)) {
-                                    @if self.chapters.len() > 1 { (chapter.name) } @else { "The lifetime" }
-                                }
-                                (chapter.body)
-                            }
-                        }
+                        @for (index, chapter) in self.chapters.iter().enumerate() { (self.life(index + 1, chapter)) }
                         (how(&self.options))
                     }
                     footer {
@@ -104,6 +97,18 @@ impl Report {
             }
         };
         Ok(page.into_string())
+    }
+
+    /// A lifetime's section. One that stands alone is named by the page's headline; its own is for those who hear the page.
+    fn life(&self, number: usize, chapter: &Chapter) -> Markup {
+        let alone = self.chapters.len() == 1;
+        let (id, name) = (format!("life-{number}"), format!("life-{number}-name"));
+        html! {
+            section.life.only[alone && self.overall.is_empty() && self.comparisons.is_empty()] id=(id) aria-labelledby=(name) {
+                h2.hidden[alone] id=(name) { (chapter.name) }
+                (chapter.body)
+            }
+        }
     }
 
     /// Where the lifetimes are, if there are several.

@@ -56,7 +56,7 @@ pub(super) fn of(name: &str, value: f64, direction: Direction) -> Option<Verdict
 fn words(name: &str) -> [&'static str; 2] {
     match name {
         _ if name.starts_with("perf_recovery") => ["relearns faster", "relearns slower"],
-        _ if name.starts_with("perf_maintenance") => ["keeps and improves", "forgets"],
+        _ if name.starts_with("perf_maintenance") => ["keeps", "forgets"],
         _ if name.contains("transfer") => ["helps", "interferes"],
         _ if name.starts_with("ste_rel_perf") => ["beats the expert", "below the expert"],
         _ if name.starts_with("sample_efficiency") => ["beats the expert", "below the expert"],
