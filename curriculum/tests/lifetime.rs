@@ -152,12 +152,12 @@ fn a_lifetime_is_logged_and_can_be_scored() {
     let scores = score(&read, &[], &options).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((scores.num_lx, scores.num_ex), (6, 12));
     assert_eq!(
-        scores.lifetime.perf_maintenance_mrlep,
+        scores.lifetime.number("perf_maintenance_mrlep"),
         Some(0.0),
         "the same worlds, an agent that does not learn"
     );
-    assert_eq!(scores.lifetime.forward_transfer_ratio, Some(1.0));
-    assert_eq!(scores.lifetime.backward_transfer_ratio, Some(1.0));
+    assert_eq!(scores.lifetime.number("forward_transfer_ratio"), Some(1.0));
+    assert_eq!(scores.lifetime.number("backward_transfer_ratio"), Some(1.0));
 }
 
 #[test]

@@ -304,6 +304,17 @@ pub enum MetricsError {
         after: &'static str,
     },
 
+    /// A metric of a user's own could not be computed.
+    #[error("metric {metric}, log {run_id}: {source}")]
+    Metric {
+        /// Name of the metric.
+        metric: String,
+        /// Name of the log.
+        run_id: String,
+        /// What it said.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+
     /// An option has a value that cannot be used.
     #[error("option {option}: found {found}, expected {expected}")]
     BadOption {
@@ -346,6 +357,7 @@ impl MetricsError {
             Self::NotSingleTask { .. } => "metrics/not-single-task",
             Self::TooManyRegimes { .. } => "metrics/too-many-regimes",
             Self::PerformanceOutOfRange { .. } => "metrics/performance-out-of-range",
+            Self::Metric { .. } => "metrics/metric",
             Self::BadOption { .. } => "metrics/bad-option",
         }
     }

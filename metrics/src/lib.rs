@@ -16,7 +16,7 @@
 //!     writer.write(&Record::new(0, exp_num, BlockType::Train, "find_red", when).with_metric("reward", reward))?;
 //! }
 //! let metrics = score(&read_log(&dir)?, &[], &Options::default())?;
-//! assert_eq!(metrics.lifetime.avg_train_perf, Some(51.0), "rewards 1 and 3 are scaled to 1 and 101");
+//! assert_eq!(metrics.lifetime.number("avg_train_perf"), Some(51.0), "rewards 1 and 3 are scaled to 1 and 101");
 //! # Ok(())
 //! # }
 //! ```
@@ -46,11 +46,10 @@ pub use log::{
     ScenarioType, TaskParams, Timestamp, begun_log, read_log, read_ste_log,
 };
 pub use options::{
-    AggregationMethod, DataRange, MAX_WINDOW_LENGTH, MaintenanceMethod, NormalizationMethod, Options, SmoothingMethod,
-    SteAveragingMethod, TransferMethod, VariantMode,
+    AggregationMethod, DataRange, Definitions, MAX_WINDOW_LENGTH, MaintenanceMethod, Noise, NormalizationMethod,
+    Options, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
 };
 pub use report::{
-    Direction, LifetimeMetrics, LifetimeScores, PairValues, RegimeMetrics, SavedFiles, Settings, SummaryRow,
-    TaskMetrics,
+    Direction, Headline, LifetimeMetrics, PairValues, RegimeMetrics, SavedFiles, Settings, SummaryRow, Value, Values,
 };
-pub use score::score;
+pub use score::{Assessment, Metric, Scorer, score};

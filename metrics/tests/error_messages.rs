@@ -250,6 +250,15 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
             "log run, task a_1: found a performance of 1e200 as logged, expected less than 1e100 in magnitude",
         ),
         (
+            E::Metric {
+                metric: text("energy"),
+                run_id: text("run"),
+                source: "found no column energy, expected one".into(),
+            },
+            "metrics/metric",
+            "metric energy, log run: found no column energy, expected one",
+        ),
+        (
             E::BadOption {
                 option: "window_length",
                 found: text("0"),

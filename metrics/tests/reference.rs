@@ -177,7 +177,7 @@ fn the_loggers_own_example_is_read_although_it_has_a_column_of_words() {
     assert_eq!(log.records[0].task_params["param2"], 2);
     let metrics = score(&log, &[], &Options::default()).unwrap();
     assert_eq!(
-        metrics.lifetime.avg_train_perf,
+        metrics.lifetime.number("avg_train_perf"),
         Some(1.0),
         "a constant task is 1 everywhere"
     );

@@ -56,6 +56,7 @@ impl Lifetime {
             runtime_secs: span_secs(stamps().min(), stamps().max()),
         };
         lifetime.check_bounds("as logged")?;
+        preprocess::disturb(&mut lifetime, options);
         preprocess::smooth(&mut lifetime, options);
         preprocess::clamp(&mut lifetime, options)?;
         lifetime.normalization_data_range = preprocess::normalize(&mut lifetime, options)?;
@@ -113,6 +114,11 @@ impl Lifetime {
                 .flat_map(|regime| regime.performance.iter().copied())
                 .collect(),
         )
+    }
+
+    /// The lifetime's own regimes.
+    pub(crate) fn own_regimes_mut(&mut self) -> &mut [Regime] {
+        &mut self.regimes
     }
 
     /// All regimes that hold performances: the lifetime's, then the experts'.

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use super::scored_name;
 use crate::log::TaskParams;
-use crate::{BlockSubtype, BlockType, MetricsError, Options, Record};
+use crate::{BlockSubtype, BlockType, Definitions, MetricsError, Options, Record};
 
 /// Most regimes a lifetime may have; the Theil–Sen slope looks at every pair of a task's.
 pub const MAX_REGIMES: usize = 10_000;
@@ -14,7 +14,7 @@ pub const MAX_REGIMES: usize = 10_000;
 /// A maximal run of rows with the same block number, block type, subtype and task.
 ///
 /// QUIRK: task parameters do not split regimes. A block that changes only a task's parameters is one regime, and
-/// stands in tables with the parameters of its first row.
+/// stands in tables with the parameters of its first row. Under the published definitions they do split.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Regime {
     /// Position among the regimes of the lifetime, from 0.
@@ -58,8 +58,9 @@ impl Regime {
         mean_per_experience(&self.exp_nums, &self.performance)
     }
 
-    fn continues_with(&self, record: &Record, task_name: &str) -> bool {
-        self.block_num == record.block_num
+    fn continues_with(&self, record: &Record, task_name: &str, definitions: Definitions) -> bool {
+        (definitions == Definitions::Reference || self.task_params == record.task_params)
+            && self.block_num == record.block_num
             && self.block_type == record.block_type
             && self.block_subtype == record.block_subtype
             && self.task_name == task_name
@@ -87,7 +88,7 @@ pub(crate) fn form(run_id: &str, rows: &[(&Record, f64)], options: &Options) -> 
         let task_name = scored_name(&record.task_name, options.variant_mode);
         let continues = regimes
             .last()
-            .is_some_and(|last| last.continues_with(record, &task_name));
+            .is_some_and(|last| last.continues_with(record, &task_name, options.definitions));
         if !continues {
             if regimes.len() == MAX_REGIMES {
                 return Err(MetricsError::TooManyRegimes {
@@ -122,6 +123,7 @@ fn begin(regime_num: usize, record: &Record, task_name: String) -> Regime {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::VariantMode;
 
     fn record(block_num: u64, block_type: BlockType, task: &str) -> Record {
         Record::new(block_num, 0, block_type, task, "20200101T000000.0".parse().unwrap())
@@ -138,9 +140,10 @@ mod tests {
             record(1, BlockType::Test, "a_y"),
         ];
         let rows: Vec<_> = records.iter().map(|record| (record, 1.0)).collect();
-        let lengths = |mode| {
+        let lengths = |variant_mode, definitions| {
             let options = Options {
-                variant_mode: mode,
+                variant_mode,
+                definitions,
                 ..Options::default()
             };
             form("run", &rows, &options)
@@ -149,8 +152,9 @@ mod tests {
                 .map(Regime::len)
                 .collect::<Vec<_>>()
         };
-        assert_eq!(lengths(crate::VariantMode::Aware), [2, 1, 1, 1]);
-        assert_eq!(lengths(crate::VariantMode::Agnostic), [3, 1, 1]);
+        assert_eq!(lengths(VariantMode::Aware, Definitions::Reference), [2, 1, 1, 1]);
+        assert_eq!(lengths(VariantMode::Agnostic, Definitions::Reference), [3, 1, 1]);
+        assert_eq!(lengths(VariantMode::Aware, Definitions::Published), [1, 1, 1, 1, 1]);
     }
 
     #[test]
