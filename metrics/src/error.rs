@@ -315,6 +315,17 @@ pub enum MetricsError {
         source: Box<dyn std::error::Error + Send + Sync>,
     },
 
+    /// Scores of repeated runs, or what is asked of them, make no sense.
+    #[error("scores, {place}: found {found}, expected {expected}")]
+    Scores {
+        /// Where: a run, a stratum of a run, the table as a whole.
+        place: String,
+        /// What was found there.
+        found: String,
+        /// What is allowed.
+        expected: String,
+    },
+
     /// An option has a value that cannot be used.
     #[error("option {option}: found {found}, expected {expected}")]
     BadOption {
@@ -358,6 +369,7 @@ impl MetricsError {
             Self::TooManyRegimes { .. } => "metrics/too-many-regimes",
             Self::PerformanceOutOfRange { .. } => "metrics/performance-out-of-range",
             Self::Metric { .. } => "metrics/metric",
+            Self::Scores { .. } => "metrics/scores",
             Self::BadOption { .. } => "metrics/bad-option",
         }
     }

@@ -259,6 +259,15 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
             "metric energy, log run: found no column energy, expected one",
         ),
         (
+            E::Scores {
+                place: text("the table"),
+                found: text("more than 10000 runs"),
+                expected: text("at most 10000"),
+            },
+            "metrics/scores",
+            "scores, the table: found more than 10000 runs, expected at most 10000",
+        ),
+        (
             E::BadOption {
                 option: "window_length",
                 found: text("0"),
