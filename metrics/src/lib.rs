@@ -56,6 +56,7 @@ pub use repeats::{
     probability_of_improvement,
 };
 pub use report::{
-    Direction, Headline, LifetimeMetrics, PairValues, RegimeMetrics, SavedFiles, Settings, SummaryRow, Value, Values,
+    ComparedMetric, Direction, Headline, LifetimeMetrics, PairValues, RegimeMetrics, RepeatedMetric, SavedFiles,
+    Settings, SummaryRow, Value, Values, compare_agents, over_repeats,
 };
 pub use score::{Assessment, Metric, Scorer, score};

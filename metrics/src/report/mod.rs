@@ -6,6 +6,7 @@ mod files;
 mod headline;
 mod lifetime_metrics;
 mod regime_table;
+mod repeats;
 mod rounding;
 mod values;
 
@@ -13,4 +14,5 @@ pub use files::{SavedFiles, Settings};
 pub use headline::{Direction, Headline, SummaryRow};
 pub use lifetime_metrics::LifetimeMetrics;
 pub use regime_table::RegimeMetrics;
+pub use repeats::{ComparedMetric, RepeatedMetric, compare_agents, over_repeats};
 pub use values::{PairValues, Value, Values};
