@@ -193,6 +193,18 @@ pub enum MetricsError {
         line: u64,
     },
 
+    /// A quote was opened in a data file and never closed, so that it swallows the rows after it.
+    #[error(
+        "{}:{line}: found a quote that opens a cell and is never closed, expected another at the end of the cell; \
+         the rows after it were taken for a part of it", path.display()
+    )]
+    OpenQuote {
+        /// The data file.
+        path: PathBuf,
+        /// Line in which the row begins, from 1.
+        line: u64,
+    },
+
     /// A data file is not text.
     #[error("{}:{line}: found bytes that are not UTF-8, expected text", path.display())]
     NotUtf8 {
@@ -336,6 +348,7 @@ impl MetricsError {
             Self::RaggedRow { .. } => "metrics/ragged-row",
             Self::Cell { .. } => "metrics/cell",
             Self::TornLastLine { .. } => "metrics/torn-last-line",
+            Self::OpenQuote { .. } => "metrics/open-quote",
             Self::NotUtf8 { .. } => "metrics/not-utf8",
             Self::BlockOrder { .. } => "metrics/block-order",
             Self::Record { .. } => "metrics/record",

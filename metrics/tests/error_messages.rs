@@ -160,6 +160,12 @@ fn of_rows() -> Vec<(MetricsError, &'static str, &'static str)> {
              stopped in the middle of it: delete that line, or continue the log with LogWriter::resume, which does",
         ),
         (
+            E::OpenQuote { path: path(), line: 7 },
+            "metrics/open-quote",
+            "run/w/0-train/data-log.tsv:7: found a quote that opens a cell and is never closed, expected another at the \
+             end of the cell; the rows after it were taken for a part of it",
+        ),
+        (
             E::NotUtf8 { path: path(), line: 3 },
             "metrics/not-utf8",
             "run/w/0-train/data-log.tsv:3: found bytes that are not UTF-8, expected text",
