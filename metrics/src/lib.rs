@@ -43,12 +43,18 @@ pub use error::MetricsError;
 pub use lifetime::{Lifetime, MAX_REGIMES, Regime, SteLog};
 pub use log::{
     BlockSubtype, BlockType, Complexity, DEFAULT_WORKER, Difficulty, ExpStatus, LOG_FORMAT_VERSION, Log, LogWarning,
-    LogWriter, LoggerInfo, MAX_CELL_BYTES, MAX_FILE_BYTES, MAX_LOG_FILES, MAX_RECORDS, Record, ScenarioInfo,
-    ScenarioType, TaskParams, Timestamp, begun_log, read_log, read_ste_log,
+    LogWriter, LoggerInfo, MAX_CELL_BYTES, MAX_CELLS, MAX_COLUMNS, MAX_FILE_BYTES, MAX_LOG_FILES, MAX_RECORDS, Record,
+    Row, Rows, ScenarioInfo, ScenarioType, SharedColumn, SteStoreMode, StoredRun, StoredTask, TaskParams, TextColumn,
+    Timestamp, begun_log, clear_ste, find_ste, read_log, read_log_with_texts, read_ste_log, store_ste,
 };
 pub use options::{
     AggregationMethod, DataRange, Definitions, MAX_WINDOW_LENGTH, MaintenanceMethod, Noise, NormalizationMethod,
     Options, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
+};
+pub use repeats::{
+    Aggregate, BootstrapOptions, Estimate, Improvement, Interval, MAX_RESAMPLES, MAX_RUNS, MAX_SCORES,
+    MAX_SCORES_DRAWN, MAX_STRATA, Resampling, ScoreTable, StratumImprovement, estimate, performance_profile,
+    probability_of_improvement,
 };
 pub use repeats::{
     Aggregate, BootstrapOptions, Estimate, Improvement, Interval, MAX_RESAMPLES, MAX_RUNS, MAX_SCORES,
