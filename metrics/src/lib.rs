@@ -56,11 +56,6 @@ pub use repeats::{
     MAX_SCORES_DRAWN, MAX_STRATA, Resampling, ScoreTable, StratumImprovement, estimate, performance_profile,
     probability_of_improvement,
 };
-pub use repeats::{
-    Aggregate, BootstrapOptions, Estimate, Improvement, Interval, MAX_RESAMPLES, MAX_RUNS, MAX_SCORES,
-    MAX_SCORES_DRAWN, MAX_STRATA, Resampling, ScoreTable, StratumImprovement, estimate, performance_profile,
-    probability_of_improvement,
-};
 pub use report::{
     ComparedMetric, Direction, Headline, LifetimeMetrics, PairValues, RegimeMetrics, RepeatedMetric, SavedFiles,
     Settings, SummaryRow, Value, Values, compare_agents, over_repeats,
