@@ -10,7 +10,7 @@ use driftworld_curriculum::{
     design, run,
 };
 use driftworld_env::{Action, Agent, Catalogue, Environment, Label, OnRailsAgent, RandomAgent, Step};
-use driftworld_metrics::{MaintenanceMethod, Options, Record, Timestamp, read_log, score};
+use driftworld_metrics::{MaintenanceMethod, Options, Record, Row, Timestamp, read_log, score};
 use driftworld_similarity::{Weights, variant_distance};
 use driftworld_spec::{
     Block, BlockKind, Element, Phase, Regime, RegimeDrift, Scenario, TaskLabel, TaskSpec, Value, World,
@@ -152,12 +152,12 @@ fn a_lifetime_is_logged_and_can_be_scored() {
     let scores = score(&read, &[], &options).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((scores.num_lx, scores.num_ex), (6, 12));
     assert_eq!(
-        scores.lifetime.perf_maintenance_mrlep,
+        scores.lifetime.number("perf_maintenance_mrlep"),
         Some(0.0),
         "the same worlds, an agent that does not learn"
     );
-    assert_eq!(scores.lifetime.forward_transfer_ratio, Some(1.0));
-    assert_eq!(scores.lifetime.backward_transfer_ratio, Some(1.0));
+    assert_eq!(scores.lifetime.number("forward_transfer_ratio"), Some(1.0));
+    assert_eq!(scores.lifetime.number("backward_transfer_ratio"), Some(1.0));
 }
 
 #[test]
@@ -201,10 +201,7 @@ fn a_run_that_is_stopped_leaves_a_log_that_reads() {
     let summary =
         live(&scenario(&["blue"]), &mut RandomAgent::new(0), &log, 4).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((summary.experiences, summary.finished), (4, false));
-    assert_eq!(
-        read_log(&log).unwrap_or_else(|error| panic!("{error}")).records.len(),
-        4
-    );
+    assert_eq!(read_log(&log).unwrap_or_else(|error| panic!("{error}")).rows.len(), 4);
 }
 
 #[test]
@@ -251,7 +248,8 @@ fn varied() -> Scenario {
 }
 
 fn rows(folder: &Path) -> Vec<Record> {
-    read_log(folder).unwrap_or_else(|error| panic!("{error}")).records
+    let log = read_log(folder).unwrap_or_else(|error| panic!("{error}"));
+    log.rows.iter().map(Row::to_record).collect()
 }
 
 #[test]
@@ -432,7 +430,7 @@ fn a_drift_to_a_made_variant_is_logged_with_the_distances_of_its_end() {
     assert!(apart.total > 0.0);
     // 0-1 blue and bright, 2-4 blue to bright, 5-6 blue and bright: from bright, the end of the drift.
     let logged = |row: usize| {
-        let metric = |name: &str| read.records[row].metrics[name];
+        let metric = |name: &str| read.rows.metric(name).expect("the column is there")[row];
         (metric("distance"), metric("distance_observation"))
     };
     let expected = (apart.total, apart.element(Element::O).expect("it has a light"));
@@ -445,7 +443,7 @@ fn a_drift_to_a_made_variant_is_logged_with_the_distances_of_its_end() {
             .all(|name| made_from[format!("find_objects#{name}")]["variant"].is_string())
     );
     assert_ne!(made_from["find_objects#blue"], made_from["find_objects#bright"]);
-    assert_eq!(read.records[2].task_params["to"], "bright");
+    assert_eq!(read.rows.get(2).expect("there are seven").task_params()["to"], "bright");
 }
 
 #[test]

@@ -193,6 +193,18 @@ pub enum MetricsError {
         line: u64,
     },
 
+    /// A quote was opened in a data file and never closed, so that it swallows the rows after it.
+    #[error(
+        "{}:{line}: found a quote that opens a cell and is never closed, expected another at the end of the cell; \
+         the rows after it were taken for a part of it", path.display()
+    )]
+    OpenQuote {
+        /// The data file.
+        path: PathBuf,
+        /// Line in which the row begins, from 1.
+        line: u64,
+    },
+
     /// A data file is not text.
     #[error("{}:{line}: found bytes that are not UTF-8, expected text", path.display())]
     NotUtf8 {
@@ -280,6 +292,28 @@ pub enum MetricsError {
         found: String,
     },
 
+    /// A data folder for single-task experts is not there, or is something else.
+    #[error(
+        "{}: found {found}, expected a folder of single-task experts as TASK/RUN/logger_info.json; \
+         store an expert's log there first", path.display()
+    )]
+    NoSteData {
+        /// The path that was given.
+        path: PathBuf,
+        /// "nothing", "a file" or "a log".
+        found: &'static str,
+    },
+
+    /// A data folder holds experts in a form that is never read.
+    #[error(
+        "{}: found a pickle of l2metrics, expected folders of logs: reading a pickle runs the programs in it; \
+         store the logs it was made from again, and take it out of this folder", path.display()
+    )]
+    StePickle {
+        /// The pickle.
+        path: PathBuf,
+    },
+
     /// More regimes than a lifetime may have.
     #[error("log {run_id}: found more than {limit} regimes, expected at most that; do tasks alternate row by row?")]
     TooManyRegimes {
@@ -302,6 +336,28 @@ pub enum MetricsError {
         found: f64,
         /// "as logged" or "after preprocessing".
         after: &'static str,
+    },
+
+    /// A metric of a user's own could not be computed.
+    #[error("metric {metric}, log {run_id}: {source}")]
+    Metric {
+        /// Name of the metric.
+        metric: String,
+        /// Name of the log.
+        run_id: String,
+        /// What it said.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+
+    /// Scores of repeated runs, or what is asked of them, make no sense.
+    #[error("scores, {place}: found {found}, expected {expected}")]
+    Scores {
+        /// Where: a run, a stratum of a run, the table as a whole.
+        place: String,
+        /// What was found there.
+        found: String,
+        /// What is allowed.
+        expected: String,
     },
 
     /// An option has a value that cannot be used.
@@ -336,6 +392,7 @@ impl MetricsError {
             Self::RaggedRow { .. } => "metrics/ragged-row",
             Self::Cell { .. } => "metrics/cell",
             Self::TornLastLine { .. } => "metrics/torn-last-line",
+            Self::OpenQuote { .. } => "metrics/open-quote",
             Self::NotUtf8 { .. } => "metrics/not-utf8",
             Self::BlockOrder { .. } => "metrics/block-order",
             Self::Record { .. } => "metrics/record",
@@ -344,8 +401,12 @@ impl MetricsError {
             Self::UnknownColumn { .. } => "metrics/unknown-column",
             Self::NoUsableRows { .. } => "metrics/no-usable-rows",
             Self::NotSingleTask { .. } => "metrics/not-single-task",
+            Self::NoSteData { .. } => "metrics/no-ste-data",
+            Self::StePickle { .. } => "metrics/ste-pickle",
             Self::TooManyRegimes { .. } => "metrics/too-many-regimes",
             Self::PerformanceOutOfRange { .. } => "metrics/performance-out-of-range",
+            Self::Metric { .. } => "metrics/metric",
+            Self::Scores { .. } => "metrics/scores",
             Self::BadOption { .. } => "metrics/bad-option",
         }
     }

@@ -16,7 +16,7 @@
 //!     writer.write(&Record::new(0, exp_num, BlockType::Train, "find_red", when).with_metric("reward", reward))?;
 //! }
 //! let metrics = score(&read_log(&dir)?, &[], &Options::default())?;
-//! assert_eq!(metrics.lifetime.avg_train_perf, Some(51.0), "rewards 1 and 3 are scaled to 1 and 101");
+//! assert_eq!(metrics.lifetime.number("avg_train_perf"), Some(51.0), "rewards 1 and 3 are scaled to 1 and 101");
 //! # Ok(())
 //! # }
 //! ```
@@ -34,6 +34,7 @@ mod lifetime;
 mod log;
 mod options;
 mod preprocess;
+mod repeats;
 mod report;
 mod score;
 mod statistics;
@@ -42,15 +43,21 @@ pub use error::MetricsError;
 pub use lifetime::{Lifetime, MAX_REGIMES, Regime, SteLog};
 pub use log::{
     BlockSubtype, BlockType, Complexity, DEFAULT_WORKER, Difficulty, ExpStatus, LOG_FORMAT_VERSION, Log, LogWarning,
-    LogWriter, LoggerInfo, MAX_CELL_BYTES, MAX_FILE_BYTES, MAX_LOG_FILES, MAX_RECORDS, Record, ScenarioInfo,
-    ScenarioType, TaskParams, Timestamp, begun_log, read_log, read_ste_log,
+    LogWriter, LoggerInfo, MAX_CELL_BYTES, MAX_CELLS, MAX_COLUMNS, MAX_FILE_BYTES, MAX_LOG_FILES, MAX_RECORDS, Record,
+    Row, Rows, ScenarioInfo, ScenarioType, SharedColumn, SteStoreMode, StoredRun, StoredTask, TaskParams, TextColumn,
+    Timestamp, begun_log, clear_ste, find_ste, read_log, read_log_with_texts, read_ste_log, store_ste,
 };
 pub use options::{
-    AggregationMethod, DataRange, MAX_WINDOW_LENGTH, MaintenanceMethod, NormalizationMethod, Options, SmoothingMethod,
-    SteAveragingMethod, TransferMethod, VariantMode,
+    AggregationMethod, DataRange, Definitions, MAX_WINDOW_LENGTH, MaintenanceMethod, Noise, NormalizationMethod,
+    Options, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
+};
+pub use repeats::{
+    Aggregate, BootstrapOptions, Estimate, Improvement, Interval, MAX_RESAMPLES, MAX_RUNS, MAX_SCORES,
+    MAX_SCORES_DRAWN, MAX_STRATA, Resampling, ScoreTable, StratumImprovement, estimate, performance_profile,
+    probability_of_improvement,
 };
 pub use report::{
-    Direction, LifetimeMetrics, LifetimeScores, PairValues, RegimeMetrics, SavedFiles, Settings, SummaryRow,
-    TaskMetrics,
+    ComparedMetric, Direction, Headline, LifetimeMetrics, PairValues, RegimeMetrics, RepeatedMetric, SavedFiles,
+    Settings, SummaryRow, Value, Values, compare_agents, over_repeats,
 };
-pub use score::score;
+pub use score::{Assessment, Metric, Scorer, score};

@@ -119,6 +119,43 @@ choice! {
     }
 }
 
+choice! {
+    /// Whose definitions the metrics follow where the reference's program departs from its own documents.
+    ///
+    /// Under `published`, task parameters split regimes; saturation looks at data that were smoothed once; the last
+    /// tenth of a regime is reckoned in whole numbers; of several tasks that were learnt between two evaluations of
+    /// another, each is said to have transferred; and files are not rounded.
+    #[derive(Default)]
+    Definitions, "definitions" {
+        /// What l2metrics 3.1 computes, to its last peculiarity (default).
+        #[default]
+        Reference = "reference",
+        /// What its documents define.
+        Published = "published",
+    }
+}
+
+impl Definitions {
+    /// Whether these are the reference program's.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands fields over by reference")]
+    pub(crate) const fn is_reference(&self) -> bool {
+        matches!(self, Self::Reference)
+    }
+}
+
+/// Noise that is added to every performance before anything else, to see how far metrics depend on the last digit of a reward.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Noise {
+    /// Mean of the noise, in the unit of the log.
+    pub mean: f64,
+    /// Standard deviation, in the unit of the log; not negative.
+    pub std: f64,
+    /// What the noise is drawn from: the same seed, the same noise, on every machine; default 0.
+    #[serde(default)]
+    pub seed: u64,
+}
+
 /// Smallest and largest performance a task can have, in the unit of the log.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -157,6 +194,12 @@ pub struct Options {
     pub clamp_outliers: bool,
     /// Known range per task, lower-case name; default none: taken from the data. When given, every task needs one.
     pub data_range: Option<IndexMap<String, DataRange>>,
+    /// Normal noise on the lifetime's performances, not on the experts'; default none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub noise: Option<Noise>,
+    /// Whose definitions count; default the reference's.
+    #[serde(skip_serializing_if = "Definitions::is_reference")]
+    pub definitions: Definitions,
 }
 
 impl Default for Options {
@@ -174,6 +217,8 @@ impl Default for Options {
             window_length: None,
             clamp_outliers: false,
             data_range: None,
+            noise: None,
+            definitions: Definitions::Reference,
         }
     }
 }
@@ -193,6 +238,16 @@ impl Options {
                 found: length.to_string(),
                 expected: format!("1 to {MAX_WINDOW_LENGTH} experiences"),
             });
+        }
+        if let Some(noise) = self.noise {
+            let bounded = |value: f64| value.abs() < crate::lifetime::MAX_PERFORMANCE;
+            if !bounded(noise.mean) || !bounded(noise.std) || noise.std < 0.0 {
+                return Err(MetricsError::BadOption {
+                    option: "noise",
+                    found: format!("mean {:e}, standard deviation {:e}", noise.mean, noise.std),
+                    expected: "two numbers below 1e100 in magnitude, the second not negative".to_owned(),
+                });
+            }
         }
         for (task, range) in self.data_range.iter().flatten() {
             let bounded = range.min.abs() < crate::lifetime::MAX_PERFORMANCE

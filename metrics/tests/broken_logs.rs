@@ -147,7 +147,7 @@ fn the_advice_for_a_torn_last_line_works() {
     let base = tempfile::tempdir().unwrap();
     write_log(base.path(), format!("{HEADER}{ROW}0\t1\tw\ttra"));
     LogWriter::resume(base.path()).unwrap();
-    assert_eq!(read_log(base.path()).unwrap().records.len(), 1);
+    assert_eq!(read_log(base.path()).unwrap().rows.len(), 1);
 }
 
 #[test]

@@ -160,6 +160,12 @@ fn of_rows() -> Vec<(MetricsError, &'static str, &'static str)> {
              stopped in the middle of it: delete that line, or continue the log with LogWriter::resume, which does",
         ),
         (
+            E::OpenQuote { path: path(), line: 7 },
+            "metrics/open-quote",
+            "run/w/0-train/data-log.tsv:7: found a quote that opens a cell and is never closed, expected another at the \
+             end of the cell; the rows after it were taken for a part of it",
+        ),
+        (
             E::NotUtf8 { path: path(), line: 3 },
             "metrics/not-utf8",
             "run/w/0-train/data-log.tsv:3: found bytes that are not UTF-8, expected text",
@@ -232,6 +238,23 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
             "single-task expert log run: found a_1, b_1, expected exactly one trained task",
         ),
         (
+            E::NoSteData {
+                path: "data".into(),
+                found: "nothing",
+            },
+            "metrics/no-ste-data",
+            "data: found nothing, expected a folder of single-task experts as TASK/RUN/logger_info.json; store an expert's log \
+             there first",
+        ),
+        (
+            E::StePickle {
+                path: "data/taskinfo/a_1.pickle".into(),
+            },
+            "metrics/ste-pickle",
+            "data/taskinfo/a_1.pickle: found a pickle of l2metrics, expected folders of logs: reading a pickle runs the programs \
+             in it; store the logs it was made from again, and take it out of this folder",
+        ),
+        (
             E::TooManyRegimes {
                 run_id: text("run"),
                 limit: 10_000,
@@ -248,6 +271,24 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
             },
             "metrics/performance-out-of-range",
             "log run, task a_1: found a performance of 1e200 as logged, expected less than 1e100 in magnitude",
+        ),
+        (
+            E::Metric {
+                metric: text("energy"),
+                run_id: text("run"),
+                source: "found no column energy, expected one".into(),
+            },
+            "metrics/metric",
+            "metric energy, log run: found no column energy, expected one",
+        ),
+        (
+            E::Scores {
+                place: text("the table"),
+                found: text("more than 10000 runs"),
+                expected: text("at most 10000"),
+            },
+            "metrics/scores",
+            "scores, the table: found more than 10000 runs, expected at most 10000",
         ),
         (
             E::BadOption {

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use driftworld_metrics::{
-    BlockSubtype, BlockType, ExpStatus, LogWarning, LogWriter, LoggerInfo, Record, ScenarioInfo, ScenarioType,
+    BlockSubtype, BlockType, ExpStatus, LogWarning, LogWriter, LoggerInfo, Record, Row, ScenarioInfo, ScenarioType,
     Timestamp, read_log,
 };
 use proptest::prelude::*;
@@ -27,6 +27,11 @@ fn info() -> LoggerInfo {
 
 fn create(dir: &Path) -> LogWriter {
     LogWriter::create(dir, &info(), &ScenarioInfo::default()).unwrap()
+}
+
+/// The rows of a log as records.
+fn read_records(dir: &Path) -> Vec<Record> {
+    read_log(dir).unwrap().rows.iter().map(Row::to_record).collect()
 }
 
 #[test]
@@ -66,7 +71,7 @@ fn a_record_can_be_read_as_soon_as_it_is_written() {
     let mut writer = create(base.path());
     for exp_num in 0..3 {
         writer.write(&record(0, exp_num, BlockType::Train)).unwrap();
-        assert_eq!(read_log(base.path()).unwrap().records.len() as u64, exp_num + 1);
+        assert_eq!(read_log(base.path()).unwrap().rows.len() as u64, exp_num + 1);
     }
     writer.finish().unwrap();
 }
@@ -89,7 +94,7 @@ fn a_directory_that_holds_anything_is_not_written_into() {
         .unwrap()
         .write(&record(0, 1, BlockType::Train))
         .unwrap();
-    assert_eq!(read_log(base.path()).unwrap().records.len(), 2);
+    assert_eq!(read_log(base.path()).unwrap().rows.len(), 2);
 }
 
 #[test]
@@ -122,10 +127,7 @@ fn an_interrupted_log_is_continued_where_it_stopped() {
     );
     writer.write(&record(3, 7, BlockType::Test)).unwrap();
     let log = read_log(base.path()).unwrap();
-    assert_eq!(
-        log.records.iter().map(|record| record.exp_num).collect::<Vec<_>>(),
-        [5, 6, 7]
-    );
+    assert_eq!(log.rows.exp_nums(), [5, 6, 7]);
 }
 
 #[test]
@@ -139,7 +141,7 @@ fn a_log_torn_in_its_very_header_is_continued_from_nothing() {
         .unwrap()
         .write(&record(0, 0, BlockType::Train))
         .unwrap();
-    assert_eq!(read_log(base.path()).unwrap().records, [record(0, 0, BlockType::Train)]);
+    assert_eq!(read_records(base.path()), [record(0, 0, BlockType::Train)]);
 }
 
 #[test]
@@ -157,7 +159,7 @@ fn a_log_of_format_1_0_is_read_but_not_continued() {
     fs::write(block.join("data-log.tsv"), text).unwrap();
     let log = read_log(base.path()).unwrap();
     assert_eq!(
-        (log.records[0].block_subtype, log.records[0].metrics["reward"]),
+        (log.rows.block_subtypes()[0], log.rows.metric("reward").unwrap()[0]),
         (BlockSubtype::Wake, 1.0)
     );
     assert_eq!(
@@ -186,11 +188,7 @@ fn workers_are_read_together_in_the_order_of_experiences() {
     // Two workers may complete an experience of the same number.
     writer.write(&record(1, 5, BlockType::Train).with_worker("c")).unwrap();
     let log = read_log(base.path()).unwrap();
-    let found: Vec<_> = log
-        .records
-        .iter()
-        .map(|record| (record.exp_num, record.worker_id.as_str()))
-        .collect();
+    let found: Vec<_> = log.rows.iter().map(|row| (row.exp_num(), row.worker_id())).collect();
     assert_eq!(
         found,
         [
@@ -299,7 +297,7 @@ proptest! {
         for record in &numbered {
             writer.write(record).unwrap();
         }
-        prop_assert_eq!(read_log(base.path()).unwrap().records, numbered);
+        prop_assert_eq!(read_records(base.path()), numbered);
     }
 
     #[test]

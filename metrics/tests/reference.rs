@@ -7,7 +7,7 @@
 
 use std::path::PathBuf;
 
-use driftworld_metrics::{LifetimeMetrics, Options, SteLog, read_log, read_ste_log, score};
+use driftworld_metrics::{LifetimeMetrics, Options, SteLog, read_log, read_log_with_texts, read_ste_log, score};
 use serde_json::Value;
 
 /// The reference computes in another order of additions; its published lifetime values have ten decimals.
@@ -168,16 +168,19 @@ fn the_loggers_own_example_is_read_although_it_has_a_column_of_words() {
     )
     .unwrap();
     let log = read_log(log_dir.path()).unwrap();
-    assert_eq!(log.records.len(), 100);
+    assert_eq!(log.rows.len(), 100);
     assert_eq!(
-        log.records[0].metrics.keys().collect::<Vec<_>>(),
+        log.rows.metric_names().collect::<Vec<_>>(),
         ["reward"],
         "debug_info holds words"
     );
-    assert_eq!(log.records[0].task_params["param2"], 2);
+    let whole = read_log_with_texts(log_dir.path()).unwrap();
+    assert_eq!(whole.rows.text_names().collect::<Vec<_>>(), ["debug_info"]);
+    assert_ne!(whole.rows.get(0).unwrap().text("debug_info"), Some(""));
+    assert_eq!(log.rows.get(0).unwrap().task_params()["param2"], 2);
     let metrics = score(&log, &[], &Options::default()).unwrap();
     assert_eq!(
-        metrics.lifetime.avg_train_perf,
+        metrics.lifetime.number("avg_train_perf"),
         Some(1.0),
         "a constant task is 1 everywhere"
     );

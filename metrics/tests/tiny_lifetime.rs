@@ -6,8 +6,8 @@
 
 use driftworld_metrics::{
     BlockSubtype, BlockType, DataRange, LifetimeMetrics, Log, LogWriter, LoggerInfo, MaintenanceMethod,
-    NormalizationMethod, Options, Record, ScenarioInfo, SteAveragingMethod, SteLog, Timestamp, TransferMethod,
-    VariantMode, read_log, score,
+    NormalizationMethod, Options, PairValues, Record, ScenarioInfo, SteAveragingMethod, SteLog, Timestamp,
+    TransferMethod, Value, VariantMode, read_log, score,
 };
 
 use BlockSubtype::{Sleep, Wake};
@@ -79,17 +79,25 @@ fn maintenance_is_the_difference_to_the_evaluation_right_after_learning() {
     let metrics = scored(&ALTERNATING, &options);
     // a: regime 0 precedes all learning, 3 and 9 are references; regime 6 gives 8 − 10.
     let a = &metrics.task_metrics["a_1"];
-    assert_eq!(a.maintenance_val_mrlep, Some(vec![vec![-2.0]]));
+    assert_eq!(a.get("maintenance_val_mrlep"), Some(&Value::Runs(vec![vec![-2.0]])));
     // Against the end of learning, 8 − 8.
-    assert_eq!(a.maintenance_val_mrtlp, Some(vec![vec![0.0]]));
+    assert_eq!(a.get("maintenance_val_mrtlp"), Some(&Value::Runs(vec![vec![0.0]])));
     // b: regime 10 gives 15 − 12, and 15 − 12 against the end of learning.
     let b = &metrics.task_metrics["b_1"];
     assert_eq!(
-        (b.perf_maintenance_mrlep, b.perf_maintenance_mrtlp),
+        (b.number("perf_maintenance_mrlep"), b.number("perf_maintenance_mrtlp")),
         (Some(3.0), Some(3.0))
     );
-    assert_eq!(metrics.lifetime.perf_maintenance_mrlep, Some(0.5), "mean of −2 and 3");
-    assert_eq!(metrics.lifetime.perf_maintenance_mrtlp, Some(1.5), "mean of 0 and 3");
+    assert_eq!(
+        metrics.lifetime.number("perf_maintenance_mrlep"),
+        Some(0.5),
+        "mean of −2 and 3"
+    );
+    assert_eq!(
+        metrics.lifetime.number("perf_maintenance_mrtlp"),
+        Some(1.5),
+        "mean of 0 and 3"
+    );
 }
 
 #[test]
@@ -100,35 +108,60 @@ fn transfer_compares_evaluations_before_and_after_another_task_is_learnt() {
     };
     let metrics = scored(&ALTERNATING, &options);
     let (a, b) = (&metrics.task_metrics["a_1"], &metrics.task_metrics["b_1"]);
-    let pair = |task: &str, values: &[f64]| Some([(task.to_owned(), values.to_vec())].into());
+    let pair = |task: &str, values: &[f64]| PairValues::from([(task.to_owned(), values.to_vec())]);
     // a is learnt (2) between the evaluations 1 and 4 of b, before b's first learning: 6/4, and 2/10.
-    assert_eq!(a.forward_transfer_ratio, pair("b_1", &[1.5]));
-    assert_eq!(a.forward_transfer_contrast, pair("b_1", &[0.2]));
+    assert_eq!(a.pairs("forward_transfer_ratio"), Some(&pair("b_1", &[1.5])));
+    assert_eq!(a.pairs("forward_transfer_contrast"), Some(&pair("b_1", &[0.2])));
     // a is learnt again (8) between the evaluations 7 and 10 of b, after b's first learning: 15/12, and 3/27.
-    assert_eq!(a.backward_transfer_ratio, pair("b_1", &[1.25]));
-    assert_eq!(a.backward_transfer_contrast, pair("b_1", &[3.0 / 27.0]));
+    assert_eq!(a.pairs("backward_transfer_ratio"), Some(&pair("b_1", &[1.25])));
+    assert_eq!(a.pairs("backward_transfer_contrast"), Some(&pair("b_1", &[3.0 / 27.0])));
     // b is learnt (5) between the evaluations 3 and 6 of a, which was learnt before: 8/10, and −2/18.
-    assert_eq!(b.forward_transfer_ratio, Some([].into()));
-    assert_eq!(b.backward_transfer_ratio, pair("a_1", &[0.8]));
-    assert_eq!(b.backward_transfer_contrast, pair("a_1", &[-2.0 / 18.0]));
-    assert_eq!(metrics.lifetime.forward_transfer_ratio, Some(1.5));
-    assert_eq!(metrics.lifetime.backward_transfer_ratio, Some(f64::midpoint(1.25, 0.8)));
+    assert_eq!(b.pairs("forward_transfer_ratio"), Some(&[].into()));
+    assert_eq!(b.pairs("backward_transfer_ratio"), Some(&pair("a_1", &[0.8])));
+    assert_eq!(
+        b.pairs("backward_transfer_contrast"),
+        Some(&pair("a_1", &[-2.0 / 18.0]))
+    );
+    assert_eq!(metrics.lifetime.number("forward_transfer_ratio"), Some(1.5));
+    assert_eq!(
+        metrics.lifetime.number("backward_transfer_ratio"),
+        Some(f64::midpoint(1.25, 0.8))
+    );
 }
 
 #[test]
 fn recovery_and_averages_come_regime_by_regime() {
     let metrics = scored(&ALTERNATING, &plain());
     let a = &metrics.task_metrics["a_1"];
-    assert_eq!(a.recovery_times, [1.0]);
-    assert_eq!(a.perf_recovery, None, "one recovery has no trend");
+    assert_eq!(a.numbers("recovery_times").unwrap(), [1.0]);
+    assert_eq!(a.number("perf_recovery"), None, "one recovery has no trend");
     assert_eq!(
-        (&a.avg_train_perf_vals[..], a.avg_train_perf),
+        (
+            &a.numbers("avg_train_perf_vals").unwrap()[..],
+            a.number("avg_train_perf")
+        ),
         (&[5.0, 8.0][..], Some(6.5))
     );
     // Regimes count once however long they are: 2, 10, 8, 11.
-    assert_eq!(a.avg_eval_perf, Some(31.0 / 4.0));
-    assert_eq!((a.num_lx, a.num_ex, metrics.num_lx, metrics.num_ex), (4, 7, 6, 11));
-    assert_eq!((a.min, a.max, metrics.min, metrics.max), (2.0, 11.0, 2.0, 15.0));
+    assert_eq!(a.number("avg_eval_perf"), Some(31.0 / 4.0));
+    assert_eq!(
+        (
+            a.number("num_lx").unwrap(),
+            a.number("num_ex").unwrap(),
+            metrics.num_lx,
+            metrics.num_ex
+        ),
+        (4.0, 7.0, 6, 11)
+    );
+    assert_eq!(
+        (
+            a.number("min").unwrap(),
+            a.number("max").unwrap(),
+            metrics.min,
+            metrics.max
+        ),
+        (2.0, 11.0, 2.0, 15.0)
+    );
     assert_eq!(metrics.runtime, 8.0, "seventeen experiences, half a second apart");
     assert_eq!(metrics.run_id, "tiny");
     assert_eq!(metrics.task_metrics.keys().collect::<Vec<_>>(), ["a_1", "b_1"]);
@@ -143,9 +176,9 @@ fn recovery_that_takes_longer_each_time_is_negative() {
         (Train, "a_1", &[1.0, 2.0]), // never reaches 6: two experiences and one
     ];
     let a = &scored(&blocks, &plain()).task_metrics["a_1"];
-    assert_eq!(a.recovery_times, [0.0, 1.0, 3.0]);
+    assert_eq!(a.numbers("recovery_times").unwrap(), [0.0, 1.0, 3.0]);
     // Slopes 1, 1.5 and 2; the median is 1.5.
-    assert_eq!(a.perf_recovery, Some(-1.5));
+    assert_eq!(a.number("perf_recovery"), Some(-1.5));
 }
 
 #[test]
@@ -159,14 +192,17 @@ fn where_two_tasks_are_learnt_in_one_gap_the_last_pair_gets_the_transfer() {
     ];
     // Order of appearance is c, b, a; (a, c) comes after (b, c).
     let metrics = scored(&blocks, &plain());
-    assert_eq!(metrics.task_metrics["b_1"].forward_transfer_ratio, Some([].into()));
     assert_eq!(
-        metrics.task_metrics["a_1"].forward_transfer_ratio,
-        Some([("c_1".to_owned(), vec![3.0])].into())
+        metrics.task_metrics["b_1"].pairs("forward_transfer_ratio"),
+        Some(&[].into())
+    );
+    assert_eq!(
+        metrics.task_metrics["a_1"].pairs("forward_transfer_ratio"),
+        Some(&[("c_1".to_owned(), vec![3.0])].into())
     );
     // Trained tasks come first, in the order of their learning.
     assert_eq!(metrics.task_metrics.keys().collect::<Vec<_>>(), ["b_1", "a_1", "c_1"]);
-    assert_eq!(metrics.task_metrics["c_1"].avg_train_perf, None);
+    assert_eq!(metrics.task_metrics["c_1"].number("avg_train_perf"), None);
 }
 
 #[test]
@@ -177,8 +213,8 @@ fn a_ratio_over_nothing_is_no_transfer() {
         ..plain()
     };
     let metrics = scored(&blocks, &options);
-    assert_eq!(metrics.lifetime.forward_transfer_ratio, None);
-    assert_eq!(metrics.lifetime.forward_transfer_contrast, None);
+    assert_eq!(metrics.lifetime.number("forward_transfer_ratio"), None);
+    assert_eq!(metrics.lifetime.number("forward_transfer_contrast"), None);
 }
 
 #[test]
@@ -192,9 +228,12 @@ fn an_agent_that_sleeps_is_judged_by_its_evaluations_after_sleep() {
     let metrics = score(&log_with_sleep(&blocks), &[], &plain()).unwrap();
     let a = &metrics.task_metrics["a_1"];
     // The wake evaluation is neither the reference nor part of the average: 5 − 6, and the mean of 6 and 5.
-    assert_eq!((a.perf_maintenance_mrlep, a.avg_eval_perf), (Some(-1.0), Some(5.5)));
-    assert_eq!(metrics.regimes[1].avg_perf, None);
-    assert_eq!(a.num_ex, 3);
+    assert_eq!(
+        (a.number("perf_maintenance_mrlep"), a.number("avg_eval_perf")),
+        (Some(-1.0), Some(5.5))
+    );
+    assert_eq!(metrics.regimes[1].values.number("avg_perf"), None);
+    assert_eq!(a.number("num_ex"), Some(3.0));
 }
 
 #[test]
@@ -205,7 +244,10 @@ fn a_constant_task_is_one_everywhere() {
     );
     assert_eq!((metrics.min, metrics.max), (1.0, 1.0));
     assert_eq!(
-        (metrics.lifetime.avg_train_perf, metrics.lifetime.avg_eval_perf),
+        (
+            metrics.lifetime.number("avg_train_perf"),
+            metrics.lifetime.number("avg_eval_perf")
+        ),
         (Some(1.0), Some(1.0))
     );
 }
@@ -220,7 +262,7 @@ fn rows_without_a_number_are_dropped_before_regimes_are_formed() {
     let metrics = scored(&blocks, &plain());
     assert_eq!((metrics.num_lx, metrics.num_ex, metrics.regimes.len()), (2, 1, 2));
     assert_eq!(metrics.task_metrics.keys().collect::<Vec<_>>(), ["a_1"]);
-    assert_eq!(metrics.lifetime.avg_train_perf, Some(2.0));
+    assert_eq!(metrics.lifetime.number("avg_train_perf"), Some(2.0));
 }
 
 #[test]
@@ -229,12 +271,12 @@ fn a_single_row_is_a_lifetime() {
     let regime = &metrics.regimes[0];
     assert_eq!(
         (
-            regime.saturation,
-            regime.exp_to_sat,
-            regime.term_perf,
-            regime.exp_to_term_perf
+            regime.values.number("saturation"),
+            regime.values.number("exp_to_sat"),
+            regime.values.number("term_perf"),
+            regime.values.number("exp_to_term_perf")
         ),
-        (1.0, 0, 1.0, 0)
+        (Some(1.0), Some(0.0), Some(1.0), Some(0.0))
     );
     assert_eq!(metrics.runtime, 0.0);
 }
@@ -299,22 +341,31 @@ fn experts_are_compared_run_by_run_or_on_average() {
     // Against three of the first run's four: 12/24; against the two of the second: 6/6.
     let by_run = with(SteAveragingMethod::Metrics);
     assert_eq!(
-        (by_run.ste_rel_perf_vals, by_run.ste_rel_perf),
-        (vec![0.5, 1.0], Some(0.75))
+        (
+            by_run.numbers("ste_rel_perf_vals").unwrap(),
+            by_run.number("ste_rel_perf")
+        ),
+        (&[0.5, 1.0][..], Some(0.75))
     );
     // Saturation 6 after 2; the runs' 16 after 3 and 4 after 1: (6/16)·(3/2) and (6/4)·(1/2).
     assert_eq!(
-        (by_run.se_task_saturation, by_run.se_task_exp_to_sat),
+        (by_run.number("se_task_saturation"), by_run.number("se_task_exp_to_sat")),
         (Some(6.0), Some(2.0))
     );
-    assert_eq!(by_run.sample_efficiency_vals, [0.5625, 0.75]);
+    assert_eq!(by_run.numbers("sample_efficiency_vals").unwrap(), [0.5625, 0.75]);
     // The average of the runs' first two is 3 and 6: 6/9; (6/6)·(1/2).
     let on_average = with(SteAveragingMethod::Time);
-    assert_eq!(on_average.ste_rel_perf, Some(6.0 / 9.0));
-    assert_eq!(on_average.sample_efficiency_vals, [0.5]);
+    assert_eq!(on_average.number("ste_rel_perf"), Some(6.0 / 9.0));
+    assert_eq!(on_average.numbers("sample_efficiency_vals").unwrap(), [0.5]);
     // An expert of a task that the lifetime lacks changes nothing.
     let stranger = SteLog::new(log_of(&[(Train, "z_1", &[1.0, 2.0])])).unwrap();
-    assert_eq!(score(&log, &[stranger], &plain()).unwrap().lifetime.ste_rel_perf, None);
+    assert_eq!(
+        score(&log, &[stranger], &plain())
+            .unwrap()
+            .lifetime
+            .number("ste_rel_perf"),
+        None
+    );
 }
 
 #[test]
@@ -392,7 +443,10 @@ fn a_run_is_scaled_as_a_whole_if_asked_to() {
     };
     let metrics = scored(&blocks, &options);
     assert_eq!(
-        (metrics.task_metrics["a_1"].max, metrics.task_metrics["b_1"].max),
+        (
+            metrics.task_metrics["a_1"].number("max").unwrap(),
+            metrics.task_metrics["b_1"].number("max").unwrap()
+        ),
         (51.0, 101.0)
     );
 }

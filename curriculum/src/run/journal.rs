@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use driftworld_metrics::{
-    LogWriter, LoggerInfo, MetricsError, Record, ScenarioInfo, ScenarioType, begun_log, read_log,
+    LogWriter, LoggerInfo, MetricsError, Row, Rows, ScenarioInfo, ScenarioType, begun_log, read_log,
 };
 use driftworld_spec::ScenarioForm;
 use serde_json::{Map, Value, json};
@@ -63,20 +63,20 @@ impl Journal {
             return Err(other(&place, found, expected));
         }
         let writer = LogWriter::resume(folder)?;
-        let records = match read_log(folder) {
-            Ok(log) => log.records,
-            Err(MetricsError::NoDataFiles { .. }) => Vec::new(),
+        let rows = match read_log(folder) {
+            Ok(log) => log.rows,
+            Err(MetricsError::NoDataFiles { .. }) => Rows::default(),
             Err(error) => return Err(error.into()),
         };
         let mut summary = Summary::default();
-        for (number, record) in (0..).zip(&records) {
+        for (number, row) in (0..).zip(rows.iter()) {
             let wrong = |found: String, expected: String| CurriculumError::OtherRow {
                 path: folder.to_owned(),
                 row: number,
                 found,
                 expected,
             };
-            take(plan, &mut summary, number, record).map_err(|(found, expected)| wrong(found, expected))?;
+            take(plan, &mut summary, number, row).map_err(|(found, expected)| wrong(found, expected))?;
         }
         Ok(Self { writer, summary })
     }
@@ -96,7 +96,7 @@ impl Journal {
 }
 
 /// Counts a row of an earlier run, if it is the one that the plan has there; else says what it is, and what the plan has.
-fn take(plan: &Plan, summary: &mut Summary, number: u64, record: &Record) -> Result<(), (String, String)> {
+fn take(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> Result<(), (String, String)> {
     if number >= plan.num_experiences() {
         return Err((
             "one row more".to_owned(),
@@ -110,18 +110,18 @@ fn take(plan: &Plan, summary: &mut Summary, number: u64, record: &Record) -> Res
     let params = Value::Object(Map::clone(&planned.params(number)));
     let kind = block_type(planned.kind);
     let expected = told(planned.block as u64, number, kind, &planned.log_name, &params);
-    let params = Value::Object(Map::clone(&record.task_params));
+    let params = Value::Object(Map::clone(row.task_params()));
     let found = told(
-        record.block_num,
-        record.exp_num,
-        record.block_type,
-        &record.task_name,
+        row.block_num(),
+        row.exp_num(),
+        row.block_type(),
+        row.task_name(),
         &params,
     );
     if found != expected {
         return Err((found, expected));
     }
-    let value = |name: &str| record.metrics.get(name).copied().unwrap_or(f64::NAN);
+    let value = |name: &str| row.metric(name).unwrap_or(f64::NAN);
     let steps = value("episode_step_count") as u64;
     summary.count(
         planned,

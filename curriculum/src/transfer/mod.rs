@@ -187,7 +187,10 @@ fn tested(
 /// In how many different orders the variants that a matrix has were learned first.
 fn learning_orders(lifetimes: &[LifetimeMetrics], names: &Names) -> usize {
     let order = |lifetime: &LifetimeMetrics| -> Vec<usize> {
-        let learned = lifetime.task_metrics.iter().filter(|(_, task)| task.num_lx > 0);
+        let learned = lifetime
+            .task_metrics
+            .iter()
+            .filter(|(_, task)| task.number("num_lx").is_some_and(|num| num > 0.0));
         learned.filter_map(|(name, _)| names.index(name)).collect()
     };
     lifetimes.iter().map(order).collect::<BTreeSet<_>>().len()

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use driftworld_metrics::{LifetimeMetrics, PairValues, TaskMetrics, TransferMethod};
+use driftworld_metrics::{LifetimeMetrics, PairValues, TransferMethod, Values};
 use driftworld_similarity::PairValue;
 
 use super::names::Names;
@@ -45,11 +45,11 @@ pub(super) fn pooled(
     sums.into_iter().map(mean).collect()
 }
 
-fn values(task: &TaskMetrics, direction: Direction, measure: TransferMethod) -> Option<&PairValues> {
-    match (direction, measure) {
-        (Direction::Forward, TransferMethod::Ratio) => task.forward_transfer_ratio.as_ref(),
-        (Direction::Forward, _) => task.forward_transfer_contrast.as_ref(),
-        (Direction::Backward, TransferMethod::Ratio) => task.backward_transfer_ratio.as_ref(),
-        (Direction::Backward, _) => task.backward_transfer_contrast.as_ref(),
-    }
+fn values(task: &Values, direction: Direction, measure: TransferMethod) -> Option<&PairValues> {
+    task.pairs(match (direction, measure) {
+        (Direction::Forward, TransferMethod::Ratio) => "forward_transfer_ratio",
+        (Direction::Forward, _) => "forward_transfer_contrast",
+        (Direction::Backward, TransferMethod::Ratio) => "backward_transfer_ratio",
+        (Direction::Backward, _) => "backward_transfer_contrast",
+    })
 }

@@ -12,9 +12,9 @@ pub use regime::{MAX_REGIMES, Regime};
 pub use ste::SteLog;
 pub(crate) use ste::SteRun;
 
-use crate::log::Timestamp;
+use crate::log::{TaskParams, Timestamp};
 use crate::preprocess;
-use crate::{BlockSubtype, BlockType, DataRange, ExpStatus, Log, MetricsError, Options, Record, VariantMode};
+use crate::{BlockSubtype, BlockType, DataRange, ExpStatus, Log, MetricsError, Options, Rows, VariantMode};
 
 /// Performances must stay below this magnitude, so that no sum or quotient of them overflows.
 pub(crate) const MAX_PERFORMANCE: f64 = 1e100;
@@ -45,7 +45,7 @@ impl Lifetime {
         let regimes = regime::form(&log.run_id, &rows, options)?;
         let tasks = tasks_by_training(&regimes);
         let experts = ste::gather(experts, &tasks, options)?;
-        let stamps = || rows.iter().map(|(record, _)| record.timestamp);
+        let stamps = || rows.indices.iter().map(|&row| log.rows.timestamps()[row]);
         let mut lifetime = Self {
             run_id: log.run_id.clone(),
             tasks,
@@ -56,6 +56,7 @@ impl Lifetime {
             runtime_secs: span_secs(stamps().min(), stamps().max()),
         };
         lifetime.check_bounds("as logged")?;
+        preprocess::disturb(&mut lifetime, options);
         preprocess::smooth(&mut lifetime, options);
         preprocess::clamp(&mut lifetime, options)?;
         lifetime.normalization_data_range = preprocess::normalize(&mut lifetime, options)?;
@@ -120,6 +121,11 @@ impl Lifetime {
         )
     }
 
+    /// The lifetime's own regimes.
+    pub(crate) fn own_regimes_mut(&mut self) -> &mut [Regime] {
+        &mut self.regimes
+    }
+
     /// All regimes that hold performances: the lifetime's, then the experts'.
     pub(crate) fn all_regimes_mut(&mut self) -> impl Iterator<Item = &mut Regime> {
         let experts = self.experts.values_mut().flatten().flat_map(|run| &mut run.regimes);
@@ -159,34 +165,48 @@ impl Lifetime {
 /// Parameter of a task by which a row says which part of the life it belongs to, and the part that is not scored.
 const PHASE: (&str, &str) = ("phase", "pre_deployment");
 
-/// The rows that count, with their performance: complete, with a number in the performance column, and not of the time before
-/// deployment, which prepares a lifetime and is no part of it. Rows of that time have the task parameter `phase`,
-/// `pre_deployment`.
-pub(crate) fn usable_rows<'a>(log: &'a Log, column: &str) -> Result<Vec<(&'a Record, f64)>, MetricsError> {
-    if !log.logger_info.metrics_columns().iter().any(|name| name == column) {
-        let (run_id, available) = (log.run_id.clone(), log.logger_info.metrics_columns().join(", "));
-        return Err(MetricsError::UnknownColumn {
-            run_id,
+/// The rows of a log that count, and the column of their performance.
+pub(crate) struct Usable<'a> {
+    pub(crate) rows: &'a Rows,
+    /// Which rows count, in order.
+    pub(crate) indices: Vec<usize>,
+    /// Performance of every row of the log.
+    pub(crate) performance: &'a [f64],
+}
+
+/// The rows that count: complete, with a number in the performance column, and not of the time before deployment, which prepares
+/// a lifetime and is no part of it. Rows of that time have the task parameter `phase`, `pre_deployment`.
+pub(crate) fn usable_rows<'a>(log: &'a Log, column: &str) -> Result<Usable<'a>, MetricsError> {
+    let declared = log.logger_info.metrics_columns();
+    let performance = (declared.iter().any(|name| name == column))
+        .then(|| log.rows.metric(column))
+        .flatten()
+        .ok_or_else(|| MetricsError::UnknownColumn {
+            run_id: log.run_id.clone(),
             column: column.to_owned(),
-            available,
-        });
-    }
-    let complete = log
-        .records
-        .iter()
-        .filter(|record| record.exp_status == ExpStatus::Complete)
-        .filter(|record| record.task_params.get(PHASE.0).is_none_or(|phase| phase != PHASE.1));
-    let rows: Vec<_> = complete
-        .filter_map(|record| Some((record, *record.metrics.get(column)?)))
-        .filter(|(_, performance)| !performance.is_nan())
-        .collect();
-    if rows.is_empty() {
+            available: declared.join(", "),
+        })?;
+    let rows = &log.rows;
+    let params = rows.task_params();
+    let is_deployed = |params: &TaskParams| params.get(PHASE.0).is_none_or(|phase| phase != PHASE.1);
+    let deployed: Vec<bool> = params.values().iter().map(is_deployed).collect();
+    let counts = |&row: &usize| {
+        rows.exp_statuses()[row] == ExpStatus::Complete
+            && deployed[params.ids()[row] as usize]
+            && !performance[row].is_nan()
+    };
+    let indices: Vec<usize> = (0..rows.len()).filter(counts).collect();
+    if indices.is_empty() {
         return Err(MetricsError::NoUsableRows {
             run_id: log.run_id.clone(),
             column: column.to_owned(),
         });
     }
-    Ok(rows)
+    Ok(Usable {
+        rows,
+        indices,
+        performance,
+    })
 }
 
 /// The name under which a task is scored: lower-case, and without its variant where variants do not count.

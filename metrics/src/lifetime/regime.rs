@@ -4,9 +4,11 @@
 
 use std::collections::BTreeMap;
 
-use super::scored_name;
+use indexmap::IndexSet;
+
+use super::{Usable, scored_name};
 use crate::log::TaskParams;
-use crate::{BlockSubtype, BlockType, MetricsError, Options, Record};
+use crate::{BlockSubtype, BlockType, Definitions, MetricsError, Options};
 
 /// Most regimes a lifetime may have; the Theil–Sen slope looks at every pair of a task's.
 pub const MAX_REGIMES: usize = 10_000;
@@ -14,7 +16,7 @@ pub const MAX_REGIMES: usize = 10_000;
 /// A maximal run of rows with the same block number, block type, subtype and task.
 ///
 /// QUIRK: task parameters do not split regimes. A block that changes only a task's parameters is one regime, and
-/// stands in tables with the parameters of its first row.
+/// stands in tables with the parameters of its first row. Under the published definitions they do split.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Regime {
     /// Position among the regimes of the lifetime, from 0.
@@ -57,13 +59,6 @@ impl Regime {
     pub(crate) fn per_experience(&self) -> Vec<f64> {
         mean_per_experience(&self.exp_nums, &self.performance)
     }
-
-    fn continues_with(&self, record: &Record, task_name: &str) -> bool {
-        self.block_num == record.block_num
-            && self.block_type == record.block_type
-            && self.block_subtype == record.block_subtype
-            && self.task_name == task_name
-    }
 }
 
 /// One value per experience number, in ascending order; rows of one experience are averaged.
@@ -81,47 +76,72 @@ pub(crate) fn mean_per_experience(exp_nums: &[u64], performance: &[f64]) -> Vec<
 }
 
 /// Cuts rows, which are in order of experience, into regimes.
-pub(crate) fn form(run_id: &str, rows: &[(&Record, f64)], options: &Options) -> Result<Vec<Regime>, MetricsError> {
-    let mut regimes: Vec<Regime> = Vec::new();
-    for (record, performance) in rows {
-        let task_name = scored_name(&record.task_name, options.variant_mode);
-        let continues = regimes
-            .last()
-            .is_some_and(|last| last.continues_with(record, &task_name));
-        if !continues {
-            if regimes.len() == MAX_REGIMES {
-                return Err(MetricsError::TooManyRegimes {
-                    run_id: run_id.to_owned(),
-                    limit: MAX_REGIMES,
-                });
-            }
-            regimes.push(begin(regimes.len(), record, task_name));
+pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Result<Vec<Regime>, MetricsError> {
+    let rows = usable.rows;
+    let scored = ScoredTasks::new(rows.task_names().values(), options);
+    let task_of = |row: usize| scored.numbers[rows.task_names().ids()[row] as usize];
+    let key = |row: usize| {
+        let block = (
+            rows.block_nums()[row],
+            rows.block_types()[row],
+            rows.block_subtypes()[row],
+        );
+        (block, task_of(row))
+    };
+    let params_of = |row: usize| &rows.task_params().values()[rows.task_params().ids()[row] as usize];
+    let same_params = |a: usize, b: usize| match options.definitions {
+        Definitions::Reference => true,
+        Definitions::Published => {
+            rows.task_params().ids()[a] == rows.task_params().ids()[b] || params_of(a) == params_of(b)
         }
-        let open = regimes.last_mut().expect("a regime was begun with the first row");
-        open.exp_nums.push(record.exp_num);
-        open.raw.push(*performance);
-        open.performance.push(*performance);
+    };
+    let stretches = usable.indices.chunk_by(|&a, &b| key(a) == key(b) && same_params(a, b));
+    let mut regimes = Vec::new();
+    for (regime_num, stretch) in stretches.enumerate() {
+        if regime_num == MAX_REGIMES {
+            return Err(MetricsError::TooManyRegimes {
+                run_id: run_id.to_owned(),
+                limit: MAX_REGIMES,
+            });
+        }
+        // A stretch is never empty.
+        let first = stretch[0];
+        let ((block_num, block_type, block_subtype), task) = key(first);
+        let performance: Vec<f64> = stretch.iter().map(|&row| usable.performance[row]).collect();
+        regimes.push(Regime {
+            regime_num,
+            block_num,
+            block_type,
+            block_subtype,
+            task_name: scored.names[task].clone(),
+            task_params: params_of(first).clone(),
+            exp_nums: stretch.iter().map(|&row| rows.exp_nums()[row]).collect(),
+            raw: performance.clone(),
+            performance,
+        });
     }
     Ok(regimes)
 }
 
-fn begin(regime_num: usize, record: &Record, task_name: String) -> Regime {
-    Regime {
-        regime_num,
-        block_num: record.block_num,
-        block_type: record.block_type,
-        block_subtype: record.block_subtype,
-        task_name,
-        task_params: record.task_params.clone(),
-        exp_nums: Vec::new(),
-        raw: Vec::new(),
-        performance: Vec::new(),
+/// The names under which tasks are scored, and which of them each logged name has.
+struct ScoredTasks {
+    names: IndexSet<String>,
+    numbers: Vec<usize>,
+}
+
+impl ScoredTasks {
+    fn new(logged: &[String], options: &Options) -> Self {
+        let mut names = IndexSet::new();
+        let number = |name: &String| names.insert_full(scored_name(name, options.variant_mode)).0;
+        let numbers = logged.iter().map(number).collect();
+        Self { names, numbers }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Record, Rows, VariantMode};
 
     fn record(block_num: u64, block_type: BlockType, task: &str) -> Record {
         Record::new(block_num, 0, block_type, task, "20200101T000000.0".parse().unwrap())
@@ -137,20 +157,27 @@ mod tests {
             record(1, BlockType::Train, "a_y"),
             record(1, BlockType::Test, "a_y"),
         ];
-        let rows: Vec<_> = records.iter().map(|record| (record, 1.0)).collect();
-        let lengths = |mode| {
+        let rows = Rows::from_records(&records);
+        let usable = Usable {
+            rows: &rows,
+            indices: (0..records.len()).collect(),
+            performance: &[1.0; 5],
+        };
+        let lengths = |variant_mode, definitions| {
             let options = Options {
-                variant_mode: mode,
+                variant_mode,
+                definitions,
                 ..Options::default()
             };
-            form("run", &rows, &options)
+            form("run", &usable, &options)
                 .unwrap()
                 .iter()
                 .map(Regime::len)
                 .collect::<Vec<_>>()
         };
-        assert_eq!(lengths(crate::VariantMode::Aware), [2, 1, 1, 1]);
-        assert_eq!(lengths(crate::VariantMode::Agnostic), [3, 1, 1]);
+        assert_eq!(lengths(VariantMode::Aware, Definitions::Reference), [2, 1, 1, 1]);
+        assert_eq!(lengths(VariantMode::Agnostic, Definitions::Reference), [3, 1, 1]);
+        assert_eq!(lengths(VariantMode::Aware, Definitions::Published), [1, 1, 1, 1, 1]);
     }
 
     #[test]

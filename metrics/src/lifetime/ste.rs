@@ -21,12 +21,15 @@ impl SteLog {
     /// # Errors
     /// [`MetricsError::NotSingleTask`] when it does not train exactly one task.
     pub fn new(log: Log) -> Result<Self, MetricsError> {
-        let trained = log
-            .records
-            .iter()
-            .filter(|record| record.block_type == BlockType::Train);
+        let tasks = log.rows.task_names();
+        let trained = log.rows.block_types().iter().zip(tasks.ids());
+        let trained: IndexSet<u32> = trained
+            .filter(|(block_type, _)| **block_type == BlockType::Train)
+            .map(|(_, task)| *task)
+            .collect();
         let mut names: IndexSet<String> = trained
-            .map(|record| scored_name(&record.task_name, VariantMode::Aware))
+            .into_iter()
+            .map(|task| scored_name(&tasks.values()[task as usize], VariantMode::Aware))
             .collect();
         match (names.len(), names.pop()) {
             (1, Some(task_name)) => Ok(Self { log, task_name }),

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::Path;
 
 use super::logger_info::{self, LoggerInfo};
-use super::reader::LogWarning;
 use super::scenario_info::{self, ScenarioInfo};
+use super::warning::LogWarning;
 use super::{data_files, json_file};
 use crate::MetricsError;
 

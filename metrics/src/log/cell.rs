@@ -2,7 +2,6 @@
 //!
 //! Not here: rules between rows.
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use super::record::{TaskParams, is_worker_id};
@@ -10,9 +9,6 @@ use crate::MetricsError;
 
 /// Longest piece of a cell that is quoted in a message, in characters.
 const SHOWN: usize = 60;
-
-/// Rows of a block nearly always have the same parameters; so many different texts are remembered.
-const REMEMBERED_PARAMS: usize = 4096;
 
 /// Where a cell stands; makes the error when what it holds is wrong.
 #[derive(Clone, Copy)]
@@ -48,15 +44,19 @@ impl Cell<'_> {
             .map_err(|_| self.error("a time stamp as in 20200913T122640.000000"))
     }
 
-    /// A number; an empty cell or a word that table writers use for "missing" is NaN.
-    pub(super) fn number(self) -> Result<f64, MetricsError> {
-        match self.text.trim() {
-            "" | "NA" | "N/A" | "n/a" | "<NA>" | "null" | "NULL" | "None" => Ok(f64::NAN),
-            text => {
-                let number: Option<f64> = text.parse().ok().filter(|number: &f64| !number.is_infinite());
-                number.ok_or_else(|| self.error("a finite number, or nothing for a missing one"))
-            }
+    /// A JSON object; an empty cell is one without members.
+    pub(super) fn params(self) -> Result<TaskParams, MetricsError> {
+        match self.text {
+            "" => Ok(TaskParams::default()),
+            text => match serde_json::from_str(text) {
+                Ok(object) => Ok(TaskParams::new(object)),
+                Err(_) => Err(self.error("a JSON object")),
+            },
         }
+    }
+
+    pub(super) fn number(self) -> Result<f64, MetricsError> {
+        number(self.text).ok_or_else(|| self.error("a finite number, or nothing for a missing one"))
     }
 
     /// The error that says what stands here and what should.
@@ -71,28 +71,16 @@ impl Cell<'_> {
     }
 }
 
-/// Reads task parameters; equal texts share one object.
-#[derive(Default)]
-pub(super) struct ParamsReader {
-    seen: HashMap<String, TaskParams>,
-}
-
-impl ParamsReader {
-    /// A JSON object; an empty cell is one without members.
-    pub(super) fn read(&mut self, cell: Cell<'_>) -> Result<TaskParams, MetricsError> {
-        if let Some(params) = self.seen.get(cell.text) {
-            return Ok(params.clone());
-        }
-        let params: TaskParams = match cell.text {
-            "" => TaskParams::default(),
-            text => TaskParams::new(serde_json::from_str(text).map_err(|_| cell.error("a JSON object"))?),
-        };
-        if self.seen.len() == REMEMBERED_PARAMS {
-            self.seen.clear();
-        }
-        self.seen.insert(cell.text.to_owned(), params.clone());
-        Ok(params)
-    }
+/// A number; an empty cell or a word that table writers use for "missing" is NaN. `None` for anything else.
+pub(super) fn number(text: &str) -> Option<f64> {
+    let number = match text.parse() {
+        Ok(number) => number,
+        Err(_) => match text.trim() {
+            "" | "NA" | "N/A" | "n/a" | "<NA>" | "null" | "NULL" | "None" => f64::NAN,
+            text => text.parse().ok()?,
+        },
+    };
+    Some(number).filter(|number| !number.is_infinite())
 }
 
 /// A cell as it is quoted in a message: in quotes, and not longer than a message can bear.
@@ -129,6 +117,7 @@ mod tests {
                        expected a finite number, or nothing for a missing one";
         assert_eq!(cell("inf").number().unwrap_err().to_string(), message);
         assert!(cell("1,5").number().is_err());
+        assert!(cell(" 1.5 ").number().is_ok_and(|number| number == 1.5));
     }
 
     #[test]
@@ -138,12 +127,9 @@ mod tests {
     }
 
     #[test]
-    fn equal_parameters_are_one_object() {
-        let mut reader = ParamsReader::default();
-        let first = reader.read(cell(r#"{"a": 1}"#)).unwrap();
-        let second = reader.read(cell(r#"{"a": 1}"#)).unwrap();
-        assert!(TaskParams::ptr_eq(&first, &second));
-        assert!(reader.read(cell("")).unwrap().is_empty());
-        assert!(reader.read(cell("[1]")).is_err());
+    fn parameters_are_an_object_or_nothing() {
+        assert!(cell("").params().unwrap().is_empty());
+        assert_eq!(cell(r#"{"a": 1}"#).params().unwrap()["a"], 1);
+        assert!(cell("[1]").params().is_err());
     }
 }

@@ -1,64 +1,18 @@
 //! A whole log: its two info files and the rows of all its workers, in order.
 //!
-//! Not here: how one data file is read, see `data_file`.
+//! Not here: how one data file is read, see `data_file`; every fault of a log at once, see `validation`.
 
-use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use indexmap::IndexSet;
-
-use super::cell::{ParamsReader, shown};
+use super::faults::Faults;
 use super::logger_info::LoggerInfo;
-use super::record::{Record, is_conventional_task_name};
+use super::record::is_conventional_task_name;
+use super::rows::Rows;
 use super::scenario_info::ScenarioInfo;
+use super::table::{Table, Texts};
+use super::warning::LogWarning;
 use super::{data_file, data_files};
 use crate::{MetricsError, SteLog};
-
-/// Most records that one log may hold.
-pub const MAX_RECORDS: usize = 10_000_000;
-
-/// Something about a log that is not as it should be, but does not keep it from being read.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum LogWarning {
-    /// There is no `scenario_info.json`.
-    NoScenarioInfo,
-    /// A field of `scenario_info.json` is none of the words it may be; it was left out.
-    ScenarioInfo {
-        /// The field.
-        field: &'static str,
-        /// Its value, as JSON.
-        found: String,
-        /// The words it may be.
-        expected: String,
-    },
-    /// A task's name is not `task_variant`; it is used as it is.
-    TaskName {
-        /// The name.
-        found: String,
-    },
-}
-
-impl fmt::Display for LogWarning {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoScenarioInfo => f.write_str("scenario_info.json: found no such file; read without it"),
-            Self::ScenarioInfo { field, found, expected } => {
-                write!(
-                    f,
-                    "scenario_info.json, {field}: found {found}, expected one of {expected}; left out"
-                )
-            }
-            Self::TaskName { found } => {
-                let found = shown(found);
-                write!(
-                    f,
-                    "task_name: found {found}, expected TASK_VARIANT, letters and digits on both sides; used as it is"
-                )
-            }
-        }
-    }
-}
 
 /// A log as it was read.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,54 +24,30 @@ pub struct Log {
     /// What the run was about.
     pub scenario_info: ScenarioInfo,
     /// All rows of all workers, by experience number, then block number, then the order of files and lines.
-    pub records: Vec<Record>,
+    pub rows: Rows,
     /// What was odd about it.
     pub warnings: Vec<LogWarning>,
 }
 
 /// Reads the log in a directory: format 1.0 or 1.1, written by us or by l2logger, by one worker or by several.
 ///
+/// Columns of words that `logger_info.json` does not declare are left out; see [`read_log_with_texts`].
+///
 /// # Errors
 /// One of [`MetricsError`]'s reading variants, each naming file, line and column where there are such. Never panics,
-/// whatever the files hold; at most [`MAX_RECORDS`] rows, [`MAX_LOG_FILES`](crate::MAX_LOG_FILES) files and
-/// [`MAX_FILE_BYTES`](crate::MAX_FILE_BYTES) per file are read.
+/// whatever the files hold; at most [`MAX_RECORDS`](crate::MAX_RECORDS) rows of [`MAX_COLUMNS`](crate::MAX_COLUMNS)
+/// columns, [`MAX_LOG_FILES`](crate::MAX_LOG_FILES) files and [`MAX_FILE_BYTES`](crate::MAX_FILE_BYTES) per file are read.
 pub fn read_log(dir: impl AsRef<Path>) -> Result<Log, MetricsError> {
-    let dir = dir.as_ref();
-    let files = data_files::find(dir)?;
-    let logger_info = LoggerInfo::read(dir)?;
-    let mut warnings = Vec::new();
-    let scenario_info = ScenarioInfo::read(dir, &mut warnings)?;
-    if files.is_empty() {
-        return Err(MetricsError::NoDataFiles { path: dir.to_owned() });
-    }
-    let mut rows: Vec<Row> = Vec::new();
-    let mut params = ParamsReader::default();
-    for (file, path) in files.iter().enumerate() {
-        data_file::read(path, logger_info.metrics_columns(), &mut params, |record, line| {
-            if rows.len() == MAX_RECORDS {
-                let (found, limit) = (MAX_RECORDS as u64 + 1, MAX_RECORDS as u64);
-                return Err(MetricsError::TooLarge {
-                    path: dir.to_owned(),
-                    what: "rows or more",
-                    found,
-                    limit,
-                });
-            }
-            rows.push(Row { record, file, line });
-            Ok(())
-        })?;
-    }
-    rows.sort_by_key(|row| (row.record.exp_num, row.record.block_num));
-    check_block_order(&rows, &files)?;
-    warn_of_task_names(&rows, &mut warnings);
-    let records = rows.into_iter().map(|row| row.record).collect();
-    Ok(Log {
-        run_id: run_id(dir),
-        logger_info,
-        scenario_info,
-        records,
-        warnings,
-    })
+    read(dir.as_ref(), Texts::Leave)
+}
+
+/// The same with all columns, so that nothing of a log is lost: those of words that nobody declared are in
+/// [`Rows::text`], too.
+///
+/// # Errors
+/// Those of [`read_log`].
+pub fn read_log_with_texts(dir: impl AsRef<Path>) -> Result<Log, MetricsError> {
+    read(dir.as_ref(), Texts::Keep)
 }
 
 /// Reads the log of a single-task expert, the yardstick of `ste_rel_perf` and `sample_efficiency`.
@@ -128,32 +58,63 @@ pub fn read_ste_log(dir: impl AsRef<Path>) -> Result<SteLog, MetricsError> {
     SteLog::new(read_log(dir)?)
 }
 
-/// A record and where it came from.
-struct Row {
-    record: Record,
-    file: usize,
-    line: u64,
-}
-
-fn check_block_order(rows: &[Row], files: &[std::path::PathBuf]) -> Result<(), MetricsError> {
-    match rows
-        .windows(2)
-        .find(|pair| pair[1].record.block_num < pair[0].record.block_num)
-    {
-        Some(pair) => Err(MetricsError::BlockOrder {
-            path: files[pair[1].file].clone(),
-            line: pair[1].line,
-            found: pair[1].record.block_num,
-            expected: pair[0].record.block_num,
-        }),
-        None => Ok(()),
+fn read(dir: &Path, texts: Texts) -> Result<Log, MetricsError> {
+    let files = data_files::find(dir)?;
+    let logger_info = LoggerInfo::read(dir)?;
+    let mut warnings = Vec::new();
+    let scenario_info = ScenarioInfo::read(dir, &mut warnings)?;
+    if files.is_empty() {
+        return Err(MetricsError::NoDataFiles { path: dir.to_owned() });
     }
+    let mut table = Table::new(dir, logger_info.metrics_columns(), texts);
+    for path in &files {
+        data_file::read(path, logger_info.metrics_columns(), &mut table, &mut Faults::Stop)?;
+    }
+    table.complete()?;
+    let order = table.rows.sort();
+    if let Some(fault) = block_order(&table, order.as_deref(), &files) {
+        return Err(fault);
+    }
+    warn_of_task_names(&table.rows, |warning| warnings.push(warning));
+    Ok(Log {
+        run_id: run_id(dir),
+        logger_info,
+        scenario_info,
+        rows: table.rows,
+        warnings,
+    })
 }
 
-fn warn_of_task_names(rows: &[Row], warnings: &mut Vec<LogWarning>) {
-    let names: IndexSet<&str> = rows.iter().map(|row| row.record.task_name.as_str()).collect();
-    let odd = names.into_iter().filter(|name| !is_conventional_task_name(name));
-    warnings.extend(odd.map(|name| LogWarning::TaskName { found: name.to_owned() }));
+/// The fault of block numbers that fall while experience numbers rise, in a table that was sorted: `order` is where its rows
+/// were before.
+pub(super) fn block_order(table: &Table<'_>, order: Option<&[u32]>, files: &[PathBuf]) -> Option<MetricsError> {
+    let blocks = table.rows.block_nums();
+    let row = (1..blocks.len()).find(|&row| blocks[row] < blocks[row - 1])?;
+    let (file, line) = table.place(order.map_or(row, |order| order[row] as usize));
+    Some(MetricsError::BlockOrder {
+        path: files[file].clone(),
+        line,
+        found: blocks[row],
+        expected: blocks[row - 1],
+    })
+}
+
+/// Warns of each odd name once, in the order of the rows.
+pub(super) fn warn_of_task_names(rows: &Rows, mut warn: impl FnMut(LogWarning)) {
+    let names = rows.task_names();
+    let mut odd: Vec<bool> = names
+        .values()
+        .iter()
+        .map(|name| !is_conventional_task_name(name))
+        .collect();
+    if odd.contains(&true) {
+        for &id in names.ids() {
+            if std::mem::take(&mut odd[id as usize]) {
+                let found = names.values()[id as usize].clone();
+                warn(LogWarning::TaskName { found });
+            }
+        }
+    }
 }
 
 /// The directory's own name; where the path ends in `..` or is `.`, the name it stands for if there is one.

@@ -3,12 +3,14 @@
 //! Not here: writing, see `writer`.
 
 use std::fs::{self, OpenOptions};
-use std::io::{Read, Seek, SeekFrom};
+use std::io::BufReader;
 use std::path::Path;
 
-use super::cell::ParamsReader;
+use super::faults::Faults;
 use super::logger_info::LoggerInfo;
-use super::record::Record;
+use super::rows::Rows;
+use super::table::{Table, Texts};
+use super::whole_rows;
 use super::writer::{self, LogWriter, Progress};
 use super::{begun, columns, data_file, data_files};
 use crate::MetricsError;
@@ -30,39 +32,34 @@ impl LogWriter {
         let files = data_files::find(dir)?;
         let logger_info = LoggerInfo::read(dir)?;
         begun::remove_leftovers(dir)?;
-        let mut params = ParamsReader::default();
+        let mut table = Table::new(dir, logger_info.metrics_columns(), Texts::Leave);
         let mut columns: Option<Vec<String>> = None;
-        let mut latest: Vec<Record> = Vec::new();
         for path in files {
-            if !remove_torn_line(&path).map_err(MetricsError::io(&path, "remove a torn last line of this file"))? {
+            if !remove_torn_row(&path)? {
                 continue;
             }
-            let header = data_file::read(&path, logger_info.metrics_columns(), &mut params, |record, _| {
-                keep_latest(&mut latest, record);
-                Ok(())
-            })?;
+            let header = data_file::read(&path, logger_info.metrics_columns(), &mut table, &mut Faults::Stop)?;
             let metrics = columns.get_or_insert_with(|| metrics_of(&header));
             check_header(&path, &header, metrics)?;
         }
         let mut progress = Progress::default();
-        latest.sort_by_key(|record| record.block_num);
-        for record in &latest {
-            progress.advance(record, columns.clone().unwrap_or_default());
+        for row in latest(&table.rows) {
+            let record = table.rows.get(row).expect("it is one of the rows").to_record();
+            progress.advance(&record, columns.clone().unwrap_or_default());
         }
         progress.columns = columns;
         Ok(Self::with_progress(dir, &logger_info, progress, lock))
     }
 }
 
-/// Keeps the records of the largest experience number, of which there are few.
-fn keep_latest(latest: &mut Vec<Record>, record: Record) {
-    let last_exp_num = latest.iter().map(|kept| kept.exp_num).max();
-    if last_exp_num.is_none_or(|last| record.exp_num > last) {
-        latest.clear();
-    }
-    if last_exp_num.is_none_or(|last| record.exp_num >= last) {
-        latest.push(record);
-    }
+/// The rows of the largest experience number, of which there are few, by block number.
+fn latest(rows: &Rows) -> Vec<usize> {
+    let last = rows.exp_nums().iter().max();
+    let mut latest: Vec<usize> = (0..rows.len())
+        .filter(|&row| Some(&rows.exp_nums()[row]) == last)
+        .collect();
+    latest.sort_by_key(|&row| rows.block_nums()[row]);
+    latest
 }
 
 /// The columns of a header that are not standard ones.
@@ -89,23 +86,23 @@ fn check_header(path: &Path, header: &[String], metrics: &[String]) -> Result<()
     })
 }
 
-/// Cuts a file after its last line end. Returns whether anything is left; a file without a line is removed.
-fn remove_torn_line(path: &Path) -> std::io::Result<bool> {
-    let mut file = OpenOptions::new().read(true).write(true).open(path)?;
-    let mut end = file.metadata()?.len();
-    let mut piece = [0; 4096];
-    while end > 0 {
-        let start = end.saturating_sub(piece.len() as u64);
-        let bytes = &mut piece[..(end - start) as usize];
-        file.seek(SeekFrom::Start(start))?;
-        file.read_exact(bytes)?;
-        if let Some(place) = bytes.iter().rposition(|byte| *byte == b'\n') {
-            file.set_len(start + place as u64 + 1)?;
-            return Ok(true);
-        }
-        end = start;
+/// Cuts a file after its last whole row. Returns whether anything is left; a file without a row, not even a header, is removed.
+///
+/// What is cut off is a part of one row: where a quote was left open and swallowed other rows, nothing is touched.
+fn remove_torn_row(path: &Path) -> Result<bool, MetricsError> {
+    let failed = || MetricsError::io(path, "remove a torn last line of this file");
+    let file = OpenOptions::new().read(true).write(true).open(path).map_err(failed())?;
+    let found = whole_rows::measure(BufReader::with_capacity(1 << 16, &file)).map_err(failed())?;
+    if found.swallowed {
+        return Err(found.fault(path, 1));
     }
-    drop(file);
-    fs::remove_file(path)?;
-    Ok(false)
+    if found.bytes == 0 {
+        drop(file);
+        fs::remove_file(path).map_err(failed())?;
+        return Ok(false);
+    }
+    if file.metadata().map_err(failed())?.len() > found.bytes {
+        file.set_len(found.bytes).map_err(failed())?;
+    }
+    Ok(true)
 }

@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::json_file;
-use super::reader::LogWarning;
+use super::warning::LogWarning;
 use crate::MetricsError;
 use crate::choice::choice;
 

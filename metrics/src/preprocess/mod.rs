@@ -1,12 +1,15 @@
-//! What is done to performances before they are judged: smoothing, clamping of outliers, normalisation, in that order.
+//! What is done to performances before they are judged: noise if asked for, smoothing, clamping of outliers,
+//! normalisation, in that order.
 //!
 //! Not here: the metrics.
 
 mod clamping;
+mod noise;
 mod normalization;
 mod smoothing;
 
 pub(crate) use clamping::clamp;
+pub(crate) use noise::disturb;
 pub(crate) use normalization::normalize;
 pub(crate) use smoothing::{smooth, smoothed};
 

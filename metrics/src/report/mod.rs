@@ -3,14 +3,16 @@
 //! Not here: computing them (`score`), and printing or drawing them (the command's).
 
 mod files;
+mod headline;
 mod lifetime_metrics;
 mod regime_table;
+mod repeats;
 mod rounding;
-mod summary;
-mod task_metrics;
+mod values;
 
 pub use files::{SavedFiles, Settings};
-pub use lifetime_metrics::{LifetimeMetrics, LifetimeScores};
+pub use headline::{Direction, Headline, SummaryRow};
+pub use lifetime_metrics::LifetimeMetrics;
 pub use regime_table::RegimeMetrics;
-pub use summary::{Direction, SummaryRow};
-pub use task_metrics::{PairValues, TaskMetrics};
+pub use repeats::{ComparedMetric, RepeatedMetric, compare_agents, over_repeats};
+pub use values::{PairValues, Value, Values};

@@ -2,14 +2,29 @@
 //!
 //! Not here: how they are computed, see `score`.
 
-use super::LifetimeMetrics;
+use indexmap::IndexSet;
+
+use super::{LifetimeMetrics, Value, Values};
 use crate::log::line;
-use crate::{BlockSubtype, BlockType};
+use crate::{BlockSubtype, BlockType, Regime};
 
 /// Characters of the task parameters that the table shows.
 const SHOWN_PARAMS: usize = 25;
 
-/// Values of one regime, in normalised units.
+/// Columns that say which regime it is.
+const IDENTITY: [&str; 6] = [
+    "block_num",
+    "block_type",
+    "block_subtype",
+    "task_name",
+    "regime_num",
+    PARAMS,
+];
+
+/// The one of them that is not always there.
+const PARAMS: &str = "task_params";
+
+/// What a regime is, and its values, in normalised units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegimeMetrics {
     /// Number of the block, as logged.
@@ -24,64 +39,72 @@ pub struct RegimeMetrics {
     pub regime_num: usize,
     /// Parameters of its first row, as JSON.
     pub task_params: String,
-    /// Best smoothed performance.
-    pub saturation: f64,
-    /// Experiences before the first time it is reached.
-    pub exp_to_sat: usize,
-    /// Mean performance at the end: last tenth of a learning regime, all of an evaluation.
-    pub term_perf: f64,
-    /// Experiences before the middle of the end.
-    pub exp_to_term_perf: usize,
-    /// Mean performance; `None` for wake evaluations of a lifetime that sleeps.
-    pub avg_perf: Option<f64>,
+    /// The values that the metrics give for it, by name.
+    pub values: Values,
 }
 
 impl LifetimeMetrics {
-    /// The regimes as tab-separated text with a header.
+    /// The regimes as tab-separated text with a header: what a regime is, its values, the log it is from.
     ///
     /// The column `task_params` is there only where regimes differ in them; it holds the first 25 characters.
     pub fn regime_tsv(&self) -> String {
-        let params_vary = self
-            .regimes
-            .windows(2)
-            .any(|pair| pair[0].task_params != pair[1].task_params);
-        let keep = |cells: Vec<(&'static str, String)>| -> Vec<(&'static str, String)> {
-            cells
-                .into_iter()
-                .filter(|(column, _)| params_vary || *column != "task_params")
-                .collect()
-        };
-        let rows: Vec<_> = self
-            .regimes
-            .iter()
-            .map(|regime| keep(regime.cells(&self.run_id)))
+        let params_vary = (self.regimes.windows(2)).any(|pair| pair[0].task_params != pair[1].task_params);
+        let names: IndexSet<&str> = (self.regimes.iter())
+            .flat_map(|regime| regime.values.iter().map(|(name, _)| name))
             .collect();
-        let header = rows.first().map(|cells| line(cells.iter().map(|(column, _)| *column)));
-        let lines = rows.iter().map(|cells| line(cells.iter().map(|(_, text)| text)));
-        let bytes: Vec<u8> = header.into_iter().chain(lines).flatten().collect();
-        String::from_utf8(bytes).expect("cells are text, and quoting adds only quotes")
+        let is_shown = |column: &str| params_vary || column != PARAMS;
+        let identity = IDENTITY.into_iter().filter(|column| is_shown(column));
+        let mut text = line(identity.chain(names.iter().copied()).chain(["run_id"]));
+        for regime in &self.regimes {
+            let identity = IDENTITY
+                .into_iter()
+                .zip(regime.identity())
+                .filter(|(column, _)| is_shown(column));
+            let values = names
+                .iter()
+                .map(|name| regime.values.get(name).map(cell).unwrap_or_default());
+            text.extend(line(
+                identity
+                    .map(|(_, text)| text)
+                    .chain(values)
+                    .chain([self.run_id.clone()]),
+            ));
+        }
+        String::from_utf8(text).expect("cells are text, and quoting adds only quotes")
     }
 }
 
 impl RegimeMetrics {
-    fn cells(&self, run_id: &str) -> Vec<(&'static str, String)> {
-        vec![
-            ("block_num", self.block_num.to_string()),
-            ("block_type", self.block_type.to_string()),
-            ("block_subtype", self.block_subtype.to_string()),
-            ("task_name", self.task_name.clone()),
-            ("regime_num", self.regime_num.to_string()),
-            ("task_params", shortened(&self.task_params)),
-            ("saturation", format!("{:?}", self.saturation)),
-            ("exp_to_sat", self.exp_to_sat.to_string()),
-            ("term_perf", format!("{:?}", self.term_perf)),
-            ("exp_to_term_perf", self.exp_to_term_perf.to_string()),
-            (
-                "avg_perf",
-                self.avg_perf.map(|value| format!("{value:?}")).unwrap_or_default(),
-            ),
-            ("run_id", run_id.to_owned()),
+    pub(crate) fn new(regime: &Regime, values: Values) -> Self {
+        Self {
+            block_num: regime.block_num,
+            block_type: regime.block_type,
+            block_subtype: regime.block_subtype,
+            task_name: regime.task_name.clone(),
+            regime_num: regime.regime_num,
+            task_params: crate::log::spaced_json(&regime.task_params),
+            values,
+        }
+    }
+
+    fn identity(&self) -> [String; IDENTITY.len()] {
+        [
+            self.block_num.to_string(),
+            self.block_type.to_string(),
+            self.block_subtype.to_string(),
+            self.task_name.clone(),
+            self.regime_num.to_string(),
+            shortened(&self.task_params),
         ]
+    }
+}
+
+/// A value in a table: numbers as they are, anything else as JSON.
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Count(count) => count.to_string(),
+        Value::Number(number) => format!("{number:?}"),
+        other => serde_json::to_string(other).expect("numbers and text always become JSON"),
     }
 }
 

@@ -1,22 +1,7 @@
 //! QUIRK: the reference's file has its lifetime values rounded to ten decimals. Values in memory are not rounded.
 
-use serde::Serializer;
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands fields over by reference")]
-pub(super) fn ten_decimals<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_f64(rounded(*value))
-}
-
-#[expect(clippy::ref_option, reason = "serde hands fields over by reference")]
-pub(super) fn ten_decimals_if_any<S: Serializer>(value: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
-    match value {
-        Some(value) => ten_decimals(value, serializer),
-        None => serializer.serialize_none(),
-    }
-}
-
 /// Through decimal text, because a product with 1e10 would lose the last digits of large values.
-fn rounded(value: f64) -> f64 {
+pub(super) fn ten_decimals(value: f64) -> f64 {
     format!("{value:.10}").parse().unwrap_or(value)
 }
 
@@ -26,7 +11,7 @@ mod tests {
 
     #[test]
     fn ten_decimals_are_kept() {
-        let check = |value: f64, expected: f64| assert_eq!(rounded(value).to_bits(), expected.to_bits());
+        let check = |value: f64, expected: f64| assert_eq!(ten_decimals(value).to_bits(), expected.to_bits());
         check(0.123_456_789_012_3, 0.123_456_789_0);
         check(-2.0, -2.0);
         check(1e90, 1e90);

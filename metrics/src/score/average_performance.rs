@@ -2,40 +2,53 @@
 //!
 //! Not here: how evaluations relate to learning, see `performance_maintenance` and `transfer`.
 
-use crate::BlockType;
-use crate::lifetime::{Lifetime, Regime};
+use super::{Assessment, Metric};
+use crate::report::{Direction, Headline};
 use crate::statistics::mean;
+use crate::{BlockType, MetricsError};
 
-/// Averages of a task's regimes, in order.
-pub(super) struct Averages {
-    pub(super) train: Vec<f64>,
-    pub(super) eval: Vec<f64>,
-}
+/// `avg_perf` of every regime; `avg_train_perf` and `avg_eval_perf` of every task, the means of its regimes' means,
+/// each counting once however long it is.
+///
+/// Wake evaluations of a lifetime that sleeps have none.
+pub(super) struct AveragePerformance;
 
-/// Mean over a regime's rows; `None` for wake evaluations of a lifetime that sleeps.
-pub(super) fn of(lifetime: &Lifetime, regime: &Regime) -> Option<f64> {
-    if lifetime.is_assessed(regime) {
-        mean(&regime.performance)
-    } else {
-        None
+impl Metric for AveragePerformance {
+    fn headlines(&self) -> Vec<Headline> {
+        vec![
+            Headline::new(
+                "avg_train_perf",
+                "mean performance while learning, where 1 is the worst and 101 the best seen in each task",
+                Direction::Higher,
+            ),
+            Headline::new(
+                "avg_eval_perf",
+                "mean performance in evaluations, where 1 is the worst and 101 the best seen in each task",
+                Direction::Higher,
+            ),
+        ]
     }
-}
 
-/// Averages of a task's regimes by block type.
-pub(super) fn of_task(lifetime: &Lifetime, task: &str) -> Averages {
-    let of_type = |block_type: BlockType| {
-        let regimes = lifetime
-            .regimes_of(task)
-            .filter(|regime| regime.block_type == block_type);
-        regimes.filter_map(|regime| of(lifetime, regime)).collect()
-    };
-    Averages {
-        train: of_type(BlockType::Train),
-        eval: of_type(BlockType::Test),
+    fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
+        let lifetime = assessment.lifetime();
+        for regime in lifetime.regimes().iter().filter(|regime| lifetime.is_assessed(regime)) {
+            assessment.set_regime(regime.regime_num, "avg_perf", mean(&regime.performance));
+        }
+        for task in lifetime.tasks() {
+            for (name, list, block_type) in [
+                ("avg_train_perf", "avg_train_perf_vals", BlockType::Train),
+                ("avg_eval_perf", "avg_eval_perf_vals", BlockType::Test),
+            ] {
+                let regimes = lifetime
+                    .regimes_of(task)
+                    .filter(|regime| regime.block_type == block_type);
+                let averages: Vec<f64> = regimes
+                    .filter_map(|regime| assessment.regime(regime.regime_num)?.number("avg_perf"))
+                    .collect();
+                assessment.set_task(task, name, mean(&averages));
+                assessment.set_task(task, list, Some(averages));
+            }
+        }
+        Ok(())
     }
-}
-
-/// Mean of the regimes' means, each counting once however long it is.
-pub(super) fn mean_of_regimes(averages: &[f64]) -> Option<f64> {
-    mean(averages)
 }

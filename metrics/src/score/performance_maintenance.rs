@@ -2,32 +2,72 @@
 //!
 //! Not here: what learning one task does to another, see `transfer`.
 
-use crate::BlockType;
-use crate::lifetime::Lifetime;
-use crate::report::RegimeMetrics;
+use super::{Assessment, Metric};
+use crate::report::{Direction, Headline};
 use crate::statistics::mean;
+use crate::{BlockType, MetricsError};
+
+/// `perf_maintenance_mrlep` and `perf_maintenance_mrtlp` of every task, as far as they are asked for, and the
+/// differences they are the means of, `maintenance_val_…`.
+pub(super) struct PerformanceMaintenance;
+
+impl Metric for PerformanceMaintenance {
+    fn headlines(&self) -> Vec<Headline> {
+        vec![
+            Headline::new(
+                "perf_maintenance_mrlep",
+                "is a learnt task kept? points gained or lost since the evaluation right after learning it",
+                Direction::HigherThan(0.0),
+            ),
+            Headline::new(
+                "perf_maintenance_mrtlp",
+                "is a learnt task kept? points gained or lost since the end of learning it",
+                Direction::HigherThan(0.0),
+            ),
+        ]
+    }
+
+    fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
+        let method = assessment.options().maintenance_method;
+        for task in assessment.lifetime().tasks() {
+            let Differences { mrlep, mrtlp } = differences(assessment, task);
+            if method.has_mrlep() {
+                assessment.set_task(task, "perf_maintenance_mrlep", mean(&mrlep.concat()));
+                assessment.set_task(task, "maintenance_val_mrlep", Some(mrlep));
+            }
+            if method.has_mrtlp() {
+                assessment.set_task(task, "perf_maintenance_mrtlp", mean(&mrtlp.concat()));
+                assessment.set_task(task, "maintenance_val_mrtlp", Some(mrtlp));
+            }
+        }
+        Ok(())
+    }
+}
 
 /// Differences of one task, in runs of consecutive regimes of the task.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Maintenance {
+struct Differences {
     /// Against the most recent reference evaluation.
-    pub(super) mrlep: Vec<Vec<f64>>,
+    mrlep: Vec<Vec<f64>>,
     /// Against the most recent learning regime.
-    pub(super) mrtlp: Vec<Vec<f64>>,
+    mrtlp: Vec<Vec<f64>>,
 }
 
 /// Compares each evaluation of a task with what it was right after learning.
 ///
 /// The first evaluation after each learning regime is its reference. Every later evaluation that is no reference
 /// gives one difference of terminal performances; runs of such evaluations end where the task is learnt again.
-pub(super) fn of_task(lifetime: &Lifetime, regimes: &[RegimeMetrics], task: &str) -> Maintenance {
-    let mut found = Maintenance::default();
+fn differences(assessment: &Assessment<'_>, task: &str) -> Differences {
+    let lifetime = assessment.lifetime();
+    let mut found = Differences::default();
     // Terminal performance of the most recent learning regime; whether its reference is still to come.
     let (mut learnt, mut awaits_reference) = (None, false);
     let mut reference: Option<f64> = None;
     let mut continues_run = false;
     for regime in lifetime.regimes_of(task) {
-        let term_perf = regimes[regime.regime_num].term_perf;
+        let Some(term_perf) = assessment.term_perf(regime.regime_num) else {
+            continue;
+        };
         let contributes = match regime.block_type {
             BlockType::Train => {
                 (learnt, awaits_reference) = (Some(term_perf), true);
@@ -47,11 +87,6 @@ pub(super) fn of_task(lifetime: &Lifetime, regimes: &[RegimeMetrics], task: &str
         continues_run = contributes.is_some();
     }
     found
-}
-
-/// Mean over all differences; `None` where there is none.
-pub(super) fn mean_of_runs(runs: &[Vec<f64>]) -> Option<f64> {
-    mean(&runs.concat())
 }
 
 fn push(runs: &mut Vec<Vec<f64>>, difference: f64, continues_run: bool) {

@@ -2,35 +2,69 @@
 //!
 //! Not here: the sum of what it gathers on the way, see `ste_relative_performance`.
 
-use super::saturation::{self, Saturation};
+use super::saturation::{Peak, peak};
 use super::ste_relative_performance::average_over_time;
-use crate::SteAveragingMethod;
-use crate::lifetime::{Lifetime, SteRun, mean_per_experience};
-use crate::statistics::trend_falls;
+use super::{Assessment, Metric};
+use crate::lifetime::{SteRun, mean_per_experience};
+use crate::report::{Direction, Headline};
+use crate::statistics::{mean, trend_falls};
+use crate::{MetricsError, SteAveragingMethod};
 
 /// An agent that does not reach this part of the expert's saturation has not learnt the task: its efficiency is 0.
 const LEAST_SATURATION: f64 = 0.2;
 
+/// `sample_efficiency` of every task, the mean of its `sample_efficiency_vals`, and what these are made of.
+pub(super) struct SampleEfficiency;
+
+const NAME: &str = "sample_efficiency";
+
+impl Metric for SampleEfficiency {
+    fn headlines(&self) -> Vec<Headline> {
+        vec![Headline::new(
+            NAME,
+            "how good and how quickly, over an expert trained on the task alone",
+            Direction::HigherThan(1.0),
+        )]
+    }
+
+    fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
+        for task in assessment.lifetime().tasks() {
+            let found = of_task(assessment, task);
+            assessment.set_task(task, NAME, mean(&found.sample_efficiency_vals));
+            assessment.set_task(task, "ste_saturation_vals", Some(found.ste_saturation_vals));
+            assessment.set_task(task, "ste_exp_to_sat_vals", Some(found.ste_exp_to_sat_vals));
+            assessment.set_task(task, "se_saturation_vals", Some(found.se_saturation_vals));
+            assessment.set_task(task, "se_exp_to_sat_vals", Some(found.se_exp_to_sat_vals));
+            assessment.set_task(task, "sample_efficiency_vals", Some(found.sample_efficiency_vals));
+            assessment.set_task(task, "se_task_saturation", found.task_saturation);
+            assessment.set_task(task, "se_task_exp_to_sat", found.task_exp_to_sat);
+        }
+        Ok(())
+    }
+}
+
 /// Sample efficiency of one task and what it was made of; one entry per run of the expert.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Efficiency {
-    pub(super) task_saturation: Option<f64>,
-    pub(super) task_exp_to_sat: Option<f64>,
-    pub(super) ste_saturation_vals: Vec<f64>,
-    pub(super) ste_exp_to_sat_vals: Vec<usize>,
-    pub(super) se_saturation_vals: Vec<f64>,
-    pub(super) se_exp_to_sat_vals: Vec<f64>,
-    pub(super) sample_efficiency_vals: Vec<f64>,
+struct Efficiency {
+    task_saturation: Option<f64>,
+    task_exp_to_sat: Option<f64>,
+    ste_saturation_vals: Vec<f64>,
+    ste_exp_to_sat_vals: Vec<u64>,
+    se_saturation_vals: Vec<f64>,
+    se_exp_to_sat_vals: Vec<f64>,
+    sample_efficiency_vals: Vec<f64>,
 }
 
 /// (task saturation / expert saturation) · (expert's experiences to it / task's experiences to it).
 ///
 /// 0 where the task's saturation is below a fifth of the expert's, or its least-squares line falls. Nothing without
 /// experts or learning, and where the task, or for one run the expert, is at its best from the start.
-pub(super) fn of_task(lifetime: &Lifetime, task: &str, averaging: SteAveragingMethod) -> Efficiency {
+fn of_task(assessment: &Assessment<'_>, task: &str) -> Efficiency {
+    let (lifetime, options) = (assessment.lifetime(), assessment.options());
     let (exp_nums, learning) = lifetime.training_of(task);
     let experts = lifetime.experts_of(task);
-    let saturated = saturation::of(&mean_per_experience(&exp_nums, &learning));
+    let peak_of = |values: &[f64]| peak(values, options.definitions);
+    let saturated = peak_of(&mean_per_experience(&exp_nums, &learning));
     if experts.is_empty() || saturated.experiences == 0 {
         return Efficiency::default();
     }
@@ -41,30 +75,26 @@ pub(super) fn of_task(lifetime: &Lifetime, task: &str, averaging: SteAveragingMe
         task_exp_to_sat: Some(saturated.experiences as f64),
         ..Efficiency::default()
     };
-    for expert in expert_saturations(experts, averaging) {
-        efficiency.compare(saturated, expert, falls);
+    for performances in expert_performances(experts, options.ste_averaging_method) {
+        efficiency.compare(saturated, peak_of(&performances), falls);
     }
     efficiency
 }
 
-fn expert_saturations(experts: &[SteRun], averaging: SteAveragingMethod) -> Vec<Saturation> {
+/// One performance per experience of each run, or of their average.
+fn expert_performances(experts: &[SteRun], averaging: SteAveragingMethod) -> Vec<Vec<f64>> {
+    let per_experience = |run: &SteRun| {
+        let (exp_nums, performance): (Vec<u64>, Vec<f64>) = run.training().unzip();
+        mean_per_experience(&exp_nums, &performance)
+    };
     match averaging {
-        SteAveragingMethod::Time => average_over_time(experts)
-            .iter()
-            .map(|run| saturation::of(run))
-            .collect(),
-        SteAveragingMethod::Metrics => {
-            let per_experience = |run: &SteRun| {
-                let (exp_nums, performance): (Vec<u64>, Vec<f64>) = run.training().unzip();
-                saturation::of(&mean_per_experience(&exp_nums, &performance))
-            };
-            experts.iter().map(per_experience).collect()
-        }
+        SteAveragingMethod::Time => average_over_time(experts).into_iter().collect(),
+        SteAveragingMethod::Metrics => experts.iter().map(per_experience).collect(),
     }
 }
 
 impl Efficiency {
-    fn compare(&mut self, task: Saturation, expert: Saturation, falls: bool) {
+    fn compare(&mut self, task: Peak, expert: Peak, falls: bool) {
         let height = task.value / expert.value;
         if expert.experiences == 0 || !height.is_finite() {
             return;
@@ -72,7 +102,7 @@ impl Efficiency {
         let speed = expert.experiences as f64 / task.experiences as f64;
         let unlearnt = falls || task.value < expert.value * LEAST_SATURATION;
         self.ste_saturation_vals.push(expert.value);
-        self.ste_exp_to_sat_vals.push(expert.experiences);
+        self.ste_exp_to_sat_vals.push(expert.experiences as u64);
         self.se_saturation_vals.push(height);
         self.se_exp_to_sat_vals.push(speed);
         self.sample_efficiency_vals
@@ -88,8 +118,8 @@ mod tests {
     fn height_and_speed_multiply_unless_nothing_was_learnt() {
         let check = |task: (f64, usize), expert: (f64, usize), falls: bool, expected: &[f64]| {
             let mut efficiency = Efficiency::default();
-            let saturation = |(value, experiences)| Saturation { value, experiences };
-            efficiency.compare(saturation(task), saturation(expert), falls);
+            let peak = |(value, experiences)| Peak { value, experiences };
+            efficiency.compare(peak(task), peak(expert), falls);
             assert_eq!(efficiency.sample_efficiency_vals, expected);
         };
         check((50.0, 20), (100.0, 10), false, &[0.25]);

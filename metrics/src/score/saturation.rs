@@ -2,34 +2,60 @@
 //!
 //! Not here: performance at the end, see `terminal_performance`.
 
-use crate::SmoothingMethod;
+use super::{Assessment, Metric};
 use crate::preprocess::smoothed;
+use crate::report::Headline;
+use crate::{Definitions, MetricsError, SmoothingMethod};
+
+/// `saturation` and `exp_to_sat` of every regime.
+pub(super) struct Saturation;
+
+impl Metric for Saturation {
+    fn headlines(&self) -> Vec<Headline> {
+        Vec::new()
+    }
+
+    fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
+        for regime in assessment.lifetime().regimes() {
+            let peak = peak(&regime.per_experience(), assessment.options().definitions);
+            assessment.set_regime(regime.regime_num, "saturation", Some(peak.value));
+            assessment.set_regime(regime.regime_num, "exp_to_sat", Some(peak.experiences));
+        }
+        Ok(())
+    }
+}
 
 /// Best performance and where it is first reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Saturation {
+pub(super) struct Peak {
     /// Largest smoothed performance.
     pub(super) value: f64,
     /// Experiences before it, from 0.
     pub(super) experiences: usize,
 }
 
-/// Saturation of one performance per experience; of no experience at all, 0 after 0.
+/// Peak of one performance per experience; of no experience at all, 0 after 0.
 ///
 /// QUIRK: the data are smoothed once more with a flat window of default length, on top of the smoothing they had as
-/// a step of preprocessing, and whatever smoothing was chosen there.
+/// a step of preprocessing, and whatever smoothing was chosen there. Not so under the published definitions.
 ///
 /// Additions run in a fixed order, so the result is the same on every machine. Where several windows would tie in
 /// exact arithmetic, rounding says which is the first maximum, and the reference's rounding may say another.
-pub(super) fn of(per_experience: &[f64]) -> Saturation {
-    let smooth = smoothed(per_experience, None, SmoothingMethod::Flat);
-    let first = Saturation {
-        value: smooth.first().copied().unwrap_or(0.0),
+pub(super) fn peak(per_experience: &[f64], definitions: Definitions) -> Peak {
+    match definitions {
+        Definitions::Reference => first_maximum(&smoothed(per_experience, None, SmoothingMethod::Flat)),
+        Definitions::Published => first_maximum(per_experience),
+    }
+}
+
+fn first_maximum(values: &[f64]) -> Peak {
+    let first = Peak {
+        value: values.first().copied().unwrap_or(0.0),
         experiences: 0,
     };
-    smooth.iter().enumerate().fold(first, |best, (experiences, &value)| {
+    values.iter().enumerate().fold(first, |best, (experiences, &value)| {
         if value > best.value {
-            Saturation { value, experiences }
+            Peak { value, experiences }
         } else {
             best
         }
@@ -43,14 +69,21 @@ mod tests {
     #[test]
     fn the_first_maximum_counts() {
         let check = |values: &[f64], value: f64, experiences: usize| {
-            assert_eq!(of(values), Saturation { value, experiences });
+            assert_eq!(peak(values, Definitions::Reference), Peak { value, experiences });
         };
         check(&[4.0], 4.0, 0);
         check(&[1.0, 3.0, 2.0, 3.0], 3.0, 1);
         check(&[-2.0, -1.0], -1.0, 1);
-        // Fifteen values are smoothed with a window of three.
+    }
+
+    #[test]
+    fn fifteen_values_are_smoothed_with_a_window_of_three_but_not_by_the_published_definition() {
         let mut late_peak = [0.0; 15];
         late_peak[7] = 3.0;
-        check(&late_peak, 1.0, 7);
+        let check = |definitions, value, experiences| {
+            assert_eq!(peak(&late_peak, definitions), Peak { value, experiences });
+        };
+        check(Definitions::Reference, 1.0, 7);
+        check(Definitions::Published, 3.0, 7);
     }
 }

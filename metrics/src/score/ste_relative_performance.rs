@@ -3,14 +3,42 @@
 //!
 //! Not here: how fast either learns, see `sample_efficiency`.
 
-use crate::SteAveragingMethod;
+use super::{Assessment, Metric};
 use crate::lifetime::{Lifetime, SteRun};
+use crate::report::{Direction, Headline};
+use crate::statistics::mean;
+use crate::{MetricsError, SteAveragingMethod};
+
+/// `ste_rel_perf` of every task, the mean of its `ste_rel_perf_vals`.
+pub(super) struct SteRelativePerformance;
+
+const NAME: &str = "ste_rel_perf";
+
+impl Metric for SteRelativePerformance {
+    fn headlines(&self) -> Vec<Headline> {
+        vec![Headline::new(
+            NAME,
+            "performance gathered while learning, over that of an expert trained on the task alone",
+            Direction::HigherThan(1.0),
+        )]
+    }
+
+    fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
+        let lifetime = assessment.lifetime();
+        for task in lifetime.tasks() {
+            let values = of_task(lifetime, task, assessment.options().ste_averaging_method);
+            assessment.set_task(task, NAME, mean(&values));
+            assessment.set_task(task, "ste_rel_perf_vals", Some(values));
+        }
+        Ok(())
+    }
+}
 
 /// One value per run of the task's expert (`metrics`), or one against their average (`time`).
 ///
 /// Sum of the first n performances of the task's learning, over that of the expert's, n being the shorter length.
 /// Empty without experts or without learning; runs that add up to 0 are left out.
-pub(super) fn of_task(lifetime: &Lifetime, task: &str, averaging: SteAveragingMethod) -> Vec<f64> {
+fn of_task(lifetime: &Lifetime, task: &str, averaging: SteAveragingMethod) -> Vec<f64> {
     let (_, learning) = lifetime.training_of(task);
     if learning.is_empty() {
         return Vec::new();

@@ -6,36 +6,73 @@ use std::collections::BTreeMap;
 
 use indexmap::{IndexMap, IndexSet};
 
+use super::{Assessment, Metric};
 use crate::lifetime::Lifetime;
-use crate::report::{PairValues, RegimeMetrics};
-use crate::{BlockType, TransferMethod};
+use crate::report::{Direction, Headline, PairValues};
+use crate::{BlockType, Definitions, MetricsError};
 
-/// Transfers by direction and method; `None` for a method that was not asked for.
-pub(super) struct Transfers {
-    pub(super) forward_ratio: Option<Pairs>,
-    pub(super) forward_contrast: Option<Pairs>,
-    pub(super) backward_ratio: Option<Pairs>,
-    pub(super) backward_contrast: Option<Pairs>,
+/// `forward_transfer_…` and `backward_transfer_…` of every trained task, by ratio and contrast as far as they are asked
+/// for.
+///
+/// QUIRK: for the lifetime's value, the first value of every pair of tasks counts, however often the pair met.
+pub(super) struct Transfer;
+
+impl Metric for Transfer {
+    fn headlines(&self) -> Vec<Headline> {
+        vec![
+            Headline::new(
+                "forward_transfer_ratio",
+                "does learning one task help others not learnt yet? performance after over before",
+                Direction::HigherThan(1.0),
+            ),
+            Headline::new(
+                "backward_transfer_ratio",
+                "does learning one task help others learnt before? performance after over before",
+                Direction::HigherThan(1.0),
+            ),
+            Headline::new(
+                "forward_transfer_contrast",
+                "does learning one task help others not learnt yet? change over sum, from -1 to 1",
+                Direction::HigherThan(0.0),
+            ),
+            Headline::new(
+                "backward_transfer_contrast",
+                "does learning one task help others learnt before? change over sum, from -1 to 1",
+                Direction::HigherThan(0.0),
+            ),
+        ]
+    }
+
+    fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
+        let method = assessment.options().transfer_method;
+        let (forward, backward) = gaps(assessment);
+        for (direction, gaps) in [("forward", &forward), ("backward", &backward)] {
+            for (measure, is_asked_for, compare) in [
+                ("ratio", method.has_ratio(), ratio as fn(&Gap<'_>) -> Option<f64>),
+                ("contrast", method.has_contrast(), contrast),
+            ] {
+                if is_asked_for {
+                    set(
+                        assessment,
+                        &format!("{direction}_transfer_{measure}"),
+                        &pairs(gaps, compare),
+                    );
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Values from a trained task to another: `[trained][other]`, in order of the later evaluation.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Pairs(IndexMap<String, PairValues>);
+type Pairs<'a> = IndexMap<&'a str, PairValues>;
 
-impl Pairs {
-    /// The values from one trained task.
-    pub(super) fn of_trained(&self, trained: &str) -> PairValues {
-        self.0.get(trained).cloned().unwrap_or_default()
+fn set(assessment: &mut Assessment<'_>, name: &str, pairs: &Pairs<'_>) {
+    for task in assessment.lifetime().tasks() {
+        assessment.set_task(task, name, Some(pairs.get(task.as_str()).cloned().unwrap_or_default()));
     }
-
-    /// The first value of every pair.
-    pub(super) fn first_values(&self) -> Vec<f64> {
-        self.0
-            .values()
-            .flat_map(IndexMap::values)
-            .filter_map(|values| values.first().copied())
-            .collect()
-    }
+    let first_values = (pairs.values().flat_map(IndexMap::values)).filter_map(|values| values.first().copied());
+    assessment.set_lifetime(name, assessment.aggregate(first_values.collect()));
 }
 
 /// Two consecutive evaluations of a task between which another was learnt.
@@ -46,44 +83,44 @@ struct Gap<'a> {
     after: f64,
 }
 
-/// Gaps by the regime number of their later evaluation.
-type Gaps<'a> = BTreeMap<usize, Gap<'a>>;
+/// Gaps by the regime number of their later evaluation, and by the trained task where several may share one.
+type Gaps<'a> = BTreeMap<(usize, usize), Gap<'a>>;
 
-/// All transfers of a lifetime.
+/// All gaps of a lifetime, forward and backward.
 ///
 /// QUIRK: each later evaluation holds one value per direction. Where several tasks were learnt since the evaluation
 /// before, all of them had a part in it, but the last pair in permutation order gets it: tasks in the order in which
-/// they first appear among the assessed regimes.
-pub(super) fn transfers(lifetime: &Lifetime, regimes: &[RegimeMetrics], method: TransferMethod) -> Transfers {
-    let places = Places::of(lifetime);
+/// they first appear among the assessed regimes. Under the published definitions each of them gets it.
+fn gaps<'a>(assessment: &Assessment<'a>) -> (Gaps<'a>, Gaps<'a>) {
+    let places = Places::of(assessment.lifetime());
     let (mut forward, mut backward) = (Gaps::new(), Gaps::new());
-    for (trained, learning) in places.trained() {
+    for (index, (trained, learning)) in places.trained().enumerate() {
+        let who = match assessment.options().definitions {
+            Definitions::Reference => 0,
+            Definitions::Published => index,
+        };
         for other in places.tasks.keys().copied().filter(|other| *other != trained) {
             let (evaluated, first_learnt) = places.evaluated_and_first_learnt(other);
             for pair in evaluated.windows(2) {
-                let term_perf = |regime_num: usize| regimes[regime_num].term_perf;
+                let term_perfs = assessment.term_perf(pair[0]).zip(assessment.term_perf(pair[1]));
+                let Some((before, after)) = term_perfs else { continue };
                 let gap = || Gap {
                     trained,
                     other,
-                    before: term_perf(pair[0]),
-                    after: term_perf(pair[1]),
+                    before,
+                    after,
                 };
                 let between = &learning[above(learning, pair[0])..above(learning, pair[1])];
                 if between.first().is_some_and(|place| *place < first_learnt) {
-                    forward.insert(pair[1], gap());
+                    forward.insert((pair[1], who), gap());
                 }
                 if between.last().is_some_and(|place| *place > first_learnt) {
-                    backward.insert(pair[1], gap());
+                    backward.insert((pair[1], who), gap());
                 }
             }
         }
     }
-    Transfers {
-        forward_ratio: method.has_ratio().then(|| pairs(&forward, ratio)),
-        forward_contrast: method.has_contrast().then(|| pairs(&forward, contrast)),
-        backward_ratio: method.has_ratio().then(|| pairs(&backward, ratio)),
-        backward_contrast: method.has_contrast().then(|| pairs(&backward, contrast)),
-    }
+    (forward, backward)
 }
 
 /// Index of the first place after `limit` in ascending places.
@@ -111,7 +148,7 @@ impl<'a> Places<'a> {
         Self { tasks }
     }
 
-    fn trained(&self) -> impl Iterator<Item = (&'a str, &[usize])> {
+    fn trained(&self) -> impl Iterator<Item = (&'a str, &[usize])> + use<'a, '_> {
         self.tasks
             .iter()
             .map(|(name, (learning, _))| (*name, learning.as_slice()))
@@ -134,11 +171,11 @@ fn contrast(gap: &Gap<'_>) -> Option<f64> {
     Some((gap.after - gap.before) / (gap.before + gap.after)).filter(|value| value.is_finite())
 }
 
-fn pairs(gaps: &Gaps<'_>, compare: fn(&Gap<'_>) -> Option<f64>) -> Pairs {
+fn pairs<'a>(gaps: &Gaps<'a>, compare: fn(&Gap<'_>) -> Option<f64>) -> Pairs<'a> {
     let mut pairs = Pairs::default();
     for gap in gaps.values() {
         if let Some(value) = compare(gap) {
-            let from = pairs.0.entry(gap.trained.to_owned()).or_default();
+            let from = pairs.entry(gap.trained).or_default();
             from.entry(gap.other.to_owned()).or_default().push(value);
         }
     }

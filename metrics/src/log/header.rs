@@ -1,0 +1,187 @@
+//! The header of a data file: where its columns are, and by that what each cell of a row must be.
+//!
+//! Not here: reading the rows off the disk, see `data_file`.
+
+use std::path::Path;
+
+use csv::StringRecord;
+
+use super::cell::Cell;
+use super::columns::{SINCE_1_1, STANDARD};
+use super::data_file::MAX_CELL_BYTES;
+use super::faults::Faults;
+use super::record::{BlockSubtype, BlockType, ExpStatus};
+use super::rows::Cells;
+use super::table::{MAX_COLUMNS, Table};
+use crate::MetricsError;
+
+/// Where the columns of one file are.
+pub(super) struct Header<'a> {
+    path: &'a Path,
+    pub(super) names: Vec<String>,
+    standard: [usize; STANDARD.len()],
+    /// Column of `block_subtype`, which logs of format 1.0 lack.
+    subtype: Option<usize>,
+    /// Columns that must hold numbers.
+    metrics: Vec<usize>,
+    /// Columns nobody declared, each with its number in the table.
+    others: Vec<(usize, usize)>,
+    /// Numbers of the row at hand.
+    numbers: Vec<f64>,
+}
+
+impl<'a> Header<'a> {
+    pub(super) fn new(
+        path: &'a Path,
+        row: &StringRecord,
+        metrics_columns: &[String],
+        table: &mut Table<'_>,
+        faults: &mut Faults,
+    ) -> Result<Self, MetricsError> {
+        check_num_columns(path, row.len())?;
+        let names: Vec<String> = row.iter().map(str::to_owned).collect();
+        let place = |column: &str| names.iter().position(|name| name == column);
+        let missing = |column: &str| MetricsError::MissingColumn {
+            path: path.to_owned(),
+            column: column.to_owned(),
+            found: names.join(", "),
+        };
+        let needed: Vec<&str> = (STANDARD.into_iter().filter(|column| *column != SINCE_1_1))
+            .chain(metrics_columns.iter().map(String::as_str))
+            .collect();
+        let repeated = (0..names.len()).find(|&index| names[..index].contains(&names[index]));
+        let mut wrong: Vec<MetricsError> = Vec::new();
+        wrong.extend(repeated.map(|index| MetricsError::RepeatedColumn {
+            path: path.to_owned(),
+            column: names[index].clone(),
+        }));
+        wrong.extend(
+            needed
+                .iter()
+                .filter(|column| place(column).is_none())
+                .map(|column| missing(column)),
+        );
+        if let Some(last) = wrong.pop() {
+            for fault in wrong {
+                faults.add(fault)?;
+            }
+            return Err(last);
+        }
+        // Every column that is needed is there.
+        let metrics: Vec<usize> = metrics_columns.iter().filter_map(|column| place(column)).collect();
+        let is_other = |index: &usize| !metrics.contains(index) && !STANDARD.contains(&names[*index].as_str());
+        let others: Vec<usize> = (0..names.len()).filter(is_other).collect();
+        let numbers = table.begin_columns(others.iter().map(|&index| names[index].as_str()))?;
+        Ok(Self {
+            path,
+            subtype: place(SINCE_1_1),
+            standard: STANDARD.map(|column| place(column).unwrap_or_default()),
+            others: others.into_iter().zip(numbers).collect(),
+            numbers: Vec::with_capacity(metrics.len()),
+            metrics,
+            names,
+        })
+    }
+
+    /// Adds a row to the table, unless there is a fault in it.
+    pub(super) fn add(
+        &mut self,
+        row: &StringRecord,
+        line: u64,
+        table: &mut Table<'_>,
+        faults: &mut Faults,
+    ) -> Result<(), MetricsError> {
+        if row.len() != self.names.len() {
+            let (found, expected) = (row.len(), self.names.len());
+            return faults.add(MetricsError::RaggedRow {
+                path: self.path.to_owned(),
+                line,
+                found,
+                expected,
+            });
+        }
+        // Every index is below the number of names, which is the number of cells.
+        let cell = |index: usize| Cell {
+            path: self.path,
+            line,
+            column: &self.names[index],
+            text: &row[index],
+        };
+        if row.as_slice().len() > MAX_CELL_BYTES
+            && let Some(index) = (0..row.len()).find(|index| row[*index].len() > MAX_CELL_BYTES)
+        {
+            return faults.add(cell(index).error(format!("at most {MAX_CELL_BYTES} bytes; is a quote not closed?")));
+        }
+        let cells = standard_cells(self.standard.map(cell), self.subtype.map(cell), table, faults)?;
+        self.numbers.clear();
+        for &index in &self.metrics {
+            if let Some(number) = faults.sift(cell(index).number())? {
+                self.numbers.push(number);
+            }
+        }
+        match cells {
+            Some(cells) if self.numbers.len() == self.metrics.len() => {
+                let others = self.others.iter().map(|&(index, number)| (number, &row[index]));
+                table.push(line, &cells, &self.numbers, others)
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The cells of the standard columns; nothing where one of them is wrong.
+fn standard_cells(
+    standard: [Cell<'_>; STANDARD.len()],
+    subtype: Option<Cell<'_>>,
+    table: &mut Table<'_>,
+    faults: &mut Faults,
+) -> Result<Option<Cells>, MetricsError> {
+    let [
+        block_num,
+        exp_num,
+        worker_id,
+        block_type,
+        _,
+        task_name,
+        task_params,
+        exp_status,
+        timestamp,
+    ] = standard;
+    let block_num = faults.sift(block_num.whole_number())?;
+    let exp_num = faults.sift(exp_num.whole_number())?;
+    let worker = (table.workers).id(&mut table.rows.workers, worker_id.text, |_| worker_id.worker());
+    let worker = faults.sift(worker)?;
+    let block_type = faults.sift(block_type.word(BlockType::expected))?;
+    let block_subtype = subtype.map_or(Ok(BlockSubtype::Wake), |cell| cell.word(BlockSubtype::expected));
+    let block_subtype = faults.sift(block_subtype)?;
+    let task = (table.task_names).id(&mut table.rows.task_names, task_name.text, |text| Ok(text.to_owned()));
+    let task = faults.sift(task)?;
+    let params = (table.task_params).id(&mut table.rows.task_params, task_params.text, |_| task_params.params());
+    let params = faults.sift(params)?;
+    let exp_status = faults.sift(exp_status.word(ExpStatus::expected))?;
+    let timestamp = faults.sift(timestamp.timestamp())?;
+    let cells = || {
+        Some(Cells {
+            block_num: block_num?,
+            exp_num: exp_num?,
+            shared: [worker?, task?, params?],
+            block_type: block_type?,
+            block_subtype: block_subtype?,
+            exp_status: exp_status?,
+            timestamp: timestamp?,
+        })
+    };
+    Ok(cells())
+}
+
+fn check_num_columns(path: &Path, num: usize) -> Result<(), MetricsError> {
+    if num <= MAX_COLUMNS {
+        return Ok(());
+    }
+    Err(MetricsError::TooLarge {
+        path: path.to_owned(),
+        what: "columns",
+        found: num as u64,
+        limit: MAX_COLUMNS as u64,
+    })
+}

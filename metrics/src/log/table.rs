@@ -1,0 +1,205 @@
+//! Rows as they come in, file by file: the columns grow together, and one that a file lacks is filled up.
+//!
+//! Not here: the columns when they are complete, see `rows`.
+
+use std::path::Path;
+
+use indexmap::IndexMap;
+
+use super::rows::{Cells, Rows};
+use super::shared_column::Seen;
+use super::text_column::TextColumn;
+use crate::MetricsError;
+
+/// Most records that one log may hold.
+pub const MAX_RECORDS: usize = 10_000_000;
+
+/// Most columns that the data files of one log may have.
+pub const MAX_COLUMNS: usize = 1_000;
+
+/// Most cells of metrics and of columns that nobody declared, all rows together.
+pub const MAX_CELLS: u64 = 500_000_000;
+
+/// Whether columns of words that nobody declared are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Texts {
+    Leave,
+    Keep,
+}
+
+/// A log's rows as they are read.
+#[derive(Debug)]
+pub(super) struct Table<'a> {
+    /// The log's directory, for messages.
+    dir: &'a Path,
+    texts: Texts,
+    pub(super) rows: Rows,
+    /// Line of each row in its file.
+    lines: Vec<u32>,
+    /// For each file, its first row.
+    starts: Vec<usize>,
+    pub(super) workers: Seen,
+    pub(super) task_names: Seen,
+    pub(super) task_params: Seen,
+    others: IndexMap<String, Other>,
+    num_cells: u64,
+}
+
+/// A column that nobody declared.
+#[derive(Debug)]
+struct Other {
+    numbers: Vec<f64>,
+    /// Whether no word stood in it so far.
+    is_number: bool,
+    texts: TextColumn,
+}
+
+impl<'a> Table<'a> {
+    pub(super) fn new(dir: &'a Path, metrics_columns: &[String], texts: Texts) -> Self {
+        let mut rows = Rows::default();
+        rows.metrics = metrics_columns.iter().map(|name| (name.clone(), Vec::new())).collect();
+        Self {
+            dir,
+            texts,
+            rows,
+            lines: Vec::new(),
+            starts: Vec::new(),
+            workers: Seen::default(),
+            task_names: Seen::default(),
+            task_params: Seen::default(),
+            others: IndexMap::new(),
+            num_cells: 0,
+        }
+    }
+
+    /// Counts a file, in their order; its rows follow.
+    pub(super) fn begin_file(&mut self) {
+        self.starts.push(self.rows.len());
+    }
+
+    /// Numbers of the columns with these names that nobody declared, for the rows that follow.
+    pub(super) fn begin_columns<'n>(
+        &mut self,
+        names: impl Iterator<Item = &'n str>,
+    ) -> Result<Vec<usize>, MetricsError> {
+        let mut numbers = Vec::new();
+        for name in names {
+            let entry = self.others.entry(name.to_owned());
+            let number = entry.index();
+            let other = entry.or_insert_with(|| Other {
+                numbers: Vec::new(),
+                is_number: true,
+                texts: TextColumn::default(),
+            });
+            let missing = other.missing(self.rows.len(), self.texts);
+            numbers.push(number);
+            self.count_cells(missing)?;
+            self.others[number].pad(self.rows.len(), self.texts);
+        }
+        self.check_limit("columns or more", self.others.len() as u64, MAX_COLUMNS as u64)?;
+        Ok(numbers)
+    }
+
+    /// Adds a row: the declared metrics in their order, and the cells of other columns with the columns' numbers.
+    pub(super) fn push<'c>(
+        &mut self,
+        line: u64,
+        cells: &Cells,
+        metrics: &[f64],
+        others: impl ExactSizeIterator<Item = (usize, &'c str)>,
+    ) -> Result<(), MetricsError> {
+        self.check_limit("rows or more", self.rows.len() as u64 + 1, MAX_RECORDS as u64)?;
+        self.count_cells((metrics.len() + others.len()) as u64)?;
+        // A file has fewer bytes than a u32 counts, and so fewer lines.
+        self.lines.push(line as u32);
+        self.rows.push(cells);
+        for (column, number) in self.rows.metrics.values_mut().zip(metrics) {
+            column.push(*number);
+        }
+        for (column, text) in others {
+            self.others[column].push(text, self.texts);
+        }
+        Ok(())
+    }
+
+    /// File and line of a row, counted from 0 in the order of files and lines.
+    pub(super) fn place(&self, row: usize) -> (usize, u64) {
+        let file = self.starts.partition_point(|start| *start <= row).saturating_sub(1);
+        (file, u64::from(self.lines[row]))
+    }
+
+    /// The first row of a file, counted from 0, and the one after its last.
+    pub(super) fn rows_of_file(&self, file: usize) -> std::ops::Range<usize> {
+        let end = self.starts.get(file + 1).copied().unwrap_or(self.rows.len());
+        self.starts[file]..end
+    }
+
+    /// The columns that nobody declared find their place behind the others: those of numbers, and those of words where they
+    /// are kept.
+    pub(super) fn complete(&mut self) -> Result<(), MetricsError> {
+        let num_rows = self.rows.len();
+        for (name, mut other) in std::mem::take(&mut self.others) {
+            self.count_cells(other.missing(num_rows, self.texts))?;
+            other.pad(num_rows, self.texts);
+            if other.is_number {
+                self.rows.metrics.insert(name, other.numbers);
+            } else if self.texts == Texts::Keep {
+                self.rows.texts.insert(name, other.texts);
+            }
+        }
+        Ok(())
+    }
+
+    fn count_cells(&mut self, more: u64) -> Result<(), MetricsError> {
+        self.num_cells += more;
+        self.check_limit("numbers or more", self.num_cells, MAX_CELLS)
+    }
+
+    fn check_limit(&self, what: &'static str, found: u64, limit: u64) -> Result<(), MetricsError> {
+        if found <= limit {
+            return Ok(());
+        }
+        Err(MetricsError::TooLarge {
+            path: self.dir.to_owned(),
+            what,
+            found,
+            limit,
+        })
+    }
+}
+
+impl Other {
+    /// Cells that padding to so many rows would add.
+    fn missing(&self, num_rows: usize, texts: Texts) -> u64 {
+        let here = match texts {
+            _ if self.is_number => self.numbers.len(),
+            Texts::Keep => self.texts.len(),
+            Texts::Leave => num_rows,
+        };
+        (num_rows - here) as u64
+    }
+
+    fn pad(&mut self, num_rows: usize, texts: Texts) {
+        if self.is_number {
+            self.numbers.resize(num_rows, f64::NAN);
+        }
+        if texts == Texts::Keep {
+            self.texts.pad(num_rows);
+        }
+    }
+
+    fn push(&mut self, text: &str, texts: Texts) {
+        if self.is_number {
+            match super::cell::number(text) {
+                Some(number) => self.numbers.push(number),
+                None => {
+                    self.is_number = false;
+                    self.numbers = Vec::new();
+                }
+            }
+        }
+        if texts == Texts::Keep {
+            self.texts.push(text);
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Where the whole rows of a data file end, when its writer may have been stopped at any byte.
+//!
+//! A line break in quotes belongs to its cell, so that a file may end with one and still be torn. Quotes are read as the crate
+//! `csv` reads them: they open a cell only at its very beginning.
+//!
+//! Not here: what the rows hold, see `data_file`.
+
+use std::io::{self, BufRead};
+use std::path::Path;
+
+use crate::MetricsError;
+
+/// Tabs of a line that looks like a row: the fewest that a row of any version has.
+const TABS_OF_A_ROW: usize = 8;
+
+/// The part of a file that consists of whole rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct WholeRows {
+    /// Bytes up to and with the end of the last whole row.
+    pub(super) bytes: u64,
+    /// Lines in them.
+    pub(super) lines: u64,
+    /// Whether what follows holds lines that look like rows: then it is no torn row, but one in which a quote was opened and
+    /// never closed, so that it swallowed the rows after it.
+    pub(super) swallowed: bool,
+}
+
+impl WholeRows {
+    /// What is wrong with what follows; the piece that was looked at begins at this line of its file.
+    pub(super) fn fault(self, path: &Path, first_line: u64) -> MetricsError {
+        let (path, line) = (path.to_owned(), first_line + self.lines);
+        if self.swallowed {
+            MetricsError::OpenQuote { path, line }
+        } else {
+            MetricsError::TornLastLine { path, line }
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Place {
+    CellStart,
+    Cell,
+    Quotes,
+    /// After a quote within quotes: the end of the cell, or the first of two that stand for one.
+    QuoteInQuotes,
+}
+
+/// Reads to the end.
+pub(super) fn measure(mut file: impl BufRead) -> io::Result<WholeRows> {
+    let mut found = WholeRows::default();
+    let mut scan = Scan::default();
+    loop {
+        let bytes = file.fill_buf()?;
+        if bytes.is_empty() {
+            return Ok(found);
+        }
+        for &byte in bytes {
+            scan.take(byte, &mut found);
+        }
+        let num = bytes.len();
+        file.consume(num);
+    }
+}
+
+struct Scan {
+    place: Place,
+    bytes: u64,
+    lines: u64,
+    /// Tabs since the line began.
+    tabs: usize,
+    /// Whether a line of this row ended within quotes already.
+    broken: bool,
+}
+
+impl Default for Scan {
+    fn default() -> Self {
+        Self {
+            place: Place::CellStart,
+            bytes: 0,
+            lines: 0,
+            tabs: 0,
+            broken: false,
+        }
+    }
+}
+
+impl Scan {
+    fn take(&mut self, byte: u8, found: &mut WholeRows) {
+        self.bytes += 1;
+        self.place = match (self.place, byte) {
+            (Place::CellStart, b'"') | (Place::QuoteInQuotes, b'"') => Place::Quotes,
+            (Place::Quotes, b'"') => Place::QuoteInQuotes,
+            (Place::Quotes, _) => Place::Quotes,
+            (_, b'\t' | b'\n' | b'\r') => Place::CellStart,
+            _ => Place::Cell,
+        };
+        match byte {
+            b'\t' => self.tabs += 1,
+            b'\n' => {
+                self.lines += 1;
+                if self.place == Place::Quotes {
+                    found.swallowed |= self.broken && self.tabs >= TABS_OF_A_ROW;
+                    self.broken = true;
+                } else {
+                    (found.bytes, found.lines, found.swallowed) = (self.bytes, self.lines, false);
+                    self.broken = false;
+                }
+                self.tabs = 0;
+            }
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_end_with_a_line_break_outside_quotes() {
+        let check = |text: &str, bytes: u64, lines: u64| {
+            let found = measure(text.as_bytes()).unwrap();
+            assert_eq!(
+                (found.bytes, found.lines, found.swallowed),
+                (bytes, lines, false),
+                "{text:?}"
+            );
+        };
+        check("", 0, 0);
+        check("a\tb", 0, 0);
+        check("a\tb\n", 4, 1);
+        check("a\tb\nc", 4, 1);
+        check("a\t\"b\n", 0, 0);
+        check("a\t\"b\n\"\nc", 7, 2);
+        check("a\t\"b\"\"\n\"\n", 9, 2);
+        check("a\t\"b\"\"\n\"", 0, 0);
+        // A quote within a cell is a letter like others.
+        check("a\tb\"\nc", 5, 1);
+        check("a\r\n\"b\r\n", 3, 1);
+    }
+
+    #[test]
+    fn a_quote_that_swallows_rows_is_told_from_a_torn_row() {
+        let row = "0\t1\t2\t3\t4\t5\t6\t7\t8\n";
+        let check = |text: &str, swallowed: bool| {
+            assert_eq!(measure(text.as_bytes()).unwrap().swallowed, swallowed, "{text:?}");
+        };
+        check(&format!("{row}0\t\"1\n{row}"), true);
+        check(&format!("{row}0\t\"1\n{row}\"\n"), false);
+        // The line in which the quote stands does not count, nor does one without an end.
+        check("0\t1\t2\t3\t4\t5\t6\t7\t\"8\n0\t1", false);
+    }
+}

@@ -1,0 +1,256 @@
+//! Metrics of repeated lifetimes: what they say together and how sure that is, and whether one agent is better than another.
+//!
+//! Not here: the statistics, see `crate::repeats`.
+
+use serde::Serialize;
+
+use super::{Direction, Headline, LifetimeMetrics, Value};
+use crate::MetricsError;
+use crate::repeats::{
+    Aggregate, BootstrapOptions, Estimate, Improvement, ScoreTable, estimate, probability_of_improvement,
+};
+
+/// One metric over repeated lifetimes of one agent.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RepeatedMetric {
+    /// Which metric, and which way it is good.
+    #[serde(flatten)]
+    pub headline: Headline,
+    /// Mean of the middle half of all values.
+    pub iqm: Estimate,
+    /// Mean of the strata's means.
+    pub mean: Estimate,
+    /// Median of the strata's means.
+    pub median: Estimate,
+    /// Lifetimes that have a value.
+    pub num_runs: usize,
+    /// Tasks that have a value; for transfer, pairs of tasks.
+    pub num_strata: usize,
+    /// What a reader of the intervals must be told.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub caution: Option<String>,
+}
+
+/// One metric of two agents.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ComparedMetric {
+    /// Which metric, and which way it is good.
+    #[serde(flatten)]
+    pub headline: Headline,
+    /// How probably a lifetime of the first agent is better than one of the second.
+    pub improvement: Improvement,
+}
+
+/// Every metric for which some lifetime has a value, over all of them, in the order of the headlines.
+///
+/// What varies is looked at task by task: a task's values in the lifetimes are one stratum; for transfer, the first value
+/// of each pair of tasks; for a metric that has values for lifetimes only, these.
+///
+/// # Errors
+/// Those of [`estimate`](crate::repeats::estimate()) and [`ScoreTable::from_runs`].
+pub fn over_repeats(
+    lifetimes: &[LifetimeMetrics],
+    options: &BootstrapOptions,
+) -> Result<Vec<RepeatedMetric>, MetricsError> {
+    let mut found = Vec::new();
+    for headline in headlines(lifetimes) {
+        let Some(table) = table(lifetimes, &headline, as_it_is)? else {
+            continue;
+        };
+        let [iqm, mean, median] = estimate(&table, [Aggregate::Iqm, Aggregate::Mean, Aggregate::Median], options)?;
+        found.push(RepeatedMetric {
+            headline,
+            iqm,
+            mean,
+            median,
+            num_runs: table.num_runs(),
+            num_strata: table.strata().count(),
+            caution: table.caution(options.resampling),
+        });
+    }
+    Ok(found)
+}
+
+/// How probably a lifetime of agent `a` is better than one of agent `b`, for every metric that both have values of in a task that
+/// both have. Of a metric whose lower values are better, the lower value wins.
+///
+/// # Errors
+/// Those of [`probability_of_improvement`](crate::repeats::probability_of_improvement()) and [`ScoreTable::from_runs`].
+pub fn compare_agents(
+    a: &[LifetimeMetrics],
+    b: &[LifetimeMetrics],
+    options: &BootstrapOptions,
+) -> Result<Vec<ComparedMetric>, MetricsError> {
+    let mut found = Vec::new();
+    for headline in headlines(a) {
+        let (Some(of_a), Some(of_b)) = (
+            table(a, &headline, higher_is_better)?,
+            table(b, &headline, higher_is_better)?,
+        ) else {
+            continue;
+        };
+        if of_a.strata().all(|stratum| of_b.scores(stratum).is_none()) {
+            continue;
+        }
+        let improvement = probability_of_improvement(&of_a, &of_b, options)?;
+        found.push(ComparedMetric { headline, improvement });
+    }
+    Ok(found)
+}
+
+/// The headlines of all lifetimes, each once.
+fn headlines(lifetimes: &[LifetimeMetrics]) -> Vec<Headline> {
+    let mut headlines: Vec<Headline> = Vec::new();
+    for headline in lifetimes.iter().flat_map(|lifetime| &lifetime.headlines) {
+        if headlines.iter().all(|known| known.name != headline.name) {
+            headlines.push(headline.clone());
+        }
+    }
+    headlines
+}
+
+/// The values of a metric per lifetime and stratum; `None` where no lifetime has one.
+fn table(
+    lifetimes: &[LifetimeMetrics],
+    headline: &Headline,
+    view: fn(&Headline, f64) -> f64,
+) -> Result<Option<ScoreTable>, MetricsError> {
+    let runs = (1..).zip(lifetimes).map(|(number, lifetime)| {
+        let values = strata(lifetime, &headline.name).into_iter();
+        let values = values.map(|(stratum, value)| (stratum, view(headline, value)));
+        // Folders of logs may share their names; runs may not.
+        (format!("{number}, {}", lifetime.run_id), values.collect::<Vec<_>>())
+    });
+    let runs: Vec<_> = runs.filter(|(_, values)| !values.is_empty()).collect();
+    if runs.is_empty() {
+        return Ok(None);
+    }
+    ScoreTable::from_runs(runs).map(Some)
+}
+
+/// A value as it is.
+fn as_it_is(_: &Headline, value: f64) -> f64 {
+    value
+}
+
+/// A value, turned so that higher is better.
+fn higher_is_better(headline: &Headline, value: f64) -> f64 {
+    match headline.good {
+        Direction::Higher | Direction::HigherThan(_) => value,
+        Direction::Lower | Direction::LowerThan(_) => -value,
+    }
+}
+
+fn strata(lifetime: &LifetimeMetrics, name: &str) -> Vec<(String, f64)> {
+    let mut found = Vec::new();
+    for (task, values) in &lifetime.task_metrics {
+        match values.get(name) {
+            Some(Value::Number(number)) => found.push((task.clone(), *number)),
+            Some(Value::Count(count)) => found.push((task.clone(), *count as f64)),
+            Some(Value::Pairs(pairs)) => {
+                let firsts = pairs
+                    .iter()
+                    .filter_map(|(other, values)| Some((other, *values.first()?)));
+                found.extend(firsts.map(|(other, value)| (format!("{task} → {other}"), value)));
+            }
+            _ => {}
+        }
+    }
+    match lifetime.lifetime.number(name) {
+        Some(value) if found.is_empty() => vec![("lifetime".to_owned(), value)],
+        _ => found,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn lifetime(run_id: &str, tasks: serde_json::Value, whole: serde_json::Value) -> LifetimeMetrics {
+        let mut fields = json!({
+            "run_id": run_id, "complexity": "", "difficulty": "", "scenario_type": "", "metrics_column": "reward",
+            "min": 1.0, "max": 101.0, "num_lx": 10, "num_ex": 10, "runtime": 0.0,
+            "normalization_data_range": null, "task_metrics": tasks,
+        });
+        for (name, value) in whole.as_object().unwrap() {
+            fields[name] = value.clone();
+        }
+        serde_json::from_value(fields).unwrap()
+    }
+
+    fn of_task(value: f64) -> LifetimeMetrics {
+        lifetime(
+            "run",
+            json!({ "a_1": { "avg_eval_perf": value }, "b_1": { "avg_eval_perf": 2.0 } }),
+            json!({}),
+        )
+    }
+
+    #[test]
+    fn tasks_are_the_strata_of_a_metric() {
+        let found = over_repeats(&[of_task(4.0), of_task(8.0)], &BootstrapOptions::default()).unwrap();
+        let [row] = found.as_slice() else { panic!("{found:?}") };
+        assert_eq!(row.headline.name, "avg_eval_perf");
+        assert_eq!(
+            (row.num_runs, row.num_strata, row.mean.value, row.median.value),
+            (2, 2, 4.0, 4.0)
+        );
+        // Of 2, 2, 4, 8 the middle half is 2 and 4.
+        assert_eq!(row.iqm.value, 3.0);
+        assert_eq!(row.caution, None);
+    }
+
+    #[test]
+    fn pairs_of_tasks_are_the_strata_of_transfer_and_the_first_value_counts() {
+        let tasks = json!({ "a_1": { "forward_transfer_ratio": { "b_1": [3.0, 9.0], "c_1": [] } } });
+        let found = over_repeats(&[lifetime("run", tasks, json!({}))], &BootstrapOptions::default()).unwrap();
+        assert_eq!(
+            (found[0].num_strata, found[0].mean.value, found[0].mean.interval),
+            (1, 3.0, None)
+        );
+        assert!(
+            found[0].caution.as_deref().unwrap().starts_with("no interval"),
+            "{:?}",
+            found[0].caution
+        );
+    }
+
+    #[test]
+    fn a_metric_of_lifetimes_only_has_one_stratum() {
+        let of = |value: f64| lifetime("run", json!({ "a_1": {} }), json!({ "sample_efficiency": value }));
+        let found = over_repeats(&[of(0.5), of(1.5)], &BootstrapOptions::default()).unwrap();
+        assert_eq!((found[0].num_strata, found[0].mean.value), (1, 1.0));
+    }
+
+    #[test]
+    fn the_better_agent_wins_also_where_lower_is_better() {
+        let (good, bad) = ([of_task(5.0), of_task(6.0)], [of_task(1.0), of_task(2.0)]);
+        let probability = |a: &[LifetimeMetrics], b: &[LifetimeMetrics]| {
+            let found = compare_agents(a, b, &BootstrapOptions::default()).unwrap();
+            found[0].improvement.probability.value
+        };
+        assert_eq!(probability(&good, &bad), 0.75, "always in one task, even in the other");
+        let turned = |lifetimes: &[LifetimeMetrics]| -> Vec<LifetimeMetrics> {
+            let mut turned = lifetimes.to_vec();
+            for lifetime in &mut turned {
+                lifetime
+                    .headlines
+                    .iter_mut()
+                    .for_each(|headline| headline.good = Direction::Lower);
+            }
+            turned
+        };
+        assert_eq!(probability(&turned(&good), &turned(&bad)), 0.25);
+    }
+
+    #[test]
+    fn agents_without_a_task_in_common_are_not_compared() {
+        let other = lifetime("run", json!({ "z_1": { "avg_eval_perf": 1.0 } }), json!({}));
+        assert_eq!(
+            compare_agents(&[of_task(1.0)], &[other], &BootstrapOptions::default()).unwrap(),
+            []
+        );
+    }
+}

@@ -1,0 +1,108 @@
+//! A lifetime while it is judged: what there is to look at, and the values that were found so far.
+//!
+//! Not here: how any value is computed.
+
+use indexmap::IndexMap;
+
+use crate::lifetime::Lifetime;
+use crate::report::{Value, Values};
+use crate::statistics::{mean, median};
+use crate::{AggregationMethod, Log, Options};
+
+/// What a [`Metric`](crate::Metric) sees and fills.
+#[derive(Debug)]
+pub struct Assessment<'a> {
+    log: &'a Log,
+    lifetime: &'a Lifetime,
+    options: &'a Options,
+    regimes: Vec<Values>,
+    tasks: IndexMap<String, Values>,
+    whole: Values,
+}
+
+impl<'a> Assessment<'a> {
+    pub(super) fn new(log: &'a Log, lifetime: &'a Lifetime, options: &'a Options) -> Self {
+        Self {
+            log,
+            lifetime,
+            options,
+            regimes: vec![Values::default(); lifetime.regimes().len()],
+            tasks: (lifetime.tasks().iter())
+                .map(|task| (task.clone(), Values::default()))
+                .collect(),
+            whole: Values::default(),
+        }
+    }
+
+    /// The log as it was read, with every column.
+    pub fn log(&self) -> &'a Log {
+        self.log
+    }
+
+    /// The preprocessed lifetime.
+    pub fn lifetime(&self) -> &'a Lifetime {
+        self.lifetime
+    }
+
+    /// The options it is scored under.
+    pub fn options(&self) -> &'a Options {
+        self.options
+    }
+
+    /// Values of a regime by its number; none for a number that no regime has.
+    pub fn regime(&self, regime_num: usize) -> Option<&Values> {
+        self.regimes.get(regime_num)
+    }
+
+    /// Values of a task by its name; none for a task that the lifetime lacks.
+    pub fn task(&self, task: &str) -> Option<&Values> {
+        self.tasks.get(task)
+    }
+
+    /// Terminal performance of a regime, if that metric came before.
+    pub fn term_perf(&self, regime_num: usize) -> Option<f64> {
+        self.regime(regime_num)?.number("term_perf")
+    }
+
+    /// Gives a regime a value; `None`, one that is not finite, and one for a regime that is not there are left out.
+    pub fn set_regime(&mut self, regime_num: usize, name: &str, value: Option<impl Into<Value>>) {
+        if let (Some(values), Some(value)) = (self.regimes.get_mut(regime_num), value) {
+            values.set(name, value);
+        }
+    }
+
+    /// Gives a task a value; `None`, one that is not finite, and one for a task that is not there are left out.
+    pub fn set_task(&mut self, task: &str, name: &str, value: Option<impl Into<Value>>) {
+        if let (Some(values), Some(value)) = (self.tasks.get_mut(task), value) {
+            values.set(name, value);
+        }
+    }
+
+    /// Gives the lifetime a value; `None` and one that is not finite are left out.
+    pub fn set_lifetime(&mut self, name: &str, value: Option<impl Into<Value>>) {
+        if let Some(value) = value {
+            self.whole.set(name, value);
+        }
+    }
+
+    /// Mean or median, as the options say; `None` of no values.
+    pub fn aggregate(&self, values: Vec<f64>) -> Option<f64> {
+        match self.options.aggregation_method {
+            AggregationMethod::Mean => mean(&values),
+            AggregationMethod::Median => median(values),
+        }
+    }
+
+    /// Where a headline has numbers for tasks but none for the lifetime, brings those together, missing ones skipped.
+    pub(super) fn aggregate_tasks(&mut self, name: &str) {
+        if self.whole.get(name).is_none() {
+            let numbers = self.tasks.values().filter_map(|values| values.number(name)).collect();
+            self.set_lifetime(name, self.aggregate(numbers));
+        }
+    }
+
+    /// Values of regimes, tasks and lifetime.
+    pub(super) fn into_values(self) -> (Vec<Values>, IndexMap<String, Values>, Values) {
+        (self.regimes, self.tasks, self.whole)
+    }
+}

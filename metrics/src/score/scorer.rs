@@ -1,0 +1,183 @@
+//! Scores a lifetime: computes metrics in their order, and puts their values together.
+//!
+//! Not here: the metrics.
+
+use indexmap::{IndexMap, IndexSet};
+
+use super::{Assessment, Metric, built_in};
+use crate::lifetime::{Lifetime, Regime, SteLog};
+use crate::report::{Headline, LifetimeMetrics, RegimeMetrics, Value, Values};
+use crate::{BlockType, Log, MetricsError, Options};
+
+/// Scores a lifetime by the metrics of this crate, compared with the single-task experts there are.
+///
+/// A value that cannot be computed, for want of experts, of evaluations between learning blocks, of a second learning
+/// block, is absent and never NaN.
+///
+/// # Errors
+/// Those of [`Lifetime::prepare`].
+pub fn score(log: &Log, experts: &[SteLog], options: &Options) -> Result<LifetimeMetrics, MetricsError> {
+    Scorer::new().score(log, experts, options)
+}
+
+/// Metrics in the order in which they are computed; each sees what those before it found.
+///
+/// ```
+/// # use driftworld_metrics::{Assessment, Headline, Metric, MetricsError, Scorer};
+/// # struct WorstEvaluation;
+/// # impl Metric for WorstEvaluation {
+/// #     fn headlines(&self) -> Vec<Headline> { Vec::new() }
+/// #     fn judge(&self, _: &mut Assessment<'_>) -> Result<(), MetricsError> { Ok(()) }
+/// # }
+/// let scorer = Scorer::new().with(WorstEvaluation)?;
+/// # Ok::<(), MetricsError>(())
+/// ```
+pub struct Scorer {
+    metrics: Vec<Box<dyn Metric>>,
+    headlines: IndexSet<String>,
+}
+
+impl Scorer {
+    /// With all metrics of this crate.
+    pub fn new() -> Self {
+        let metrics = built_in();
+        let headlines = metrics.iter().flat_map(|metric| metric.headlines());
+        Self {
+            headlines: headlines.map(|headline| headline.name.into_owned()).collect(),
+            metrics,
+        }
+    }
+
+    /// With one more metric, computed after those that are there.
+    ///
+    /// # Errors
+    /// [`MetricsError::BadOption`] for a headline that is empty, that another metric has, or that the file of results
+    /// uses for something else.
+    pub fn with(mut self, metric: impl Metric + 'static) -> Result<Self, MetricsError> {
+        for headline in metric.headlines() {
+            let name = headline.name.into_owned();
+            let is_free = !name.is_empty() && !TAKEN.contains(&name.as_str());
+            if !is_free || !self.headlines.insert(name.clone()) {
+                return Err(MetricsError::BadOption {
+                    option: "headline of a metric",
+                    found: format!("{name:?}"),
+                    expected: "a name that is not empty and that no other metric or field of the results has"
+                        .to_owned(),
+                });
+            }
+        }
+        self.metrics.push(Box::new(metric));
+        Ok(self)
+    }
+
+    /// Scores a lifetime, compared with the single-task experts there are.
+    ///
+    /// # Errors
+    /// Those of [`Lifetime::prepare`] and those of the metrics.
+    pub fn score(&self, log: &Log, experts: &[SteLog], options: &Options) -> Result<LifetimeMetrics, MetricsError> {
+        self.judge(log, &Lifetime::prepare(log, experts, options)?, options)
+    }
+
+    /// Scores a lifetime that was prepared from `log` under `options` before, for whoever wants to look at both.
+    ///
+    /// # Errors
+    /// Those of the metrics.
+    pub fn judge(&self, log: &Log, lifetime: &Lifetime, options: &Options) -> Result<LifetimeMetrics, MetricsError> {
+        let mut assessment = Assessment::new(log, lifetime, options);
+        let mut headlines: Vec<Headline> = Vec::new();
+        for metric in &self.metrics {
+            metric.judge(&mut assessment)?;
+            for headline in metric.headlines() {
+                assessment.aggregate_tasks(&headline.name);
+                headlines.push(headline);
+            }
+        }
+        let (regimes, tasks, found) = assessment.into_values();
+        let in_order = |values: &Values| headlines_first(values, &headlines);
+        let finish = |(task, values): (String, Values)| {
+            let values = with_extent(in_order(&values), lifetime, &task);
+            (task, values)
+        };
+        let regimes = lifetime.regimes().iter().zip(regimes);
+        let (min, max) = extent(lifetime.regimes().iter());
+        let info = &log.scenario_info;
+        Ok(LifetimeMetrics {
+            lifetime: in_order(&found),
+            run_id: lifetime.run_id().to_owned(),
+            complexity: info.complexity.map(|word| word.to_string()).unwrap_or_default(),
+            difficulty: info.difficulty.map(|word| word.to_string()).unwrap_or_default(),
+            scenario_type: info.scenario_type.map(|word| word.to_string()).unwrap_or_default(),
+            metrics_column: options.perf_measure.clone(),
+            min,
+            max,
+            num_lx: num_rows(lifetime.regimes().iter(), BlockType::Train),
+            num_ex: num_rows(lifetime.regimes().iter(), BlockType::Test),
+            runtime: lifetime.runtime_secs(),
+            normalization_data_range: lifetime.normalization_data_range().cloned(),
+            task_metrics: tasks.into_iter().map(finish).collect::<IndexMap<_, _>>(),
+            regimes: regimes
+                .map(|(regime, values)| RegimeMetrics::new(regime, values))
+                .collect(),
+            headlines,
+            definitions: options.definitions,
+        })
+    }
+}
+
+impl Default for Scorer {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Fields of the results that no headline may have as its name.
+const TAKEN: [&str; 13] = [
+    "run_id",
+    "complexity",
+    "difficulty",
+    "scenario_type",
+    "metrics_column",
+    "definitions",
+    "min",
+    "max",
+    "num_lx",
+    "num_ex",
+    "runtime",
+    "normalization_data_range",
+    "task_metrics",
+];
+
+/// Headlines in their order, then everything else as it came.
+fn headlines_first(values: &Values, headlines: &[Headline]) -> Values {
+    let mut ordered = Values::default();
+    let is_headline = |name: &str| headlines.iter().any(|headline| headline.name == name);
+    let first = (headlines.iter()).filter_map(|headline| Some((&*headline.name, values.get(&headline.name)?)));
+    for (name, value) in first.chain(values.iter().filter(|(name, _)| !is_headline(name))) {
+        ordered.set(name, Value::clone(value));
+    }
+    ordered
+}
+
+/// Adds the range of a task's performances and the number of its rows.
+fn with_extent(mut values: Values, lifetime: &Lifetime, task: &str) -> Values {
+    let (min, max) = extent(lifetime.regimes_of(task));
+    values.set("min", min);
+    values.set("max", max);
+    values.set("num_lx", num_rows(lifetime.regimes_of(task), BlockType::Train));
+    values.set("num_ex", num_rows(lifetime.regimes_of(task), BlockType::Test));
+    values
+}
+
+/// Smallest and largest performance.
+fn extent<'a>(regimes: impl Iterator<Item = &'a Regime>) -> (f64, f64) {
+    (regimes.flat_map(|regime| regime.performance.iter().copied()))
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(min, max), value| {
+            (min.min(value), max.max(value))
+        })
+}
+
+fn num_rows<'a>(regimes: impl Iterator<Item = &'a Regime>, block_type: BlockType) -> usize {
+    (regimes.filter(|regime| regime.block_type == block_type))
+        .map(Regime::len)
+        .sum()
+}
