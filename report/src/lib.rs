@@ -9,7 +9,7 @@ mod words;
 
 pub use error::ReportError;
 pub use figure::{Figure, FigureOptions, Figures, Layout, Unit};
-pub use page::{Chapter, ChapterOptions, Comparison, MAX_LIFETIMES, Overall, Report};
+pub use page::{Chapter, ChapterOptions, Comparison, MAX_LIFETIMES, Report};
 
 use driftworld_metrics::Lifetime;
 

@@ -188,8 +188,13 @@ pub(super) fn joined<'a, 'b: 'a>(stretches: impl Iterator<Item = &'a Stretch<'b>
 }
 
 /// Where the rows of a regime are on the horizontal axis.
-fn positions(_lifetime: &Lifetime, regime: &Regime, _unit: Unit) -> Result<Vec<f64>, ReportError> {
-    Ok(regime.exp_nums.iter().map(|number| *number as f64).collect())
+fn positions(lifetime: &Lifetime, regime: &Regime, unit: Unit) -> Result<Vec<f64>, ReportError> {
+    match unit {
+        Unit::Experiences => Ok(regime.exp_nums.iter().map(|number| *number as f64).collect()),
+        Unit::Steps => regime.steps.clone().ok_or_else(|| ReportError::NoSteps {
+            run_id: lifetime.run_id().to_owned(),
+        }),
+    }
 }
 
 /// A range with a little room at both ends; one of its own where all values are equal.

@@ -52,8 +52,7 @@ impl Chapter {
         options: &ChapterOptions,
     ) -> Result<Self, ReportError> {
         let figures = Figures::of(lifetime, &metrics.metrics_column, &options.figures)?;
-        let tasks = serde_json::to_value(metrics).map(|json| json["task_metrics"].clone()).unwrap_or_default();
-        let table = metric_table::table(lifetime, metrics, &tasks)?;
+        let table = metric_table::table(lifetime, metrics)?;
         let figure = |which: Figure, title: &str, says: &str| -> Result<Markup, ReportError> {
             if !options.shown.contains(&which) {
                 return Ok(Markup::default());
@@ -87,8 +86,8 @@ impl Chapter {
             (figure(Figure::Raw, "Raw values",
                 "As logged: points where there is room, the area they fill where there is none. Lines: learning after smoothing.")?)
             h3 { "Tasks" }
-            (task_table::table(lifetime, metrics, &tasks))
-            (pair_table::tables(metrics, &tasks))
+            (task_table::table(lifetime, metrics))
+            (pair_table::tables(metrics))
         };
         Ok(Self {
             name: shown(lifetime.run_id()),

@@ -2,36 +2,34 @@
 
 use driftworld_metrics::{Direction, Lifetime, LifetimeMetrics};
 use maud::{Markup, PreEscaped, html};
-use serde_json::Value;
 
 use super::{number, verdict};
 use crate::ReportError;
 use crate::figure::strip;
 use crate::words::shown;
 
-/// `tasks`: the field `task_metrics` of the metrics' JSON.
-pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics, tasks: &Value) -> Result<Markup, ReportError> {
+pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Markup, ReportError> {
     let mut rows = Vec::new();
     let mut absent = Vec::new();
     for row in metrics.summary() {
-        let name: &str = row.name;
+        let name: &str = &row.name;
         let Some(value) = row.value else {
             absent.push(verdict::title(name));
             continue;
         };
-        let marks = per_task(lifetime, tasks, name);
+        let marks = per_task(lifetime, metrics, name);
         let drawing = strip(&marks, Some(value), verdict::neutral(row.good))?;
         rows.push(html! {
             tr {
                 th scope="row" {
                     b { (verdict::title(name)) }
-                    span.says { (sentence(row.explanation)) }
+                    span.says { (sentence(&row.explanation)) }
                     code { (shown(name)) }
                 }
                 td.number { span.value { (number(value)) } }
                 td {
                     (judged(name, value, row.good))
-                    span.from { (good_from(row.good)) }
+                    span.from { (verdict::good_from(row.good)) }
                 }
                 td.marks { @if !marks.is_empty() { (drawing_of(&drawing, &verdict::title(name))) } }
             }
@@ -73,21 +71,13 @@ fn judged(name: &str, value: f64, direction: Direction) -> Markup {
     }
 }
 
-fn good_from(direction: Direction) -> String {
-    match verdict::neutral(direction) {
-        Some(neutral) => format!("no effect at {neutral}, good above"),
-        None => "the higher the better".to_owned(),
-    }
-}
-
 /// The values of a metric for each task, by the task's place; of pairs, the first value of each, by the learnt task's place.
-fn per_task(lifetime: &Lifetime, tasks: &Value, name: &str) -> Vec<(usize, f64)> {
+fn per_task(lifetime: &Lifetime, metrics: &LifetimeMetrics, name: &str) -> Vec<(usize, f64)> {
     let places = lifetime.tasks().iter().enumerate();
     let of_task = |(place, task): (usize, &String)| -> Vec<(usize, f64)> {
-        match &tasks[task.as_str()][name] {
-            Value::Object(pairs) => pairs.values().filter_map(|values| Some((place, values.get(0)?.as_f64()?))).collect(),
-            value => value.as_f64().map(|value| (place, value)).into_iter().collect(),
-        }
+        let Some(values) = metrics.task_metrics.get(task) else { return Vec::new() };
+        let firsts = (values.pairs(name).into_iter().flatten()).filter_map(|(_, values)| values.first().copied());
+        firsts.chain(values.number(name)).map(|value| (place, value)).collect()
     };
     places.flat_map(of_task).collect()
 }

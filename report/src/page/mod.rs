@@ -10,11 +10,12 @@ mod pair_table;
 mod task_table;
 mod verdict;
 
+use driftworld_metrics::RepeatedMetric;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::Value;
 
 pub use chapter::{Chapter, ChapterOptions};
-pub use overall::{Comparison, Overall};
+pub use overall::Comparison;
 
 use crate::figure::dark_rules;
 use crate::words::shown;
@@ -33,7 +34,7 @@ pub struct Report {
     /// The lifetimes, each drawn already.
     pub chapters: Vec<Chapter>,
     /// Values over all lifetimes; default none, and then no such section.
-    pub overall: Vec<Overall>,
+    pub overall: Vec<RepeatedMetric>,
     /// Comparisons of two agents; default none, and then no such section.
     pub comparisons: Vec<Comparison>,
     /// Warnings about all of it; those of one lifetime stand in its chapter.

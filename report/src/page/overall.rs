@@ -1,108 +1,112 @@
-//! Values over all lifetimes with their intervals, and comparisons of two agents. How they are estimated is told by the caller.
+//! Values over all lifetimes with their intervals, and comparisons of two agents. They are estimated elsewhere, by `driftworld_metrics`.
 
+use driftworld_metrics::{ComparedMetric, Estimate, Interval, RepeatedMetric};
 use maud::{Markup, html};
 
-use super::{count, number, verdict};
+use super::verdict::{self, Verdict};
+use super::{calm, count, number};
 use crate::words::shown;
 
-/// One metric over all lifetimes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Overall {
-    /// Name of the metric, as in the JSON.
-    pub name: String,
-    /// How it was brought together, such as "interquartile mean".
-    pub estimate: String,
-    /// Point estimate.
-    pub value: f64,
-    /// Lower end of its 95 % interval.
-    pub low: f64,
-    /// Upper end of its 95 % interval.
-    pub high: f64,
-    /// From how many lifetimes.
-    pub runs: usize,
-}
-
-/// How likely one agent is to be better than another, in one metric.
+/// How likely one agent is to be better than another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// Name of the metric, as in the JSON.
-    pub name: String,
     /// The agent that may be better.
     pub agent: String,
     /// The one it is held against.
     pub other: String,
-    /// Probability of improvement, 0..=1; 0.5 means that neither is better.
-    pub probability: f64,
-    /// Lower end of its 95 % interval.
-    pub low: f64,
-    /// Upper end of its 95 % interval.
-    pub high: f64,
+    /// Metric by metric.
+    pub metrics: Vec<ComparedMetric>,
 }
 
 /// Both, where there are any.
-pub(super) fn section(overall: &[Overall], comparisons: &[Comparison]) -> Markup {
+pub(super) fn section(overall: &[RepeatedMetric], comparisons: &[Comparison]) -> Markup {
     html! {
         @if !overall.is_empty() || !comparisons.is_empty() {
-            section.part id="overall" aria-labelledby="overall-name" {
+            section.part.only id="overall" aria-labelledby="overall-name" {
                 h2 id="overall-name" { "Over all lifetimes" }
                 (values(overall))
-                (improvements(comparisons))
+                @for comparison in comparisons { (improvement(comparison)) }
             }
         }
     }
 }
 
-fn values(rows: &[Overall]) -> Markup {
+fn values(rows: &[RepeatedMetric]) -> Markup {
     html! {
         @if !rows.is_empty() {
-            h3 { "Metrics with intervals" }
+            p.note {
+                "Interquartile mean: the mean of the middle half of all values, task by task and lifetime by lifetime. In brackets, its "
+                "95 % bootstrap interval: what other repeats of the same experiment may well have shown."
+            }
             div.scroll role="region" aria-label="Metrics over all lifetimes" tabindex="0" {
                 table {
                     thead {
                         tr {
-                            th scope="col" { "Metric" } th scope="col" { "Estimate" } th.number scope="col" { "Value" }
-                            th.number scope="col" { "95 % interval" } th.number scope="col" { "Lifetimes" }
+                            th scope="col" { "Metric" }
+                            th.number scope="col" { "Interquartile" br; "mean" }
+                            th.number scope="col" { "Mean" }
+                            th scope="col" { "Reading" }
+                            th.number scope="col" { "Lifetimes" }
                         }
                     }
-                    tbody {
-                        @for row in rows {
-                            tr {
-                                th scope="row" { (verdict::title(&row.name)) }
-                                td { (shown(&row.estimate)) }
-                                td.number { b { (number(row.value)) } }
-                                td.number { (number(row.low)) " to " (number(row.high)) }
-                                td.number { (count(row.runs)) }
-                            }
-                        }
-                    }
+                    tbody { @for row in rows { (value_row(row)) } }
+                }
+            }
+            @for row in rows {
+                @if let Some(caution) = &row.caution {
+                    p.note { (verdict::title(&row.headline.name)) ": " (calm(caution)) "." }
                 }
             }
         }
     }
 }
 
-fn improvements(rows: &[Comparison]) -> Markup {
+fn value_row(row: &RepeatedMetric) -> Markup {
+    let name = &row.headline.name;
+    let judged = row.iqm.interval.and_then(|interval| verdict::of_interval(name, interval, row.headline.good));
     html! {
-        @if !rows.is_empty() {
-            h3 { "Probability of improvement" }
-            p.note { "How likely a lifetime of the first agent has the higher value; 0.5 means that neither is better." }
-            div.scroll role="region" aria-label="Probability of improvement" tabindex="0" {
-                table {
-                    thead {
-                        tr {
-                            th scope="col" { "Metric" } th scope="col" { "Agents" } th.number scope="col" { "Probability" }
-                            th.number scope="col" { "95 % interval" } th scope="col" { "Reading" }
-                        }
+        tr {
+            th scope="row" { (verdict::title(name)) }
+            td.number { (estimate(row.iqm)) }
+            td.number { (estimate(row.mean)) }
+            td {
+                @if let Some(judged) = judged { (pill(judged)) } @else { (verdict::good_from(row.headline.good)) }
+            }
+            td.number { (count(row.num_runs)) }
+        }
+    }
+}
+
+fn estimate(found: Estimate) -> Markup {
+    html! {
+        b { (number(found.value)) }
+        @if let Some(Interval { low, high }) = found.interval { br; "[" (number(low)) ", " (number(high)) "]" }
+    }
+}
+
+fn improvement(comparison: &Comparison) -> Markup {
+    let title = format!("{} against {}", shown(&comparison.agent), shown(&comparison.other));
+    html! {
+        h3 { (title) }
+        p.note {
+            "Probability of improvement: how likely a lifetime of " (shown(&comparison.agent)) " has the better value; 0.5 means that "
+            "neither is better. In brackets, its 95 % bootstrap interval."
+        }
+        div.scroll role="region" aria-label=(title) tabindex="0" {
+            table {
+                thead {
+                    tr {
+                        th scope="col" { "Metric" }
+                        th.number scope="col" { "Probability" br; "of improvement" }
+                        th scope="col" { "Reading" }
                     }
-                    tbody {
-                        @for row in rows {
-                            tr {
-                                th scope="row" { (verdict::title(&row.name)) }
-                                td { (shown(&row.agent)) " over " (shown(&row.other)) }
-                                td.number { b { (number(row.probability)) } }
-                                td.number { (number(row.low)) " to " (number(row.high)) }
-                                td { (reading(row)) }
-                            }
+                }
+                tbody {
+                    @for row in &comparison.metrics {
+                        tr {
+                            th scope="row" { (verdict::title(&row.headline.name)) }
+                            td.number { (estimate(row.improvement.probability)) }
+                            td { @if let Some(interval) = row.improvement.probability.interval { (pill(better(interval))) } }
                         }
                     }
                 }
@@ -112,11 +116,15 @@ fn improvements(rows: &[Comparison]) -> Markup {
 }
 
 /// What an interval says that does, or does not, hold one half.
-fn reading(row: &Comparison) -> Markup {
+fn better(interval: Interval) -> Verdict {
     let (class, sign, word) = match () {
-        () if row.low > 0.5 => ("good", "▲", "better"),
-        () if row.high < 0.5 => ("bad", "▼", "worse"),
+        () if interval.low > 0.5 => ("good", "▲", "better"),
+        () if interval.high < 0.5 => ("bad", "▼", "worse"),
         () => ("even", "●", "not told apart"),
     };
-    html! { span class={ "verdict " (class) } { span aria-hidden="true" { (sign) " " } (word) } }
+    Verdict { class, sign, word }
+}
+
+fn pill(verdict: Verdict) -> Markup {
+    html! { span class={ "verdict " (verdict.class) } { span aria-hidden="true" { (verdict.sign) " " } (verdict.word) } }
 }

@@ -2,7 +2,6 @@
 
 use driftworld_metrics::{BlockType, Lifetime, LifetimeMetrics};
 use maud::{Markup, html};
-use serde_json::Value;
 
 use super::{count, number, verdict};
 use crate::words::shown;
@@ -10,10 +9,10 @@ use crate::words::shown;
 /// Tasks beyond these are in the files of metrics only.
 const MOST_ROWS: usize = 200;
 
-/// `tasks`: the field `task_metrics` of the metrics' JSON.
-pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics, tasks: &Value) -> Markup {
+pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Markup {
     let names: Vec<String> = metrics.summary().iter().map(|row| row.name.to_string()).collect();
-    let has = |name: &String| lifetime.tasks().iter().any(|task| tasks[task.as_str()][name].is_number());
+    let value = |task: &str, name: &str| metrics.task_metrics.get(task).and_then(|values| values.number(name));
+    let has = |name: &String| lifetime.tasks().iter().any(|task| value(task, name).is_some());
     let columns: Vec<&String> = names.iter().filter(|name| has(name)).collect();
     let rows = |task: &str, block_type: BlockType| -> (usize, usize) {
         let regimes = lifetime.regimes_of(task).filter(|regime| regime.block_type == block_type);
@@ -39,7 +38,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics, tasks: &Valu
                             td.number { (count(rows(task, BlockType::Train).1)) }
                             td.number { (count(rows(task, BlockType::Test).1)) }
                             @for name in &columns {
-                                td.number { (tasks[task.as_str()][name.as_str()].as_f64().map_or("–".to_owned(), number)) }
+                                td.number { (value(task, name).map_or("–".to_owned(), number)) }
                             }
                         }
                     }

@@ -1,6 +1,6 @@
 //! What the value of a metric says, in a word and a sign: the colour only repeats them. Which way is good is the metrics' to say.
 
-use driftworld_metrics::Direction;
+use driftworld_metrics::{Direction, Interval};
 
 /// A judgement of one value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,8 +36,8 @@ const EVEN: Verdict = Verdict {
 /// The value at which a metric says that nothing happened.
 pub(super) fn neutral(direction: Direction) -> Option<f64> {
     match direction {
-        Direction::HigherThan(neutral) => Some(neutral),
-        Direction::Higher => None,
+        Direction::HigherThan(neutral) | Direction::LowerThan(neutral) => Some(neutral),
+        Direction::Higher | Direction::Lower => None,
     }
 }
 
@@ -48,11 +48,38 @@ pub(super) fn of(name: &str, value: f64, direction: Direction) -> Option<Verdict
     if super::number(value) == super::number(neutral) {
         return Some(EVEN);
     }
-    let [above, below] = words(name);
-    Some(if value > neutral { good(above) } else { bad(below) })
+    let [better, worse] = words(name);
+    let higher_is_better = !matches!(direction, Direction::LowerThan(_));
+    Some(if (value > neutral) == higher_is_better {
+        good(better)
+    } else {
+        bad(worse)
+    })
 }
 
-/// What a value above the neutral one says, and one below.
+/// Judges an interval: nothing can be told where it holds the value that means no effect.
+pub(super) fn of_interval(name: &str, interval: Interval, direction: Direction) -> Option<Verdict> {
+    let neutral = neutral(direction)?;
+    if interval.contains(neutral) {
+        return Some(Verdict {
+            word: "not told from no effect",
+            ..EVEN
+        });
+    }
+    of(name, interval.low, direction)
+}
+
+/// Which way is good, in a few words.
+pub(super) fn good_from(direction: Direction) -> String {
+    match direction {
+        Direction::Higher => "the higher the better".to_owned(),
+        Direction::Lower => "the lower the better".to_owned(),
+        Direction::HigherThan(neutral) => format!("no effect at {neutral}, good above"),
+        Direction::LowerThan(neutral) => format!("no effect at {neutral}, good below"),
+    }
+}
+
+/// What a value on the good side of the neutral one says, and one on the other.
 fn words(name: &str) -> [&'static str; 2] {
     match name {
         _ if name.starts_with("perf_recovery") => ["relearns faster", "relearns slower"],
@@ -104,6 +131,19 @@ mod tests {
         check("ste_rel_perf", 1.000_4, "● no effect");
         check("of_my_own", 3.0, "▲ good");
         assert_eq!(of("avg_eval_perf", 3.0, Direction::Higher), None);
+        let lower = of("of_my_own", 3.0, Direction::LowerThan(1.0)).expect("there is a neutral value");
+        assert_eq!(lower.word, "bad");
+    }
+
+    #[test]
+    fn an_interval_around_no_effect_tells_nothing() {
+        let check = |low: f64, high: f64, expected: &str| {
+            let found = of_interval("ste_rel_perf", Interval { low, high }, Direction::HigherThan(1.0));
+            assert_eq!(found.expect("there is a neutral value").word, expected);
+        };
+        check(0.9, 1.3, "not told from no effect");
+        check(1.1, 1.3, "beats the expert");
+        check(0.7, 0.9, "below the expert");
     }
 
     #[test]
