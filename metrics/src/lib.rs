@@ -58,6 +58,6 @@ pub use repeats::{
 };
 pub use report::{
     ComparedMetric, Direction, Headline, LifetimeMetrics, PairValues, RegimeMetrics, RepeatedMetric, SavedFiles,
-    Settings, SummaryRow, Value, Values, compare_agents, over_repeats,
+    SavedTables, Settings, SummaryRow, Value, Values, compare_agents, over_repeats, regimes_tsv, save_all,
 };
 pub use score::{Assessment, Metric, Scorer, score};

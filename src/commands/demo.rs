@@ -18,6 +18,7 @@ use super::pictures::{SheetRow, heat_map, sheet};
 use super::render::Views;
 use super::run::{Life, Start, processors};
 use super::scenario_file;
+use super::scoring::Experts;
 use super::table::wide_table;
 use super::weights::WeightArgs;
 use super::who::Who;
@@ -94,7 +95,7 @@ impl Demo {
 
         heading("5", "What the lifetime is worth, by the metrics of lifelong learning")?;
         let options = Options::default();
-        let scores = score_log(&logs, &[], &options)?;
+        let scores = score_log(&logs, &Experts::default(), &options)?;
         let settings = Settings {
             log_dir: logs.display().to_string(),
             options,

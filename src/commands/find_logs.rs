@@ -8,11 +8,11 @@ use super::Failure;
 /// How deep logs are looked for below a folder that is none itself.
 const MOST_LEVELS: usize = 4;
 
-/// The most logs that are pooled.
+/// The most logs that are taken together.
 const MOST_LOGS: usize = 10_000;
 
 /// Every log that the arguments name, in order, those below a folder by name.
-pub(super) fn find(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+pub(crate) fn find(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for argument in arguments {
         let before = found.len();
@@ -30,8 +30,13 @@ pub(super) fn find(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     Ok(found)
 }
 
+/// Whether a folder is a log.
+pub(crate) fn is_log(folder: &Path) -> bool {
+    folder.join("logger_info.json").is_file()
+}
+
 fn collect(folder: &Path, levels: usize, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
-    if folder.join("logger_info.json").is_file() {
+    if is_log(folder) {
         if found.len() == MOST_LOGS {
             let path = folder.display();
             return Err(Failure::input(format!(

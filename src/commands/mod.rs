@@ -9,6 +9,7 @@ mod demo;
 mod distance;
 mod doctor;
 mod draw_maps;
+mod find_logs;
 mod input;
 mod interrupt;
 mod matrix_file;

@@ -2,16 +2,18 @@
 //!
 //! Not here: the comparison, see `score::ste_relative_performance` and `score::sample_efficiency`.
 
+use std::sync::Arc;
+
 use indexmap::{IndexMap, IndexSet};
 
 use super::regime::{self, Regime};
 use super::{scored_name, usable_rows};
 use crate::{BlockType, Log, MetricsError, Options, VariantMode};
 
-/// The log of a single-task expert: exactly one task is trained in it.
+/// The log of a single-task expert: exactly one task is trained in it. A clone shares the log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SteLog {
-    log: Log,
+    log: Arc<Log>,
     task_name: String,
 }
 
@@ -32,7 +34,10 @@ impl SteLog {
             .map(|task| scored_name(&tasks.values()[task as usize], VariantMode::Aware))
             .collect();
         match (names.len(), names.pop()) {
-            (1, Some(task_name)) => Ok(Self { log, task_name }),
+            (1, Some(task_name)) => Ok(Self {
+                log: Arc::new(log),
+                task_name,
+            }),
             (_, None) => Err(MetricsError::NotSingleTask {
                 run_id: log.run_id,
                 found: "no trained task".to_owned(),

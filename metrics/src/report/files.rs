@@ -1,13 +1,14 @@
-//! The three files of results, under the reference's names.
+//! The files of results, under the reference's names.
 //!
-//! Not here: what stands in them, see `lifetime_metrics` and `regime_table`.
+//! Not here: what stands in them, see `lifetime_metrics`, `lifetime_table` and `regime_table`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::LifetimeMetrics;
+use super::lifetime_table::lifetimes_tsv;
+use super::{LifetimeMetrics, regimes_tsv};
 use crate::log::{write_json, write_whole};
 use crate::{MetricsError, Options};
 
@@ -32,6 +33,19 @@ pub struct SavedFiles {
     pub settings: PathBuf,
 }
 
+/// Where the results of several lifetimes were saved.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SavedTables {
+    /// `NAME.tsv`: a row per lifetime.
+    pub lifetimes: PathBuf,
+    /// `NAME.json`: a list of what `_metrics.json` holds of one.
+    pub metrics: PathBuf,
+    /// `NAME_regime.tsv`: the regimes of all.
+    pub regimes: PathBuf,
+    /// `NAME_settings.json`: the options.
+    pub settings: PathBuf,
+}
+
 impl LifetimeMetrics {
     /// Saves the results in a directory, made if need be; files of that name are replaced. Spaces in `name` become
     /// underscores.
@@ -39,7 +53,51 @@ impl LifetimeMetrics {
     /// # Errors
     /// [`MetricsError::Io`]; [`MetricsError::BadOption`] for a name that is empty or has a `/` or `\`.
     pub fn save(&self, dir: impl AsRef<Path>, name: &str, settings: &Settings) -> Result<SavedFiles, MetricsError> {
-        let dir = dir.as_ref();
+        let place = Place::new(dir.as_ref(), name)?;
+        let files = SavedFiles {
+            metrics: place.file("_metrics.json"),
+            regimes: place.file("_regime.tsv"),
+            settings: place.file("_settings.json"),
+        };
+        write_json(&files.metrics, self)?;
+        write_whole(&files.regimes, self.regime_tsv().as_bytes())?;
+        write_json(&files.settings, settings)?;
+        Ok(files)
+    }
+}
+
+/// Saves the results of several lifetimes as tables, under the names that the reference gives them when it is recursive.
+///
+/// # Errors
+/// As [`LifetimeMetrics::save`].
+pub fn save_all(
+    lifetimes: &[LifetimeMetrics],
+    dir: impl AsRef<Path>,
+    name: &str,
+    settings: &Settings,
+) -> Result<SavedTables, MetricsError> {
+    let place = Place::new(dir.as_ref(), name)?;
+    let files = SavedTables {
+        lifetimes: place.file(".tsv"),
+        metrics: place.file(".json"),
+        regimes: place.file("_regime.tsv"),
+        settings: place.file("_settings.json"),
+    };
+    write_whole(&files.lifetimes, lifetimes_tsv(lifetimes).as_bytes())?;
+    write_json(&files.metrics, &lifetimes)?;
+    write_whole(&files.regimes, regimes_tsv(lifetimes).as_bytes())?;
+    write_json(&files.settings, settings)?;
+    Ok(files)
+}
+
+/// A directory and how files in it begin.
+struct Place<'a> {
+    dir: &'a Path,
+    name: String,
+}
+
+impl<'a> Place<'a> {
+    fn new(dir: &'a Path, name: &str) -> Result<Self, MetricsError> {
         if name.is_empty() || name.contains(['/', '\\', '\0']) {
             let expected = "a file name without / and \\".to_owned();
             return Err(MetricsError::BadOption {
@@ -48,16 +106,12 @@ impl LifetimeMetrics {
                 expected,
             });
         }
-        let name = name.replace(' ', "_");
         fs::create_dir_all(dir).map_err(MetricsError::io(dir, "make this directory"))?;
-        let files = SavedFiles {
-            metrics: dir.join(format!("{name}_metrics.json")),
-            regimes: dir.join(format!("{name}_regime.tsv")),
-            settings: dir.join(format!("{name}_settings.json")),
-        };
-        write_json(&files.metrics, self)?;
-        write_whole(&files.regimes, self.regime_tsv().as_bytes())?;
-        write_json(&files.settings, settings)?;
-        Ok(files)
+        let name = name.replace(' ', "_");
+        Ok(Self { dir, name })
+    }
+
+    fn file(&self, ending: &str) -> PathBuf {
+        self.dir.join(format!("{}{ending}", self.name))
     }
 }

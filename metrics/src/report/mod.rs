@@ -5,14 +5,15 @@
 mod files;
 mod headline;
 mod lifetime_metrics;
+mod lifetime_table;
 mod regime_table;
 mod repeats;
 mod rounding;
 mod values;
 
-pub use files::{SavedFiles, Settings};
+pub use files::{SavedFiles, SavedTables, Settings, save_all};
 pub use headline::{Direction, Headline, SummaryRow};
 pub use lifetime_metrics::LifetimeMetrics;
-pub use regime_table::RegimeMetrics;
+pub use regime_table::{RegimeMetrics, regimes_tsv};
 pub use repeats::{ComparedMetric, RepeatedMetric, compare_agents, over_repeats};
 pub use values::{PairValues, Value, Values};

@@ -48,14 +48,30 @@ impl LifetimeMetrics {
     ///
     /// The column `task_params` is there only where regimes differ in them; it holds the first 25 characters.
     pub fn regime_tsv(&self) -> String {
-        let params_vary = (self.regimes.windows(2)).any(|pair| pair[0].task_params != pair[1].task_params);
-        let names: IndexSet<&str> = (self.regimes.iter())
-            .flat_map(|regime| regime.values.iter().map(|(name, _)| name))
-            .collect();
-        let is_shown = |column: &str| params_vary || column != PARAMS;
-        let identity = IDENTITY.into_iter().filter(|column| is_shown(column));
-        let mut text = line(identity.chain(names.iter().copied()).chain(["run_id"]));
-        for regime in &self.regimes {
+        tsv(std::slice::from_ref(self), |row, run_id| row.push(run_id))
+    }
+}
+
+/// The regimes of several lifetimes as one table, with the log in the first column, as the reference writes it.
+pub fn regimes_tsv(lifetimes: &[LifetimeMetrics]) -> String {
+    tsv(lifetimes, |row, run_id| row.insert(0, run_id))
+}
+
+fn tsv(lifetimes: &[LifetimeMetrics], put_run_id: fn(&mut Vec<String>, String)) -> String {
+    let regimes = || lifetimes.iter().flat_map(|lifetime| &lifetime.regimes);
+    let params_vary = regimes()
+        .zip(regimes().skip(1))
+        .any(|(one, next)| one.task_params != next.task_params);
+    let names: IndexSet<&str> = regimes()
+        .flat_map(|regime| regime.values.iter().map(|(name, _)| name))
+        .collect();
+    let is_shown = |column: &str| params_vary || column != PARAMS;
+    let identity = IDENTITY.into_iter().filter(|column| is_shown(column));
+    let mut header: Vec<String> = identity.chain(names.iter().copied()).map(str::to_owned).collect();
+    put_run_id(&mut header, "run_id".to_owned());
+    let mut text = line(header);
+    for lifetime in lifetimes {
+        for regime in &lifetime.regimes {
             let identity = IDENTITY
                 .into_iter()
                 .zip(regime.identity())
@@ -63,15 +79,12 @@ impl LifetimeMetrics {
             let values = names
                 .iter()
                 .map(|name| regime.values.get(name).map(cell).unwrap_or_default());
-            text.extend(line(
-                identity
-                    .map(|(_, text)| text)
-                    .chain(values)
-                    .chain([self.run_id.clone()]),
-            ));
+            let mut row: Vec<String> = identity.map(|(_, text)| text).chain(values).collect();
+            put_run_id(&mut row, lifetime.run_id.clone());
+            text.extend(line(row));
         }
-        String::from_utf8(text).expect("cells are text, and quoting adds only quotes")
     }
+    String::from_utf8(text).expect("cells are text, and quoting adds only quotes")
 }
 
 impl RegimeMetrics {
@@ -100,7 +113,7 @@ impl RegimeMetrics {
 }
 
 /// A value in a table: numbers as they are, anything else as JSON.
-fn cell(value: &Value) -> String {
+pub(super) fn cell(value: &Value) -> String {
     match value {
         Value::Count(count) => count.to_string(),
         Value::Number(number) => format!("{number:?}"),

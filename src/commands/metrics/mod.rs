@@ -1,91 +1,183 @@
-//! `driftworld metrics`: what an agent kept and transferred, from the log of its lifetime. The metrics are the library's.
+//! `driftworld metrics`: what agents kept and transferred, from the logs of their lifetimes. The metrics are the library's.
 
-use std::path::{Path, PathBuf};
+mod many;
+mod score;
+mod store;
+mod tables;
+
+use std::path::PathBuf;
 
 use clap::Args;
-use driftworld::metrics::{Direction, LifetimeMetrics, Options, Settings, SteLog, SummaryRow, read_log, score};
+use driftworld::metrics::{BootstrapOptions, LifetimeMetrics, Options, Settings, SteStoreMode, save_all};
+
+pub(crate) use score::{score_log, score_logs};
+pub(crate) use tables::summary;
 
 use super::scoring::Scoring;
-use super::table::table;
-use super::{Failure, output};
+use super::{Failure, find_logs, output};
 
-/// Score the log of a lifetime.
+/// What several lifetimes are called together, as in l2metrics.
+const NAME_OF_MANY: &str = "ll_metrics";
+
+/// Score the logs of lifetimes.
+///
+/// One lifetime gives a table of its metrics. Several are taken as repeats by one agent: each metric comes with its interquartile
+/// mean over lifetimes and tasks and a bootstrap interval. With --against, two agents are compared.
+///
+/// Options have the names they have in l2metrics, and the files are the ones it writes.
 #[derive(Args)]
-#[command(
-    after_help = "Example:\n  driftworld metrics demo-out/logs/demo\n  driftworld metrics LOG --ste STE_LOG --perf-measure performance -O results"
-)]
+#[command(after_help = "Examples:
+  driftworld metrics demo-out/log
+  driftworld metrics LOG --ste EXPERT_LOG --perf-measure performance -O results
+  driftworld metrics -R runs/mine --against runs/theirs
+  driftworld metrics EXPERT_LOG -s a --ste-data experts
+  driftworld metrics LOG --ste-data experts")]
 pub(crate) struct Metrics {
-    /// The folder of a log in l2logger's format.
-    log: PathBuf,
+    /// Folders of logs in l2logger's format.
+    #[arg(value_name = "DIR")]
+    logs: Vec<PathBuf>,
+    /// The same, as l2metrics has it.
+    #[arg(short, long = "log-dir", value_name = "DIR", hide = true)]
+    log_dir: Vec<PathBuf>,
+    /// Take all logs in the folders, also further below.
+    #[arg(short = 'R', long)]
+    recursive: bool,
+    /// Folders of another agent's logs: how probably is a lifetime of the first better?
+    #[arg(long, value_name = "DIR", num_args = 1..)]
+    against: Vec<PathBuf>,
+    /// Keep the logs as experts in the folder --ste-data, in place of those of their tasks (w) or beside them (a), and score nothing.
+    #[arg(short = 's', long, value_name = "w|a", requires = "ste_data")]
+    ste_store_mode: Option<SteStoreMode>,
     #[command(flatten)]
     scoring: Scoring,
-    /// Write `NAME_metrics.json`, `NAME_regime.tsv` and `NAME_settings.json` into this folder; NAME is the log's.
+    #[command(flatten)]
+    intervals: Intervals,
+    /// Save results in this folder: `NAME_metrics.json`, `NAME_regime.tsv`, `NAME_settings.json`; of several lifetimes or with -R
+    /// `NAME.json`, `NAME.tsv`, `NAME_regime.tsv`, `NAME_settings.json`.
     #[arg(short = 'O', long, value_name = "DIR")]
     output_dir: Option<PathBuf>,
+    /// The NAME in the names of files [default: the log's; of several `ll_metrics`].
+    #[arg(short, long, value_name = "NAME", requires = "output_dir")]
+    output: Option<String>,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
 }
 
-impl Metrics {
-    pub(crate) fn run(self) -> Result<(), Failure> {
-        let options = self.scoring.options()?;
-        let scores = score_log(&self.log, &self.scoring.experts()?, &options)?;
-        if self.json {
-            output::json(&scores)?;
-        } else {
-            output::line(summary(&scores))?;
+/// How sure numbers over several lifetimes are.
+#[derive(Args)]
+#[command(next_help_heading = "Intervals")]
+pub(crate) struct Intervals {
+    /// How much of the bootstrap's distribution an interval holds.
+    #[arg(long, value_name = "SHARE", default_value_t = BootstrapOptions::default().confidence)]
+    confidence: f64,
+    /// How many times lifetimes are drawn again; take 50000 for a figure to publish.
+    #[arg(long, value_name = "N", default_value_t = BootstrapOptions::default().resamples)]
+    resamples: u32,
+    /// What is drawn again: strata (within each task, as rliable) or runs (whole lifetimes).
+    #[arg(long, value_name = "WHAT", default_value_t = BootstrapOptions::default().resampling)]
+    resampling: driftworld::metrics::Resampling,
+    /// What the draws come from.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    bootstrap_seed: u64,
+}
+
+impl Intervals {
+    pub(crate) fn options(&self) -> BootstrapOptions {
+        BootstrapOptions {
+            confidence: self.confidence,
+            resamples: self.resamples,
+            resampling: self.resampling,
+            seed: self.bootstrap_seed,
         }
-        let Some(folder) = self.output_dir else { return Ok(()) };
-        let settings = Settings {
-            log_dir: self.log.display().to_string(),
-            options,
-        };
-        let files = scores.save(folder, &scores.run_id, &settings)?;
-        for file in [files.metrics, files.regimes, files.settings] {
-            output::note(format!("wrote {}", file.display()));
-        }
-        Ok(())
     }
 }
 
-/// Reads a log, with its warnings to standard error, and scores it.
-pub(crate) fn score_log(log: &Path, experts: &[SteLog], options: &Options) -> Result<LifetimeMetrics, Failure> {
-    let log = read_log(log)?;
-    log.warnings
-        .iter()
-        .for_each(|warning| output::note(format!("warning: {warning}")));
-    Ok(score(&log, experts, options)?)
-}
+impl Metrics {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let logs = self.logs()?;
+        if let (Some(mode), Some(data)) = (self.ste_store_mode, self.scoring.ste_data()) {
+            return store::store(&logs, mode, data);
+        }
+        let options = self.scoring.options()?;
+        let experts = self.scoring.experts()?;
+        let lifetimes = score_logs(&logs, &experts, &options)?;
+        match lifetimes.as_slice() {
+            [lifetime] if !self.recursive && self.against.is_empty() => {
+                if self.json {
+                    output::json(lifetime)?;
+                } else {
+                    output::line(summary(lifetime))?;
+                }
+            }
+            _ => {
+                let others = if self.against.is_empty() {
+                    Vec::new()
+                } else {
+                    score_logs(&find_logs::find(&self.against)?, &experts, &options)?
+                };
+                let together = many::together(&lifetimes, &others, &self.intervals.options())?;
+                if self.json {
+                    output::json(&together)?;
+                } else {
+                    output::line(tables::many(&lifetimes, &others, &together, self.intervals.confidence))?;
+                }
+            }
+        }
+        self.save(&lifetimes, options)
+    }
 
-/// The lifetime's values as a table for a newcomer.
-pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
-    let rows = scores
-        .summary()
-        .into_iter()
-        .filter(|row| row.value.is_some())
-        .map(|row| {
-            [
-                row.name.to_owned(),
-                number(row.value),
-                good(&row),
-                row.explanation.to_owned(),
-            ]
-        });
-    let head = format!(
-        "{}: {} learning and {} evaluation experiences, scored by {}\n\n",
-        scores.run_id, scores.num_lx, scores.num_ex, scores.metrics_column
-    );
-    head + &table(["metric", "value", "good", "what it says"], rows.collect(), &[1])
-}
+    /// The logs that the arguments name; those of the settings file where there is no argument.
+    fn logs(&self) -> Result<Vec<PathBuf>, Failure> {
+        let mut named: Vec<PathBuf> = self.logs.iter().chain(&self.log_dir).cloned().collect();
+        if named.is_empty() {
+            named.extend(self.scoring.log_of_settings()?);
+        }
+        if named.is_empty() {
+            return Err(Failure::usage("found no DIR, expected the folder of a log, or several"));
+        }
+        if self.recursive {
+            return find_logs::find(&named);
+        }
+        if let Some(folder) = named
+            .iter()
+            .find(|folder| folder.is_dir() && !find_logs::is_log(folder))
+            && find_logs::find(std::slice::from_ref(folder)).is_ok()
+        {
+            return Err(Failure::input(format!(
+                "{}: found a folder of logs, expected a log; add -R to score all logs in it",
+                folder.display()
+            )));
+        }
+        Ok(named)
+    }
 
-fn number(value: Option<f64>) -> String {
-    value.map_or_else(String::new, |value| format!("{value:.3}"))
-}
-
-fn good(row: &SummaryRow) -> String {
-    match row.good {
-        Direction::Higher => "higher".to_owned(),
-        Direction::HigherThan(neutral) => format!("above {neutral}"),
+    fn save(&self, lifetimes: &[LifetimeMetrics], options: Options) -> Result<(), Failure> {
+        let Some(folder) = &self.output_dir else { return Ok(()) };
+        let log_dir = self
+            .logs
+            .iter()
+            .chain(&self.log_dir)
+            .map(|log| log.display().to_string());
+        let settings = Settings {
+            log_dir: log_dir.collect::<Vec<_>>().join(" "),
+            options,
+        };
+        let files = match lifetimes {
+            [lifetime] if !self.recursive => {
+                let name = self.output.as_deref().unwrap_or(&lifetime.run_id);
+                let files = lifetime.save(folder, name, &settings)?;
+                vec![files.metrics, files.regimes, files.settings]
+            }
+            _ => {
+                let name = self.output.as_deref().unwrap_or(NAME_OF_MANY);
+                let files = save_all(lifetimes, folder, name, &settings)?;
+                vec![files.lifetimes, files.metrics, files.regimes, files.settings]
+            }
+        };
+        for file in files {
+            output::note(format!("wrote {}", file.display()));
+        }
+        Ok(())
     }
 }

@@ -1,14 +1,17 @@
 //! The options by which lifetimes are scored, under l2metrics' names: for `metrics` and `report` alike. What they do is the library's.
 
+mod experts;
 mod settings;
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use driftworld::metrics::{
-    AggregationMethod, Definitions, MaintenanceMethod, Noise, NormalizationMethod, Options, SmoothingMethod, SteAveragingMethod, SteLog,
-    TransferMethod, VariantMode, read_ste_log,
+    AggregationMethod, Definitions, MaintenanceMethod, Noise, NormalizationMethod, Options, SmoothingMethod,
+    SteAveragingMethod, TransferMethod, VariantMode,
 };
+
+pub(crate) use experts::Experts;
 
 use super::Failure;
 
@@ -91,7 +94,7 @@ impl Scoring {
         options.window_length = self.window_length.or(options.window_length);
         options.clamp_outliers |= self.clamp_outliers;
         if let Some(path) = &self.data_range_file {
-            options.data_range = Some(settings::data_range(path)?);
+            options.data_range = Some(settings::data_range(path)?.into_iter().collect());
         }
         if let Some([mean, std]) = self.noise.as_deref() {
             options.noise = Some(Noise {
@@ -117,9 +120,9 @@ impl Scoring {
         self.ste_data.as_deref()
     }
 
-    /// The experts' logs.
-    pub(crate) fn experts(&self) -> Result<Vec<SteLog>, Failure> {
-        Ok(self.ste.iter().map(read_ste_log).collect::<Result<Vec<_>, _>>()?)
+    /// The experts to compare with.
+    pub(crate) fn experts(&self) -> Result<Experts, Failure> {
+        Experts::new(&self.ste, self.ste_data.as_deref())
     }
 }
 

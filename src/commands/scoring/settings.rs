@@ -47,13 +47,19 @@ pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
     }
     settings.retain(|key, _| !NOT_SCORING.contains(&key.as_str()));
     let known = json!(Options {
-        noise: Some(driftworld::metrics::Noise { mean: 0.0, std: 0.0, seed: 0 }),
+        noise: Some(driftworld::metrics::Noise {
+            mean: 0.0,
+            std: 0.0,
+            seed: 0
+        }),
         definitions: driftworld::metrics::Definitions::Published,
         ..Options::default()
     });
     let known = || known.as_object().into_iter().flat_map(|known| known.keys());
     if let Some(strange) = settings.keys().find(|key| known().all(|known| known != *key)) {
-        let near = nearest(strange, known()).map(|near| format!("; did you mean {near:?}?")).unwrap_or_default();
+        let near = nearest(strange, known())
+            .map(|near| format!("; did you mean {near:?}?"))
+            .unwrap_or_default();
         return Err(Failure::input(format!(
             "{}: found the setting {strange:?}, expected one of l2metrics{near}",
             path.display()
@@ -74,13 +80,13 @@ fn noise_of_l2metrics(noise: &Value) -> Value {
 }
 
 /// Reads the ranges of tasks: `{"find_red": {"min": 0, "max": 10}}`. Names are lower-cased, as in the metrics.
-pub(super) fn data_range(path: &Path) -> Result<indexmap::IndexMap<String, DataRange>, Failure> {
+pub(super) fn data_range(path: &Path) -> Result<Vec<(String, DataRange)>, Failure> {
     let expected = "an object of ranges, such as {\"find_red\": {\"min\": 0, \"max\": 10}}";
-    let mut ranges = indexmap::IndexMap::new();
+    let mut ranges = Vec::new();
     for (task, range) in object(path, expected)? {
         let range = serde_json::from_value(range)
             .map_err(|error| Failure::input(format!("{}, {task:?}: {error}; expected {expected}", path.display())))?;
-        ranges.insert(task.to_lowercase(), range);
+        ranges.push((task.to_lowercase(), range));
     }
     Ok(ranges)
 }
@@ -89,7 +95,10 @@ fn object(path: &Path, expected: &str) -> Result<Map<String, Value>, Failure> {
     let text = input::text(path)?;
     match serde_json::from_str(&text) {
         Ok(Value::Object(object)) => Ok(object),
-        Ok(_) => Err(Failure::input(format!("{}: found other JSON, expected {expected}", path.display()))),
+        Ok(_) => Err(Failure::input(format!(
+            "{}: found other JSON, expected {expected}",
+            path.display()
+        ))),
         Err(error) => Err(Failure::input(format!(
             "{}:{}:{}: found no JSON ({error}), expected {expected}",
             path.display(),
@@ -107,9 +116,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let path = folder.path().join("settings.json");
         std::fs::write(&path, text).expect("a file can be written there");
-        load(&path).map_err(|failure| {
-            Failure::input(failure.text().replace(&format!("{}/", folder.path().display()), ""))
-        })
+        load(&path)
+            .map_err(|failure| Failure::input(failure.text().replace(&format!("{}/", folder.path().display()), "")))
     }
 
     #[test]
@@ -117,10 +125,16 @@ mod tests {
         let text = r#"{"log_dir": "logs/a", "perf_measure": "performance", "maintenance_method": "both", "window_length": null,
             "noise": [0, 0.5], "do_smooth_eval_data": true, "show_eval_lines": true, "do_plot": true}"#;
         let Loaded { options, log_dir } = loaded(text).expect("these are settings");
-        assert_eq!((options.perf_measure.as_str(), options.smooth_eval_data), ("performance", true));
+        assert_eq!(
+            (options.perf_measure.as_str(), options.smooth_eval_data),
+            ("performance", true)
+        );
         assert_eq!(options.noise.map(|noise| (noise.mean, noise.std)), Some((0.0, 0.5)));
         assert_eq!(log_dir, Some("logs/a".into()));
-        assert_eq!(loaded(r#"{"noise": [0, 0]}"#).expect("no noise").options, Options::default());
+        assert_eq!(
+            loaded(r#"{"noise": [0, 0]}"#).expect("no noise").options,
+            Options::default()
+        );
     }
 
     #[test]

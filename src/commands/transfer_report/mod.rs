@@ -1,7 +1,6 @@
 //! `driftworld transfer-report`: whether similar variants transferred more, by logs and distances. Transfer is `metrics`'s, the
 //! correlation `similarity`'s, their meeting `curriculum`'s.
 
-mod logs;
 mod words;
 
 use std::path::PathBuf;
@@ -11,9 +10,10 @@ use driftworld::curriculum::{TransferOptions, transfer_report};
 use driftworld::metrics::{NormalizationMethod, Options, SmoothingMethod, TransferMethod};
 use driftworld::similarity::MAX_RELABELLINGS;
 
-use super::metrics::score_log;
+use super::metrics::score_logs;
 use super::pictures::scatter;
-use super::{Failure, matrix_file, output};
+use super::scoring::Experts;
+use super::{Failure, find_logs, matrix_file, output};
 
 /// Ask whether similar variants transferred more: correlate distances with the transfer that logs measured.
 ///
@@ -95,10 +95,7 @@ impl TransferReport {
             smoothing_method: self.smoothing_method,
             ..Options::default()
         };
-        let lifetimes = logs::find(&self.logs)?
-            .iter()
-            .map(|log| score_log(log, &[], &options))
-            .collect::<Result<Vec<_>, _>>()?;
+        let lifetimes = score_logs(&find_logs::find(&self.logs)?, &Experts::default(), &options)?;
         let options = TransferOptions {
             measure,
             relabellings: self.relabellings,

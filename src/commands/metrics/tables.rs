@@ -1,0 +1,116 @@
+//! Metrics as tables for people: of one lifetime, of several, of two agents. The JSON beside them is the library's.
+
+use std::collections::BTreeSet;
+
+use driftworld::metrics::{Direction, Estimate, LifetimeMetrics, RepeatedMetric};
+
+use super::many::Together;
+use crate::commands::table::table;
+
+/// The lifetime's values as a table for a newcomer.
+pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
+    let rows = scores.summary().into_iter().filter_map(|row| {
+        let value = number(row.value?);
+        Some([
+            row.name.into_owned(),
+            value,
+            good(row.good),
+            row.explanation.into_owned(),
+        ])
+    });
+    let head = format!(
+        "{}: {} learning and {} evaluation experiences, scored by {}\n\n",
+        scores.run_id, scores.num_lx, scores.num_ex, scores.metrics_column
+    );
+    head + &table(["metric", "value", "good", "what it says"], rows.collect(), &[1])
+}
+
+/// Several lifetimes, and how they compare with another agent's.
+pub(super) fn many(
+    lifetimes: &[LifetimeMetrics],
+    others: &[LifetimeMetrics],
+    together: &Together<'_>,
+    confidence: f64,
+) -> String {
+    let share = format!("{}% interval", confidence * 100.0);
+    let mut text = format!(
+        "{} learning and {} evaluation experiences in all, scored by {}\n\n",
+        counted(lifetimes.len(), "lifetime")
+            + ": "
+            + &lifetimes.iter().map(|life| life.num_lx).sum::<usize>().to_string(),
+        lifetimes.iter().map(|life| life.num_ex).sum::<usize>(),
+        lifetimes.first().map_or("", |life| &life.metrics_column),
+    );
+    text += &repeats(&together.repeats, &share);
+    text += &cautions(together.repeats.iter());
+    if others.is_empty() {
+        return text;
+    }
+    text += &format!("\n\nagainst {} of another agent\n\n", counted(others.len(), "lifetime"));
+    text += &repeats(&together.repeats_against, &share);
+    text += &cautions(together.repeats_against.iter());
+    text += "\n\nhow probably a lifetime of the first agent is better than one of the other, 0.5 for neither\n\n";
+    let rows = together.improvement.iter().map(|row| {
+        [
+            row.headline.name.to_string(),
+            number(row.improvement.probability.value),
+            interval(&row.improvement.probability),
+            row.improvement.strata.len().to_string(),
+        ]
+    });
+    text + &table(["metric", "P(better)", &share, "tasks"], rows.collect(), &[1, 3])
+}
+
+fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
+    let rows = metrics.iter().map(|row| {
+        [
+            row.headline.name.to_string(),
+            number(row.iqm.value),
+            interval(&row.iqm),
+            number(row.mean.value),
+            format!("{} x {}", row.num_runs, row.num_strata),
+            good(row.headline.good),
+        ]
+    });
+    table(
+        ["metric", "IQM", share, "mean", "runs x tasks", "good"],
+        rows.collect(),
+        &[1, 3],
+    )
+}
+
+/// What a reader must be told of the intervals, each once.
+fn cautions<'a>(metrics: impl Iterator<Item = &'a RepeatedMetric>) -> String {
+    let different: BTreeSet<&str> = metrics.filter_map(|row| row.caution.as_deref()).collect();
+    different
+        .into_iter()
+        .map(|caution| format!("\nnote: {caution}"))
+        .collect()
+}
+
+fn counted(number: usize, what: &str) -> String {
+    if number == 1 {
+        format!("1 {what}")
+    } else {
+        format!("{number} {what}s")
+    }
+}
+
+fn interval(estimate: &Estimate) -> String {
+    estimate.interval.map_or_else(String::new, |found| {
+        format!("{} to {}", number(found.low), number(found.high))
+    })
+}
+
+fn number(value: f64) -> String {
+    format!("{value:.3}")
+}
+
+fn good(good: Direction) -> String {
+    match good {
+        Direction::Higher => "higher".to_owned(),
+        Direction::Lower => "lower".to_owned(),
+        Direction::HigherThan(neutral) => format!("above {neutral}"),
+        Direction::LowerThan(neutral) => format!("below {neutral}"),
+    }
+}
