@@ -72,6 +72,7 @@ fn every_subcommand_has_help_with_an_example() {
         "curriculum",
         "run",
         "metrics",
+        "report",
         "transfer-report",
         "schema",
         "bench",

@@ -91,8 +91,12 @@ mod tests {
                 figure: "raw",
                 source: "no font".into(),
             },
-            ReportError::UnknownFigure { found: "pie".to_owned() },
-            ReportError::UnknownUnit { found: "hours".to_owned() },
+            ReportError::UnknownFigure {
+                found: "pie".to_owned(),
+            },
+            ReportError::UnknownUnit {
+                found: "hours".to_owned(),
+            },
             ReportError::NoSteps { run_id: run_id() },
             ReportError::Distances {
                 run_id: run_id(),

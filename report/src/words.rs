@@ -6,7 +6,8 @@ const LONGEST: usize = 48;
 /// A name as it is shown: cut to a readable length, without characters that break a page or turn its direction around.
 pub(crate) fn shown(name: &str) -> String {
     let calm = |letter: char| {
-        let turns = matches!(letter, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}');
+        let turns =
+            matches!(letter, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}');
         let forbidden = matches!(letter, '\u{fffe}' | '\u{ffff}');
         if letter.is_control() || turns || forbidden {
             '\u{fffd}'

@@ -20,6 +20,7 @@ mod output;
 mod photograph;
 mod pictures;
 mod render;
+mod report;
 mod run;
 mod sample;
 mod scenario_file;
@@ -74,6 +75,8 @@ pub(crate) enum Command {
     Run(run::Run),
     /// Score the log of a lifetime.
     Metrics(metrics::Metrics),
+    /// Show lifetimes on one page: metrics, curriculum, curves.
+    Report(report::Report),
     /// Ask whether similar variants transferred more, by logs and distances.
     TransferReport(transfer_report::TransferReport),
     /// Write or check the JSON Schemas of the documents.
@@ -104,6 +107,7 @@ impl Command {
             Self::Curriculum(command) => command.run(),
             Self::Run(command) => command.run(),
             Self::Metrics(command) => command.run(),
+            Self::Report(command) => command.run(),
             Self::TransferReport(command) => command.run(),
             Self::Schema(command) => command.run(),
             Self::Bench(command) => command.run(),

@@ -12,6 +12,8 @@ use super::thinning;
 
 /// Runs of an expert beyond these are left out.
 const MOST_RUNS: usize = 12;
+/// Columns of pixels of all curves together; with more curves, each has fewer.
+const MOST_COLUMNS: usize = 16_000;
 /// Borders between blocks beyond these are left out.
 const MOST_BORDERS: usize = 60;
 
@@ -56,7 +58,11 @@ fn entries(panels: &[Panel]) -> Vec<Entry> {
     let mut entries = vec![
         Entry {
             name: "this agent, in the task's colour".to_owned(),
-            sample: Sample::Line(panels.first().map_or(TASKS[0].light, |panel| Look::of(panel.task).color)),
+            sample: Sample::Line(
+                panels
+                    .first()
+                    .map_or(TASKS[0].light, |panel| Look::of(panel.task).color),
+            ),
         },
         Entry {
             name: "an expert's run".to_owned(),
@@ -81,10 +87,21 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     let panels = panels(scene);
     let below = paper.head(area, &entries(&panels))?;
     let grid = Grid::of(panels.len(), paper);
-    let values = panels.iter().flat_map(|panel| panel.own.iter().chain(panel.runs.iter().flatten()).copied());
+    let values = panels
+        .iter()
+        .flat_map(|panel| panel.own.iter().chain(panel.runs.iter().flatten()).copied());
     let y = roomy(values);
+    let num_curves: usize = panels.iter().take(MOST_PANELS).map(|panel| panel.runs.len() + 1).sum();
+    let columns = f64::from(grid.pixel_columns(paper).min((MOST_COLUMNS / num_curves.max(1)) as i32));
     for (panel, place) in panels.iter().zip(grid.areas(&below)) {
-        let longest = panel.runs.iter().map(Vec::len).chain([panel.own.len()]).max().unwrap_or(1).max(2) as f64;
+        let longest = panel
+            .runs
+            .iter()
+            .map(Vec::len)
+            .chain([panel.own.len()])
+            .max()
+            .unwrap_or(1)
+            .max(2) as f64;
         let axes = Axes {
             x: 0.0..longest,
             y: y.clone(),
@@ -95,7 +112,6 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
         let mut chart = chart(&place, &axes)?;
         let border = |x: &f64| PathElement::new(vec![(*x, y.start), (*x, y.end)], Paper::stroke(RIM.light, 1.0));
         chart.draw_series(panel.borders.iter().map(border))?;
-        let columns = f64::from(grid.pixel_columns(paper));
         let thin = |curve: &[f64]| {
             let points: Vec<(f64, f64)> = curve.iter().enumerate().map(|(x, y)| (x as f64, *y)).collect();
             thinning::line(&points, |x| (x / longest * columns) as i64)

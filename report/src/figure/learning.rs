@@ -14,8 +14,8 @@ use super::thinning;
 
 /// Columns of pixels between the axes, on wide and on narrow paper.
 pub(super) const COLUMNS: [i32; 2] = [900, 300];
-/// Dashes that are drawn as such; a task with more turns has a whole, thin line.
-const MOST_TURNS: usize = 120;
+/// Evaluations that are joined by dots, each of which is a line of its own; more are joined by whole, thin lines.
+const MOST_DOTTED: usize = 90;
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
     paper.head_height(&entries(scene)) + if paper.is_narrow() { 260 } else { 340 }
@@ -50,7 +50,9 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     let columns = COLUMNS[usize::from(paper.is_narrow())];
     let learnt = scene.drawn(true, columns);
     let evaluated = scene.drawn(false, columns);
-    let values = learnt.iter().flat_map(|stretch| stretch.regime.performance.iter().copied());
+    let values = learnt
+        .iter()
+        .flat_map(|stretch| stretch.regime.performance.iter().copied());
     let name = scene.performance_name();
     let axes = Axes {
         x: scene.span.clone(),
@@ -64,7 +66,8 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     if scene.options.show_eval_lines {
         for task in 0..scene.names.len().min(MOST_TASKS) {
             let of_task = evaluated.iter().filter(|stretch| stretch.task == task);
-            join(&mut chart, Look::of(task), of_task.map(|stretch| (stretch.middle(), stretch.mean())))?;
+            let means: Vec<(f64, f64)> = of_task.map(|stretch| (stretch.middle(), stretch.mean())).collect();
+            join(&mut chart, Look::of(task), means, evaluated.len() <= MOST_DOTTED)?;
         }
     }
     let column = scene.column(columns);
@@ -88,24 +91,18 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     Ok(())
 }
 
-/// A dotted line from evaluation to evaluation.
-fn join<DB: DrawingBackend>(
-    chart: &mut Chart<DB>,
-    look: Look,
-    means: impl Iterator<Item = (f64, f64)>,
-) -> Drawn<DB> {
-    let means: Vec<(f64, f64)> = means.collect();
-    match means.len() {
-        0 | 1 => {}
-        2..=MOST_TURNS => {
-            let style = Paper::stroke(look.color, 1.5);
-            let dashes = DashedPathElement::new(means, Paper::dots(2), Paper::dots(4), style);
-            chart.draw_series([dashes])?;
-        }
-        _ => {
-            let style = look.color.mix(0.6).stroke_width(Paper::dots(1) as u32);
-            chart.draw_series([PathElement::new(means, style)])?;
-        }
+/// A line from evaluation to evaluation, dotted or thin.
+fn join<DB: DrawingBackend>(chart: &mut Chart<DB>, look: Look, means: Vec<(f64, f64)>, dotted: bool) -> Drawn<DB> {
+    if means.len() < 2 {
+        return Ok(());
+    }
+    if dotted {
+        let style = Paper::stroke(look.color, 1.5);
+        let dashes = DashedPathElement::new(means, Paper::dots(2), Paper::dots(4), style);
+        chart.draw_series([dashes])?;
+    } else {
+        let style = look.color.mix(0.6).stroke_width(Paper::dots(1) as u32);
+        chart.draw_series([PathElement::new(means, style)])?;
     }
     Ok(())
 }

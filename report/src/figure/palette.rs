@@ -48,11 +48,7 @@ pub(crate) fn dark_rules() -> String {
     for tone in [&INK, &FAINT, &RIM, &SHADE, &FROZEN].into_iter().chain(&TASKS) {
         let RGBColor(r, g, b) = tone.light;
         for what in ["fill", "stroke"] {
-            let _ = write!(
-                rules,
-                "svg [{what}=\"#{r:02X}{g:02X}{b:02X}\"]{{{what}:{}}}",
-                tone.dark
-            );
+            let _ = write!(rules, "svg [{what}=\"#{r:02X}{g:02X}{b:02X}\"]{{{what}:{}}}", tone.dark);
         }
     }
     rules

@@ -124,7 +124,10 @@ fn sample<DB: DrawingBackend>(area: &Area<DB>, sample: Sample, (x, y): (i32, i32
     let d = Paper::dots;
     match sample {
         Sample::Task(look) => {
-            area.draw(&Rectangle::new([(x, y - d(1)), (x + d(16), y + d(1))], look.color.filled()))?;
+            area.draw(&Rectangle::new(
+                [(x, y - d(1)), (x + d(16), y + d(1))],
+                look.color.filled(),
+            ))?;
             draw_mark(area, look, (x + d(8), y), d(4))?;
         }
         Sample::Line(color) => {
@@ -217,7 +220,11 @@ pub(crate) fn number(value: f64) -> String {
         } else {
             &text
         };
-        if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
+        if text == "-0" {
+            "0".to_owned()
+        } else {
+            text.replace('-', "−")
+        }
     };
     match value.abs() {
         0.0 => "0".to_owned(),

@@ -5,8 +5,8 @@ use driftworld_metrics::Lifetime;
 use plotters::prelude::*;
 
 use super::learning::{COLUMNS, shade};
-use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart};
 use super::palette::{FAINT, Look, SHADE};
+use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart};
 use super::scene::{Scene, Stretch, roomy};
 use super::thinning;
 use crate::words::shown;
@@ -31,7 +31,10 @@ fn entries(scene: &Scene) -> Vec<Entry> {
 
 pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &Paper) -> Drawn<DB> {
     let below = paper.head(area, &entries(scene))?;
-    let values = scene.stretches.iter().flat_map(|stretch| stretch.regime.raw.iter().copied());
+    let values = scene
+        .stretches
+        .iter()
+        .flat_map(|stretch| stretch.regime.raw.iter().copied());
     let name = shown(scene.column);
     let columns = COLUMNS[usize::from(paper.is_narrow())];
     let axes = Axes {
@@ -49,7 +52,12 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     for learning in [false, true] {
         for stretch in scene.drawn(learning, columns) {
             let color = Look::of(stretch.task).color;
-            let raw: Vec<(f64, f64)> = stretch.xs.iter().copied().zip(stretch.regime.raw.iter().copied()).collect();
+            let raw: Vec<(f64, f64)> = stretch
+                .xs
+                .iter()
+                .copied()
+                .zip(stretch.regime.raw.iter().copied())
+                .collect();
             if as_points {
                 let size = if paper.is_narrow() { 2 } else { 3 };
                 chart.draw_series(raw.iter().map(|at| Circle::new(*at, size, color.mix(0.35).filled())))?;

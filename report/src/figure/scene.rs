@@ -2,7 +2,7 @@
 //!
 //! Not here: drawing, see the file of each figure.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use driftworld_metrics::{BlockType, Lifetime, Regime};
@@ -68,13 +68,17 @@ impl Stretch<'_> {
 }
 
 impl<'a> Scene<'a> {
-    pub(super) fn new(lifetime: &'a Lifetime, column: &'a str, options: &'a FigureOptions) -> Result<Self, ReportError> {
-        let place = |regime: &Regime| lifetime.tasks().iter().position(|task| *task == regime.task_name);
+    pub(super) fn new(
+        lifetime: &'a Lifetime,
+        column: &'a str,
+        options: &'a FigureOptions,
+    ) -> Result<Self, ReportError> {
+        let places: BTreeMap<&str, usize> = lifetime.tasks().iter().map(String::as_str).zip(0..).collect();
         let mut stretches = Vec::with_capacity(lifetime.regimes().len());
         for regime in lifetime.regimes() {
             stretches.push(Stretch {
                 regime,
-                task: place(regime).unwrap_or(0),
+                task: places.get(regime.task_name.as_str()).copied().unwrap_or(0),
                 xs: positions(lifetime, regime, options.unit)?,
             });
         }
@@ -90,7 +94,10 @@ impl<'a> Scene<'a> {
         }
         let first = stretches.iter().map(|stretch| stretch.range().start);
         let last = stretches.iter().map(|stretch| stretch.range().end);
-        let (first, last) = (first.fold(f64::INFINITY, f64::min), last.fold(f64::NEG_INFINITY, f64::max));
+        let (first, last) = (
+            first.fold(f64::INFINITY, f64::min),
+            last.fold(f64::NEG_INFINITY, f64::max),
+        );
         Ok(Self {
             lifetime,
             column,
@@ -158,7 +165,10 @@ impl<'a> Scene<'a> {
 
     /// Where the lifetime is evaluated, neighbours joined, and what is closer than a column too.
     pub(super) fn evaluated(&self, columns: i32) -> Vec<Range<f64>> {
-        joined(self.stretches.iter().filter(|stretch| !stretch.learns()), self.gap(columns))
+        joined(
+            self.stretches.iter().filter(|stretch| !stretch.learns()),
+            self.gap(columns),
+        )
     }
 
     /// How wide a column is, but at least one experience: blocks that follow each other are one.

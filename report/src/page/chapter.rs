@@ -6,9 +6,9 @@ use driftworld_metrics::{Lifetime, LifetimeMetrics};
 use maud::{Markup, PreEscaped, html};
 
 use super::{facts, metric_table, pair_table, task_table, warnings};
+use crate::ReportError;
 use crate::figure::{Figure, FigureOptions, Figures, Layout};
 use crate::words::shown;
-use crate::ReportError;
 
 /// One lifetime, drawn and written.
 #[derive(Debug, Clone, Default)]
@@ -60,7 +60,11 @@ impl Chapter {
             if !figures.has(which) {
                 return Ok(html! { h3 { (title) } p.note { (absent(which)) } });
             }
-            let alt = format!("{title} of {}: {}", shown(lifetime.run_id()), alternative(lifetime, which));
+            let alt = format!(
+                "{title} of {}: {}",
+                shown(lifetime.run_id()),
+                alternative(lifetime, which)
+            );
             let wide = described(&figures.inline(which, Layout::Wide)?, "wide", &alt);
             let narrow = described(&figures.inline(which, Layout::Narrow)?, "narrow", &alt);
             Ok(html! {
@@ -68,8 +72,15 @@ impl Chapter {
                 figure { (wide) (narrow) figcaption { (says) } }
             })
         };
-        let blocks = format!("Each block of the lifetime from left to right. {}", super::calm(&options.distance_note));
-        let lines = if options.figures.show_eval_lines { ", joined by dotted lines" } else { "" };
+        let blocks = format!(
+            "Each block of the lifetime from left to right. {}",
+            super::calm(&options.distance_note)
+        );
+        let lines = if options.figures.show_eval_lines {
+            ", joined by dotted lines"
+        } else {
+            ""
+        };
         let body = html! {
             (facts::facts(lifetime, metrics))
             (warnings(&options.warnings))
@@ -99,7 +110,9 @@ impl Chapter {
 /// Why a figure is not there.
 fn absent(figure: Figure) -> &'static str {
     match figure {
-        Figure::Experts => "No single-task expert of a task that was learnt is given, so there is nothing to compare with.",
+        Figure::Experts => {
+            "No single-task expert of a task that was learnt is given, so there is nothing to compare with."
+        }
         Figure::Evaluation => "The log has no evaluations.",
         _ => "The log has no learning.",
     }

@@ -8,7 +8,11 @@ use crate::words::shown;
 
 /// How much was lived, and by what it is judged.
 pub(super) fn facts(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Markup {
-    let learnt = lifetime.regimes().iter().filter(|regime| regime.is_wake_training()).count();
+    let learnt = lifetime
+        .regimes()
+        .iter()
+        .filter(|regime| regime.is_wake_training())
+        .count();
     let facts = [
         ("learning experiences", count(metrics.num_lx)),
         ("evaluation experiences", count(metrics.num_ex)),

@@ -59,7 +59,10 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
 /// The explanation as a sentence.
 fn sentence(words: &str) -> String {
     let mut letters = words.chars();
-    let first = letters.next().map(|letter| letter.to_uppercase().to_string()).unwrap_or_default();
+    let first = letters
+        .next()
+        .map(|letter| letter.to_uppercase().to_string())
+        .unwrap_or_default();
     first + letters.as_str()
 }
 
@@ -75,7 +78,9 @@ fn judged(name: &str, value: f64, direction: Direction) -> Markup {
 fn per_task(lifetime: &Lifetime, metrics: &LifetimeMetrics, name: &str) -> Vec<(usize, f64)> {
     let places = lifetime.tasks().iter().enumerate();
     let of_task = |(place, task): (usize, &String)| -> Vec<(usize, f64)> {
-        let Some(values) = metrics.task_metrics.get(task) else { return Vec::new() };
+        let Some(values) = metrics.task_metrics.get(task) else {
+            return Vec::new();
+        };
         let firsts = (values.pairs(name).into_iter().flatten()).filter_map(|(_, values)| values.first().copied());
         firsts.chain(values.number(name)).map(|value| (place, value)).collect()
     };

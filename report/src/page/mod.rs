@@ -17,9 +17,9 @@ use serde_json::Value;
 pub use chapter::{Chapter, ChapterOptions};
 pub use overall::Comparison;
 
+use crate::ReportError;
 use crate::figure::dark_rules;
 use crate::words::shown;
-use crate::ReportError;
 
 /// Most lifetimes on one page.
 pub const MAX_LIFETIMES: usize = 40;
@@ -62,7 +62,10 @@ impl Report {
             (None, [chapter]) => chapter.name.clone(),
             (None, chapters) => format!("{} lifetimes", chapters.len()),
         };
-        let style = format!("{STYLE}@media screen and (prefers-color-scheme:dark){{{}}}", dark_rules());
+        let style = format!(
+            "{STYLE}@media screen and (prefers-color-scheme:dark){{{}}}",
+            dark_rules()
+        );
         let page = html! {
             (DOCTYPE)
             html lang="en" {
@@ -189,7 +192,11 @@ fn plain(value: &Value) -> String {
 fn calm(text: &str) -> String {
     /// Letters of a sentence that are shown.
     const LONGEST: usize = 600;
-    let mut calm: String = text.chars().take(LONGEST).map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
+    let mut calm: String = text
+        .chars()
+        .take(LONGEST)
+        .map(|letter| if letter.is_control() { ' ' } else { letter })
+        .collect();
     if text.chars().nth(LONGEST).is_some() {
         calm.push('…');
     }
@@ -206,7 +213,10 @@ fn number(value: f64) -> String {
         _ => 3,
     };
     let text = format!("{value:.digits$}");
-    let zero = text.trim_start_matches('-').chars().all(|letter| matches!(letter, '0' | '.'));
+    let zero = text
+        .trim_start_matches('-')
+        .chars()
+        .all(|letter| matches!(letter, '0' | '.'));
     if zero {
         text.trim_start_matches('-').to_owned()
     } else {
@@ -241,7 +251,10 @@ mod tests {
         check(104.26, "104.3");
         check(123_456.7, "123457");
         check(1e9, "1.000e9");
-        assert_eq!([0, 999, 1000, 1_234_567].map(count), ["0", "999", "1\u{202f}000", "1\u{202f}234\u{202f}567"]);
+        assert_eq!(
+            [0, 999, 1000, 1_234_567].map(count),
+            ["0", "999", "1\u{202f}000", "1\u{202f}234\u{202f}567"]
+        );
     }
 
     #[test]

@@ -63,7 +63,10 @@ fn values(rows: &[RepeatedMetric]) -> Markup {
 
 fn value_row(row: &RepeatedMetric) -> Markup {
     let name = &row.headline.name;
-    let judged = row.iqm.interval.and_then(|interval| verdict::of_interval(name, interval, row.headline.good));
+    let judged = row
+        .iqm
+        .interval
+        .and_then(|interval| verdict::of_interval(name, interval, row.headline.good));
     html! {
         tr {
             th scope="row" { (verdict::title(name)) }

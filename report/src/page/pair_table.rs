@@ -14,7 +14,11 @@ pub(super) fn tables(metrics: &LifetimeMetrics) -> Markup {
     let summary = metrics.summary();
     let tasks = &metrics.task_metrics;
     let names: Vec<&String> = tasks.keys().take(MOST_TASKS).collect();
-    let has = |name: &str| tasks.values().any(|values| values.pairs(name).is_some_and(|pairs| !pairs.is_empty()));
+    let has = |name: &str| {
+        tasks
+            .values()
+            .any(|values| values.pairs(name).is_some_and(|pairs| !pairs.is_empty()))
+    };
     let found: Vec<&SummaryRow> = summary.iter().filter(|row| has(&row.name)).collect();
     let first = |from: &str, to: &str, name: &str| tasks.get(from)?.pairs(name)?.get(to)?.first().copied();
     html! {

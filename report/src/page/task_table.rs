@@ -15,7 +15,9 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Markup {
     let has = |name: &String| lifetime.tasks().iter().any(|task| value(task, name).is_some());
     let columns: Vec<&String> = names.iter().filter(|name| has(name)).collect();
     let rows = |task: &str, block_type: BlockType| -> (usize, usize) {
-        let regimes = lifetime.regimes_of(task).filter(|regime| regime.block_type == block_type);
+        let regimes = lifetime
+            .regimes_of(task)
+            .filter(|regime| regime.block_type == block_type);
         regimes.fold((0, 0), |(blocks, rows), regime| (blocks + 1, rows + regime.len()))
     };
     html! {
