@@ -219,7 +219,7 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
                 available: text("reward"),
             },
             "metrics/unknown-column",
-            "log run: found no metrics column \"score\", expected one of reward; set Options::perf_measure",
+            "log run: found no metrics column \"score\", expected one of reward; choose one by Options::perf_measure or --perf-measure",
         ),
         (
             E::NoUsableRows {
