@@ -230,6 +230,71 @@ pub enum MetricsError {
         expected: u64,
     },
 
+    /// A number falls from one row of a data file to the next.
+    #[error(
+        "{}:{line}, column {column}: found {found}, expected at least {expected} as in the row above: \
+         numbers never fall", path.display()
+    )]
+    NumberFalls {
+        /// The data file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u64,
+        /// `block_num` or `exp_num`.
+        column: &'static str,
+        /// The number there.
+        found: u64,
+        /// The number above.
+        expected: u64,
+    },
+
+    /// Two data files of one log have different columns.
+    #[error(
+        "{}:1: found the columns {found}, expected {expected} as in {}", path.display(), first.display()
+    )]
+    ColumnsDiffer {
+        /// The data file.
+        path: PathBuf,
+        /// Its columns, comma separated.
+        found: String,
+        /// Those of the first file, comma separated.
+        expected: String,
+        /// The first file.
+        first: PathBuf,
+    },
+
+    /// An experience has no complete row, though its worker went on to the next.
+    #[error(
+        "{}:{line}: found experience {exp_num} of {worker} without a complete row, expected exactly one: \
+         it is not scored", path.display()
+    )]
+    NotCompleted {
+        /// The data file.
+        path: PathBuf,
+        /// Line of the experience's first row, from 1.
+        line: u64,
+        /// Number of the experience.
+        exp_num: u64,
+        /// Its worker.
+        worker: String,
+    },
+
+    /// An experience goes on after its complete row.
+    #[error(
+        "{}:{line}: found another row of experience {exp_num} of {worker} after its complete one, expected the complete row \
+         to be the last: give the next experience a number of its own", path.display()
+    )]
+    RowAfterComplete {
+        /// The data file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u64,
+        /// Number of the experience.
+        exp_num: u64,
+        /// Its worker.
+        worker: String,
+    },
+
     /// A record that was to be written breaks a rule of the format.
     #[error("record of experience {exp_num}, {field}: found {found}, expected {expected}")]
     Record {
@@ -397,6 +462,10 @@ impl MetricsError {
             Self::OpenQuote { .. } => "metrics/open-quote",
             Self::NotUtf8 { .. } => "metrics/not-utf8",
             Self::BlockOrder { .. } => "metrics/block-order",
+            Self::NumberFalls { .. } => "metrics/number-falls",
+            Self::ColumnsDiffer { .. } => "metrics/columns-differ",
+            Self::NotCompleted { .. } => "metrics/not-completed",
+            Self::RowAfterComplete { .. } => "metrics/row-after-complete",
             Self::Record { .. } => "metrics/record",
             Self::Timestamp { .. } => "metrics/timestamp",
             Self::UnknownWord { .. } => "metrics/unknown-word",

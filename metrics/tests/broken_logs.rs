@@ -143,6 +143,23 @@ fn a_table_that_is_no_table_is_refused_with_its_place() {
 }
 
 #[test]
+fn lines_are_counted_whatever_they_end_with_and_whatever_lies_between() {
+    let at_line = |data: String, line: u64| {
+        let message = "expected a finite number, or nothing for a missing one";
+        let place = format!("LOG/w/0-train/data-log.tsv:{line}, column reward: found \"much\", {message}");
+        check(data, "metrics/cell", &place);
+    };
+    let bad = with_cell(9, "much").replace(HEADER, "");
+    let two_lines = ROW.replace("a_b", "\"a\nb\"");
+    at_line(format!("{HEADER}{ROW}{bad}"), 3);
+    at_line(format!("{HEADER}{ROW}{bad}").replace('\n', "\r\n"), 3);
+    at_line(format!("{HEADER}\n\n{ROW}\n{bad}"), 6);
+    at_line(format!("{HEADER}{two_lines}{bad}{ROW}"), 4);
+    at_line(format!("{HEADER}{two_lines}{bad}").replace('\n', "\r\n"), 4);
+    at_line(format!("{HEADER}{}", bad.replace("a_b", "\"a\nb\"")), 2);
+}
+
+#[test]
 fn the_advice_for_a_torn_last_line_works() {
     let base = tempfile::tempdir().unwrap();
     write_log(base.path(), format!("{HEADER}{ROW}0\t1\tw\ttra"));

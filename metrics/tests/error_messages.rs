@@ -182,6 +182,49 @@ fn of_rows() -> Vec<(MetricsError, &'static str, &'static str)> {
              block numbers never fall",
         ),
         (
+            E::NumberFalls {
+                path: path(),
+                line: 7,
+                column: "exp_num",
+                found: 2,
+                expected: 3,
+            },
+            "metrics/number-falls",
+            "run/w/0-train/data-log.tsv:7, column exp_num: found 2, expected at least 3 as in the row above: numbers never fall",
+        ),
+        (
+            E::ColumnsDiffer {
+                path: path(),
+                found: text("a, b"),
+                expected: text("a, c"),
+                first: "run/v/0-train/data-log.tsv".into(),
+            },
+            "metrics/columns-differ",
+            "run/w/0-train/data-log.tsv:1: found the columns a, b, expected a, c as in run/v/0-train/data-log.tsv",
+        ),
+        (
+            E::NotCompleted {
+                path: path(),
+                line: 7,
+                exp_num: 2,
+                worker: text("w"),
+            },
+            "metrics/not-completed",
+            "run/w/0-train/data-log.tsv:7: found experience 2 of w without a complete row, expected exactly one: \
+             it is not scored",
+        ),
+        (
+            E::RowAfterComplete {
+                path: path(),
+                line: 7,
+                exp_num: 2,
+                worker: text("w"),
+            },
+            "metrics/row-after-complete",
+            "run/w/0-train/data-log.tsv:7: found another row of experience 2 of w after its complete one, expected the \
+             complete row to be the last: give the next experience a number of its own",
+        ),
+        (
             E::Record {
                 exp_num: 4,
                 field: text("reward"),
