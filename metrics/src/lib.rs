@@ -21,9 +21,10 @@
 //! # }
 //! ```
 //!
-//! The definitions are those of New et al. 2022, "Lifelong Learning Metrics for L2M"; the numbers are those of the
-//! public package l2metrics 3.1 to 1e-9. Where that package departs from the plain definition, the file that follows
-//! it says so under the word QUIRK.
+//! The definitions are those of New et al. 2022, "Lifelong Learning Metrics"; the numbers are those of the public package
+//! l2metrics 3.1 to 1e-9. Where that package departs from what it documents, the file that follows it says so under the
+//! word QUIRK, and [`Definitions::Published`] does not follow. Repeated lifetimes are summed up by [`over_repeats`] and
+//! compared by [`compare_agents`]; a [`Metric`] of one's own is computed by a [`Scorer`].
 //!
 //! What is not here: running agents (that is the curriculum's), plots and printing (the command's), and the clock:
 //! time stamps are handed in.
@@ -62,3 +63,8 @@ pub use report::{
     SavedTables, Settings, SummaryRow, Value, Values, compare_agents, over_repeats, regimes_tsv, save_all,
 };
 pub use score::{Assessment, Metric, Scorer, score};
+
+/// The Rust in `docs/metrics.md` is compiled with the documentation's tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/metrics.md")]
+struct Documentation;
