@@ -545,6 +545,19 @@ fn the_bench_prints_its_figures_under_their_names() {
     }
 }
 
+#[test]
+fn the_bench_of_logs_reads_and_scores_what_it_wrote() {
+    let figures = succeed(&["bench", "metrics", "--json", "--quick"]);
+    let figures: serde_json::Value = serde_json::from_str(&figures).expect("--json prints JSON");
+    assert_eq!(figures["rows"], 20_000);
+    for name in ["write", "read", "score"] {
+        for unit in ["seconds", "rows_per_second"] {
+            let figure = &figures[format!("{name}_{unit}")];
+            assert!(figure.as_f64().is_some_and(|figure| figure > 0.0), "{figures}");
+        }
+    }
+}
+
 /// A result that was renamed over a device would take the device's place; over a link, the link's.
 #[cfg(unix)]
 #[test]
