@@ -277,13 +277,25 @@ fn what_cannot_be_scored_is_told() {
     check(
         1,
         &["mine"],
-        "mine: found a folder of logs, expected a log; add -R to score all logs in it",
+        "mine: found a folder of 4 logs such as mine/run0, expected one log; name that, or take all with --recursive",
     );
     check(
         1,
-        &["nowhere", "mine/run0", "elsewhere"],
-        "nowhere: found nothing, expected the directory of a log, which holds logger_info.json\n\
-         elsewhere: found nothing, expected the directory of a log, which holds logger_info.json",
+        &["nowhere"],
+        "nowhere: cannot be read: No such file or directory (os error 2)",
+    );
+    for run in ["mine/run1", "mine/run3"] {
+        std::fs::remove_file(folder.path().join(run).join("logger_info.json")).expect("it is there");
+    }
+    let lacks = |run: &str| {
+        format!("{run}/logger_info.json: found no such file, expected a JSON object with \"metrics_columns\"")
+    };
+    let error = fail(folder.path(), 1, &["metrics", "-R", "mine"]);
+    let lines: Vec<&str> = error.lines().collect();
+    assert_eq!(lines.len(), 2, "every log that cannot be scored is told:\n{error}");
+    assert!(
+        lines[0].contains(&lacks("mine/run1")) && lines[1].contains(&lacks("mine/run3")),
+        "{error}"
     );
     check(
         1,
@@ -292,7 +304,7 @@ fn what_cannot_be_scored_is_told() {
     );
     check(
         1,
-        &["mine/run0", "mine/run1", "--confidence", "1.5"],
+        &["mine/run0", "mine/run2", "--confidence", "1.5"],
         "option confidence: found 1.5, expected a number between 0 and 1, as 0.95",
     );
     std::fs::write(folder.path().join("bad.json"), r#"{"perf_mesure": "reward"}"#).expect("the folder can be written");
