@@ -288,7 +288,7 @@ fn what_cannot_be_scored_is_told() {
         std::fs::remove_file(folder.path().join(run).join("logger_info.json")).expect("it is there");
     }
     let lacks = |run: &str| {
-        format!("{run}/logger_info.json: found no such file, expected a JSON object with \"metrics_columns\"")
+        format!("{run}/logger_info.json: found no such file, expected a JSON object with the list metrics_columns")
     };
     let error = fail(folder.path(), 1, &["metrics", "-R", "mine"]);
     let lines: Vec<&str> = error.lines().collect();
