@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use crate::terminal::{fail, reference, scratch, succeed, text};
+use crate::terminal::{fail_in, read, reference, scratch, succeed_in};
 use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp};
 use serde_json::{Value, json};
 
@@ -68,10 +68,10 @@ fn the_references_example_gives_its_files() {
         ["task1_1_run1", "task2_1_run1", "task3_1_run1", "task3_1_run2"].map(|run| of(&format!("ste_logs/ste_{run}")));
     let mut arguments = vec!["metrics", "-l", &log, "-p", "performance", "-O", "results", "--ste"];
     arguments.extend(experts.iter().map(String::as_str));
-    let shown = succeed(folder.path(), &arguments);
+    let shown = succeed_in(folder.path(), &arguments);
     assert!(shown.contains("sample_efficiency         0.913"), "{shown}");
-    let file = |name: &str| parsed(&text(folder.path().join("results").join(name)));
-    let expected = parsed(&text(dir.join("expected/multi_task_metrics.json")));
+    let file = |name: &str| parsed(&read(folder.path().join("results").join(name)));
+    let expected = parsed(&read(dir.join("expected/multi_task_metrics.json")));
     assert_eq!(
         file("multi_task_metrics.json")["perf_recovery"],
         expected["perf_recovery"]
@@ -94,7 +94,7 @@ fn the_references_example_gives_its_files() {
         check_near(name);
     }
     let settings = file("multi_task_settings.json");
-    let expected = parsed(&text(dir.join("expected/multi_task_settings.json")));
+    let expected = parsed(&read(dir.join("expected/multi_task_settings.json")));
     for (name, value) in expected
         .as_object()
         .expect("settings")
@@ -111,7 +111,7 @@ fn the_references_example_gives_its_files() {
         .to_string();
     let mut again = vec!["metrics", "-c", &settings, "--ste"];
     again.extend(experts.iter().map(String::as_str));
-    assert_eq!(succeed(folder.path(), &again), shown);
+    assert_eq!(succeed_in(folder.path(), &again), shown);
 }
 
 #[test]
@@ -129,10 +129,10 @@ fn experts_are_stored_replaced_and_found() {
         let mut arguments = vec!["metrics"];
         arguments.extend(runs);
         arguments.extend(["-s", mode, "--ste-data", "experts"]);
-        succeed(folder.path(), &arguments)
+        succeed_in(folder.path(), &arguments)
     };
     let relative = || {
-        let scored = succeed(folder.path(), &["metrics", "life", "--ste-data", "experts", "--json"]);
+        let scored = succeed_in(folder.path(), &["metrics", "life", "--ste-data", "experts", "--json"]);
         parsed(&scored)["task_metrics"]["find_red"]["ste_rel_perf_vals"]
             .as_array()
             .map(Vec::len)
@@ -149,7 +149,7 @@ fn experts_are_stored_replaced_and_found() {
     // Together they are the runs of one expert, also where they replace others.
     store("w", &["one", "two", "three"]);
     assert_eq!(relative(), Some(3));
-    let error = fail(
+    let error = fail_in(
         folder.path(),
         1,
         &["metrics", "life", "-s", "w", "--ste-data", "experts"],
@@ -164,7 +164,7 @@ fn experts_are_stored_replaced_and_found() {
 fn many_lifetimes_come_with_intervals_and_tables() {
     let folder = two_agents();
     let arguments = ["metrics", "-R", "mine", "-O", "out", "--resamples", "500"];
-    let shown = succeed(folder.path(), &arguments);
+    let shown = succeed_in(folder.path(), &arguments);
     assert!(
         shown.starts_with("4 lifetimes: 160 learning and 56 evaluation experiences in all, scored by reward"),
         "{shown}"
@@ -175,24 +175,24 @@ fn many_lifetimes_come_with_intervals_and_tables() {
         .expect("a row of that metric");
     assert!(row.contains(" to ") && row.contains("4 x 2"), "{row}");
     assert_eq!(
-        succeed(folder.path(), &arguments),
+        succeed_in(folder.path(), &arguments),
         shown,
         "the same seed, the same intervals"
     );
-    let other = succeed(
+    let other = succeed_in(
         folder.path(),
         &["metrics", "-R", "mine", "--resamples", "500", "--bootstrap-seed", "1"],
     );
     assert_ne!(other, shown);
-    let table = text(folder.path().join("out/ll_metrics.tsv"));
+    let table = read(folder.path().join("out/ll_metrics.tsv"));
     assert_eq!(table.lines().count(), 5);
     assert!(table.starts_with("run_id\t") && table.contains("\nrun3\t"), "{table}");
-    let all = parsed(&text(folder.path().join("out/ll_metrics.json")));
+    let all = parsed(&read(folder.path().join("out/ll_metrics.json")));
     assert_eq!(all.as_array().map(Vec::len), Some(4));
-    let regimes = text(folder.path().join("out/ll_metrics_regime.tsv"));
+    let regimes = read(folder.path().join("out/ll_metrics_regime.tsv"));
     assert!(regimes.starts_with("run_id\tblock_num"), "{regimes}");
     assert_eq!(regimes.lines().count(), 1 + 4 * 8);
-    let json = parsed(&succeed(
+    let json = parsed(&succeed_in(
         folder.path(),
         &["metrics", "mine/run0", "mine/run1", "--json"],
     ));
@@ -209,7 +209,7 @@ fn many_lifetimes_come_with_intervals_and_tables() {
 fn two_agents_are_compared() {
     let folder = two_agents();
     let arguments = ["metrics", "-R", "mine", "--against", "theirs", "-n", "none", "--json"];
-    let json = parsed(&succeed(folder.path(), &arguments));
+    let json = parsed(&succeed_in(folder.path(), &arguments));
     let improvement = json["improvement"].as_array().expect("a list of metrics");
     let of = |name: &str| {
         let row = improvement
@@ -223,7 +223,7 @@ fn two_agents_are_compared() {
         (Some(1.0), Some(1.0)),
         "every run beats every run"
     );
-    let shown = succeed(
+    let shown = succeed_in(
         folder.path(),
         &["metrics", "-R", "theirs", "--against", "mine", "-n", "none"],
     );
@@ -246,7 +246,7 @@ fn strict_definitions_and_noise_reach_the_result() {
     let scored = |more: &[&str]| {
         let mut arguments = vec!["metrics", "life", "--json"];
         arguments.extend(more);
-        parsed(&succeed(folder.path(), &arguments))
+        parsed(&succeed_in(folder.path(), &arguments))
     };
     assert_eq!(scored(&["--strict-definitions"])["definitions"], "published");
     assert_eq!(scored(&[]).get("definitions"), None);
@@ -271,7 +271,7 @@ fn what_cannot_be_scored_is_told() {
     let check = |code: i32, arguments: &[&str], expected: &str| {
         let mut all = vec!["metrics"];
         all.extend(arguments);
-        assert_eq!(fail(folder.path(), code, &all), format!("error: {expected}\n"));
+        assert_eq!(fail_in(folder.path(), code, &all), format!("error: {expected}\n"));
     };
     check(2, &[], "found no DIR, expected the folder of a log, or several");
     check(
@@ -290,7 +290,7 @@ fn what_cannot_be_scored_is_told() {
     let lacks = |run: &str| {
         format!("{run}/logger_info.json: found no such file, expected a JSON object with the list metrics_columns")
     };
-    let error = fail(folder.path(), 1, &["metrics", "-R", "mine"]);
+    let error = fail_in(folder.path(), 1, &["metrics", "-R", "mine"]);
     let lines: Vec<&str> = error.lines().collect();
     assert_eq!(lines.len(), 2, "every log that cannot be scored is told:\n{error}");
     assert!(
