@@ -15,6 +15,7 @@ pub use driftworld_curriculum as curriculum;
 pub use driftworld_env as env;
 pub use driftworld_generator as generator;
 pub use driftworld_metrics as metrics;
+pub use driftworld_report as report;
 pub use driftworld_similarity as similarity;
 pub use driftworld_spec as spec;
 

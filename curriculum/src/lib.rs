@@ -17,4 +17,6 @@ pub use error::CurriculumError;
 pub use run::{
     COLUMNS, FoundWorld, Journal, Plan, Progress, RegimeSummary, Sources, Summary, Surroundings, log_name, run,
 };
-pub use transfer::{DirectionReport, PairTransfer, TransferOptions, TransferReport, transfer_report};
+pub use transfer::{
+    DirectionReport, PairTransfer, TransferOptions, TransferReport, log_name_of_label, transfer_report,
+};

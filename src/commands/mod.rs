@@ -21,6 +21,7 @@ mod output;
 mod photograph;
 mod pictures;
 mod render;
+mod report;
 mod run;
 mod sample;
 mod scenario_file;
@@ -77,6 +78,8 @@ pub(crate) enum Command {
     Logs(logs::Logs),
     /// Score the log of a lifetime.
     Metrics(metrics::Metrics),
+    /// Show lifetimes on one page: metrics, curriculum, curves.
+    Report(report::Report),
     /// Ask whether similar variants transferred more, by logs and distances.
     TransferReport(transfer_report::TransferReport),
     /// Write or check the JSON Schemas of the documents.
@@ -108,6 +111,7 @@ impl Command {
             Self::Run(command) => command.run(),
             Self::Logs(command) => command.run(),
             Self::Metrics(command) => command.run(),
+            Self::Report(command) => command.run(),
             Self::TransferReport(command) => command.run(),
             Self::Schema(command) => command.run(),
             Self::Bench(command) => command.run(),

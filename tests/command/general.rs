@@ -25,6 +25,7 @@ fn every_subcommand_has_help_with_an_example() {
         "run",
         "logs",
         "metrics",
+        "report",
         "transfer-report",
         "schema",
         "bench",

@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use crate::CurriculumError;
 use names::Names;
+pub use names::log_name_of_label;
 use pooling::{Direction, pooled};
 
 /// How transfer is compared with distance.

@@ -31,7 +31,7 @@ impl Names {
 
 /// The name in a log of what a matrix calls `task#variant`; of a task that is a file, the file's name counts. A label without
 /// `#` is taken for a log's name already.
-fn log_name_of_label(label: &str) -> String {
+pub fn log_name_of_label(label: &str) -> String {
     let Some((task, variant)) = label.rsplit_once('#') else {
         return label.to_lowercase();
     };

@@ -89,6 +89,11 @@ impl Lifetime {
         self.experts.get(task).map_or(&[], Vec::as_slice)
     }
 
+    /// The learning of a task's single-task expert after preprocessing, a list per run, in the order of the runs given.
+    pub fn expert_curves(&self, task: &str) -> impl Iterator<Item = Vec<f64>> {
+        self.experts_of(task).iter().map(SteRun::training_performance)
+    }
+
     /// Range per task that was scaled to 1..=101; `None` where nothing was normalised.
     pub fn normalization_data_range(&self) -> Option<&IndexMap<String, DataRange>> {
         self.normalization_data_range.as_ref()

@@ -33,6 +33,9 @@ pub struct Regime {
     pub task_params: TaskParams,
     /// Experience number of each row, ascending.
     pub exp_nums: Vec<u64>,
+    /// Steps of the environment up to the end of each row, over all rows of the lifetime that count; `None` where the log has no
+    /// column `episode_step_count`, or one that is not a number of 0 or more in each of them.
+    pub steps: Option<Vec<f64>>,
     /// Performance of each row as logged.
     pub raw: Vec<f64>,
     /// Performance of each row after preprocessing.
@@ -96,6 +99,7 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
         }
     };
     let stretches = usable.indices.chunk_by(|&a, &b| key(a) == key(b) && same_params(a, b));
+    let mut steps = cumulated_steps(usable).map(Vec::into_iter);
     let mut regimes = Vec::new();
     for (regime_num, stretch) in stretches.enumerate() {
         if regime_num == MAX_REGIMES {
@@ -116,11 +120,24 @@ pub(crate) fn form(run_id: &str, usable: &Usable<'_>, options: &Options) -> Resu
             task_name: scored.names[task].clone(),
             task_params: params_of(first).clone(),
             exp_nums: stretch.iter().map(|&row| rows.exp_nums()[row]).collect(),
+            steps: (steps.as_mut()).map(|steps| steps.by_ref().take(stretch.len()).collect()),
             raw: performance.clone(),
             performance,
         });
     }
     Ok(regimes)
+}
+
+/// Steps of the environment up to the end of each row that counts, one after the other.
+fn cumulated_steps(usable: &Usable<'_>) -> Option<Vec<f64>> {
+    let steps = usable.rows.metric("episode_step_count")?;
+    let mut sum = 0.0;
+    let up_to = |&row: &usize| {
+        let known = steps[row].is_finite() && steps[row] >= 0.0;
+        sum += steps[row];
+        known.then_some(sum)
+    };
+    usable.indices.iter().map(up_to).collect()
 }
 
 /// The names under which tasks are scored, and which of them each logged name has.
@@ -178,6 +195,29 @@ mod tests {
         assert_eq!(lengths(VariantMode::Aware, Definitions::Reference), [2, 1, 1, 1]);
         assert_eq!(lengths(VariantMode::Agnostic, Definitions::Reference), [3, 1, 1]);
         assert_eq!(lengths(VariantMode::Aware, Definitions::Published), [1, 1, 1, 1, 1]);
+    }
+
+    #[test]
+    fn steps_are_summed_up_over_the_rows_that_count() {
+        let check = |steps: &[f64], expected: Option<[f64; 2]>| {
+            let record = |(block, steps): (u64, &f64)| {
+                record(block, BlockType::Train, "a_x").with_metric("episode_step_count", *steps)
+            };
+            let records: Vec<_> = (0..).zip(steps).map(record).collect();
+            let rows = Rows::from_records(&records);
+            let usable = Usable {
+                rows: &rows,
+                indices: vec![0, 2],
+                performance: &[1.0; 3],
+            };
+            let regimes = form("run", &usable, &Options::default()).unwrap();
+            let found: Option<Vec<f64>> = regimes.into_iter().map(|regime| Some(regime.steps?[0])).collect();
+            assert_eq!(found, expected.map(Vec::from));
+        };
+        check(&[3.0, 10.0, 4.0], Some([3.0, 7.0]));
+        check(&[3.0, -1.0, 4.0], Some([3.0, 7.0]));
+        check(&[3.0, 10.0, -4.0], None);
+        check(&[f64::NAN, 10.0, 4.0], None);
     }
 
     #[test]

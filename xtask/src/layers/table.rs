@@ -28,6 +28,7 @@ const SIMILARITY: &str = "driftworld-similarity";
 const ENV: &str = "driftworld-env";
 const METRICS: &str = "driftworld-metrics";
 const CURRICULUM: &str = "driftworld-curriculum";
+const REPORT: &str = "driftworld-report";
 const FACADE: &str = "driftworld";
 const PYTHON: &str = "driftworld-python";
 const UNITY: &str = "driftworld-unity";
@@ -65,14 +66,19 @@ pub(super) const ROOMS: &[Room] = &[
         may_import: &[SPEC, GENERATOR, SIMILARITY, ENV, METRICS],
     },
     Room {
+        package: REPORT,
+        floor: 3,
+        may_import: &[METRICS],
+    },
+    Room {
         package: FACADE,
         floor: 4,
-        may_import: &[SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM],
+        may_import: &[SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM, REPORT],
     },
     Room {
         package: PYTHON,
         floor: 4,
-        may_import: &[SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM],
+        may_import: &[SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM, REPORT],
     },
     Room {
         package: UNITY,
@@ -111,6 +117,12 @@ pub(super) const FENCES: &[Fence] = &[
         rooms: &[METRICS],
         test_rooms: &[],
         purpose: "logs are read and written",
+    },
+    Fence {
+        crates: &["maud"],
+        rooms: &[REPORT],
+        test_rooms: &[],
+        purpose: "pages are written",
     },
     Fence {
         crates: &["clap", "indicatif"],

@@ -1,0 +1,120 @@
+//! The one error type of this crate: what can keep a report from being made.
+//!
+//! Not here: what is wrong with a log, see `driftworld_metrics::MetricsError`.
+
+/// Everything that can stop a figure or a page.
+///
+/// Every message reads: where, what was found, what was expected, and what to do where that is not plain.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// The plotting library could not draw.
+    #[error("figure {figure}: drawing failed: {source}")]
+    Drawing {
+        /// The figure, by its name in files.
+        figure: &'static str,
+        /// What the plotting library said.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+
+    /// A name of a figure that is none.
+    #[error("plot type: found {found:?}, expected one of all, raw, lb, eb, ste, timeline")]
+    UnknownFigure {
+        /// What was asked for.
+        found: String,
+    },
+
+    /// A name of a unit that is none.
+    #[error("unit: found {found:?}, expected exp_num or steps")]
+    UnknownUnit {
+        /// What was asked for.
+        found: String,
+    },
+
+    /// The horizontal axis cannot count steps.
+    #[error(
+        "log {run_id}: found no steps for every experience, expected the column episode_step_count with a number of 0 or more in \
+         each complete row; leave the unit at exp_num"
+    )]
+    NoSteps {
+        /// The log.
+        run_id: String,
+    },
+
+    /// Distances that do not belong to the lifetime.
+    #[error(
+        "log {run_id}: found {found} distances, expected {expected}: one for each two neighbouring learning blocks, as \
+         neighbours() lists them"
+    )]
+    Distances {
+        /// The log.
+        run_id: String,
+        /// How many were given.
+        found: usize,
+        /// How many there must be.
+        expected: usize,
+    },
+
+    /// More lifetimes than one page can show.
+    #[error("found {found} lifetimes, expected at most {limit} on one page; make several reports")]
+    TooManyLifetimes {
+        /// How many there are.
+        found: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+}
+
+impl ReportError {
+    /// A name for the kind of error that stays the same between versions.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Drawing { .. } => "report/drawing",
+            Self::UnknownFigure { .. } => "report/unknown-figure",
+            Self::UnknownUnit { .. } => "report/unknown-unit",
+            Self::NoSteps { .. } => "report/no-steps",
+            Self::Distances { .. } => "report/distances",
+            Self::TooManyLifetimes { .. } => "report/too-many-lifetimes",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_error_has_its_message() {
+        let run_id = || "life".to_owned();
+        let all = [
+            ReportError::Drawing {
+                figure: "raw",
+                source: "no font".into(),
+            },
+            ReportError::UnknownFigure {
+                found: "pie".to_owned(),
+            },
+            ReportError::UnknownUnit {
+                found: "hours".to_owned(),
+            },
+            ReportError::NoSteps { run_id: run_id() },
+            ReportError::Distances {
+                run_id: run_id(),
+                found: 2,
+                expected: 3,
+            },
+            ReportError::TooManyLifetimes { found: 99, limit: 40 },
+        ];
+        let told: Vec<String> = all.iter().map(|error| format!("{}: {error}", error.code())).collect();
+        insta::assert_snapshot!(told.join("\n"));
+        // Fails to compile when a variant is added: then it belongs into the list above.
+        let _ = |error: &ReportError| match error {
+            ReportError::Drawing { .. }
+            | ReportError::UnknownFigure { .. }
+            | ReportError::UnknownUnit { .. }
+            | ReportError::NoSteps { .. }
+            | ReportError::Distances { .. }
+            | ReportError::TooManyLifetimes { .. } => (),
+        };
+    }
+}

@@ -1,0 +1,176 @@
+//! The mean of each evaluation with its 95 % interval, a panel per task with all its variants, and when the task was learnt.
+//!
+//! Not here: the interval itself, see `interval`.
+
+use indexmap::IndexMap;
+use plotters::prelude::*;
+
+use super::interval::mean_and_reach;
+use super::palette::{FAINT, INK, Look};
+use super::panels::{Grid, MOST_PANELS};
+use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, draw_mark};
+use super::scene::{Scene, Stretch, joined, roomy, task_entry};
+
+/// Variants of a task beyond these are left out of its panel: more cannot be told apart.
+const MOST_VARIANTS: usize = 28;
+/// Points of all panels together; with more, what is near is one point.
+const MOST_POINTS: usize = 3000;
+
+/// Tasks of which the evaluations are in one panel.
+struct Cluster {
+    name: String,
+    tasks: Vec<usize>,
+}
+
+/// The evaluated tasks, variants of one together.
+fn clusters(scene: &Scene) -> Vec<Cluster> {
+    let mut evaluated = vec![false; scene.names.len()];
+    for stretch in scene.stretches.iter().filter(|stretch| !stretch.learns()) {
+        evaluated[stretch.task] = true;
+    }
+    let mut found: IndexMap<&str, Vec<usize>> = IndexMap::new();
+    for (task, name) in scene
+        .lifetime
+        .tasks()
+        .iter()
+        .enumerate()
+        .filter(|(task, _)| evaluated[*task])
+    {
+        found
+            .entry(name.split('_').next().unwrap_or(name))
+            .or_default()
+            .push(task);
+    }
+    found.values_mut().for_each(|tasks| tasks.truncate(MOST_VARIANTS));
+    let named = |(name, tasks): (&str, Vec<usize>)| Cluster {
+        name: match tasks[..] {
+            [task] => scene.names[task].clone(),
+            _ => crate::words::shown(name),
+        },
+        tasks,
+    };
+    found.into_iter().map(named).collect()
+}
+
+fn entries(scene: &Scene, clusters: &[Cluster]) -> Vec<Entry> {
+    // A panel with one task has its name already.
+    let drawn = clusters
+        .iter()
+        .take(MOST_PANELS)
+        .filter(|cluster| cluster.tasks.len() > 1);
+    let mut entries: Vec<Entry> = drawn
+        .flat_map(|cluster| cluster.tasks.iter())
+        .map(|task| task_entry((*task, &scene.names[*task])))
+        .take(super::scene::MOST_TASKS)
+        .collect();
+    entries.push(Entry {
+        name: "while it was learnt".to_owned(),
+        sample: Sample::Tint(FAINT.light),
+    });
+    if clusters.len() > MOST_PANELS {
+        entries.push(Entry {
+            name: format!("and {} tasks more, not drawn", clusters.len() - MOST_PANELS),
+            sample: Sample::Nothing,
+        });
+    }
+    entries
+}
+
+pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
+    let clusters = clusters(scene);
+    paper.head_height(&entries(scene, &clusters)) + Grid::of(clusters.len(), paper).height()
+}
+
+pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &Paper) -> Drawn<DB> {
+    let clusters = clusters(scene);
+    let below = paper.head(area, &entries(scene, &clusters))?;
+    let grid = Grid::of(clusters.len(), paper);
+    let num_tasks: usize = clusters
+        .iter()
+        .take(MOST_PANELS)
+        .map(|cluster| cluster.tasks.len())
+        .sum();
+    let columns = grid.pixel_columns(paper).min((MOST_POINTS / num_tasks.max(1)) as i32);
+    let points: Vec<Vec<Point>> = (clusters.iter().take(MOST_PANELS))
+        .map(|cluster| points(scene, cluster, columns))
+        .collect();
+    let ends = points
+        .iter()
+        .flatten()
+        .flat_map(|point| [point.mean - point.reach, point.mean + point.reach]);
+    let y = roomy(ends);
+    for ((cluster, points), panel) in clusters.iter().zip(&points).zip(grid.areas(&below)) {
+        let axes = Axes {
+            x: scene.span.clone(),
+            y: y.clone(),
+            x_name: scene.x_name(),
+            y_name: (&cluster.name, INK.light),
+            labels: grid.labels(),
+        };
+        let mut chart = chart(&panel, &axes)?;
+        for task in &cluster.tasks {
+            let learnt = scene
+                .stretches
+                .iter()
+                .filter(|stretch| stretch.task == *task && stretch.learns());
+            let color = Look::of(*task).color.mix(0.14).filled();
+            let blocks = joined(learnt, scene.gap(grid.pixel_columns(paper))).into_iter();
+            chart.draw_series(blocks.map(|x| Rectangle::new([(x.start, y.start), (x.end, y.end)], color)))?;
+        }
+        for task in &cluster.tasks {
+            let of_task = || points.iter().filter(|point| point.task == *task);
+            let look = Look::of(*task);
+            let line = of_task().map(|point| (point.x, point.mean));
+            chart.draw_series([PathElement::new(
+                line.collect::<Vec<_>>(),
+                look.color.mix(0.55).stroke_width(2),
+            )])?;
+            let bars = of_task().filter(|point| point.reach > 0.0).map(|point| {
+                let ends = [(point.x, point.mean - point.reach), (point.x, point.mean + point.reach)];
+                PathElement::new(ends.to_vec(), Paper::stroke(look.color, 1.5))
+            });
+            chart.draw_series(bars)?;
+            let places: Vec<(i32, i32)> = of_task()
+                .map(|point| chart.backend_coord(&(point.x, point.mean)))
+                .collect();
+            let (left, top) = panel.get_base_pixel();
+            for (x, y) in places {
+                draw_mark(&panel, look, (x - left, y - top), Paper::dots(3))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The mean of an evaluation.
+struct Point {
+    task: usize,
+    x: f64,
+    mean: f64,
+    reach: f64,
+}
+
+/// The evaluations of a cluster's tasks; what falls into one column of pixels is one evaluation.
+fn points(scene: &Scene, cluster: &Cluster, columns: i32) -> Vec<Point> {
+    let column = scene.column(columns);
+    let of_task = |task: usize| -> Vec<Point> {
+        let evaluated: Vec<&Stretch> = (scene
+            .stretches
+            .iter()
+            .filter(|stretch| stretch.task == task && !stretch.learns()))
+        .collect();
+        evaluated
+            .chunk_by(|a, b| a.regime.block_num == b.regime.block_num || column(a.middle()) == column(b.middle()))
+            .map(|group| {
+                let samples: Vec<f64> = group
+                    .iter()
+                    .flat_map(|stretch| stretch.regime.performance.iter().copied())
+                    .collect();
+                let (mean, reach) = mean_and_reach(&samples);
+                let x = group.iter().map(|stretch| stretch.middle()).sum::<f64>() / group.len() as f64;
+                Point { task, x, mean, reach }
+            })
+            .collect()
+    };
+    cluster.tasks.iter().flat_map(|task| of_task(*task)).collect()
+}

@@ -1,0 +1,126 @@
+//! The learning of each task, its blocks end to end, against each run of its single-task expert.
+//!
+//! Not here: the numbers of the comparison, which are the metrics'.
+
+use plotters::prelude::*;
+
+use super::palette::{FAINT, INK, Look, RIM, TASKS};
+use super::panels::{Grid, MOST_PANELS};
+use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart};
+use super::scene::{Scene, roomy};
+use super::thinning;
+
+/// Runs of an expert beyond these are left out.
+const MOST_RUNS: usize = 12;
+/// Columns of pixels of all curves together; with more curves, each has fewer.
+const MOST_COLUMNS: usize = 16_000;
+/// Borders between blocks beyond these are left out.
+const MOST_BORDERS: usize = 60;
+
+/// One task with its curves.
+struct Panel {
+    task: usize,
+    own: Vec<f64>,
+    borders: Vec<f64>,
+    runs: Vec<Vec<f64>>,
+}
+
+/// Whether any task that was learnt has an expert.
+pub(super) fn any(scene: &Scene) -> bool {
+    let mut tasks = scene.lifetime.tasks().iter();
+    tasks.any(|task| scene.lifetime.expert_curves(task).next().is_some())
+}
+
+/// The tasks that were learnt and have an expert.
+fn panels(scene: &Scene) -> Vec<Panel> {
+    let tasks = scene.lifetime.tasks().iter().enumerate();
+    let panel = |(task, name): (usize, &String)| {
+        let runs: Vec<Vec<f64>> = scene.lifetime.expert_curves(name).take(MOST_RUNS).collect();
+        let learnt: Vec<&[f64]> = (scene.lifetime.regimes_of(name))
+            .filter(|regime| regime.is_wake_training())
+            .map(|regime| regime.performance.as_slice())
+            .collect();
+        let ends = learnt.iter().scan(0.0, |sum, block| {
+            *sum += block.len() as f64;
+            Some(*sum)
+        });
+        (!runs.is_empty() && !learnt.is_empty()).then(|| Panel {
+            task,
+            borders: ends.take(learnt.len() - 1).take(MOST_BORDERS).collect(),
+            own: learnt.concat(),
+            runs,
+        })
+    };
+    tasks.filter_map(panel).collect()
+}
+
+fn entries(panels: &[Panel]) -> Vec<Entry> {
+    let mut entries = vec![
+        Entry {
+            name: "this agent, in the task's colour".to_owned(),
+            sample: Sample::Line(
+                panels
+                    .first()
+                    .map_or(TASKS[0].light, |panel| Look::of(panel.task).color),
+            ),
+        },
+        Entry {
+            name: "an expert's run".to_owned(),
+            sample: Sample::Line(FAINT.light),
+        },
+    ];
+    if panels.len() > MOST_PANELS {
+        entries.push(Entry {
+            name: format!("and {} tasks more, not drawn", panels.len() - MOST_PANELS),
+            sample: Sample::Nothing,
+        });
+    }
+    entries
+}
+
+pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
+    let panels = panels(scene);
+    paper.head_height(&entries(&panels)) + Grid::of(panels.len(), paper).height()
+}
+
+pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &Paper) -> Drawn<DB> {
+    let panels = panels(scene);
+    let below = paper.head(area, &entries(&panels))?;
+    let grid = Grid::of(panels.len(), paper);
+    let values = panels
+        .iter()
+        .flat_map(|panel| panel.own.iter().chain(panel.runs.iter().flatten()).copied());
+    let y = roomy(values);
+    let num_curves: usize = panels.iter().take(MOST_PANELS).map(|panel| panel.runs.len() + 1).sum();
+    let columns = f64::from(grid.pixel_columns(paper).min((MOST_COLUMNS / num_curves.max(1)) as i32));
+    for (panel, place) in panels.iter().zip(grid.areas(&below)) {
+        let longest = panel
+            .runs
+            .iter()
+            .map(Vec::len)
+            .chain([panel.own.len()])
+            .max()
+            .unwrap_or(1)
+            .max(2) as f64;
+        let axes = Axes {
+            x: 0.0..longest,
+            y: y.clone(),
+            x_name: "experience of learning it",
+            y_name: (&scene.names[panel.task], INK.light),
+            labels: grid.labels(),
+        };
+        let mut chart = chart(&place, &axes)?;
+        let border = |x: &f64| PathElement::new(vec![(*x, y.start), (*x, y.end)], Paper::stroke(RIM.light, 1.0));
+        chart.draw_series(panel.borders.iter().map(border))?;
+        let thin = |curve: &[f64]| {
+            let points: Vec<(f64, f64)> = curve.iter().enumerate().map(|(x, y)| (x as f64, *y)).collect();
+            thinning::line(&points, |x| (x / longest * columns) as i64)
+        };
+        for run in &panel.runs {
+            chart.draw_series([PathElement::new(thin(run), Paper::stroke(FAINT.light, 1.5))])?;
+        }
+        let style = Paper::stroke(Look::of(panel.task).color, 2.0);
+        chart.draw_series([PathElement::new(thin(&panel.own), style)])?;
+    }
+    Ok(())
+}

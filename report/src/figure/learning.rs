@@ -1,0 +1,108 @@
+//! Learning curves over the lifetime, evaluations shaded, and the means of each task's evaluations joined by dotted lines.
+//!
+//! Not here: intervals of evaluations, see `evaluation`.
+
+use std::ops::Range;
+
+use plotters::element::DashedPathElement;
+use plotters::prelude::*;
+
+use super::palette::{FAINT, Look, SHADE};
+use super::paper::{Area, Axes, Chart, Drawn, Entry, Paper, Sample, chart, draw_mark};
+use super::scene::{MOST_TASKS, Scene, Stretch, roomy};
+use super::thinning;
+
+/// Columns of pixels between the axes, on wide and on narrow paper.
+pub(super) const COLUMNS: [i32; 2] = [900, 300];
+/// Evaluations that are joined by dots, each of which is a line of its own; more are joined by whole, thin lines.
+const MOST_DOTTED: usize = 90;
+
+pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
+    paper.head_height(&entries(scene)) + if paper.is_narrow() { 260 } else { 340 }
+}
+
+fn entries(scene: &Scene) -> Vec<Entry> {
+    let mut entries = scene.entries();
+    if scene.stretches.iter().any(|stretch| !stretch.learns()) {
+        entries.push(Entry {
+            name: "evaluation".to_owned(),
+            sample: Sample::Area(SHADE.light),
+        });
+    }
+    entries
+}
+
+/// Greys the parts of the lifetime in which the agent is evaluated.
+pub(super) fn shade<DB: DrawingBackend>(
+    scene: &Scene,
+    chart: &mut Chart<DB>,
+    y: &Range<f64>,
+    columns: i32,
+) -> Drawn<DB> {
+    let shades = scene.evaluated(columns).into_iter();
+    let boxes = shades.map(|x| Rectangle::new([(x.start, y.start), (x.end, y.end)], SHADE.light.filled()));
+    chart.draw_series(boxes)?;
+    Ok(())
+}
+
+pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &Paper) -> Drawn<DB> {
+    let below = paper.head(area, &entries(scene))?;
+    let columns = COLUMNS[usize::from(paper.is_narrow())];
+    let learnt = scene.drawn(true, columns);
+    let evaluated = scene.drawn(false, columns);
+    let values = learnt
+        .iter()
+        .flat_map(|stretch| stretch.regime.performance.iter().copied());
+    let name = scene.performance_name();
+    let axes = Axes {
+        x: scene.span.clone(),
+        y: roomy(values.chain(evaluated.iter().map(|stretch| stretch.mean()))),
+        x_name: scene.x_name(),
+        y_name: (&name, FAINT.light),
+        labels: if paper.is_narrow() { [4, 5] } else { [9, 6] },
+    };
+    let mut chart = chart(&below, &axes)?;
+    shade(scene, &mut chart, &axes.y, columns)?;
+    if scene.options.show_eval_lines {
+        for task in 0..scene.names.len().min(MOST_TASKS) {
+            let of_task = evaluated.iter().filter(|stretch| stretch.task == task);
+            let means: Vec<(f64, f64)> = of_task.map(|stretch| (stretch.middle(), stretch.mean())).collect();
+            join(&mut chart, Look::of(task), means, evaluated.len() <= MOST_DOTTED)?;
+        }
+    }
+    let column = scene.column(columns);
+    for stretch in &learnt {
+        let style = Paper::stroke(Look::of(stretch.task).color, 2.0);
+        let line = thinning::line(&stretch.performances(), &column);
+        chart.draw_series([PathElement::new(line, style)])?;
+    }
+    let marked = |stretch: &&&Stretch| !stretch.learns() || scene.names.len() > super::palette::TASKS.len();
+    let radius = Paper::dots(if evaluated.len() > 240 { 2 } else { 3 });
+    let places: Vec<((i32, i32), Look)> = (evaluated.iter().chain(&learnt).filter(marked))
+        .map(|stretch| {
+            let at = chart.backend_coord(&(stretch.middle(), stretch.mean()));
+            (at, Look::of(stretch.task))
+        })
+        .collect();
+    let (left, top) = area.get_base_pixel();
+    for ((x, y), look) in places {
+        draw_mark(area, look, (x - left, y - top), radius)?;
+    }
+    Ok(())
+}
+
+/// A line from evaluation to evaluation, dotted or thin.
+fn join<DB: DrawingBackend>(chart: &mut Chart<DB>, look: Look, means: Vec<(f64, f64)>, dotted: bool) -> Drawn<DB> {
+    if means.len() < 2 {
+        return Ok(());
+    }
+    if dotted {
+        let style = Paper::stroke(look.color, 1.5);
+        let dashes = DashedPathElement::new(means, Paper::dots(2), Paper::dots(4), style);
+        chart.draw_series([dashes])?;
+    } else {
+        let style = look.color.mix(0.6).stroke_width(Paper::dots(1) as u32);
+        chart.draw_series([PathElement::new(means, style)])?;
+    }
+    Ok(())
+}

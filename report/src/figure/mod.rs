@@ -1,0 +1,302 @@
+//! Figures of a lifetime, each drawn by one function onto vectors or pixels: which there are, and their files' bytes.
+//!
+//! Not here: what a figure shows, see the file of each; the page that holds them, see `page`.
+
+mod evaluation;
+mod experts;
+mod interval;
+mod learning;
+mod palette;
+mod panels;
+mod paper;
+mod raw;
+mod scene;
+mod strip;
+mod thinning;
+mod timeline;
+
+use std::str::FromStr;
+
+use driftworld_metrics::Lifetime;
+use plotters::prelude::*;
+
+pub(crate) use palette::dark_rules;
+pub(crate) use strip::strip;
+
+use crate::ReportError;
+use crate::words::shown;
+use paper::{Area, Drawn, Paper};
+use scene::Scene;
+
+/// What can be drawn of a lifetime.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Figure {
+    /// Raw values as points, with the smoothed curve.
+    Raw,
+    /// Learning curves, evaluations shaded, their means joined.
+    Learning,
+    /// Means of evaluations with 95 % intervals, a panel per task.
+    Evaluation,
+    /// The learning of each task, end to end, against its single-task expert.
+    Experts,
+    /// The blocks of the lifetime, a row per task, and how far apart neighbours are.
+    Timeline,
+}
+
+impl Figure {
+    /// All of them, in the order of a report.
+    pub const ALL: [Self; 5] = [
+        Self::Timeline,
+        Self::Learning,
+        Self::Evaluation,
+        Self::Experts,
+        Self::Raw,
+    ];
+
+    /// As in names of files, `NAME_raw.png`; those of the reference where it has the figure.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Raw => "raw",
+            Self::Learning => "learning",
+            Self::Evaluation => "evaluation",
+            Self::Experts => "ste",
+            Self::Timeline => "timeline",
+        }
+    }
+
+    /// The figures that a word of the reference's option asks for: `all`, or one of `raw`, `lb`, `eb`, `ste`; `timeline` is ours.
+    ///
+    /// # Errors
+    /// [`ReportError::UnknownFigure`].
+    pub fn asked_for(word: &str) -> Result<Vec<Self>, ReportError> {
+        Ok(vec![match word {
+            "all" => return Ok(Self::ALL.to_vec()),
+            "raw" => Self::Raw,
+            "lb" => Self::Learning,
+            "eb" => Self::Evaluation,
+            "ste" => Self::Experts,
+            "timeline" => Self::Timeline,
+            _ => {
+                return Err(ReportError::UnknownFigure { found: shown(word) });
+            }
+        }])
+    }
+}
+
+/// For which width a figure is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layout {
+    /// 960 pixels, for screens and paper.
+    Wide,
+    /// 360 pixels, for phones.
+    Narrow,
+}
+
+/// What the horizontal axis counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Unit {
+    /// Experiences, by their numbers (default).
+    #[default]
+    Experiences,
+    /// Steps of the environment, summed up over the experiences before.
+    Steps,
+}
+
+impl FromStr for Unit {
+    type Err = ReportError;
+
+    /// As the reference calls them: `exp_num` or `steps`.
+    fn from_str(word: &str) -> Result<Self, ReportError> {
+        match word {
+            "exp_num" => Ok(Self::Experiences),
+            "steps" => Ok(Self::Steps),
+            _ => Err(ReportError::UnknownUnit { found: shown(word) }),
+        }
+    }
+}
+
+/// How figures are drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FigureOptions {
+    /// What the horizontal axis counts; default experiences.
+    pub unit: Unit,
+    /// Whether the means of evaluations are joined across learning; default yes.
+    pub show_eval_lines: bool,
+    /// How far apart each two neighbouring learning blocks are, as [`neighbours`](crate::neighbours) lists them; `None` within
+    /// where a distance is not known. Default none: the timeline stands alone.
+    pub distances: Option<Vec<Option<f64>>>,
+}
+
+impl Default for FigureOptions {
+    fn default() -> Self {
+        Self {
+            unit: Unit::Experiences,
+            show_eval_lines: true,
+            distances: None,
+        }
+    }
+}
+
+/// The figures of one lifetime.
+pub struct Figures<'a> {
+    scene: Scene<'a>,
+}
+
+impl<'a> Figures<'a> {
+    /// Looks at a lifetime. `column` is what its performances are called.
+    ///
+    /// # Errors
+    /// [`ReportError::NoSteps`] where steps are asked for and the log has none, [`ReportError::Distances`] where their number
+    /// is another than that of [`neighbours`](crate::neighbours).
+    pub fn of(lifetime: &'a Lifetime, column: &'a str, options: &'a FigureOptions) -> Result<Self, ReportError> {
+        Ok(Self {
+            scene: Scene::new(lifetime, column, options)?,
+        })
+    }
+
+    /// Whether there is anything to show: a lifetime without experts has no comparison with them.
+    pub fn has(&self, figure: Figure) -> bool {
+        let has = |learns: bool| self.scene.stretches.iter().any(|stretch| stretch.learns() == learns);
+        match figure {
+            Figure::Raw | Figure::Timeline => true,
+            Figure::Learning => has(true),
+            Figure::Evaluation => has(false),
+            Figure::Experts => experts::any(&self.scene),
+        }
+    }
+
+    /// The figure as an SVG file on white, with a title.
+    ///
+    /// # Errors
+    /// [`ReportError::Drawing`].
+    pub fn svg(&self, figure: Figure) -> Result<String, ReportError> {
+        let paper = self.titled(figure);
+        vectors(figure.name(), (paper.width(), self.height(figure, &paper)), |area| {
+            area.fill(&WHITE)?;
+            self.draw(figure, area, &paper)
+        })
+    }
+
+    /// The figure as a PNG file on white, with a title, at two dots per pixel of the SVG.
+    ///
+    /// # Errors
+    /// [`ReportError::Drawing`].
+    pub fn png(&self, figure: Figure) -> Result<Vec<u8>, ReportError> {
+        let paper = self.titled(figure);
+        let size = (paper.width(), self.height(figure, &paper));
+        pixels(figure.name(), size, |area| {
+            area.fill(&WHITE)?;
+            self.draw(figure, area, &paper)
+        })
+    }
+
+    /// The figure for a page: without a title, nothing behind it.
+    pub(crate) fn inline(&self, figure: Figure, layout: Layout) -> Result<String, ReportError> {
+        let paper = Paper { layout, title: None };
+        let size = (paper.width(), self.height(figure, &paper));
+        vectors(figure.name(), size, |area| self.draw(figure, area, &paper))
+    }
+
+    fn titled(&self, figure: Figure) -> Paper {
+        let what = match figure {
+            Figure::Raw => "Raw and smoothed values",
+            Figure::Learning => "Learning performance",
+            Figure::Evaluation => "Evaluation performance, means with 95 % intervals",
+            Figure::Experts => "Learning against the single-task expert",
+            Figure::Timeline => "Curriculum",
+        };
+        Paper {
+            layout: Layout::Wide,
+            title: Some(format!("{what} · {}", shown(self.scene.lifetime.run_id()))),
+        }
+    }
+
+    fn height(&self, figure: Figure, paper: &Paper) -> i32 {
+        match figure {
+            Figure::Raw => raw::height(&self.scene, paper),
+            Figure::Learning => learning::height(&self.scene, paper),
+            Figure::Evaluation => evaluation::height(&self.scene, paper),
+            Figure::Experts => experts::height(&self.scene, paper),
+            Figure::Timeline => timeline::height(&self.scene, paper),
+        }
+    }
+
+    fn draw<DB: DrawingBackend>(&self, figure: Figure, area: &Area<DB>, paper: &Paper) -> Drawn<DB> {
+        match figure {
+            Figure::Raw => raw::draw(&self.scene, area, paper),
+            Figure::Learning => learning::draw(&self.scene, area, paper),
+            Figure::Evaluation => evaluation::draw(&self.scene, area, paper),
+            Figure::Experts => experts::draw(&self.scene, area, paper),
+            Figure::Timeline => timeline::draw(&self.scene, area, paper),
+        }
+    }
+}
+
+/// Draws vectors, in pixels of the layout.
+fn vectors(
+    figure: &'static str,
+    (width, height): (i32, i32),
+    draw: impl for<'b> FnOnce(&Area<SVGBackend<'b>>) -> Drawn<SVGBackend<'b>>,
+) -> Result<String, ReportError> {
+    paper::load_font();
+    let mut text = String::new();
+    let dots = (Paper::dots(width) as u32, Paper::dots(height) as u32);
+    {
+        let area = SVGBackend::with_string(&mut text, dots).into_drawing_area();
+        draw(&area)
+            .and_then(|()| area.present())
+            .map_err(|error| failed(figure, error))?;
+    }
+    Ok(compact(text).replacen(
+        &format!("width=\"{}\" height=\"{}\"", dots.0, dots.1),
+        &format!("width=\"{width}\" height=\"{height}\""),
+        1,
+    ))
+}
+
+/// Draws pixels, two for each of the layout along a side.
+fn pixels(
+    figure: &'static str,
+    (width, height): (i32, i32),
+    draw: impl for<'b> FnOnce(&Area<BitMapBackend<'b>>) -> Drawn<BitMapBackend<'b>>,
+) -> Result<Vec<u8>, ReportError> {
+    paper::load_font();
+    let (width, height) = (Paper::dots(width) as u32, Paper::dots(height) as u32);
+    let mut rgb = vec![255; width as usize * height as usize * 3];
+    {
+        let area = BitMapBackend::with_buffer(&mut rgb, (width, height)).into_drawing_area();
+        draw(&area)
+            .and_then(|()| area.present())
+            .map_err(|error| failed(figure, error))?;
+    }
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    let written = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(&rgb)?;
+        writer.finish()
+    });
+    written.map_err(|error| failed(figure, error))?;
+    Ok(bytes)
+}
+
+fn failed(figure: &'static str, source: impl std::error::Error + Send + Sync + 'static) -> ReportError {
+    ReportError::Drawing {
+        figure,
+        source: Box::new(source),
+    }
+}
+
+/// Without what the library writes although it changes nothing; texts hold no quotation marks, so that none can be hit.
+fn compact(svg: String) -> String {
+    [
+        (" opacity=\"1\"", ""),
+        (" stroke=\"none\" stroke-width=\"1\"", ""),
+        (" stroke-width=\"1\"", ""),
+        (" stroke=\"none\"", ""),
+        (" \"/>", "\"/>"),
+    ]
+    .into_iter()
+    .fold(svg, |svg, (found, instead)| svg.replace(found, instead))
+}

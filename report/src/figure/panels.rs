@@ -1,0 +1,55 @@
+//! Small charts side by side: where each is, and how high they are together.
+//!
+//! Not here: what a chart shows, see `evaluation` and `experts`.
+
+use plotters::prelude::*;
+
+use super::paper::{Area, Paper};
+
+/// Panels beyond these are left out of a figure.
+pub(super) const MOST_PANELS: usize = 24;
+
+/// A grid of panels.
+pub(super) struct Grid {
+    columns: usize,
+    rows: usize,
+    height: i32,
+}
+
+impl Grid {
+    /// For this many panels, of which at most [`MOST_PANELS`] are drawn.
+    pub(super) fn of(panels: usize, paper: &Paper) -> Self {
+        let panels = panels.clamp(1, MOST_PANELS);
+        let columns = match panels {
+            _ if paper.is_narrow() => 1,
+            1 => 1,
+            2 | 4 => 2,
+            _ => 3,
+        };
+        Self {
+            columns,
+            rows: panels.div_ceil(columns),
+            height: if columns == 1 && !paper.is_narrow() { 280 } else { 210 },
+        }
+    }
+
+    /// In pixels of the layout.
+    pub(super) fn height(&self) -> i32 {
+        self.height * self.rows as i32
+    }
+
+    /// Columns of pixels between the axes of a panel.
+    pub(super) fn pixel_columns(&self, paper: &Paper) -> i32 {
+        paper.width() / self.columns as i32 - 60
+    }
+
+    /// How many numbers the axes of a panel have room for.
+    pub(super) fn labels(&self) -> [usize; 2] {
+        if self.columns == 1 { [6, 5] } else { [4, 5] }
+    }
+
+    /// The panels' areas, row by row.
+    pub(super) fn areas<DB: DrawingBackend>(&self, area: &Area<DB>) -> Vec<Area<DB>> {
+        area.split_evenly((self.rows, self.columns))
+    }
+}

@@ -1,0 +1,295 @@
+//! What a figure is drawn on: its sizes, its words, its axes, and the line of names on top.
+//!
+//! Not here: what is drawn, see the file of each figure.
+
+use std::ops::Range;
+use std::sync::Once;
+
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{FontStyle, register_font};
+
+use super::Layout;
+use super::palette::{FAINT, INK, Look, Mark, RIM};
+
+pub(super) type Area<DB> = DrawingArea<DB, Shift>;
+pub(super) type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+pub(super) type Drawn<DB, T = ()> = Result<T, DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
+
+/// Dots of the drawing in each pixel of the layout, along one side: whole numbers are all that the library draws at.
+const DOTS: i32 = 2;
+/// Heights, in pixels of the layout.
+const TITLE: i32 = 34;
+const ENTRY: i32 = 21;
+
+/// A layout with its measures.
+#[derive(Debug, Clone)]
+pub(super) struct Paper {
+    pub(super) layout: Layout,
+    /// Written on top where the figure stands alone.
+    pub(super) title: Option<String>,
+}
+
+/// A name in the line on top, with its mark.
+pub(super) struct Entry {
+    pub(super) name: String,
+    pub(super) sample: Sample,
+}
+
+/// What is drawn before a name.
+#[derive(Clone, Copy)]
+pub(super) enum Sample {
+    Task(Look),
+    Line(RGBColor),
+    Area(RGBColor),
+    /// An area through which the grid is seen.
+    Tint(RGBColor),
+    Nothing,
+}
+
+impl Paper {
+    /// The width, in pixels of the layout.
+    pub(super) fn width(&self) -> i32 {
+        match self.layout {
+            Layout::Wide => 960,
+            Layout::Narrow => 360,
+        }
+    }
+
+    pub(super) fn is_narrow(&self) -> bool {
+        self.layout == Layout::Narrow
+    }
+
+    /// A length in dots.
+    pub(super) fn dots(length: i32) -> i32 {
+        length * DOTS
+    }
+
+    /// A stroke, in pixels of the layout.
+    pub(super) fn stroke(color: RGBColor, width: f64) -> ShapeStyle {
+        color.stroke_width((width * f64::from(DOTS)).round() as u32)
+    }
+
+    /// Words of this size in pixels, anchored at a side.
+    pub(super) fn words(size: i32, color: RGBColor, side: HPos, height: VPos) -> TextStyle<'static> {
+        ("sans-serif", font_size(size))
+            .into_font()
+            .color(&color)
+            .pos(Pos::new(side, height))
+    }
+
+    /// Where the names go, as left edge and line, and how many lines there are.
+    fn places(&self, entries: &[Entry]) -> (Vec<(i32, i32)>, i32) {
+        let (mut left, mut line) = (0, 0);
+        let mut places = Vec::new();
+        for entry in entries {
+            let wide = text_width(&entry.name, 12) + 40;
+            if left > 0 && left + wide > self.width() - 16 {
+                (left, line) = (0, line + 1);
+            }
+            places.push((left, line));
+            left += wide;
+        }
+        (places, if entries.is_empty() { 0 } else { line + 1 })
+    }
+
+    /// How high the title and the names are together.
+    pub(super) fn head_height(&self, entries: &[Entry]) -> i32 {
+        let title = if self.title.is_some() { TITLE } else { 0 };
+        title + self.places(entries).1 * ENTRY + 6
+    }
+
+    /// Draws the title and the names; returns the area below.
+    pub(super) fn head<DB: DrawingBackend>(&self, area: &Area<DB>, entries: &[Entry]) -> Drawn<DB, Area<DB>> {
+        let mut top = 0;
+        if let Some(title) = &self.title {
+            let style = Self::words(16, INK.light, HPos::Left, VPos::Center);
+            area.draw_text(title, &style, (Self::dots(8), Self::dots(TITLE / 2 + 2)))?;
+            top = TITLE;
+        }
+        for (entry, (left, line)) in entries.iter().zip(self.places(entries).0) {
+            let (x, y) = (Self::dots(left + 8), Self::dots(top + line * ENTRY + ENTRY / 2 + 2));
+            let after = sample(area, entry.sample, (x, y))?;
+            let style = Self::words(12, INK.light, HPos::Left, VPos::Center);
+            area.draw_text(&entry.name, &style, (x + after, y))?;
+        }
+        Ok(area.split_vertically(Self::dots(self.head_height(entries))).1)
+    }
+}
+
+/// The sample before a name; returns how many dots it takes.
+fn sample<DB: DrawingBackend>(area: &Area<DB>, sample: Sample, (x, y): (i32, i32)) -> Drawn<DB, i32> {
+    let d = Paper::dots;
+    match sample {
+        Sample::Task(look) => {
+            area.draw(&Rectangle::new(
+                [(x, y - d(1)), (x + d(16), y + d(1))],
+                look.color.filled(),
+            ))?;
+            draw_mark(area, look, (x + d(8), y), d(4))?;
+        }
+        Sample::Line(color) => {
+            area.draw(&Rectangle::new([(x, y - d(1)), (x + d(16), y + d(1))], color.filled()))?;
+        }
+        Sample::Area(color) => {
+            area.draw(&Rectangle::new([(x, y - d(6)), (x + d(16), y + d(6))], color.filled()))?;
+        }
+        Sample::Tint(color) => {
+            let style = color.mix(0.25).filled();
+            area.draw(&Rectangle::new([(x, y - d(6)), (x + d(16), y + d(6))], style))?;
+        }
+        Sample::Nothing => return Ok(0),
+    }
+    Ok(d(22))
+}
+
+/// A task's mark in pixels of the area.
+pub(super) fn draw_mark<DB: DrawingBackend>(area: &Area<DB>, look: Look, (x, y): (i32, i32), r: i32) -> Drawn<DB> {
+    let style = look.color.filled();
+    match look.mark {
+        Mark::Disc => area.draw(&Circle::new((x, y), r, style)),
+        Mark::Cross => {
+            let (long, thin) = (r * 5 / 4, (r / 3).max(1));
+            area.draw(&Rectangle::new([(x - long, y - thin), (x + long, y + thin)], style))?;
+            area.draw(&Rectangle::new([(x - thin, y - long), (x + thin, y + long)], style))
+        }
+        _ => area.draw(&Polygon::new(outline(look.mark, (x, y), r), style)),
+    }
+}
+
+/// The corners of a mark that has some.
+fn outline(mark: Mark, (x, y): (i32, i32), r: i32) -> Vec<(i32, i32)> {
+    let long = r * 4 / 3;
+    match mark {
+        Mark::Square => vec![(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)],
+        Mark::Diamond => vec![(x - long, y), (x, y - long), (x + long, y), (x, y + long)],
+        _ => vec![(x - long, y + r), (x, y - long), (x + long, y + r)],
+    }
+}
+
+/// What a pair of axes shows.
+pub(super) struct Axes<'a> {
+    pub(super) x: Range<f64>,
+    pub(super) y: Range<f64>,
+    pub(super) x_name: &'a str,
+    /// Written flat above the upright axis, in a colour: the axis's name, or the panel's.
+    pub(super) y_name: (&'a str, RGBColor),
+    /// How many numbers there are along each, about.
+    pub(super) labels: [usize; 2],
+}
+
+/// A pair of axes with a faint grid and no rim.
+pub(super) fn chart<'a, DB: DrawingBackend + 'a>(area: &'a Area<DB>, axes: &Axes) -> Drawn<DB, Chart<'a, DB>> {
+    let d = Paper::dots;
+    let name = Paper::words(12, axes.y_name.1, HPos::Left, VPos::Center);
+    area.draw_text(axes.y_name.0, &name, (d(8), d(10)))?;
+    let mut chart = ChartBuilder::on(area)
+        .margin_top(d(24))
+        .margin_right(d(16))
+        .margin_left(d(4))
+        .x_label_area_size(d(if axes.x_name.is_empty() { 22 } else { 40 }))
+        .y_label_area_size(d(42))
+        .build_cartesian_2d(axes.x.clone(), axes.y.clone())?;
+    let labels = ("sans-serif", font_size(11)).into_font().color(&FAINT.light);
+    chart
+        .configure_mesh()
+        .disable_x_mesh()
+        .bold_line_style(RIM.light)
+        .light_line_style(TRANSPARENT)
+        .axis_style(RIM.light)
+        .set_all_tick_mark_size(d(3))
+        .label_style(labels)
+        .axis_desc_style(("sans-serif", font_size(12)).into_font().color(&FAINT.light))
+        .x_labels(axes.labels[0])
+        .y_labels(axes.labels[1])
+        .x_label_formatter(&|value| number(*value))
+        .y_label_formatter(&|value| number(*value))
+        .x_desc(axes.x_name)
+        .draw()?;
+    Ok(chart)
+}
+
+/// A number on an axis: round ones stay short.
+pub(crate) fn number(value: f64) -> String {
+    let trimmed = |value: f64, digits: usize| {
+        let text = format!("{value:.digits$}");
+        let text = if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.')
+        } else {
+            &text
+        };
+        if text == "-0" {
+            "0".to_owned()
+        } else {
+            text.replace('-', "−")
+        }
+    };
+    match value.abs() {
+        0.0 => "0".to_owned(),
+        size if size >= 1e12 || size < 1e-4 => format!("{value:.1e}").replace('-', "−"),
+        size if size >= 1e9 => trimmed(value / 1e9, 2) + "G",
+        size if size >= 1e6 => trimmed(value / 1e6, 2) + "M",
+        size if size >= 1e4 => trimmed(value / 1e3, 1) + "k",
+        _ => trimmed(value, 4),
+    }
+}
+
+/// The library counts a font's size from its lowest to its highest line; writers of pages count less.
+fn font_size(pixels: i32) -> f64 {
+    f64::from(pixels * DOTS) * 1.24
+}
+
+/// How wide a text will be in pixels of the layout, about: readers of a page may have another font.
+pub(super) fn text_width(text: &str, size: i32) -> i32 {
+    load_font();
+    let font = ("sans-serif", f64::from(size) * 1.24).into_font();
+    let wide = font.box_size(text).map_or(0, |(wide, _)| wide as i32);
+    // Letters the font lacks have no width there.
+    wide.max(text.chars().count() as i32 * size * 2 / 5) * 11 / 10
+}
+
+/// The font is part of the program, so that figures look alike on machines with and without fonts.
+pub(super) fn load_font() {
+    static LOADED: Once = Once::new();
+    LOADED.call_once(|| {
+        let loaded = register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
+        debug_assert!(loaded.is_ok(), "the embedded font is a valid one");
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_on_axes_are_short() {
+        let check = |value: f64, expected: &str| assert_eq!(number(value), expected);
+        check(0.0, "0");
+        check(-0.5, "−0.5");
+        check(100.0, "100");
+        check(0.000_01, "1.0e−5");
+        check(2000.0, "2000");
+        check(12_500.0, "12.5k");
+        check(1_000_000.0, "1M");
+        check(3.1e9, "3.1G");
+    }
+
+    #[test]
+    fn names_that_do_not_fit_go_to_the_next_line() {
+        let paper = Paper {
+            layout: Layout::Narrow,
+            title: None,
+        };
+        let entry = |name: &str| Entry {
+            name: name.to_owned(),
+            sample: Sample::Nothing,
+        };
+        let (places, lines) = paper.places(&["a", "b", &"long ".repeat(9)].map(entry));
+        assert_eq!(lines, 2);
+        assert_eq!((places[0].1, places[1].1, places[2]), (0, 0, (0, 1)));
+        assert!(places[1].0 > places[0].0);
+        assert_eq!(paper.places(&[]).1, 0);
+    }
+}

@@ -1,0 +1,94 @@
+//! Raw values over the lifetime, as points where there is room and as the area they fill where there is none, with the smoothed
+//! curve. Smoothing itself is the metrics'.
+
+use driftworld_metrics::Lifetime;
+use plotters::prelude::*;
+
+use super::learning::{COLUMNS, shade};
+use super::palette::{FAINT, Look, SHADE};
+use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart};
+use super::scene::{Scene, Stretch, roomy};
+use super::thinning;
+use crate::words::shown;
+
+/// Points that are drawn as such, on wide and on narrow paper.
+const MOST_POINTS: [usize; 2] = [2400, 700];
+
+pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
+    paper.head_height(&entries(scene)) + if paper.is_narrow() { 240 } else { 320 }
+}
+
+fn entries(scene: &Scene) -> Vec<Entry> {
+    let mut entries = scene.entries();
+    if scene.stretches.iter().any(|stretch| !stretch.learns()) {
+        entries.push(Entry {
+            name: "evaluation".to_owned(),
+            sample: Sample::Area(SHADE.light),
+        });
+    }
+    entries
+}
+
+pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &Paper) -> Drawn<DB> {
+    let below = paper.head(area, &entries(scene))?;
+    let values = scene
+        .stretches
+        .iter()
+        .flat_map(|stretch| stretch.regime.raw.iter().copied());
+    let name = shown(scene.column);
+    let columns = COLUMNS[usize::from(paper.is_narrow())];
+    let axes = Axes {
+        x: scene.span.clone(),
+        y: roomy(values),
+        x_name: scene.x_name(),
+        y_name: (&name, FAINT.light),
+        labels: if paper.is_narrow() { [4, 5] } else { [9, 6] },
+    };
+    let mut chart = chart(&below, &axes)?;
+    shade(scene, &mut chart, &axes.y, columns)?;
+    let num_points: usize = scene.stretches.iter().map(|stretch| stretch.regime.len()).sum();
+    let as_points = num_points <= MOST_POINTS[usize::from(paper.is_narrow())];
+    let column = scene.column(columns);
+    for learning in [false, true] {
+        for stretch in scene.drawn(learning, columns) {
+            let color = Look::of(stretch.task).color;
+            let raw: Vec<(f64, f64)> = stretch
+                .xs
+                .iter()
+                .copied()
+                .zip(stretch.regime.raw.iter().copied())
+                .collect();
+            if as_points {
+                let size = if paper.is_narrow() { 2 } else { 3 };
+                chart.draw_series(raw.iter().map(|at| Circle::new(*at, size, color.mix(0.35).filled())))?;
+            } else {
+                let outline = thinning::outline(&raw, &column);
+                chart.draw_series([Polygon::new(outline, color.mix(0.3).filled())])?;
+            }
+        }
+    }
+    for stretch in scene.drawn(true, columns) {
+        let points: Vec<(f64, f64)> = stretch
+            .xs
+            .iter()
+            .copied()
+            .zip(smoothed(scene.lifetime, stretch))
+            .collect();
+        let style = Paper::stroke(Look::of(stretch.task).color, 2.0);
+        chart.draw_series([PathElement::new(thinning::line(&points, &column), style)])?;
+    }
+    Ok(())
+}
+
+/// A stretch's performances after smoothing and clamping, back in the unit of the log.
+fn smoothed(lifetime: &Lifetime, stretch: &Stretch) -> Vec<f64> {
+    let range = lifetime
+        .normalization_data_range()
+        .and_then(|ranges| ranges.get(&stretch.regime.task_name));
+    let back = |value: &f64| match range {
+        Some(range) if range.max > range.min => range.min + (value - 1.0) / 100.0 * (range.max - range.min),
+        Some(range) => range.min,
+        None => *value,
+    };
+    stretch.regime.performance.iter().map(back).collect()
+}

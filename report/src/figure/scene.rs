@@ -1,0 +1,220 @@
+//! A lifetime as figures see it: stretches of rows with a place on the horizontal axis, tasks with their looks.
+//!
+//! Not here: drawing, see the file of each figure.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+use driftworld_metrics::{BlockType, Lifetime, Regime};
+
+use super::palette::Look;
+use super::paper::{Entry, Sample};
+use super::{FigureOptions, Unit};
+use crate::ReportError;
+use crate::words::shown;
+
+/// Tasks beyond these are left out of curves: more cannot be told apart.
+pub(super) const MOST_TASKS: usize = 28;
+/// Stretches beyond these are thinned out: each is a line of its own.
+const MOST_STRETCHES: usize = 1200;
+
+/// A lifetime, ready to be drawn.
+pub(super) struct Scene<'a> {
+    pub(super) lifetime: &'a Lifetime,
+    pub(super) column: &'a str,
+    pub(super) options: &'a FigureOptions,
+    /// As shown, in the lifetime's order.
+    pub(super) names: Vec<String>,
+    pub(super) stretches: Vec<Stretch<'a>>,
+    /// From the first experience to the end of the last.
+    pub(super) span: Range<f64>,
+}
+
+/// One regime.
+pub(super) struct Stretch<'a> {
+    pub(super) regime: &'a Regime,
+    pub(super) task: usize,
+    pub(super) xs: Vec<f64>,
+}
+
+impl Stretch<'_> {
+    pub(super) fn learns(&self) -> bool {
+        self.regime.block_type == BlockType::Train
+    }
+
+    /// From its first row to one after its last.
+    pub(super) fn range(&self) -> Range<f64> {
+        let first = self.xs.first().copied().unwrap_or(0.0);
+        first..self.xs.last().map_or(first, |last| last + 1.0)
+    }
+
+    pub(super) fn middle(&self) -> f64 {
+        let range = self.range();
+        f64::midpoint(range.start, range.end)
+    }
+
+    pub(super) fn mean(&self) -> f64 {
+        self.regime.performance.iter().sum::<f64>() / self.regime.len().max(1) as f64
+    }
+
+    /// Points of the curve through its performances.
+    pub(super) fn performances(&self) -> Vec<(f64, f64)> {
+        self.xs
+            .iter()
+            .copied()
+            .zip(self.regime.performance.iter().copied())
+            .collect()
+    }
+}
+
+impl<'a> Scene<'a> {
+    pub(super) fn new(
+        lifetime: &'a Lifetime,
+        column: &'a str,
+        options: &'a FigureOptions,
+    ) -> Result<Self, ReportError> {
+        let places: BTreeMap<&str, usize> = lifetime.tasks().iter().map(String::as_str).zip(0..).collect();
+        let mut stretches = Vec::with_capacity(lifetime.regimes().len());
+        for regime in lifetime.regimes() {
+            stretches.push(Stretch {
+                regime,
+                task: places.get(regime.task_name.as_str()).copied().unwrap_or(0),
+                xs: positions(lifetime, regime, options.unit)?,
+            });
+        }
+        let expected = crate::neighbours(lifetime).len();
+        if let Some(distances) = &options.distances
+            && distances.len() != expected
+        {
+            return Err(ReportError::Distances {
+                run_id: lifetime.run_id().to_owned(),
+                found: distances.len(),
+                expected,
+            });
+        }
+        let first = stretches.iter().map(|stretch| stretch.range().start);
+        let last = stretches.iter().map(|stretch| stretch.range().end);
+        let (first, last) = (
+            first.fold(f64::INFINITY, f64::min),
+            last.fold(f64::NEG_INFINITY, f64::max),
+        );
+        Ok(Self {
+            lifetime,
+            column,
+            options,
+            names: lifetime.tasks().iter().map(|task| shown(task)).collect(),
+            stretches,
+            span: if first < last { first..last } else { 0.0..1.0 },
+        })
+    }
+
+    /// What the horizontal axis counts.
+    pub(super) fn x_name(&self) -> &'static str {
+        match self.options.unit {
+            Unit::Experiences => "experience",
+            Unit::Steps => "step",
+        }
+    }
+
+    /// What the upright axis shows where performances are as they are judged.
+    pub(super) fn performance_name(&self) -> String {
+        if self.lifetime.normalization_data_range().is_some() {
+            format!("{}, scaled to 1…101", shown(self.column))
+        } else {
+            shown(self.column)
+        }
+    }
+
+    /// The names of the tasks that are drawn, and how many are not.
+    pub(super) fn entries(&self) -> Vec<Entry> {
+        let mut entries: Vec<Entry> = self.names.iter().take(MOST_TASKS).enumerate().map(task_entry).collect();
+        if self.names.len() > MOST_TASKS {
+            entries.push(Entry {
+                name: format!("and {} more, not drawn", self.names.len() - MOST_TASKS),
+                sample: Sample::Nothing,
+            });
+        }
+        entries
+    }
+
+    /// In which of `columns` columns of pixels a place is.
+    pub(super) fn column(&self, columns: i32) -> impl Fn(f64) -> i64 + '_ {
+        let per_x = f64::from(columns) / (self.span.end - self.span.start);
+        move |x| ((x - self.span.start) * per_x).floor() as i64
+    }
+
+    /// The stretches of a kind, of the tasks that are drawn; where there are too many, those that the pixels can show.
+    pub(super) fn drawn(&self, learning: bool, columns: i32) -> Vec<&Stretch<'a>> {
+        let all = || {
+            self.stretches
+                .iter()
+                .filter(move |stretch| stretch.learns() == learning && stretch.task < MOST_TASKS)
+        };
+        let mut kept: Vec<&Stretch> = all().collect();
+        let mut columns = columns;
+        while kept.len() > MOST_STRETCHES && columns > 1 {
+            let column = self.column(columns);
+            let mut seen = BTreeSet::new();
+            kept = all()
+                .filter(|stretch| seen.insert((stretch.task, column(stretch.range().start))))
+                .collect();
+            columns /= 2;
+        }
+        kept
+    }
+
+    /// Where the lifetime is evaluated, neighbours joined, and what is closer than a column too.
+    pub(super) fn evaluated(&self, columns: i32) -> Vec<Range<f64>> {
+        joined(
+            self.stretches.iter().filter(|stretch| !stretch.learns()),
+            self.gap(columns),
+        )
+    }
+
+    /// How wide a column is, but at least one experience: blocks that follow each other are one.
+    pub(super) fn gap(&self, columns: i32) -> f64 {
+        ((self.span.end - self.span.start) / f64::from(columns)).max(0.5)
+    }
+}
+
+/// A task's name with its look.
+pub(super) fn task_entry((task, name): (usize, &String)) -> Entry {
+    Entry {
+        name: name.clone(),
+        sample: Sample::Task(Look::of(task)),
+    }
+}
+
+/// The ranges of stretches in order, those joined that lie within the gap.
+pub(super) fn joined<'a, 'b: 'a>(stretches: impl Iterator<Item = &'a Stretch<'b>>, gap: f64) -> Vec<Range<f64>> {
+    let mut ranges: Vec<Range<f64>> = Vec::new();
+    for range in stretches.map(Stretch::range) {
+        match ranges.last_mut() {
+            Some(last) if range.start <= last.end + gap => last.end = last.end.max(range.end),
+            _ => ranges.push(range),
+        }
+    }
+    ranges
+}
+
+/// Where the rows of a regime are on the horizontal axis.
+fn positions(lifetime: &Lifetime, regime: &Regime, unit: Unit) -> Result<Vec<f64>, ReportError> {
+    match unit {
+        Unit::Experiences => Ok(regime.exp_nums.iter().map(|number| *number as f64).collect()),
+        Unit::Steps => regime.steps.clone().ok_or_else(|| ReportError::NoSteps {
+            run_id: lifetime.run_id().to_owned(),
+        }),
+    }
+}
+
+/// A range with a little room at both ends; one of its own where all values are equal.
+pub(super) fn roomy(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    match high - low {
+        room if room > 0.0 => low - room * 0.04..high + room * 0.04,
+        0.0 => low - low.abs().max(1.0) * 0.5..high + high.abs().max(1.0) * 0.5,
+        _ => 0.0..1.0,
+    }
+}

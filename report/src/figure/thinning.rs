@@ -1,0 +1,61 @@
+//! Makes lines and clouds of points as small as what the pixels can show: at most four points in each column of pixels.
+//!
+//! Not here: which columns there are, see `paper`.
+
+/// The first, the lowest, the highest and the last point of each column, in their order: a line through them looks as the
+/// whole line does.
+pub(super) fn line(points: &[(f64, f64)], column: impl Fn(f64) -> i64) -> Vec<(f64, f64)> {
+    let mut thin = Vec::new();
+    for group in points.chunk_by(|a, b| column(a.0) == column(b.0)) {
+        let by_height = |a: &usize, b: &usize| group[*a].1.total_cmp(&group[*b].1).then(a.cmp(b));
+        let ends = [0, group.len() - 1];
+        let heights = [(0..group.len()).min_by(by_height), (0..group.len()).max_by(by_height)];
+        let mut kept: Vec<usize> = ends.into_iter().chain(heights.into_iter().flatten()).collect();
+        kept.sort_unstable();
+        kept.dedup();
+        thin.extend(kept.into_iter().map(|index| group[index]));
+    }
+    thin
+}
+
+/// The outline of a cloud of points: along the highest of each column, and back along the lowest.
+pub(super) fn outline(points: &[(f64, f64)], column: impl Fn(f64) -> i64) -> Vec<(f64, f64)> {
+    let mut upper = Vec::new();
+    let mut lower = Vec::new();
+    for group in points.chunk_by(|a, b| column(a.0) == column(b.0)) {
+        let heights = || group.iter().map(|point| point.1);
+        upper.push((group[0].0, heights().fold(f64::NEG_INFINITY, f64::max)));
+        lower.push((group[0].0, heights().fold(f64::INFINITY, f64::min)));
+    }
+    upper.extend(lower.into_iter().rev());
+    upper
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_column_keeps_its_first_lowest_highest_and_last() {
+        let check = |heights: &[f64], expected: &[f64]| {
+            let points: Vec<(f64, f64)> = heights.iter().enumerate().map(|(x, y)| (x as f64, *y)).collect();
+            let found: Vec<f64> = line(&points, |_| 0).into_iter().map(|point| point.1).collect();
+            assert_eq!(found, expected);
+        };
+        check(&[3.0, 9.0, 4.0, 1.0, 5.0], &[3.0, 9.0, 1.0, 5.0]);
+        check(&[3.0], &[3.0]);
+        check(&[2.0, 2.0, 2.0], &[2.0, 2.0]);
+        check(&[], &[]);
+    }
+
+    #[test]
+    fn a_million_points_become_four_in_each_column() {
+        let points: Vec<(f64, f64)> = (0..1_000_000)
+            .map(|x| (f64::from(x), f64::from(x * 7919 % 1000)))
+            .collect();
+        let thin = line(&points, |x| (x / 10_000.0) as i64);
+        assert!(thin.len() <= 400, "{}", thin.len());
+        assert!(thin.windows(2).all(|pair| pair[0].0 < pair[1].0), "their order is kept");
+        assert_eq!(outline(&points, |x| (x / 10_000.0) as i64).len(), 200);
+    }
+}

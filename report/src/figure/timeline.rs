@@ -1,0 +1,223 @@
+//! The lifetime's blocks, a row per task, and above them how far apart neighbouring learning blocks are.
+//!
+//! Not here: where distances come from; they are handed in.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+
+use super::palette::{FAINT, FROZEN, INK, Look, RIM, TASKS};
+use super::paper::{Area, Drawn, Entry, Paper, Sample, draw_mark, number, text_width};
+use super::scene::{Scene, Stretch};
+
+/// Rows beyond these are left out.
+const MOST_ROWS: usize = 40;
+/// Heights, in pixels of the layout: the strip of distances, a bar that learns, the axis.
+const STRIP: i32 = 76;
+const BAR: i32 = 18;
+const AXIS: i32 = 44;
+
+/// Where things are, in pixels of the layout below the head.
+struct Plan {
+    left: i32,
+    right: i32,
+    strip: i32,
+    row: i32,
+    rows: usize,
+}
+
+impl Plan {
+    fn of(scene: &Scene, paper: &Paper) -> Self {
+        let rows = scene.names.len().min(MOST_ROWS);
+        let longest = scene
+            .names
+            .iter()
+            .take(rows)
+            .map(|name| text_width(name, 12))
+            .max()
+            .unwrap_or(0);
+        Self {
+            left: if paper.is_narrow() { 12 } else { (longest + 32).min(300) },
+            right: paper.width() - 16,
+            strip: if scene.options.distances.is_some() { STRIP } else { 0 },
+            // Narrow paper has no room beside the bars: names stand above them.
+            row: if paper.is_narrow() { 42 } else { 30 },
+            rows,
+        }
+    }
+
+    fn middle(&self, row: usize, paper: &Paper) -> i32 {
+        let above = if paper.is_narrow() {
+            self.row - BAR / 2 - 4
+        } else {
+            self.row / 2
+        };
+        self.strip + row as i32 * self.row + above
+    }
+
+    fn bottom(&self) -> i32 {
+        self.strip + self.rows as i32 * self.row + 4
+    }
+}
+
+fn entries(scene: &Scene) -> Vec<Entry> {
+    let mut entries = vec![
+        Entry {
+            name: "learning, in the task's colour".to_owned(),
+            sample: Sample::Area(TASKS[0].light),
+        },
+        Entry {
+            name: "evaluation, frozen".to_owned(),
+            sample: Sample::Line(FROZEN.light),
+        },
+    ];
+    if scene.names.len() > MOST_ROWS {
+        entries.push(Entry {
+            name: format!("and {} tasks more, not drawn", scene.names.len() - MOST_ROWS),
+            sample: Sample::Nothing,
+        });
+    }
+    entries
+}
+
+pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
+    paper.head_height(&entries(scene)) + Plan::of(scene, paper).bottom() + AXIS
+}
+
+pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &Paper) -> Drawn<DB> {
+    let below = paper.head(area, &entries(scene))?;
+    let plan = Plan::of(scene, paper);
+    let d = Paper::dots;
+    let per_x = f64::from(d(plan.right - plan.left)) / (scene.span.end - scene.span.start);
+    let x = |value: f64| d(plan.left) + ((value - scene.span.start) * per_x).round() as i32;
+    for (row, name) in scene.names.iter().take(plan.rows).enumerate() {
+        let y = d(plan.middle(row, paper));
+        below.draw(&PathElement::new(
+            [(d(plan.left), y), (d(plan.right), y)],
+            RIM.light.stroke_width(1),
+        ))?;
+        name_row(&below, &plan, paper, row, name)?;
+    }
+    let columns = plan.right - plan.left;
+    for stretch in scene
+        .drawn(false, columns)
+        .into_iter()
+        .chain(scene.drawn(true, columns))
+    {
+        if stretch.task >= plan.rows {
+            continue;
+        }
+        let (range, y) = (stretch.range(), d(plan.middle(stretch.task, paper)));
+        let half = if stretch.learns() { d(BAR / 2) } else { d(3) };
+        let color = if stretch.learns() {
+            Look::of(stretch.task).color
+        } else {
+            FROZEN.light
+        };
+        // A stretch too short to be seen is drawn a pixel wide.
+        let (start, end) = (x(range.start), x(range.end).max(x(range.start) + d(1)));
+        below.draw(&Rectangle::new([(start, y - half), (end, y + half)], color.filled()))?;
+    }
+    axis(&below, scene, &plan, paper, &x)?;
+    draw_distances(&below, scene, &plan, &x)
+}
+
+/// A task's name with its mark, beside or above its row.
+fn name_row<DB: DrawingBackend>(area: &Area<DB>, plan: &Plan, paper: &Paper, row: usize, name: &str) -> Drawn<DB> {
+    let d = Paper::dots;
+    let y = if paper.is_narrow() {
+        plan.middle(row, paper) - BAR / 2 - 10
+    } else {
+        plan.middle(row, paper)
+    };
+    let (x, side) = if paper.is_narrow() {
+        (plan.left + 14, HPos::Left)
+    } else {
+        (plan.left - 12, HPos::Right)
+    };
+    let mark = if paper.is_narrow() { plan.left + 5 } else { 13 };
+    draw_mark(area, Look::of(row), (d(mark), d(y)), d(4))?;
+    area.draw_text(name, &Paper::words(12, INK.light, side, VPos::Center), (d(x), d(y)))
+}
+
+fn axis<DB: DrawingBackend>(
+    area: &Area<DB>,
+    scene: &Scene,
+    plan: &Plan,
+    paper: &Paper,
+    x: &impl Fn(f64) -> i32,
+) -> Drawn<DB> {
+    let d = Paper::dots;
+    let y = d(plan.bottom());
+    area.draw(&PathElement::new(
+        [(d(plan.left), y), (d(plan.right), y)],
+        FAINT.light.stroke_width(2),
+    ))?;
+    let marks = plotters::coord::types::RangedCoordf64::from(scene.span.clone());
+    let most = if paper.is_narrow() { 5 } else { 10 };
+    for value in plotters::coord::ranged1d::Ranged::key_points(&marks, most) {
+        let at = x(value);
+        area.draw(&PathElement::new(
+            [(at, y), (at, y + d(4))],
+            FAINT.light.stroke_width(2),
+        ))?;
+        let style = Paper::words(11, FAINT.light, HPos::Center, VPos::Top);
+        area.draw_text(&number(value), &style, (at, y + d(6)))?;
+    }
+    let style = Paper::words(12, FAINT.light, HPos::Center, VPos::Top);
+    area.draw_text(
+        scene.x_name(),
+        &style,
+        (d(i32::midpoint(plan.left, plan.right)), y + d(23)),
+    )
+}
+
+/// A stem at each change from one learning block to the next, as high as the two are apart, with the number where it has room.
+fn draw_distances<DB: DrawingBackend>(
+    area: &Area<DB>,
+    scene: &Scene,
+    plan: &Plan,
+    x: &impl Fn(f64) -> i32,
+) -> Drawn<DB> {
+    let Some(distances) = &scene.options.distances else {
+        return Ok(());
+    };
+    let d = Paper::dots;
+    let (base, tallest) = (d(STRIP - 14), d(STRIP - 46));
+    let style = Paper::words(12, FAINT.light, HPos::Left, VPos::Center);
+    area.draw_text("distance between neighbours", &style, (d(8), d(8)))?;
+    area.draw(&PathElement::new(
+        [(d(plan.left), base), (d(plan.right), base)],
+        RIM.light.stroke_width(1),
+    ))?;
+    let largest = distances.iter().flatten().copied().fold(0.0, f64::max);
+    let learnt: Vec<&Stretch> = scene
+        .stretches
+        .iter()
+        .filter(|stretch| stretch.regime.is_wake_training())
+        .collect();
+    let (mut free_from, mut stem_from) = (i32::MIN, i32::MIN);
+    for (pair, distance) in learnt.windows(2).zip(distances) {
+        let at = x(f64::midpoint(pair[0].range().end, pair[1].range().start));
+        if at < stem_from {
+            continue;
+        }
+        stem_from = at + d(1);
+        let share = distance.map_or(0.0, |distance| if largest > 0.0 { distance / largest } else { 0.0 });
+        let top = base - (f64::from(tallest) * share).round() as i32;
+        let told = distance.map_or("?".to_owned(), |distance| format!("{distance:.2}"));
+        if distance.is_some() {
+            area.draw(&PathElement::new(
+                [(at, base), (at, top)],
+                INK.light.stroke_width(d(1) as u32),
+            ))?;
+            area.draw(&Circle::new((at, top), d(3), INK.light.filled()))?;
+        }
+        let half = d(text_width(&told, 11)) / 2;
+        if at - half >= free_from {
+            let style = Paper::words(11, INK.light, HPos::Center, VPos::Bottom);
+            area.draw_text(&told, &style, (at, top - d(5)))?;
+            free_from = at + half + d(2);
+        }
+    }
+    Ok(())
+}

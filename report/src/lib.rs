@@ -1,0 +1,47 @@
+//! Reports of lifetimes that people want to look at: figures as SVG and PNG, and one self-contained page.
+//!
+//! A [`Chapter`] draws and writes one lifetime, a [`Report`] puts chapters on a page; [`Figures`] gives each figure as a file.
+//!
+//! ```
+//! use driftworld_metrics::{BlockType, Lifetime, LogWriter, LoggerInfo, Options, Record, ScenarioInfo, Scorer, Timestamp, read_log};
+//! use driftworld_report::{Chapter, ChapterOptions, Report};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let base = tempfile::tempdir()?;
+//! let dir = base.path().join("my_life");
+//! let mut writer = LogWriter::create(&dir, &LoggerInfo::new(["reward"])?, &ScenarioInfo::default())?;
+//! for (exp_num, reward) in [(0, 1.0), (1, 3.0)] {
+//!     let when = Timestamp::from_unix_micros(1_600_000_000_000_000)?;
+//!     writer.write(&Record::new(0, exp_num, BlockType::Train, "find_red", when).with_metric("reward", reward))?;
+//! }
+//! let (log, options) = (read_log(&dir)?, Options::default());
+//! let lifetime = Lifetime::prepare(&log, &[], &options)?;
+//! let metrics = Scorer::default().judge(&log, &lifetime, &options)?;
+//! let chapters = vec![Chapter::write(&lifetime, &metrics, &ChapterOptions::default())?];
+//! let page = Report { chapters, ..Report::default() }.to_html()?;
+//! assert!(page.contains("<h1>my_life</h1>"));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Not here: scoring, which is `driftworld_metrics`'; distances and clocks, which are handed in; files, which are the command's.
+
+mod error;
+mod figure;
+mod page;
+mod words;
+
+pub use error::ReportError;
+pub use figure::{Figure, FigureOptions, Figures, Layout, Unit};
+pub use page::{Chapter, ChapterOptions, Comparison, MAX_LIFETIMES, Report};
+
+use driftworld_metrics::Lifetime;
+
+/// The names of each two neighbouring learning blocks of a lifetime, in order: between them a distance can be given.
+pub fn neighbours(lifetime: &Lifetime) -> Vec<[&str; 2]> {
+    let learnt: Vec<&str> = (lifetime.regimes().iter())
+        .filter(|regime| regime.is_wake_training())
+        .map(|regime| regime.task_name.as_str())
+        .collect();
+    learnt.windows(2).map(|pair| [pair[0], pair[1]]).collect()
+}

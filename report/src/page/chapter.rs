@@ -1,0 +1,142 @@
+//! One lifetime on the page: facts, metrics, the curriculum, its figures, its tasks.
+//!
+//! Not here: what stands around the lifetimes, see the folder's `mod.rs`.
+
+use driftworld_metrics::{Lifetime, LifetimeMetrics};
+use maud::{Markup, PreEscaped, html};
+
+use super::{facts, metric_table, pair_table, task_table, warnings};
+use crate::ReportError;
+use crate::figure::{Figure, FigureOptions, Figures, Layout};
+use crate::words::shown;
+
+/// One lifetime, drawn and written.
+#[derive(Debug, Clone, Default)]
+pub struct Chapter {
+    pub(super) name: String,
+    pub(super) body: Markup,
+}
+
+/// How a lifetime is drawn, and what its reader should know.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChapterOptions {
+    /// How figures are drawn.
+    pub figures: FigureOptions,
+    /// Which figures are on the page; default all.
+    pub shown: Vec<Figure>,
+    /// Warnings of the log's reader, and the like.
+    pub warnings: Vec<String>,
+    /// A sentence under the timeline: where its distances come from, or why there are none.
+    pub distance_note: String,
+}
+
+impl Default for ChapterOptions {
+    fn default() -> Self {
+        Self {
+            figures: FigureOptions::default(),
+            shown: Figure::ALL.to_vec(),
+            warnings: Vec::new(),
+            distance_note: String::new(),
+        }
+    }
+}
+
+impl Chapter {
+    /// Draws and writes a lifetime. The metrics are those that were computed of it.
+    ///
+    /// # Errors
+    /// Those of [`Figures::of`], and [`ReportError::Drawing`].
+    pub fn write(
+        lifetime: &Lifetime,
+        metrics: &LifetimeMetrics,
+        options: &ChapterOptions,
+    ) -> Result<Self, ReportError> {
+        let figures = Figures::of(lifetime, &metrics.metrics_column, &options.figures)?;
+        let table = metric_table::table(lifetime, metrics)?;
+        let figure = |which: Figure, title: &str, says: &str| -> Result<Markup, ReportError> {
+            if !options.shown.contains(&which) {
+                return Ok(Markup::default());
+            }
+            if !figures.has(which) {
+                return Ok(html! { h3 { (title) } p.note { (absent(which)) } });
+            }
+            let alt = format!(
+                "{title} of {}: {}",
+                shown(lifetime.run_id()),
+                alternative(lifetime, which)
+            );
+            let wide = described(&figures.inline(which, Layout::Wide)?, "wide", &alt);
+            let narrow = described(&figures.inline(which, Layout::Narrow)?, "narrow", &alt);
+            Ok(html! {
+                h3 { (title) }
+                figure { (wide) (narrow) figcaption { (says) } }
+            })
+        };
+        let blocks = format!(
+            "Each block of the lifetime from left to right. {}",
+            super::calm(&options.distance_note)
+        );
+        let lines = if options.figures.show_eval_lines {
+            ", joined by dotted lines"
+        } else {
+            ""
+        };
+        let body = html! {
+            (facts::facts(lifetime, metrics))
+            (warnings(&options.warnings))
+            h3 { "Metrics" }
+            (table)
+            (figure(Figure::Timeline, "Curriculum", &blocks)?)
+            (figure(Figure::Learning, "Learning curves", &format!(
+                "Performance after smoothing and scaling. Grey: evaluations, with learning switched off. Marks: each task's mean in an evaluation{lines}."
+            ))?)
+            (figure(Figure::Evaluation, "Evaluations",
+                "Mean of each evaluation with its 95 % interval by Student's t over the evaluation's experiences; no bar where all were equal or there was one only. The tint says when the task was learnt.")?)
+            (figure(Figure::Experts, "Against the single-task expert",
+                "The learning blocks of each task end to end, borders between them as upright lines, against agents that learnt nothing but this task. A curve above the expert's learns faster.")?)
+            (figure(Figure::Raw, "Raw values",
+                "As logged: points where there is room, the area they fill where there is none. Lines: learning after smoothing.")?)
+            h3 { "Tasks" }
+            (task_table::table(lifetime, metrics))
+            (pair_table::tables(metrics))
+        };
+        Ok(Self {
+            name: shown(lifetime.run_id()),
+            body,
+        })
+    }
+}
+
+/// Why a figure is not there.
+fn absent(figure: Figure) -> &'static str {
+    match figure {
+        Figure::Experts => {
+            "No single-task expert of a task that was learnt is given, so there is nothing to compare with."
+        }
+        Figure::Evaluation => "The log has no evaluations.",
+        _ => "The log has no learning.",
+    }
+}
+
+/// What is in a figure, for those who cannot see it.
+fn alternative(lifetime: &Lifetime, figure: Figure) -> String {
+    let tasks = lifetime.tasks().len();
+    let blocks = lifetime.regimes().len();
+    match figure {
+        Figure::Timeline => format!("{blocks} blocks in {tasks} rows, one per task"),
+        Figure::Learning => format!("a curve for each learning block of {tasks} tasks, and means of evaluations"),
+        Figure::Evaluation => format!("means with intervals over the lifetime, a panel for each of {tasks} tasks"),
+        Figure::Experts => "for each task, a curve of this agent and one for each run of its expert".to_owned(),
+        Figure::Raw => format!("points for each experience of {tasks} tasks, with smoothed curves"),
+    }
+}
+
+/// A drawing as part of the page: with its words, and shown on pages of its width.
+fn described(svg: &str, class: &str, alt: &str) -> Markup {
+    let head = html! { title { (alt) } }.into_string();
+    let svg = svg.replacen("<svg ", &format!("<svg class=\"{class}\" role=\"img\" "), 1);
+    PreEscaped(match svg.find('>') {
+        Some(end) => format!("{}{head}{}", &svg[..=end], &svg[end + 1..]),
+        None => svg,
+    })
+}

@@ -1,0 +1,30 @@
+//! What a lifetime was, in a handful of numbers.
+
+use driftworld_metrics::{Lifetime, LifetimeMetrics};
+use maud::{Markup, html};
+
+use super::count;
+use crate::words::shown;
+
+/// How much was lived, and by what it is judged.
+pub(super) fn facts(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Markup {
+    let learnt = lifetime
+        .regimes()
+        .iter()
+        .filter(|regime| regime.is_wake_training())
+        .count();
+    let facts = [
+        ("learning experiences", count(metrics.num_lx)),
+        ("evaluation experiences", count(metrics.num_ex)),
+        ("tasks", count(lifetime.tasks().len())),
+        ("learning blocks", count(learnt)),
+        ("scored by", shown(&metrics.metrics_column)),
+    ];
+    html! {
+        dl.facts {
+            @for (name, value) in &facts {
+                div { dt { (name) } dd { (value) } }
+            }
+        }
+    }
+}

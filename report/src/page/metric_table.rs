@@ -1,0 +1,97 @@
+//! The table of metrics: each value, what it says, whether that is good, and how the tasks differ in it.
+
+use driftworld_metrics::{Direction, Lifetime, LifetimeMetrics};
+use maud::{Markup, PreEscaped, html};
+
+use super::{number, verdict};
+use crate::ReportError;
+use crate::figure::strip;
+use crate::words::shown;
+
+pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Markup, ReportError> {
+    let mut rows = Vec::new();
+    let mut absent = Vec::new();
+    for row in metrics.summary() {
+        let name: &str = &row.name;
+        let Some(value) = row.value else {
+            absent.push(verdict::title(name));
+            continue;
+        };
+        let marks = per_task(lifetime, metrics, name);
+        let drawing = strip(&marks, Some(value), verdict::neutral(row.good))?;
+        rows.push(html! {
+            tr {
+                th scope="row" {
+                    b { (verdict::title(name)) }
+                    span.says { (sentence(&row.explanation)) }
+                    code { (shown(name)) }
+                }
+                td.number { span.value { (number(value)) } }
+                td {
+                    (judged(name, value, row.good))
+                    span.from { (verdict::good_from(row.good)) }
+                }
+                td.marks { @if !marks.is_empty() { (drawing_of(&drawing, &verdict::title(name))) } }
+            }
+        });
+    }
+    Ok(html! {
+        div.card {
+            table.metrics {
+                thead {
+                    tr {
+                        th scope="col" { "Metric" }
+                        th.number scope="col" { "Value" }
+                        th scope="col" { "Reading" }
+                        th scope="col" { "Each task" }
+                    }
+                }
+                tbody { @for row in &rows { (row) } }
+            }
+        }
+        p.note {
+            "Each task: coloured marks, for transfer one per pair in the colour of the task that was learnt; upright stroke: the lifetime's value; dashes: no effect."
+            @if !absent.is_empty() { " Not computed: " (absent.join("; ")) "." }
+        }
+    })
+}
+
+/// The explanation as a sentence.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters
+        .next()
+        .map(|letter| letter.to_uppercase().to_string())
+        .unwrap_or_default();
+    first + letters.as_str()
+}
+
+fn judged(name: &str, value: f64, direction: Direction) -> Markup {
+    html! {
+        @if let Some(found) = verdict::of(name, value, direction) {
+            span class={ "verdict " (found.class) } { span aria-hidden="true" { (found.sign) " " } (found.word) }
+        }
+    }
+}
+
+/// The values of a metric for each task, by the task's place; of pairs, the first value of each, by the learnt task's place.
+fn per_task(lifetime: &Lifetime, metrics: &LifetimeMetrics, name: &str) -> Vec<(usize, f64)> {
+    let places = lifetime.tasks().iter().enumerate();
+    let of_task = |(place, task): (usize, &String)| -> Vec<(usize, f64)> {
+        let Some(values) = metrics.task_metrics.get(task) else {
+            return Vec::new();
+        };
+        let firsts = (values.pairs(name).into_iter().flatten()).filter_map(|(_, values)| values.first().copied());
+        firsts.chain(values.number(name)).map(|value| (place, value)).collect()
+    };
+    places.flat_map(of_task).collect()
+}
+
+fn drawing_of(svg: &str, title: &str) -> Markup {
+    let alt = html! { title { (title) " of each task" } }.into_string();
+    let svg = svg.replacen("<svg ", "<svg role=\"img\" ", 1);
+    PreEscaped(match svg.find('>') {
+        Some(end) => format!("{}{alt}{}", &svg[..=end], &svg[end + 1..]),
+        None => svg,
+    })
+}

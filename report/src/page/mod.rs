@@ -1,0 +1,268 @@
+//! The page: one HTML file that needs nothing else, with a chapter per lifetime.
+//!
+//! Not here: figures, see `figure`; files and dates, which are the caller's.
+
+mod chapter;
+mod facts;
+mod metric_table;
+mod overall;
+mod pair_table;
+mod task_table;
+mod verdict;
+
+use driftworld_metrics::RepeatedMetric;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde_json::Value;
+
+pub use chapter::{Chapter, ChapterOptions};
+pub use overall::Comparison;
+
+use crate::ReportError;
+use crate::figure::dark_rules;
+use crate::words::shown;
+
+/// Most lifetimes on one page.
+pub const MAX_LIFETIMES: usize = 40;
+
+const STYLE: &str = include_str!("style.css");
+
+/// Everything that is on a page.
+#[derive(Debug, Clone, Default)]
+pub struct Report {
+    /// The headline; default the lifetime's name, or how many lifetimes there are.
+    pub title: Option<String>,
+    /// The lifetimes, each drawn already.
+    pub chapters: Vec<Chapter>,
+    /// Values over all lifetimes; default none, and then no such section.
+    pub overall: Vec<RepeatedMetric>,
+    /// Comparisons of two agents; default none, and then no such section.
+    pub comparisons: Vec<Comparison>,
+    /// Warnings about all of it; those of one lifetime stand in its chapter.
+    pub warnings: Vec<String>,
+    /// The options used, as a JSON object, such as `serde_json::to_value(&options)` gives.
+    pub options: Value,
+    /// When the report was made, in words; default left out, so that the same lifetimes give the same bytes.
+    pub date: Option<String>,
+}
+
+impl Report {
+    /// The page as HTML: no scripts, nothing loaded from elsewhere.
+    ///
+    /// # Errors
+    /// [`ReportError::TooManyLifetimes`] for more than [`MAX_LIFETIMES`].
+    pub fn to_html(&self) -> Result<String, ReportError> {
+        if self.chapters.len() > MAX_LIFETIMES {
+            return Err(ReportError::TooManyLifetimes {
+                found: self.chapters.len(),
+                limit: MAX_LIFETIMES,
+            });
+        }
+        let title = match (&self.title, &self.chapters[..]) {
+            (Some(title), _) => shown(title),
+            (None, [chapter]) => chapter.name.clone(),
+            (None, chapters) => format!("{} lifetimes", chapters.len()),
+        };
+        let style = format!(
+            "{STYLE}@media screen and (prefers-color-scheme:dark){{{}}}",
+            dark_rules()
+        );
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="color-scheme" content="light dark";
+                    meta name="generator" content=(concat!("driftworld ", env!("CARGO_PKG_VERSION")));
+                    // A browser asks for a picture of the page unless it is told that there is none.
+                    link rel="icon" href="data:,";
+                    title { (title) " · lifelong-learning report" }
+                    style { (PreEscaped(style)) }
+                }
+                body {
+                    header.top {
+                        p.kind { "Lifelong-learning report" }
+                        h1 { (title) }
+                        @if let Some(date) = &self.date { p.lead { (shown(date)) } }
+                        (self.index())
+                    }
+                    main {
+                        (warnings(&self.warnings))
+                        (overall::section(&self.overall, &self.comparisons))
+                        @for (index, chapter) in self.chapters.iter().enumerate() { (self.life(index + 1, chapter)) }
+                        (how(&self.options))
+                    }
+                    footer {
+                        "Made by driftworld " (env!("CARGO_PKG_VERSION")) ". Definitions: New et al. 2022, "
+                        i { "Lifelong Learning Metrics for L2M" }
+                        ". This page is one file; it loads nothing and runs nothing."
+                    }
+                }
+            }
+        };
+        Ok(page.into_string())
+    }
+
+    /// A lifetime's section. One that stands alone is named by the page's headline; its own is for those who hear the page.
+    fn life(&self, number: usize, chapter: &Chapter) -> Markup {
+        let alone = self.chapters.len() == 1;
+        let (id, name) = (format!("life-{number}"), format!("life-{number}-name"));
+        html! {
+            section.life.only[alone && self.overall.is_empty() && self.comparisons.is_empty()] id=(id) aria-labelledby=(name) {
+                h2.hidden[alone] id=(name) { (chapter.name) }
+                (chapter.body)
+            }
+        }
+    }
+
+    /// Where the lifetimes are, if there are several.
+    fn index(&self) -> Markup {
+        html! {
+            @if self.chapters.len() > 1 {
+                nav aria-label="Lifetimes" {
+                    ol {
+                        @for (index, chapter) in self.chapters.iter().enumerate() {
+                            li { a href=(format!("#life-{}", index + 1)) { (chapter.name) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Things that a reader should know before believing the numbers.
+fn warnings(warnings: &[String]) -> Markup {
+    /// More of a kind tell nothing new.
+    const MOST: usize = 50;
+    html! {
+        @if !warnings.is_empty() {
+            ul.warnings aria-label="Warnings" {
+                @for warning in warnings.iter().take(MOST) {
+                    li { "⚠ Warning: " (calm(warning)) }
+                }
+                @if warnings.len() > MOST { li { "⚠ and " (warnings.len() - MOST) " warnings more" } }
+            }
+        }
+    }
+}
+
+/// The options, and what is worth knowing of the calculation.
+fn how(options: &Value) -> Markup {
+    let rows = options.as_object().into_iter().flatten();
+    html! {
+        section.part id="how" aria-labelledby="how-name" {
+            h2 id="how-name" { "How it was computed" }
+            p {
+                "Complete rows with a number in the scored column form " i { "regimes" } ", one task learnt or evaluated without a break. Learning is "
+                "smoothed, performances are scaled, and each metric is computed per task and then brought together over tasks. "
+                "A value that cannot be computed is left out, never guessed."
+            }
+            p.note {
+                "Words like “helps” compare a value with the one that means no effect, to the digits shown. One lifetime cannot tell "
+                "effect from chance; several can, see intervals over all lifetimes where there are any."
+            }
+            div.card {
+                table.options {
+                    caption { span { "Options used" } }
+                    tbody {
+                        @for (name, value) in rows {
+                            tr { th scope="row" { (calm(&name.replace('_', " "))) } td { (calm(&plain(value))) } }
+                        }
+                        tr { th scope="row" { "version" } td { "driftworld " (env!("CARGO_PKG_VERSION")) } }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A value of an option in words.
+fn plain(value: &Value) -> String {
+    match value {
+        Value::Null => "not given".to_owned(),
+        Value::Bool(true) => "yes".to_owned(),
+        Value::Bool(false) => "no".to_owned(),
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+/// A sentence from outside: longer than a name may be, and as calm.
+fn calm(text: &str) -> String {
+    /// Letters of a sentence that are shown.
+    const LONGEST: usize = 600;
+    let mut calm: String = text
+        .chars()
+        .take(LONGEST)
+        .map(|letter| if letter.is_control() { ' ' } else { letter })
+        .collect();
+    if text.chars().nth(LONGEST).is_some() {
+        calm.push('…');
+    }
+    calm
+}
+
+/// A number in a table: about four digits, a minus as long as a plus.
+fn number(value: f64) -> String {
+    let digits = match value.abs() {
+        size if size >= 1e7 => return format!("{value:.3e}").replace('-', "−"),
+        size if size >= 1000.0 => 0,
+        size if size >= 100.0 => 1,
+        size if size >= 10.0 => 2,
+        _ => 3,
+    };
+    let text = format!("{value:.digits$}");
+    let zero = text
+        .trim_start_matches('-')
+        .chars()
+        .all(|letter| matches!(letter, '0' | '.'));
+    if zero {
+        text.trim_start_matches('-').to_owned()
+    } else {
+        text.replace('-', "−")
+    }
+}
+
+/// A count with its thousands apart.
+fn count(value: usize) -> String {
+    let digits = value.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index) % 3 == 0 {
+            text.push('\u{202f}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_in_tables_have_about_four_digits() {
+        let check = |value: f64, expected: &str| assert_eq!(number(value), expected);
+        check(12.629_855, "12.63");
+        check(-2.0, "−2.000");
+        check(-0.000_01, "0.000");
+        check(0.0, "0.000");
+        check(104.26, "104.3");
+        check(123_456.7, "123457");
+        check(1e9, "1.000e9");
+        assert_eq!(
+            [0, 999, 1000, 1_234_567].map(count),
+            ["0", "999", "1\u{202f}000", "1\u{202f}234\u{202f}567"]
+        );
+    }
+
+    #[test]
+    fn more_lifetimes_than_a_page_can_show_are_refused() {
+        let report = Report {
+            chapters: vec![Chapter::default(); MAX_LIFETIMES + 1],
+            ..Report::default()
+        };
+        assert_eq!(report.to_html().unwrap_err().code(), "report/too-many-lifetimes");
+    }
+}

@@ -1,0 +1,68 @@
+//! The tables of transfer: from each task that was learnt to each other one, coloured like a map of heat.
+
+use driftworld_metrics::{LifetimeMetrics, SummaryRow};
+use maud::{Markup, html};
+
+use super::{number, verdict};
+use crate::words::shown;
+
+/// Tasks beyond these are in the files of metrics only.
+const MOST_TASKS: usize = 24;
+
+/// A table for each metric of pairs that has any.
+pub(super) fn tables(metrics: &LifetimeMetrics) -> Markup {
+    let summary = metrics.summary();
+    let tasks = &metrics.task_metrics;
+    let names: Vec<&String> = tasks.keys().take(MOST_TASKS).collect();
+    let has = |name: &str| {
+        tasks
+            .values()
+            .any(|values| values.pairs(name).is_some_and(|pairs| !pairs.is_empty()))
+    };
+    let found: Vec<&SummaryRow> = summary.iter().filter(|row| has(&row.name)).collect();
+    let first = |from: &str, to: &str, name: &str| tasks.get(from)?.pairs(name)?.get(to)?.first().copied();
+    html! {
+        @if !found.is_empty() {
+            h3 { "Transfer between tasks" }
+            p.note {
+                "Row: the task that was learnt. Column: the task that was evaluated before and after. The first time each pair occurs; ▲ helps, ▼ interferes."
+            }
+        }
+        @for row in &found {
+            div.scroll role="region" aria-label=(verdict::title(&row.name)) tabindex="0" {
+                table.pairs {
+                    caption { (verdict::title(&row.name)) }
+                    thead {
+                        tr {
+                            th scope="col" { "learnt ↓ evaluated →" }
+                            @for name in &names { th scope="col" { (shown(name)) } }
+                        }
+                    }
+                    tbody {
+                        @for from in &names {
+                            tr {
+                                th scope="row" { (shown(from)) }
+                                @for to in &names { (cell(row, first(from, to, &row.name))) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        @if tasks.len() > MOST_TASKS && !found.is_empty() {
+            p.note { "The first " (MOST_TASKS) " tasks are shown; all are in the file of metrics." }
+        }
+    }
+}
+
+fn cell(row: &SummaryRow, value: Option<f64>) -> Markup {
+    let Some(value) = value else {
+        return html! { td.even { span aria-hidden="true" { "·" } } };
+    };
+    match verdict::of(&row.name, value, row.good) {
+        Some(found) => html! {
+            td class=(found.class) { (number(value)) " " span aria-hidden="true" { (found.sign) } }
+        },
+        None => html! { td { (number(value)) } },
+    }
+}

@@ -1,0 +1,69 @@
+//! The table of tasks: how much of each was lived, and the metrics of each that are one number.
+
+use driftworld_metrics::{BlockType, Lifetime, LifetimeMetrics};
+use maud::{Markup, html};
+
+use super::{count, number, verdict};
+use crate::words::shown;
+
+/// Tasks beyond these are in the files of metrics only.
+const MOST_ROWS: usize = 200;
+
+pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Markup {
+    let names: Vec<String> = metrics.summary().iter().map(|row| row.name.to_string()).collect();
+    let value = |task: &str, name: &str| metrics.task_metrics.get(task).and_then(|values| values.number(name));
+    let has = |name: &String| lifetime.tasks().iter().any(|task| value(task, name).is_some());
+    let columns: Vec<&String> = names.iter().filter(|name| has(name)).collect();
+    let rows = |task: &str, block_type: BlockType| -> (usize, usize) {
+        let regimes = lifetime
+            .regimes_of(task)
+            .filter(|regime| regime.block_type == block_type);
+        regimes.fold((0, 0), |(blocks, rows), regime| (blocks + 1, rows + regime.len()))
+    };
+    html! {
+        div.scroll role="region" aria-label="Tasks" tabindex="0" {
+            table {
+                thead {
+                    tr {
+                        th scope="col" { "Task" }
+                        th.number scope="col" { "Learning" br; "blocks" }
+                        th.number scope="col" { "Learning" br; "experiences" }
+                        th.number scope="col" { "Evaluation" br; "experiences" }
+                        @for name in &columns { th.number scope="col" { (heading(name)) } }
+                    }
+                }
+                tbody {
+                    @for task in lifetime.tasks().iter().take(MOST_ROWS) {
+                        tr {
+                            th scope="row" { (shown(task)) }
+                            td.number { (count(rows(task, BlockType::Train).0)) }
+                            td.number { (count(rows(task, BlockType::Train).1)) }
+                            td.number { (count(rows(task, BlockType::Test).1)) }
+                            @for name in &columns {
+                                td.number { (value(task, name).map_or("–".to_owned(), number)) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        @if lifetime.tasks().len() > MOST_ROWS {
+            p.note { "and " (count(lifetime.tasks().len() - MOST_ROWS)) " tasks more: see the file of metrics." }
+        }
+    }
+}
+
+/// A metric's name over a narrow column.
+fn heading(name: &str) -> Markup {
+    let lines: [&str; 2] = match name {
+        "perf_recovery" => ["Recovery", ""],
+        "avg_train_perf" => ["Performance", "learning"],
+        "avg_eval_perf" => ["Performance", "evaluations"],
+        "perf_maintenance_mrlep" => ["Maintenance", "mrlep"],
+        "perf_maintenance_mrtlp" => ["Maintenance", "mrtlp"],
+        "ste_rel_perf" => ["Relative to", "expert"],
+        "sample_efficiency" => ["Sample", "efficiency"],
+        _ => return html! { (verdict::title(name)) },
+    };
+    html! { (lines[0]) @if !lines[1].is_empty() { br; (lines[1]) } }
+}

@@ -1,0 +1,238 @@
+//! The page in a real browser: no complaints, nothing wider than a phone, ink in light and in the dark. The page's text is `page.rs`'s.
+//!
+//! The browser is Chromium under one of its usual names, or what `DRIFTWORLD_BROWSER` names. Where there is none the tests say that
+//! they are skipped; with `DRIFTWORLD_REQUIRE_BROWSER=1` they fail there.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
+
+mod lived;
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use lived::Life;
+
+const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+
+fn browser() -> Option<PathBuf> {
+    if let Some(named) = std::env::var_os("DRIFTWORLD_BROWSER") {
+        return Some(PathBuf::from(named));
+    }
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let found = std::env::split_paths(&path)
+        .flat_map(|folder| NAMES.map(|name| folder.join(name)))
+        .find(|file| file.is_file());
+    let required =
+        std::env::var_os("DRIFTWORLD_REQUIRE_BROWSER").is_some_and(|value| value != "0" && !value.is_empty());
+    assert!(
+        found.is_some() || !required,
+        "DRIFTWORLD_REQUIRE_BROWSER=1: found none of {NAMES:?} in PATH; install one, or name one in DRIFTWORLD_BROWSER"
+    );
+    if found.is_none() {
+        // Not by println, which the test harness keeps to itself where tests pass.
+        let _ = writeln!(std::io::stderr(), "SKIPPED: no browser in PATH; set DRIFTWORLD_BROWSER");
+    }
+    found
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Scheme {
+    Dark,
+    Light,
+}
+
+/// A page in a folder of its own, and the browser to look at it.
+struct Desk {
+    browser: PathBuf,
+    folder: tempfile::TempDir,
+}
+
+impl Desk {
+    fn with(page: &str) -> Option<Self> {
+        let desk = Self {
+            browser: browser()?,
+            folder: tempfile::tempdir().unwrap(),
+        };
+        desk.put("page.html", page);
+        Some(desk)
+    }
+
+    fn put(&self, name: &str, text: &str) {
+        std::fs::write(self.folder.path().join(name), text).unwrap();
+    }
+
+    fn open(&self, name: &str, size: [u32; 2], scheme: Scheme, more: &[&str]) -> Output {
+        let output = Command::new(&self.browser)
+            .args([
+                "--headless=new",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--hide-scrollbars",
+                "--enable-logging=stderr",
+            ])
+            .args([
+                "--allow-file-access-from-files",
+                "--virtual-time-budget=3000",
+                "--timeout=40000",
+            ])
+            .arg(format!(
+                "--user-data-dir={}",
+                self.folder.path().join("profile").display()
+            ))
+            .arg(format!("--window-size={},{}", size[0], size[1]))
+            .arg(format!("--blink-settings=preferredColorScheme={}", scheme as u8))
+            .args(more)
+            .arg(format!("file://{}", self.folder.path().join(name).display()))
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        output
+    }
+
+    /// The document after everything in it has run, and what the browser said of it.
+    fn dom(&self, name: &str) -> (String, Vec<String>) {
+        let output = self.open(name, [1200, 900], Scheme::Light, &["--dump-dom"]);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let console = said.lines().filter(|line| line.contains(":CONSOLE")).map(str::to_owned);
+        (String::from_utf8(output.stdout).unwrap(), console.collect())
+    }
+
+    /// A picture of the page: width, and its pixels.
+    fn screenshot(&self, name: &str, size: [u32; 2], scheme: Scheme) -> (usize, Vec<[u8; 3]>) {
+        let file = self.folder.path().join("shot.png");
+        self.open(name, size, scheme, &[&format!("--screenshot={}", file.display())]);
+        decode(&file)
+    }
+}
+
+fn decode(file: &Path) -> (usize, Vec<[u8; 3]>) {
+    let bytes = std::fs::read(file).unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+    let mut buffer = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut buffer).unwrap();
+    let channels = info.color_type.samples();
+    let pixels = buffer[..info.buffer_size()]
+        .chunks(channels)
+        .map(|pixel| [pixel[0], pixel[1], pixel[2]]);
+    (info.width as usize, pixels.collect())
+}
+
+#[test]
+fn the_browser_has_nothing_to_complain_about() {
+    let Some(desk) = Desk::with(&Life::default().live().page()) else {
+        return;
+    };
+    let (dom, console) = desk.dom("page.html");
+    assert_eq!(console, Vec::<String>::new());
+    assert_eq!(dom.matches("<figure>").count(), 5, "the plots are there");
+    assert!(dom.contains("<h1>first</h1>"));
+    // Whether complaints would be heard at all.
+    desk.put("bad.html", "<!DOCTYPE html><script>missing()</script>");
+    assert_eq!(desk.dom("bad.html").1.len(), 1, "a page with a fault is noticed");
+}
+
+/// Opens the page in a frame as wide as a phone, and writes down what it measures.
+const MEASURE: &str = r#"<!DOCTYPE html><body><script>
+function measure(frame) {
+  const page = frame.contentDocument, out = [];
+  out.push("wide=" + page.documentElement.scrollWidth);
+  const drawings = [...page.querySelectorAll("figure svg")].filter(svg => svg.getBoundingClientRect().width > 0);
+  out.push("drawings=" + drawings.length);
+  let smallest = 1000;
+  for (const svg of drawings) {
+    const scale = svg.getBoundingClientRect().width / svg.viewBox.baseVal.width;
+    for (const text of svg.querySelectorAll("text")) smallest = Math.min(smallest, parseFloat(text.getAttribute("font-size")) * scale);
+  }
+  out.push("smallest=" + smallest.toFixed(1));
+  const beyond = [...page.querySelectorAll("body *")].filter(part => !part.closest(".scroll, svg, .hidden, thead")
+    && part.getBoundingClientRect().right > frame.clientWidth + 0.5);
+  out.push("beyond=" + beyond.map(part => part.tagName).join(","));
+  const result = document.createElement("p");
+  result.textContent = "MEASURED " + frame.clientWidth + " " + out.join(" ") + " END";
+  document.body.append(result);
+}
+for (const width of [320, 360, 414, 719, 720, 1000, 1400]) {
+  const frame = document.createElement("iframe");
+  frame.style = "border:0;height:800px;width:" + width + "px";
+  frame.onload = () => measure(frame);
+  frame.src = "page.html";
+  document.body.append(frame);
+}
+</script></body>"#;
+
+#[test]
+fn nothing_is_wider_than_the_screen_and_every_word_can_be_read() {
+    let check = |life: Life| {
+        let Some(desk) = Desk::with(&life.live().page()) else {
+            return;
+        };
+        desk.put("measure.html", MEASURE);
+        let (dom, _) = desk.dom("measure.html");
+        let found: Vec<&str> = dom
+            .split("MEASURED ")
+            .skip(2)
+            .filter_map(|rest| rest.split(" END").next())
+            .collect();
+        assert_eq!(found.len(), 7, "{found:?}");
+        for line in found {
+            let width: f64 = line.split(' ').next().unwrap().parse().unwrap();
+            let value = |name: &str| {
+                let rest = line.split(&format!("{name}=")).nth(1).unwrap();
+                rest.split(' ').next().unwrap().to_owned()
+            };
+            assert!(value("wide").parse::<f64>().unwrap() <= width, "{line}");
+            assert_eq!(value("drawings"), "5", "{line}");
+            assert_eq!(value("beyond"), "", "{line}");
+            assert!(value("smallest").parse::<f64>().unwrap() >= 7.8, "{line}");
+        }
+    };
+    check(Life::default());
+    check(Life {
+        name: "a_name_that_is_much_longer_than_any_name_of_a_lifetime_needs_to_be_and_has_no_spaces",
+        tasks: (0..12)
+            .map(|task| format!("{}_{task}", "verylongtaskname".repeat(3)))
+            .collect(),
+        rounds: 1,
+        ..Life::default()
+    });
+}
+
+#[test]
+fn figures_have_ink_in_light_and_in_the_dark_and_on_a_phone() {
+    let Some(desk) = Desk::with(&Life::default().live().page()) else {
+        return;
+    };
+    desk.put(
+        "phone.html",
+        "<body style=\"margin:0\"><iframe src=\"page.html\" style=\"width:360px;height:6000px;border:0\"></iframe>",
+    );
+    let tasks = |scheme| match scheme {
+        Scheme::Light => [[0, 114, 178], [230, 159, 0], [0, 158, 115]],
+        Scheme::Dark => [[0x4a, 0x9f, 0xe0], [0xf0, 0xb4, 0x29], [0x2b, 0xc1, 0x96]],
+    };
+    for scheme in [Scheme::Light, Scheme::Dark] {
+        for (name, size) in [("page.html", [1200, 4600]), ("phone.html", [500, 6000])] {
+            let (width, pixels) = desk.screenshot(name, size, scheme);
+            assert_eq!(width, size[0] as usize);
+            let ground = pixels[10 * width + 5];
+            assert_eq!(
+                ground[0] > 128,
+                scheme == Scheme::Light,
+                "{name}: the ground is {ground:?}"
+            );
+            for color in tasks(scheme) {
+                let count = pixels.iter().filter(|pixel| **pixel == color).count();
+                assert!(count > 1000, "{name}: {count} pixels of {color:?}");
+            }
+            let other = if scheme == Scheme::Light {
+                Scheme::Dark
+            } else {
+                Scheme::Light
+            };
+            for color in tasks(other) {
+                assert!(!pixels.contains(&color), "{name}: {color:?} is the other scheme's");
+            }
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! Lifetimes made up for tests. What is tested of them is in the files beside this folder.
+
+use driftworld_metrics::{
+    BlockType, Lifetime, LifetimeMetrics, LogWriter, LoggerInfo, Options, Record, ScenarioInfo, Scorer, SteLog,
+    Timestamp, read_log, read_ste_log,
+};
+use driftworld_report::{Chapter, ChapterOptions, Report, neighbours};
+
+/// A lifetime in which tasks take turns, each evaluated before and after every learning block.
+pub struct Life<'a> {
+    pub name: &'a str,
+    pub tasks: Vec<String>,
+    /// How often each task is learnt.
+    pub rounds: u64,
+    /// Experiences of a learning block; an evaluation has a tenth of them.
+    pub length: u64,
+    /// Whether the first task has an expert.
+    pub expert: bool,
+    pub steps: bool,
+}
+
+impl Default for Life<'_> {
+    fn default() -> Self {
+        Self {
+            name: "first",
+            tasks: ["find_red", "find_blue", "goal_plain"].map(str::to_owned).to_vec(),
+            rounds: 3,
+            length: 60,
+            expert: true,
+            steps: true,
+        }
+    }
+}
+
+/// The lifetime and what was scored.
+pub struct Lived {
+    pub lifetime: Lifetime,
+    pub metrics: LifetimeMetrics,
+    pub options: Options,
+}
+
+impl Life<'_> {
+    pub fn live(&self) -> Lived {
+        let base = tempfile::tempdir().expect("a temporary folder can be made");
+        let dir = base.path().join(self.name);
+        self.write(&dir, &self.tasks, self.rounds);
+        let log = read_log(&dir).expect("the log was just written");
+        let experts: Vec<SteLog> = if self.expert {
+            let dir = base.path().join("expert");
+            self.write(&dir, &self.tasks[..1], 2);
+            vec![read_ste_log(&dir).expect("it has one task")]
+        } else {
+            Vec::new()
+        };
+        let options = Options::default();
+        let lifetime = Lifetime::prepare(&log, &experts, &options).expect("it has rows");
+        let metrics = Scorer::default()
+            .judge(&log, &lifetime, &options)
+            .expect("it can be scored");
+        Lived {
+            lifetime,
+            metrics,
+            options,
+        }
+    }
+
+    fn write(&self, dir: &std::path::Path, tasks: &[String], rounds: u64) {
+        let columns = if self.steps {
+            vec!["reward", "episode_step_count"]
+        } else {
+            vec!["reward"]
+        };
+        let info = LoggerInfo::new(columns).expect("the columns have names");
+        let mut writer = LogWriter::create(dir, &info, &ScenarioInfo::default()).expect("the folder is new");
+        let (mut block, mut experience) = (0, 0);
+        for turn in 0..rounds * tasks.len() as u64 {
+            let learnt = (turn % tasks.len() as u64) as usize;
+            let mut rows: Vec<(BlockType, usize, u64)> = Vec::new();
+            rows.extend((0..tasks.len()).map(|task| (BlockType::Test, task, (self.length / 10).max(2))));
+            rows.push((BlockType::Train, learnt, self.length));
+            for (kind, task, count) in rows {
+                for row in 0..count {
+                    let seen = turn as f64
+                        + if kind == BlockType::Train {
+                            row as f64 / count as f64
+                        } else {
+                            0.0
+                        };
+                    let noise = ((experience * 7919 + row * 31) % 101) as f64 / 101.0;
+                    let reward = 10.0 * (1.0 - (-seen / 3.0).exp()) + noise + task as f64;
+                    let when = Timestamp::from_unix_micros(1_600_000_000_000_000 + experience as i64 * 1000)
+                        .expect("the time is a possible one");
+                    let mut record =
+                        Record::new(block, experience, kind, &tasks[task], when).with_metric("reward", reward);
+                    if self.steps {
+                        record = record.with_metric("episode_step_count", 50.0 + noise.round());
+                    }
+                    writer.write(&record).expect("the record is sound");
+                    experience += 1;
+                }
+                if kind == BlockType::Train || task + 1 == tasks.len() {
+                    block += 1;
+                }
+            }
+        }
+        writer.finish().expect("the disk has room");
+    }
+}
+
+impl Lived {
+    /// A page with this lifetime alone, distances and a warning included.
+    pub fn page(&self) -> String {
+        let mut options = ChapterOptions {
+            warnings: vec!["data-log.tsv:7: something <odd>".to_owned()],
+            distance_note: "Stems: distances made up for a test.".to_owned(),
+            ..ChapterOptions::default()
+        };
+        let pairs = neighbours(&self.lifetime).len();
+        options.figures.distances = Some(
+            (0..pairs)
+                .map(|pair| (pair % 4 != 3).then_some(pair as f64 / 7.0))
+                .collect(),
+        );
+        let chapter = Chapter::write(&self.lifetime, &self.metrics, &options).expect("it can be drawn");
+        let report = Report {
+            chapters: vec![chapter],
+            options: serde_json::to_value(&self.options).expect("options are JSON"),
+            ..Report::default()
+        };
+        report.to_html().expect("it is one lifetime")
+    }
+}

@@ -1,0 +1,331 @@
+//! The page without a browser: its form, its sections, what it must never hold, its size. How it looks is `browser.rs`'s.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
+
+mod lived;
+
+use driftworld_metrics::{BootstrapOptions, compare_agents, over_repeats};
+use driftworld_report::{Chapter, ChapterOptions, Comparison, Figure, FigureOptions, Figures, Report, Unit};
+use lived::Life;
+
+/// Every tag of a page or a drawing: its name, and whether it closes.
+fn tags(text: &str) -> Vec<(String, bool)> {
+    const NEVER_CLOSED: [&str; 4] = ["meta", "link", "br", "!DOCTYPE"];
+    let mut tags = Vec::new();
+    let mut rest = text;
+    while let Some(start) = rest.find('<') {
+        let end = start + rest[start..].find('>').expect("a tag that begins ends");
+        let tag = &rest[start + 1..end];
+        let name: String = tag
+            .trim_start_matches('/')
+            .chars()
+            .take_while(|c| !c.is_whitespace() && *c != '/')
+            .collect();
+        rest = &rest[end + 1..];
+        assert!(tag.matches('"').count() % 2 == 0, "quotes are closed in <{tag}>");
+        if name == "style" && !tag.starts_with('/') {
+            rest = &rest[rest.find("</style").expect("the style ends")..];
+        }
+        if !NEVER_CLOSED.contains(&name.as_str()) && !tag.ends_with('/') {
+            tags.push((name, tag.starts_with('/')));
+        }
+    }
+    tags
+}
+
+fn assert_well_formed(text: &str) {
+    let mut open: Vec<String> = Vec::new();
+    for (name, closes) in tags(text) {
+        if closes {
+            assert_eq!(open.pop().as_deref(), Some(name.as_str()), "inside {open:?}");
+        } else {
+            open.push(name);
+        }
+    }
+    assert!(open.is_empty(), "never closed: {open:?}");
+}
+
+fn count(text: &str, part: &str) -> usize {
+    text.matches(part).count()
+}
+
+#[test]
+fn the_page_is_well_formed_and_has_every_section() {
+    let page = Life::default().live().page();
+    assert_well_formed(&page);
+    for title in [
+        "Metrics",
+        "Curriculum",
+        "Learning curves",
+        "Evaluations",
+        "Against the single-task expert",
+        "Raw values",
+        "Tasks",
+        "Transfer between tasks",
+        "How it was computed",
+    ] {
+        assert!(page.contains(&format!(">{title}</h")), "{title}");
+    }
+    assert_eq!(count(&page, "<figure>"), 5);
+    assert_eq!(count(&page, "<svg class=\"wide\" role=\"img\""), 5);
+    assert_eq!(count(&page, "<svg class=\"narrow\" role=\"img\""), 5);
+    assert_eq!(
+        count(&page, "<svg"),
+        count(&page, "</title>") - 1,
+        "every drawing says what it is, and so does the page"
+    );
+    assert!(page.contains("Warning: data-log.tsv:7: something &lt;odd&gt;"));
+}
+
+#[test]
+fn headings_go_down_one_level_at_a_time() {
+    let page = Life::default().live().page();
+    let levels: Vec<usize> = tags(&page)
+        .into_iter()
+        .filter(|(name, closes)| !closes && name.len() == 2 && name.starts_with('h') && name != "hr")
+        .map(|(name, _)| name[1..].parse().unwrap())
+        .collect();
+    assert_eq!(levels.iter().filter(|level| **level == 1).count(), 1);
+    assert_eq!(levels[0], 1);
+    assert!(levels.windows(2).all(|pair| pair[1] <= pair[0] + 1), "{levels:?}");
+}
+
+#[test]
+fn the_page_loads_nothing_and_runs_nothing() {
+    let page = Life::default().live().page();
+    let calm = page.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
+    for part in [
+        "http:",
+        "https:",
+        "<script",
+        " src=",
+        "url(",
+        "@import",
+        "<iframe",
+        " onload",
+        "javascript:",
+    ] {
+        assert!(!calm.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn hostile_names_do_no_harm() {
+    let hostile = [
+        "<script>alert(1)</script>_\"x\" onload=\"y",
+        "a&b_</title></svg><b>",
+        "\u{202e}evil\u{7}_]]>'",
+    ];
+    let life = Life {
+        tasks: hostile.map(str::to_owned).to_vec(),
+        ..Life::default()
+    };
+    let lived = life.live();
+    let page = lived.page();
+    assert_well_formed(&page);
+    assert!(!page.contains("<script") && !page.contains("<b>a"), "tags are escaped");
+    assert!(page.contains("&lt;script&gt;alert(1)&lt;/script&gt;"));
+    assert!(page.chars().all(|letter| letter == '\n' || !letter.is_control()) && !page.contains('\u{202e}'));
+    let options = FigureOptions::default();
+    let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
+    for figure in Figure::ALL {
+        assert_well_formed(&figures.svg(figure).unwrap());
+    }
+}
+
+#[test]
+fn the_same_lifetime_gives_the_same_bytes() {
+    let life = Life::default();
+    assert_eq!(life.live().page(), life.live().page());
+}
+
+#[test]
+fn several_lifetimes_have_an_index_a_chapter_each_and_intervals_together() {
+    let lives: Vec<_> = ["first", "second"]
+        .map(|name| {
+            Life {
+                name,
+                ..Life::default()
+            }
+            .live()
+        })
+        .into();
+    let scores: Vec<_> = lives.iter().map(|lived| lived.metrics.clone()).collect();
+    let chapter = |lived: &lived::Lived| Chapter::write(&lived.lifetime, &lived.metrics, &ChapterOptions::default());
+    let report = Report {
+        title: Some("Two <lives>".to_owned()),
+        chapters: lives.iter().map(chapter).collect::<Result<_, _>>().unwrap(),
+        overall: over_repeats(&scores, &BootstrapOptions::default()).unwrap(),
+        comparisons: vec![Comparison {
+            agent: "mine".to_owned(),
+            other: "theirs".to_owned(),
+            metrics: compare_agents(&scores, &scores, &BootstrapOptions::default()).unwrap(),
+        }],
+        date: Some("21 November 2026".to_owned()),
+        ..Report::default()
+    };
+    let page = report.to_html().unwrap();
+    assert_well_formed(&page);
+    for part in [
+        "<h1>Two &lt;lives&gt;</h1>",
+        "<a href=\"#life-2\">second</a>",
+        "id=\"life-2\"",
+        "Over all lifetimes",
+        "mine against theirs",
+        "not told apart",
+        "21 November 2026",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    let ids: Vec<&str> = page
+        .split(" id=\"")
+        .skip(1)
+        .map(|rest| rest.split('"').next().unwrap())
+        .collect();
+    for (index, id) in ids.iter().enumerate() {
+        assert!(!ids[..index].contains(id), "{id} is there twice");
+    }
+}
+
+#[test]
+fn a_lifetime_without_experts_or_evaluations_says_so() {
+    let life = Life {
+        expert: false,
+        ..Life::default()
+    };
+    let lived = life.live();
+    let page = lived.page();
+    assert!(page.contains("nothing to compare with") && count(&page, "<figure>") == 4);
+    let options = FigureOptions::default();
+    assert!(
+        !Figures::of(&lived.lifetime, "reward", &options)
+            .unwrap()
+            .has(Figure::Experts)
+    );
+}
+
+#[test]
+fn figures_count_steps_where_the_log_does() {
+    let options = FigureOptions {
+        unit: Unit::Steps,
+        ..FigureOptions::default()
+    };
+    let lived = Life::default().live();
+    let svg = Figures::of(&lived.lifetime, "reward", &options)
+        .unwrap()
+        .svg(Figure::Learning)
+        .unwrap();
+    assert!(svg.contains("step\n</text>"), "the axis says so");
+    let life = Life {
+        steps: false,
+        ..Life::default()
+    };
+    let lived = life.live();
+    let error = Figures::of(&lived.lifetime, "reward", &options).err().unwrap();
+    assert_eq!(error.code(), "report/no-steps");
+    let options = FigureOptions {
+        distances: Some(vec![None]),
+        ..FigureOptions::default()
+    };
+    let error = Figures::of(&lived.lifetime, "reward", &options).err().unwrap();
+    assert_eq!(
+        error.to_string(),
+        "log first: found 1 distances, expected 8: one for each two neighbouring learning blocks, as neighbours() lists them"
+    );
+}
+
+#[test]
+fn pictures_have_ink_in_the_colours_of_the_tasks() {
+    let lived = Life::default().live();
+    let options = FigureOptions::default();
+    let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
+    for figure in Figure::ALL {
+        let bytes = figures.png(figure).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+        let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut rgb).unwrap();
+        assert_eq!((info.width, info.color_type), (1920, png::ColorType::Rgb));
+        let pixels = |color: [u8; 3]| rgb.chunks(3).filter(|pixel| *pixel == color).count();
+        assert!(
+            pixels([255, 255, 255]) > rgb.len() / 3 / 2,
+            "{figure:?}: the ground is white"
+        );
+        assert!(pixels([0, 114, 178]) > 200, "{figure:?}: the first task is blue");
+    }
+}
+
+#[test]
+fn pages_of_long_lifetimes_and_many_tasks_stay_small() {
+    let check = |life: Life, limit: usize| {
+        let size = life.live().page().len();
+        assert!(size < limit, "{size} bytes");
+    };
+    check(Life::default(), 500_000);
+    check(
+        Life {
+            length: 4000,
+            ..Life::default()
+        },
+        700_000,
+    );
+    check(
+        Life {
+            tasks: (0..40).map(|task| format!("task{task}_x")).collect(),
+            rounds: 2,
+            length: 10,
+            ..Life::default()
+        },
+        2_500_000,
+    );
+}
+
+/// Lightness as contrast is reckoned from (WCAG 2.2).
+fn luminance(color: &str) -> f64 {
+    let digits: String = match color.len() {
+        3 => color.chars().flat_map(|digit| [digit, digit]).collect(),
+        _ => color.to_owned(),
+    };
+    let channel = |index: usize| {
+        let value = f64::from(u8::from_str_radix(&digits[index..index + 2], 16).unwrap()) / 255.0;
+        if value <= 0.04045 {
+            value / 12.92
+        } else {
+            ((value + 0.055) / 1.055).powf(2.4)
+        }
+    };
+    0.2126 * channel(0) + 0.7152 * channel(2) + 0.0722 * channel(4)
+}
+
+#[test]
+fn every_text_has_contrast_in_light_and_in_the_dark() {
+    let style = include_str!("../src/page/style.css");
+    let schemes: Vec<&str> = style
+        .split(":root{")
+        .skip(1)
+        .take(2)
+        .map(|rest| rest.split('}').next().unwrap())
+        .collect();
+    for scheme in schemes {
+        let color = |name: &str| {
+            let found = scheme
+                .split(';')
+                .find_map(|rule| rule.strip_prefix(&format!("--{name}:#")));
+            luminance(found.unwrap_or_else(|| panic!("{name} in {scheme}")))
+        };
+        for (text, ground) in [
+            ("ink", "ground"),
+            ("ink", "card"),
+            ("faint", "ground"),
+            ("faint", "card"),
+            ("link", "ground"),
+            ("good", "good-soft"),
+            ("bad", "bad-soft"),
+            ("even", "even-soft"),
+            ("warn", "warn-soft"),
+        ] {
+            let (a, b) = (color(text), color(ground));
+            let contrast = (a.max(b) + 0.05) / (a.min(b) + 0.05);
+            assert!(contrast >= 4.5, "{text} on {ground}: {contrast:.2} in {scheme}");
+        }
+    }
+}

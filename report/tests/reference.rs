@@ -1,0 +1,71 @@
+//! The example lifetime that l2metrics publishes, as a page: every figure is there, and the page is small.
+//!
+//! The logs are read where `DRIFTWORLD_REFERENCE` says, by default beside the repository; without them the test says so and
+//! returns.
+
+use std::path::PathBuf;
+
+use driftworld_metrics::{Lifetime, Options, Scorer, SteLog, read_log, read_ste_log};
+use driftworld_report::{Chapter, ChapterOptions, Report};
+
+#[expect(clippy::print_stderr, reason = "a skipped oracle must be seen")]
+fn reference() -> Option<PathBuf> {
+    let default = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/reference");
+    let base = std::env::var_os("DRIFTWORLD_REFERENCE").map_or_else(|| PathBuf::from(default), PathBuf::from);
+    let dir = base.join("l2metrics");
+    if dir.is_dir() {
+        return Some(dir);
+    }
+    eprintln!(
+        "SKIPPED: no reference logs at {}; set DRIFTWORLD_REFERENCE",
+        dir.display()
+    );
+    None
+}
+
+#[test]
+fn the_reference_example_is_a_small_page_with_every_figure() -> Result<(), Box<dyn std::error::Error>> {
+    let Some(dir) = reference() else { return Ok(()) };
+    let log = read_log(dir.join("ll_logs/multi_task"))?;
+    let runs = [
+        "ste_task1_1_run1",
+        "ste_task2_1_run1",
+        "ste_task3_1_run1",
+        "ste_task3_1_run2",
+    ];
+    let experts: Vec<SteLog> = runs
+        .iter()
+        .map(|run| read_ste_log(dir.join("ste_logs").join(run)))
+        .collect::<Result<_, _>>()?;
+    let options = Options {
+        perf_measure: "performance".to_owned(),
+        ..Options::default()
+    };
+    let lifetime = Lifetime::prepare(&log, &experts, &options)?;
+    let metrics = Scorer::default().judge(&log, &lifetime, &options)?;
+    let chapters = vec![Chapter::write(&lifetime, &metrics, &ChapterOptions::default())?];
+    let page = Report {
+        chapters,
+        ..Report::default()
+    }
+    .to_html()?;
+    assert_eq!(page.matches("<figure>").count(), 5);
+    // As the reference publishes them, to the digits of the page.
+    for part in [
+        ">−2.000<",
+        ">83.82<",
+        ">78.52<",
+        ">3.863<",
+        ">12.63<",
+        ">1.082<",
+        ">1.105<",
+        ">0.913<",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    for part in ["relearns slower", "beats the expert", "below the expert", "9.552"] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(page.len() < 400_000, "{} bytes", page.len());
+    Ok(())
+}

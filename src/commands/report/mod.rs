@@ -1,0 +1,180 @@
+//! `driftworld report`: lifetimes on one page, and their figures as files. Scores are `metrics`', pages and figures `report`'s.
+
+mod lived;
+mod neighbours;
+mod plots;
+
+use std::path::PathBuf;
+
+use clap::Args;
+use driftworld::metrics::{LifetimeMetrics, compare_agents, over_repeats};
+use driftworld::report::{
+    Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, ReportError, Unit,
+};
+
+use super::metrics::{Intervals, score_logs};
+use super::scoring::Scoring;
+use super::{Failure, find_logs, output};
+use lived::Lived;
+use neighbours::Neighbours;
+
+/// Show lifetimes on one page: metrics and what they say, the curriculum, curves, comparisons with experts.
+///
+/// The page is one HTML file that loads nothing and needs no network. Of several lifetimes each has a chapter, and together they
+/// have intervals; with --against, two agents are compared.
+///
+/// The timeline says how far apart neighbouring learning blocks are: by the matrix that --distances names, or else, for logs of
+/// `driftworld run`, as measured now from the scenario in the log.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld report demo-out/log -o report.html
+  driftworld report LOG --ste EXPERT_LOGS --perf-measure performance --plots figures
+  driftworld report runs/mine --against runs/theirs --distances distances.csv")]
+pub(crate) struct Report {
+    /// Folders of logs in l2logger's format, or folders of such folders.
+    #[arg(required = true, value_name = "LOGS")]
+    logs: Vec<PathBuf>,
+    /// Folders of another agent's logs: how probably is a lifetime of the first better?
+    #[arg(long, value_name = "DIR", num_args = 1..)]
+    against: Vec<PathBuf>,
+    /// The page to write.
+    #[arg(short, long, value_name = "FILE", default_value = "report.html")]
+    output: PathBuf,
+    /// What stands on top of the page [default: the lifetime's name].
+    #[arg(long, value_name = "WORDS")]
+    title: Option<String>,
+    /// When the report was made, to be written on it; left out, the same logs give the same bytes.
+    #[arg(long, value_name = "WORDS")]
+    date: Option<String>,
+    /// A distance matrix, as `driftworld order --matrix` writes it: .csv, .json or .npy.
+    #[arg(long, value_name = "FILE")]
+    distances: Option<PathBuf>,
+    #[command(flatten)]
+    figures: FigureChoice,
+    #[command(flatten)]
+    scoring: Scoring,
+    #[command(flatten)]
+    intervals: Intervals,
+}
+
+/// What is drawn, and how.
+#[derive(Args)]
+#[command(next_help_heading = "Figures")]
+struct FigureChoice {
+    /// Write the figures into this folder too: `NAME_raw.png`, `NAME_raw.svg` and so on; NAME is the log's.
+    #[arg(long, value_name = "DIR")]
+    plots: Option<PathBuf>,
+    /// Which figures: all, or some of raw, lb (learning), eb (evaluation), ste (against the expert), timeline.
+    #[arg(short = 'T', long, value_name = "TYPE", num_args = 1.., default_value = "all")]
+    plot_types: Vec<String>,
+    /// What the horizontal axis counts: exp_num, or steps by the column episode_step_count.
+    #[arg(short, long, value_name = "UNIT", default_value = "exp_num")]
+    unit: String,
+    /// Do not join the means of evaluations across learning.
+    #[arg(long)]
+    no_show_eval_lines: bool,
+}
+
+impl FigureChoice {
+    /// The figures asked for, in the order of a report.
+    fn shown(&self) -> Result<Vec<Figure>, Failure> {
+        let asked = self.plot_types.iter().map(|word| Figure::asked_for(word));
+        let asked = asked.collect::<Result<Vec<_>, _>>().map_err(in_arguments)?.concat();
+        Ok(Figure::ALL
+            .into_iter()
+            .filter(|figure| asked.contains(figure))
+            .collect())
+    }
+
+    fn options(&self) -> Result<FigureOptions, Failure> {
+        Ok(FigureOptions {
+            unit: self.unit.parse::<Unit>().map_err(in_arguments)?,
+            show_eval_lines: !self.no_show_eval_lines,
+            distances: None,
+        })
+    }
+}
+
+fn in_arguments(error: ReportError) -> Failure {
+    Failure::usage(error.to_string())
+}
+
+impl Report {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let (shown, figures) = (self.figures.shown()?, self.figures.options()?);
+        let logs = find_logs::find(&self.logs)?;
+        if logs.len() > MAX_LIFETIMES {
+            let (found, limit) = (logs.len(), MAX_LIFETIMES);
+            return Err(ReportError::TooManyLifetimes { found, limit }.into());
+        }
+        let (options, experts) = (self.scoring.options()?, self.scoring.experts()?);
+        let mut neighbours = Neighbours::new(self.distances.as_deref())?;
+        let mut files = self.figures.plots.as_deref().map(plots::Files::new);
+        let mut chapters = Vec::new();
+        let mut scores: Vec<LifetimeMetrics> = Vec::new();
+        for log in &logs {
+            let lived = Lived::read(log, &experts, &options)?;
+            let (distances, distance_note) = neighbours.of(&lived.log, &lived.lifetime);
+            let chapter = ChapterOptions {
+                figures: FigureOptions {
+                    distances,
+                    ..figures.clone()
+                },
+                shown: shown.clone(),
+                warnings: lived.warnings,
+                distance_note,
+            };
+            chapters.push(Chapter::write(&lived.lifetime, &lived.metrics, &chapter)?);
+            if let Some(files) = &mut files {
+                files.write(&lived.lifetime, &lived.metrics.metrics_column, &chapter)?;
+            }
+            scores.push(lived.metrics);
+        }
+        let intervals = self.intervals.options();
+        let mut comparisons = Vec::new();
+        if !self.against.is_empty() {
+            let others = score_logs(&find_logs::find(&self.against)?, &experts, &options)?;
+            comparisons.push(Comparison {
+                agent: called(&self.logs),
+                other: called(&self.against),
+                metrics: compare_agents(&scores, &others, &intervals)?,
+            });
+        }
+        let overall = if scores.len() > 1 {
+            over_repeats(&scores, &intervals)?
+        } else {
+            Vec::new()
+        };
+        let report = driftworld::report::Report {
+            title: self.title,
+            chapters,
+            overall,
+            comparisons,
+            warnings: Vec::new(),
+            options: serde_json::to_value(&options)?,
+            date: self.date,
+        };
+        let html = report.to_html()?;
+        output::write(&self.output, html.as_bytes())?;
+        let many = if logs.len() == 1 { "lifetime" } else { "lifetimes" };
+        let (path, kilobytes) = (self.output.display(), html.len().div_ceil(1000));
+        output::line(format!("{path}: {} {many}, {kilobytes} kB", logs.len()))?;
+        files.map_or(Ok(()), |files| output::line(files.told()))
+    }
+}
+
+/// What the lifetimes under these folders are called together: by the folder, or the first of several.
+fn called(folders: &[PathBuf]) -> String {
+    let name = |path: &PathBuf| {
+        let path = path.canonicalize().unwrap_or_else(|_| path.clone());
+        path.file_name().map_or_else(
+            || path.display().to_string(),
+            |name| name.to_string_lossy().into_owned(),
+        )
+    };
+    match folders {
+        [] => String::new(),
+        [only] => name(only),
+        [first, rest @ ..] => format!("{} and {} more", name(first), rest.len()),
+    }
+}
