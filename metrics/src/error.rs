@@ -381,6 +381,17 @@ pub enum MetricsError {
         after: &'static str,
     },
 
+    /// Scores of repeated runs, or what is asked of them, make no sense.
+    #[error("scores, {place}: found {found}, expected {expected}")]
+    Scores {
+        /// Where: a run, a stratum of a run, the table as a whole.
+        place: String,
+        /// What was found there.
+        found: String,
+        /// What is allowed.
+        expected: String,
+    },
+
     /// An option has a value that cannot be used.
     #[error("option {option}: found {found}, expected {expected}")]
     BadOption {
@@ -428,6 +439,7 @@ impl MetricsError {
             Self::NotSingleTask { .. } => "metrics/not-single-task",
             Self::TooManyRegimes { .. } => "metrics/too-many-regimes",
             Self::PerformanceOutOfRange { .. } => "metrics/performance-out-of-range",
+            Self::Scores { .. } => "metrics/scores",
             Self::BadOption { .. } => "metrics/bad-option",
         }
     }

@@ -34,6 +34,7 @@ mod lifetime;
 mod log;
 mod options;
 mod preprocess;
+mod repeats;
 mod report;
 mod score;
 mod statistics;
@@ -49,6 +50,11 @@ pub use log::{
 pub use options::{
     AggregationMethod, DataRange, MAX_WINDOW_LENGTH, MaintenanceMethod, NormalizationMethod, Options, SmoothingMethod,
     SteAveragingMethod, TransferMethod, VariantMode,
+};
+pub use repeats::{
+    Aggregate, BootstrapOptions, Estimate, Improvement, Interval, MAX_RESAMPLES, MAX_RUNS, MAX_SCORES,
+    MAX_SCORES_DRAWN, MAX_STRATA, Resampling, ScoreTable, StratumImprovement, estimate, performance_profile,
+    probability_of_improvement,
 };
 pub use report::{
     Direction, LifetimeMetrics, LifetimeScores, PairValues, RegimeMetrics, SavedFiles, Settings, SummaryRow,

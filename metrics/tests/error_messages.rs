@@ -299,6 +299,15 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
             "log run, task a_1: found a performance of 1e200 as logged, expected less than 1e100 in magnitude",
         ),
         (
+            E::Scores {
+                place: text("the table"),
+                found: text("more than 10000 runs"),
+                expected: text("at most 10000"),
+            },
+            "metrics/scores",
+            "scores, the table: found more than 10000 runs, expected at most 10000",
+        ),
+        (
             E::BadOption {
                 option: "window_length",
                 found: text("0"),

@@ -96,9 +96,9 @@ pub(super) const FENCES: &[Fence] = &[
     },
     Fence {
         crates: &["rand", "rand_chacha", "rand_distr"],
-        rooms: &[GENERATOR, ENV],
+        rooms: &[GENERATOR, ENV, METRICS],
         test_rooms: &[],
-        purpose: "every draw is keyed, so that worlds and episodes repeat",
+        purpose: "every draw is keyed or seeded, so that worlds, episodes and intervals repeat",
     },
     Fence {
         crates: &["rapier3d", "parry3d", "wgpu", "gltf", "gltf-json", "meshopt", "image"],

@@ -1,0 +1,40 @@
+//! How long statistics over repeats take. Reading and scoring the runs is measured elsewhere.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use driftworld_metrics::{Aggregate, BootstrapOptions, ScoreTable, estimate, probability_of_improvement};
+
+/// Ten runs of ten tasks; scores spread as a Weyl sequence does, the same on every machine.
+fn ten_by_ten(start: f64) -> ScoreTable {
+    let scores = |run: u32| {
+        let score = move |task: u32| (start + f64::from(run * 10 + task) * 0.618_033_988_749_894_9).fract();
+        (0..10_u32).map(move |task| (task.to_string(), score(task)))
+    };
+    ScoreTable::from_runs((0..10_u32).map(|run| (run.to_string(), scores(run)))).expect("a hundred numbers below 1")
+}
+
+fn repeats(c: &mut Criterion) {
+    let (a, b) = (ten_by_ten(0.0), ten_by_ten(0.3));
+    let options = BootstrapOptions {
+        resamples: 50_000,
+        ..BootstrapOptions::default()
+    };
+    let mut group = c.benchmark_group("50,000 resamples of 10 runs of 10 tasks");
+    group.sample_size(10);
+    group.bench_function("interquartile mean", |bench| {
+        bench.iter(|| black_box(estimate(&a, [Aggregate::Iqm], &options).expect("the options are sound")));
+    });
+    group.bench_function("mean, median, interquartile mean and optimality gap", |bench| {
+        let gap = Aggregate::OptimalityGap { gamma: 1.0 };
+        let all = [Aggregate::Mean, Aggregate::Median, Aggregate::Iqm, gap];
+        bench.iter(|| black_box(estimate(&a, all, &options).expect("the options are sound")));
+    });
+    group.bench_function("probability of improvement", |bench| {
+        bench.iter(|| black_box(probability_of_improvement(&a, &b, &options).expect("the tasks are the same")));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, repeats);
+criterion_main!(benches);

@@ -1,0 +1,120 @@
+//! One number for all runs and strata: mean, median, interquartile mean, optimality gap.
+//!
+//! Not here: how sure that number is, see `estimate`.
+
+use serde::{Deserialize, Serialize};
+
+use super::resample::Resample;
+use crate::MetricsError;
+use crate::lifetime::MAX_PERFORMANCE;
+use crate::statistics::{mean, median};
+
+/// How the scores of all runs and strata become one number. Same numbers as rliable 1.2, see `tests/oracles/`.
+///
+/// Mean and median weigh strata alike. The interquartile mean and the optimality gap weigh scores alike, so that where runs
+/// lack scores, the strata that have more of them count for more.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Aggregate {
+    /// Mean of the strata's means. One outlier moves it as far as it likes.
+    Mean,
+    /// Median of the strata's means. Nearly half of the strata may be 0 without it noticing.
+    Median,
+    /// Mean of the middle half of all scores (interquartile mean): ⌊n/4⌋ are left out at either end. Recommended: it shrugs off
+    /// outliers and still looks at every stratum.
+    Iqm,
+    /// How far scores fall short of `gamma` in the mean, where those above count as `gamma`. Lower is better.
+    OptimalityGap {
+        /// The score that is good enough, in the unit of the scores; below 1e100 in magnitude.
+        gamma: f64,
+    },
+}
+
+impl Aggregate {
+    pub(super) fn check(self) -> Result<(), MetricsError> {
+        match self {
+            Self::OptimalityGap { gamma } if gamma.is_nan() || gamma.abs() >= MAX_PERFORMANCE => {
+                Err(MetricsError::BadOption {
+                    option: "gamma",
+                    found: format!("{gamma:e}"),
+                    expected: "a number below 1e100 in magnitude".to_owned(),
+                })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Its value for what was drawn.
+    pub(super) fn of(self, resample: &Resample) -> f64 {
+        let value = match self {
+            Self::Mean => mean(&resample.stratum_means().collect::<Vec<_>>()),
+            Self::Median => median(resample.stratum_means().collect()),
+            Self::Iqm => Some(middle_mean(resample)),
+            Self::OptimalityGap { gamma } => Some(gamma - capped_mean(resample, gamma)),
+        };
+        value.expect("a table has a score, and a resample draws at least one")
+    }
+}
+
+/// Mean without the lowest and the highest quarter, as `scipy.stats.trim_mean(scores, 0.25)`.
+fn middle_mean(resample: &Resample) -> f64 {
+    let num_drawn = resample.num_drawn();
+    let cut = num_drawn / 4;
+    let (first, end) = (cut, num_drawn - cut);
+    let (mut sum, mut place) = (0.0, 0);
+    for (score, count) in resample.scores.iter().zip(&resample.counts) {
+        let next = place + u64::from(*count);
+        let counted = next.min(end).saturating_sub(place.max(first));
+        sum += score * counted as f64;
+        place = next;
+    }
+    sum / (end - first) as f64
+}
+
+fn capped_mean(resample: &Resample, gamma: f64) -> f64 {
+    let drawn = resample.scores.iter().zip(&resample.counts);
+    let sum: f64 = drawn.map(|(score, count)| score.min(gamma) * f64::from(*count)).sum();
+    sum / resample.num_drawn() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ScoreTable;
+
+    fn check(scores: &[f64], aggregate: Aggregate, expected: f64) {
+        let runs = scores
+            .iter()
+            .enumerate()
+            .map(|(run, score)| (run.to_string(), [("a", *score)]));
+        let table = ScoreTable::from_runs(runs).unwrap();
+        assert_eq!(aggregate.of(&Resample::new(&table)), expected, "{scores:?}");
+    }
+
+    #[test]
+    fn the_interquartile_mean_leaves_out_whole_scores_at_either_end() {
+        check(&[7.0], Aggregate::Iqm, 7.0);
+        check(&[1.0, 2.0, 9.0], Aggregate::Iqm, 4.0);
+        check(&[1.0, 2.0, 4.0, 900.0], Aggregate::Iqm, 3.0);
+        check(&[1.0, 2.0, 3.0, 4.0, 900.0], Aggregate::Iqm, 3.0);
+        check(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 900.0], Aggregate::Iqm, 3.5);
+    }
+
+    #[test]
+    fn strata_weigh_alike_in_mean_and_median() {
+        let runs = [
+            ("1", vec![("a", 1.0), ("b", 10.0), ("c", 0.0)]),
+            ("2", vec![("a", 3.0)]),
+        ];
+        let resample = Resample::new(&ScoreTable::from_runs(runs).unwrap());
+        assert_eq!(Aggregate::Mean.of(&resample), 4.0);
+        assert_eq!(Aggregate::Median.of(&resample), 2.0);
+    }
+
+    #[test]
+    fn the_gap_counts_what_is_missing_and_no_surplus() {
+        check(&[0.5, 3.0], Aggregate::OptimalityGap { gamma: 1.0 }, 0.25);
+        check(&[2.0, 3.0], Aggregate::OptimalityGap { gamma: 1.0 }, 0.0);
+        assert!(Aggregate::OptimalityGap { gamma: f64::NAN }.check().is_err());
+    }
+}

@@ -1,0 +1,174 @@
+//! An aggregate with the interval in which it lies.
+//!
+//! Not here: the aggregates themselves, see `aggregate`; comparing two agents, see `improvement`.
+
+use serde::{Deserialize, Serialize};
+
+use super::resample::Resample;
+use super::{Aggregate, BootstrapOptions, ScoreTable};
+use crate::MetricsError;
+
+/// A number and how sure it is.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Its value for the scores as they are.
+    pub value: f64,
+    /// Where it lies; `None` where drawing again can give nothing new, because there is one run only. See
+    /// [`ScoreTable::caution`] for what to tell a reader.
+    pub interval: Option<Interval>,
+}
+
+/// From low to high. With the default options 95 of 100 such intervals hold the value that infinitely many runs would show,
+/// fewer where there are fewer than about five runs: so few scores cannot show how much they vary.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Interval {
+    /// Lower end, in the unit of the value.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+impl Interval {
+    /// Whether a number lies within, ends included.
+    pub fn contains(&self, number: f64) -> bool {
+        (self.low..=self.high).contains(&number)
+    }
+}
+
+/// Aggregates of a table with their percentile bootstrap intervals, all from the same draws.
+///
+/// Time `O(resamples · scores)`; rough measure: 50,000 resamples of 10 runs of 10 strata take a tenth of a second.
+///
+/// # Errors
+/// [`MetricsError::BadOption`] for a confidence that is not between 0 and 1, too few resamples to show the ends at this
+/// confidence, more than [`MAX_RESAMPLES`](super::MAX_RESAMPLES) or than [`MAX_SCORES_DRAWN`](super::MAX_SCORES_DRAWN) allows, or
+/// a `gamma` that is no number below 1e100 in magnitude.
+///
+/// # Example
+/// See [`ScoreTable`].
+pub fn estimate<const N: usize>(
+    table: &ScoreTable,
+    aggregates: [Aggregate; N],
+    options: &BootstrapOptions,
+) -> Result<[Estimate; N], MetricsError> {
+    for aggregate in aggregates {
+        aggregate.check()?;
+    }
+    options.check(table.num_scores())?;
+    let of_all = |resample: &Resample| aggregates.map(|aggregate| aggregate.of(resample));
+    let estimates = estimate_each(table, N, options, |resample, values| {
+        values.copy_from_slice(&of_all(resample));
+    });
+    Ok(std::array::from_fn(|k| estimates[k]))
+}
+
+/// The estimates of several numbers that one function computes of a resample.
+pub(super) fn estimate_each(
+    table: &ScoreTable,
+    num_values: usize,
+    options: &BootstrapOptions,
+    mut of: impl FnMut(&Resample, &mut [f64]),
+) -> Vec<Estimate> {
+    let mut resample = Resample::new(table);
+    let mut values = vec![0.0; num_values];
+    of(&resample, &mut values);
+    let mut estimates: Vec<Estimate> = values
+        .iter()
+        .map(|value| Estimate {
+            value: *value,
+            interval: None,
+        })
+        .collect();
+    if !table.varies(options.resampling) {
+        return estimates;
+    }
+    let mut drawn = vec![Vec::with_capacity(options.resamples as usize); num_values];
+    let mut chance = options.chance();
+    for _ in 0..options.resamples {
+        resample.draw(options.resampling, &mut chance);
+        of(&resample, &mut values);
+        drawn
+            .iter_mut()
+            .zip(&values)
+            .for_each(|(drawn, value)| drawn.push(*value));
+    }
+    for (estimate, drawn) in estimates.iter_mut().zip(&mut drawn) {
+        estimate.interval = Some(options.interval(drawn));
+    }
+    estimates
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Resampling;
+
+    const ALL: [Aggregate; 4] = [
+        Aggregate::Mean,
+        Aggregate::Median,
+        Aggregate::Iqm,
+        Aggregate::OptimalityGap { gamma: 1.0 },
+    ];
+
+    fn table(num_runs: u32) -> ScoreTable {
+        let scores = |run: u32| [("a", f64::from(run * run % 7)), ("b", f64::from(run % 3) / 4.0)];
+        ScoreTable::from_runs((0..num_runs).map(|run| (run.to_string(), scores(run)))).unwrap()
+    }
+
+    #[test]
+    fn one_run_has_no_interval() {
+        for resampling in [Resampling::Strata, Resampling::Runs] {
+            let options = BootstrapOptions {
+                resampling,
+                ..BootstrapOptions::default()
+            };
+            assert!(
+                estimate(&table(1), ALL, &options)
+                    .unwrap()
+                    .iter()
+                    .all(|found| found.interval.is_none())
+            );
+            assert!(
+                estimate(&table(2), ALL, &options)
+                    .unwrap()
+                    .iter()
+                    .all(|found| found.interval.is_some())
+            );
+        }
+    }
+
+    /// The numbers of this seed on every machine: when they move, the change is value-breaking.
+    #[test]
+    fn intervals_hold_still() {
+        let check = |resampling: Resampling, expected: (f64, f64)| {
+            let options = BootstrapOptions {
+                resampling,
+                resamples: 500,
+                seed: 1,
+                ..BootstrapOptions::default()
+            };
+            let [iqm] = estimate(&table(6), [Aggregate::Iqm], &options).unwrap();
+            let interval = iqm.interval.unwrap();
+            assert_eq!(
+                (iqm.value, (interval.low, interval.high)),
+                (0.75, expected),
+                "{resampling}"
+            );
+        };
+        check(Resampling::Strata, (0.25, 1.583_333_333_333_333_3));
+        check(Resampling::Runs, (0.144_791_666_666_667_1, 1.627_083_333_333_331_4));
+    }
+
+    #[test]
+    fn two_kinds_of_draws_agree_where_there_is_one_stratum() {
+        let table = ScoreTable::from_runs((0..9_u32).map(|run| (run.to_string(), [("a", f64::from(run))]))).unwrap();
+        let interval = |resampling| {
+            let options = BootstrapOptions {
+                resampling,
+                ..BootstrapOptions::default()
+            };
+            estimate(&table, [Aggregate::Mean], &options).unwrap()[0].interval
+        };
+        assert_eq!(interval(Resampling::Strata), interval(Resampling::Runs));
+    }
+}

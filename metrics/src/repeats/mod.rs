@@ -1,0 +1,21 @@
+//! Statistics over repeats: what many lifetimes of one agent say together, how sure that is, and whether another agent is better.
+//!
+//! They follow Agarwal et al. 2021, "Deep Reinforcement Learning at the Edge of the Statistical Precipice", and give the numbers
+//! of its package rliable 1.2.
+//!
+//! Not here: where the scores come from. A [`ScoreTable`] takes any number per run and task.
+
+mod aggregate;
+mod bootstrap;
+mod estimate;
+mod improvement;
+mod profile;
+mod resample;
+mod score_table;
+
+pub use aggregate::Aggregate;
+pub use bootstrap::{BootstrapOptions, MAX_RESAMPLES, MAX_SCORES_DRAWN, Resampling};
+pub use estimate::{Estimate, Interval, estimate};
+pub use improvement::{Improvement, StratumImprovement, probability_of_improvement};
+pub use profile::performance_profile;
+pub use score_table::{MAX_RUNS, MAX_SCORES, MAX_STRATA, ScoreTable};

@@ -1,0 +1,160 @@
+//! A table drawn again from itself: how often each of its scores was drawn.
+//!
+//! Counting instead of copying keeps scores in ascending order without sorting, and sums in one order.
+//!
+//! Not here: how many such draws an interval needs, see `bootstrap`.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use super::{Resampling, ScoreTable};
+
+/// A table and how often each score counts; once each to begin with.
+pub(super) struct Resample {
+    /// Every score, ascending.
+    pub(super) scores: Vec<f64>,
+    /// How often each was drawn.
+    pub(super) counts: Vec<u32>,
+    /// Per stratum, ascending by score.
+    strata: Vec<Vec<Slot>>,
+    num_runs: usize,
+}
+
+/// Where a score of a stratum stands.
+#[derive(Clone, Copy)]
+struct Slot {
+    /// Position in `scores`.
+    position: u32,
+    /// Position of the run.
+    run: u32,
+}
+
+impl Resample {
+    pub(super) fn new(table: &ScoreTable) -> Self {
+        let mut all: Vec<(f64, usize, u32)> = Vec::with_capacity(table.num_scores());
+        for (stratum, sorted) in table.sorted().enumerate() {
+            all.extend(sorted.iter().map(|(score, run)| (*score, stratum, *run)));
+        }
+        // A stable sort: equal scores keep the order of strata, and within one the order of runs.
+        all.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
+        let mut strata: Vec<Vec<Slot>> = table.sorted().map(|sorted| Vec::with_capacity(sorted.len())).collect();
+        for (position, (_, stratum, run)) in (0..).zip(&all) {
+            strata[*stratum].push(Slot { position, run: *run });
+        }
+        Self {
+            counts: vec![1; all.len()],
+            scores: all.into_iter().map(|(score, ..)| score).collect(),
+            strata,
+            num_runs: table.num_runs(),
+        }
+    }
+
+    /// Draws anew.
+    pub(super) fn draw(&mut self, resampling: Resampling, chance: &mut ChaCha8Rng) {
+        match resampling {
+            Resampling::Strata => self.draw_strata(chance),
+            Resampling::Runs => self.draw_runs(chance),
+        }
+    }
+
+    /// From each stratum as many scores as it has, with replacement.
+    fn draw_strata(&mut self, chance: &mut ChaCha8Rng) {
+        self.counts.fill(0);
+        for slots in &self.strata {
+            let num_slots = slots.len() as u32;
+            for _ in slots {
+                let slot = slots[chance.random_range(0..num_slots) as usize];
+                self.counts[slot.position as usize] += 1;
+            }
+        }
+    }
+
+    /// As many whole runs as there are, with replacement. Where runs lack scores, none at all may have been drawn: such draws
+    /// are made again, which ends, since some run has a score.
+    fn draw_runs(&mut self, chance: &mut ChaCha8Rng) {
+        let mut runs = vec![0; self.num_runs];
+        loop {
+            runs.fill(0);
+            for _ in 0..self.num_runs {
+                runs[chance.random_range(0..self.num_runs as u32) as usize] += 1;
+            }
+            for slot in self.strata.iter().flatten() {
+                self.counts[slot.position as usize] = runs[slot.run as usize];
+            }
+            if self.counts.iter().any(|count| *count > 0) {
+                return;
+            }
+        }
+    }
+
+    /// How many scores were drawn.
+    pub(super) fn num_drawn(&self) -> u64 {
+        self.counts.iter().map(|count| u64::from(*count)).sum()
+    }
+
+    /// The mean of each stratum of which something was drawn.
+    pub(super) fn stratum_means(&self) -> impl Iterator<Item = f64> {
+        self.strata.iter().filter_map(|slots| {
+            let (mut sum, mut num_drawn) = (0.0, 0);
+            for slot in slots {
+                let count = self.counts[slot.position as usize];
+                sum += self.scores[slot.position as usize] * f64::from(count);
+                num_drawn += count;
+            }
+            (num_drawn > 0).then(|| sum / f64::from(num_drawn))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_chacha::rand_core::SeedableRng;
+
+    use super::*;
+
+    fn table() -> ScoreTable {
+        let runs = [
+            ("1", vec![("a", 5.0), ("b", 1.0)]),
+            ("2", vec![("a", 2.0), ("b", 2.0)]),
+            ("3", vec![("a", 9.0)]),
+        ];
+        ScoreTable::from_runs(runs).unwrap()
+    }
+
+    #[test]
+    fn undrawn_a_resample_is_the_table() {
+        let resample = Resample::new(&table());
+        assert_eq!(resample.scores, [1.0, 2.0, 2.0, 5.0, 9.0]);
+        assert_eq!(resample.num_drawn(), 5);
+        assert_eq!(resample.stratum_means().collect::<Vec<_>>(), [16.0 / 3.0, 1.5]);
+    }
+
+    #[test]
+    fn each_stratum_keeps_its_size() {
+        let (mut resample, mut chance) = (Resample::new(&table()), ChaCha8Rng::seed_from_u64(0));
+        let mut drawn = [0; 5];
+        for _ in 0..3_000 {
+            resample.draw(Resampling::Strata, &mut chance);
+            let of_a = resample.counts[1] + resample.counts[3] + resample.counts[4];
+            assert_eq!((of_a, resample.num_drawn()), (3, 5));
+            drawn
+                .iter_mut()
+                .zip(&resample.counts)
+                .for_each(|(sum, count)| *sum += count);
+        }
+        // Each score is drawn once per resample in the mean; five standard deviations are 230.
+        assert!(drawn.iter().all(|sum| sum.abs_diff(3_000) < 230), "{drawn:?}");
+    }
+
+    #[test]
+    fn whole_runs_are_drawn_together() {
+        let (mut resample, mut chance) = (Resample::new(&table()), ChaCha8Rng::seed_from_u64(0));
+        for _ in 0..100 {
+            resample.draw(Resampling::Runs, &mut chance);
+            // Positions by score: 1 (run 1, b), 2 (run 2, a), 2 (run 2, b), 5 (run 1, a), 9 (run 3, a).
+            let counts = &resample.counts;
+            assert_eq!((counts[0], counts[1]), (counts[3], counts[2]));
+            assert_eq!(counts[0] + counts[1] + counts[4], 3);
+        }
+    }
+}
