@@ -357,6 +357,28 @@ pub enum MetricsError {
         found: String,
     },
 
+    /// A data folder for single-task experts is not there, or is something else.
+    #[error(
+        "{}: found {found}, expected a folder of single-task experts as TASK/RUN/logger_info.json; \
+         store an expert's log there first", path.display()
+    )]
+    NoSteData {
+        /// The path that was given.
+        path: PathBuf,
+        /// "nothing", "a file" or "a log".
+        found: &'static str,
+    },
+
+    /// A data folder holds experts in a form that is never read.
+    #[error(
+        "{}: found a pickle of l2metrics, expected folders of logs: reading a pickle runs the programs in it; \
+         store the logs it was made from again, and take it out of this folder", path.display()
+    )]
+    StePickle {
+        /// The pickle.
+        path: PathBuf,
+    },
+
     /// More regimes than a lifetime may have.
     #[error("log {run_id}: found more than {limit} regimes, expected at most that; do tasks alternate row by row?")]
     TooManyRegimes {
@@ -437,6 +459,8 @@ impl MetricsError {
             Self::UnknownColumn { .. } => "metrics/unknown-column",
             Self::NoUsableRows { .. } => "metrics/no-usable-rows",
             Self::NotSingleTask { .. } => "metrics/not-single-task",
+            Self::NoSteData { .. } => "metrics/no-ste-data",
+            Self::StePickle { .. } => "metrics/ste-pickle",
             Self::TooManyRegimes { .. } => "metrics/too-many-regimes",
             Self::PerformanceOutOfRange { .. } => "metrics/performance-out-of-range",
             Self::Scores { .. } => "metrics/scores",

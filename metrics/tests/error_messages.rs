@@ -281,6 +281,23 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
             "single-task expert log run: found a_1, b_1, expected exactly one trained task",
         ),
         (
+            E::NoSteData {
+                path: "data".into(),
+                found: "nothing",
+            },
+            "metrics/no-ste-data",
+            "data: found nothing, expected a folder of single-task experts as TASK/RUN/logger_info.json; store an expert's log \
+             there first",
+        ),
+        (
+            E::StePickle {
+                path: "data/taskinfo/a_1.pickle".into(),
+            },
+            "metrics/ste-pickle",
+            "data/taskinfo/a_1.pickle: found a pickle of l2metrics, expected folders of logs: reading a pickle runs the programs \
+             in it; store the logs it was made from again, and take it out of this folder",
+        ),
+        (
             E::TooManyRegimes {
                 run_id: text("run"),
                 limit: 10_000,

@@ -55,7 +55,7 @@ pub(super) fn find(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
 }
 
 /// Puts `2-train` before `10-test`: each part of the path by its leading number first, then by its text.
-fn path_key(path: &Path) -> Vec<(u64, String)> {
+pub(super) fn path_key(path: &Path) -> Vec<(u64, String)> {
     let part_key = |part: &std::ffi::OsStr| {
         let text = part.to_string_lossy().into_owned();
         let digits = text.bytes().take_while(u8::is_ascii_digit).count();

@@ -1,0 +1,103 @@
+//! Names of tasks and runs as names of folders, on every file system, and back.
+//!
+//! Not here: what lies in the folders, see `ste_store`.
+
+use std::path::Path;
+
+use crate::MetricsError;
+
+/// Longest name of a folder, in bytes: what file systems take is 255, and a number may follow.
+const MAX_BYTES: usize = 200;
+
+/// A name with all but ASCII letters, digits, `_`, `-` and `.` written as `%` and two digits; so is a `.` at its beginning, which
+/// would hide the folder or lead out of it, and at its end, which some file systems drop.
+///
+/// `place`: named where the name is refused, because it would be too long.
+pub(super) fn encoded(place: &Path, name: &str) -> Result<String, MetricsError> {
+    let mut encoded = String::with_capacity(name.len());
+    let last = name.len().saturating_sub(1);
+    for (index, byte) in name.bytes().enumerate() {
+        let inner_point = byte == b'.' && index != 0 && index != last;
+        if byte.is_ascii_alphanumeric() || byte == b'_' || byte == b'-' || inner_point {
+            encoded.push(char::from(byte));
+        } else {
+            const DIGITS: &[u8; 16] = b"0123456789ABCDEF";
+            let digit = |half: u8| char::from(DIGITS[usize::from(half)]);
+            encoded.extend(['%', digit(byte >> 4), digit(byte & 15)]);
+        }
+    }
+    if encoded.is_empty() {
+        // No name is encoded so, and nothing comes back from it.
+        encoded.push('%');
+    }
+    if encoded.len() > MAX_BYTES {
+        return Err(MetricsError::TooLarge {
+            path: place.to_owned(),
+            what: "letters in the name of a folder for a task or a run",
+            found: encoded.len() as u64,
+            limit: MAX_BYTES as u64,
+        });
+    }
+    Ok(encoded)
+}
+
+/// The name that a folder stands for. What was not encoded by us is taken as it is.
+pub(super) fn decoded(folder: &Path) -> String {
+    let encoded = folder.file_name().unwrap_or_default().to_string_lossy();
+    if encoded == "%" {
+        return String::new();
+    }
+    decode(encoded.as_bytes()).unwrap_or_else(|| encoded.into_owned())
+}
+
+fn decode(mut rest: &[u8]) -> Option<String> {
+    let mut bytes = Vec::with_capacity(rest.len());
+    while let [first, others @ ..] = rest {
+        if *first == b'%' {
+            let digits = std::str::from_utf8(others.get(..2)?).ok()?;
+            bytes.push(u8::from_str_radix(digits, 16).ok()?);
+            rest = &others[2..];
+        } else {
+            bytes.push(*first);
+            rest = others;
+        }
+    }
+    String::from_utf8(bytes).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn harmless_names_stay_as_they_are() {
+        let check = |name: &str, expected: &str| assert_eq!(encoded(Path::new(""), name).unwrap(), expected);
+        check("find_red", "find_red");
+        check("run-2.b", "run-2.b");
+        check("..", "%2E%2E");
+        check("a/b", "a%2Fb");
+        check("100%", "100%25");
+        check("é", "%C3%A9");
+        check("", "%");
+        assert!(encoded(Path::new(""), &"x".repeat(201)).is_err());
+    }
+
+    #[test]
+    fn folders_of_others_keep_their_name() {
+        let check = |folder: &str| assert_eq!(decoded(Path::new(folder)), folder);
+        check("50%");
+        check("%zz");
+        check("%FF");
+    }
+
+    proptest! {
+        #[test]
+        fn every_name_comes_back(name in ".{0,40}") {
+            if let Ok(folder) = encoded(Path::new(""), &name) {
+                prop_assert_eq!(decoded(&Path::new("data").join(folder)), name);
+            }
+        }
+    }
+}
