@@ -328,6 +328,18 @@ pub enum MetricsError {
         expected: String,
     },
 
+    /// A log has a column under a name that the table of several logs gives to one of its own.
+    #[error(
+        "log {run_id}: found a column {column} of its own, expected another name: a table of logs has a column of that name; \
+         rename it in the log's files and in logger_info.json"
+    )]
+    TableColumn {
+        /// Name of the log.
+        run_id: String,
+        /// The column.
+        column: String,
+    },
+
     /// The performance column is not in the log.
     #[error("log {run_id}: found no metrics column {column:?}, expected one of {available}; set Options::perf_measure")]
     UnknownColumn {
@@ -456,6 +468,7 @@ impl MetricsError {
             Self::Record { .. } => "metrics/record",
             Self::Timestamp { .. } => "metrics/timestamp",
             Self::UnknownWord { .. } => "metrics/unknown-word",
+            Self::TableColumn { .. } => "metrics/table-column",
             Self::UnknownColumn { .. } => "metrics/unknown-column",
             Self::NoUsableRows { .. } => "metrics/no-usable-rows",
             Self::NotSingleTask { .. } => "metrics/not-single-task",

@@ -256,6 +256,15 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
             "transfer: found \"sum\", expected one of ratio, contrast, both",
         ),
         (
+            E::TableColumn {
+                run_id: text("run"),
+                column: text("regime_num"),
+            },
+            "metrics/table-column",
+            "log run: found a column regime_num of its own, expected another name: a table of logs has a column of that name; \
+             rename it in the log's files and in logger_info.json",
+        ),
+        (
             E::UnknownColumn {
                 run_id: text("run"),
                 column: text("score"),

@@ -2,6 +2,7 @@
 //!
 //! Not here: what the numbers mean; that is `lifetime` and `score`.
 
+mod aggregate;
 mod begun;
 mod cell;
 mod columns;
@@ -28,6 +29,7 @@ mod warning;
 mod whole_rows;
 mod writer;
 
+pub use aggregate::{Delimiter, KeptRows, LogColumn, LogTable, Words};
 pub use begun::begun_log;
 pub use data_file::{MAX_CELL_BYTES, MAX_FILE_BYTES};
 pub use data_files::MAX_LOG_FILES;
