@@ -71,6 +71,7 @@ fn every_subcommand_has_help_with_an_example() {
         "order",
         "curriculum",
         "run",
+        "logs",
         "metrics",
         "transfer-report",
         "schema",

@@ -11,6 +11,8 @@ mod doctor;
 mod draw_maps;
 mod input;
 mod interrupt;
+mod log_folders;
+mod logs;
 mod matrix_file;
 mod metrics;
 mod modality;
@@ -70,6 +72,8 @@ pub(crate) enum Command {
     Curriculum(curriculum::Curriculum),
     /// Live a curriculum with an agent and log every experience.
     Run(run::Run),
+    /// Check logs, or bring their rows together as one table.
+    Logs(logs::Logs),
     /// Score the log of a lifetime.
     Metrics(metrics::Metrics),
     /// Ask whether similar variants transferred more, by logs and distances.
@@ -101,6 +105,7 @@ impl Command {
             Self::Order(command) => command.run(),
             Self::Curriculum(command) => command.run(),
             Self::Run(command) => command.run(),
+            Self::Logs(command) => command.run(),
             Self::Metrics(command) => command.run(),
             Self::TransferReport(command) => command.run(),
             Self::Schema(command) => command.run(),

@@ -1,7 +1,6 @@
 //! `driftworld transfer-report`: whether similar variants transferred more, by logs and distances. Transfer is `metrics`'s, the
 //! correlation `similarity`'s, their meeting `curriculum`'s.
 
-mod logs;
 mod words;
 
 use std::path::PathBuf;
@@ -13,7 +12,7 @@ use driftworld::similarity::MAX_RELABELLINGS;
 
 use super::metrics::score_log;
 use super::pictures::scatter;
-use super::{Failure, matrix_file, output};
+use super::{Failure, log_folders, matrix_file, output};
 
 /// Ask whether similar variants transferred more: correlate distances with the transfer that logs measured.
 ///
@@ -95,7 +94,7 @@ impl TransferReport {
             smoothing_method: self.smoothing_method,
             ..Options::default()
         };
-        let lifetimes = logs::find(&self.logs)?
+        let lifetimes = log_folders::below(&self.logs)?
             .iter()
             .map(|log| score_log(log, &[], &options))
             .collect::<Result<Vec<_>, _>>()?;
