@@ -134,9 +134,9 @@ mod tests {
         let info = LoggerInfo::new(["reward"]).unwrap();
         let mut writer = LogWriter::create(&dir, &info, &ScenarioInfo::default()).unwrap();
         for exp_num in 0..num_rows {
-            let task = if exp_num % 2 == 0 { "a_b" } else { "c_d" };
+            let task = if exp_num.is_multiple_of(2) { "a_b" } else { "c_d" };
             let when = Timestamp::from_unix_micros(1_600_000_000_000_000 + exp_num as i64).unwrap();
-            let reward = if exp_num % 3 == 0 {
+            let reward = if exp_num.is_multiple_of(3) {
                 f64::NAN
             } else {
                 exp_num as f64 / 2.0
@@ -181,10 +181,10 @@ mod tests {
                     assert_eq!(column("exp_num").as_primitive::<Int64Type>().value(index), row as i64);
                     assert_eq!(
                         tasks.values().value(tasks.keys().value(index) as usize),
-                        if row % 2 == 0 { "a_b" } else { "c_d" }
+                        if row.is_multiple_of(2) { "a_b" } else { "c_d" }
                     );
                     assert_eq!(times.value(index), 1_600_000_000_000_000 + row as i64);
-                    assert_eq!(rewards.is_null(index), row % 3 == 0);
+                    assert_eq!(rewards.is_null(index), row.is_multiple_of(3));
                     assert!(rewards.is_null(index) || rewards.value(index) == row as f64 / 2.0);
                     row += 1;
                 }

@@ -30,7 +30,7 @@ pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
 
 /// Every log that the arguments name, in order, each once. A folder that is no log, but has logs below, is refused with advice.
 pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
-    for argument in arguments.iter().filter(|argument| !is_log(argument)) {
+    if let Some(argument) = arguments.iter().find(|argument| !is_log(argument)) {
         let mut below = Vec::new();
         collect(argument, MOST_LEVELS, &mut below)?;
         let path = argument.display();

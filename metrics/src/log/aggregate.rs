@@ -247,8 +247,9 @@ impl LogTable {
                 }
                 Own::Texts(column) => {
                     column.pad(before);
-                    kept.iter()
-                        .for_each(|row| column.push(&number_text(numbers[row.index()])));
+                    for row in kept {
+                        column.push(&number_text(numbers[row.index()]));
+                    }
                 }
             }
         }
@@ -259,8 +260,9 @@ impl LogTable {
                 .or_insert_with(|| Own::Texts(TextColumn::default()));
             let column = own.as_texts();
             column.pad(before);
-            kept.iter()
-                .for_each(|row| column.push(row.text(name).unwrap_or_default()));
+            for row in kept {
+                column.push(row.text(name).unwrap_or_default());
+            }
         }
         let num_rows = self.block_nums.len();
         for own in self.own.values_mut() {
@@ -277,7 +279,9 @@ impl Own {
     fn as_texts(&mut self) -> &mut TextColumn {
         if let Self::Numbers(numbers) = self {
             let mut texts = TextColumn::default();
-            numbers.iter().for_each(|number| texts.push(&number_text(*number)));
+            for number in numbers {
+                texts.push(&number_text(*number));
+            }
             *self = Self::Texts(texts);
         }
         match self {

@@ -17,8 +17,8 @@ const OF_LOGS: [&str; 3] = ["data-log.tsv", "logger_info.json", "scenario_info.j
 
 /// Write the rows of one log or several as one table.
 ///
-/// The columns are those of l2logger's aggregate: block_num, regime_num, exp_num, the other standard ones, then the log's own in
-/// alphabetical order; several logs have run_id in front. A regime is a stretch of rows with one block, subtype and task. Task names
+/// The columns are those of l2logger's aggregate: `block_num`, `regime_num`, `exp_num`, the other standard ones, then the log's own in
+/// alphabetical order; several logs have `run_id` in front. A regime is a stretch of rows with one block, subtype and task. Task names
 /// are in lower case, as scoring takes them. Rows that do not complete an experience are left out unless --incomplete is given.
 ///
 /// Parquet and Feather hold types: integers, dictionaries for words that repeat, time stamps in microseconds, floats, and null where

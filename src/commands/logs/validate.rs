@@ -7,7 +7,7 @@ use driftworld::metrics::{Validation, begun_log, validate_log};
 use serde_json::{Value, json};
 
 use super::super::{Failure, log_folders, output};
-use super::count;
+use super::{count, grouped};
 
 /// Name every problem of logs with its file and line.
 ///
@@ -111,11 +111,14 @@ impl Verdict {
             0 => "valid".to_owned(),
             problems => count(problems, "problem", "problems"),
         };
+        let incomplete = match (counts.rows - counts.complete_rows) as u64 {
+            0 => String::new(),
+            rows => format!(" ({} incomplete)", grouped(rows)),
+        };
         let mut text = format!(
-            "{}: {verdict}; {} ({} complete) in {}, {}, {}, {}",
+            "{}: {verdict}; {}{incomplete} in {}, {}, {}, {}",
             self.log.display(),
             count(counts.rows as u64, "row", "rows"),
-            counts.complete_rows,
             count(counts.files as u64, "file", "files"),
             count(counts.workers as u64, "worker", "workers"),
             count(counts.blocks as u64, "block", "blocks"),
