@@ -116,6 +116,15 @@ pub enum MetricsError {
         path: PathBuf,
     },
 
+    /// A data file's header is one cell, as where something else than tabs stands between columns.
+    #[error("{}:1: found the header {found} without a tab, expected a tab between columns", path.display())]
+    NoTabs {
+        /// The data file.
+        path: PathBuf,
+        /// Its header, cut after 60 characters.
+        found: String,
+    },
+
     /// A data file lacks a column.
     #[error("{}:1: found the columns {found}, expected also {column}", path.display())]
     MissingColumn {
@@ -465,6 +474,7 @@ impl MetricsError {
             Self::LoggerInfo { .. } => "metrics/logger-info",
             Self::TooLarge { .. } => "metrics/too-large",
             Self::EmptyFile { .. } => "metrics/empty-file",
+            Self::NoTabs { .. } => "metrics/no-tabs",
             Self::MissingColumn { .. } => "metrics/missing-column",
             Self::RepeatedColumn { .. } => "metrics/repeated-column",
             Self::OtherColumns { .. } => "metrics/other-columns",

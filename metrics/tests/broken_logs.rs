@@ -49,6 +49,17 @@ fn with_cell(index: usize, text: &str) -> String {
 }
 
 #[test]
+fn a_header_without_tabs_is_one_problem_and_not_one_for_each_column() {
+    let data = format!("{HEADER}{ROW}").replace('\t', ",");
+    check(
+        data,
+        "metrics/no-tabs",
+        "LOG/w/0-train/data-log.tsv:1: found the header \"block_num,exp_num,worker_id,block_type,block_subtype,task_na\"… without \
+         a tab, expected a tab between columns",
+    );
+}
+
+#[test]
 fn a_cell_that_is_wrong_is_named_with_what_should_stand_there() {
     let cell = |index: usize, text: &str, column: &str, found: &str, expected: &str| {
         let message = format!("LOG/w/0-train/data-log.tsv:2, column {column}: found {found}, expected {expected}");

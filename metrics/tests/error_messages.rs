@@ -96,6 +96,14 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
             "run/w/0-train/data-log.tsv:1: found an empty file, expected a header line that begins with block_num",
         ),
         (
+            E::NoTabs {
+                path: path(),
+                found: text("\"block_num,exp_num\""),
+            },
+            "metrics/no-tabs",
+            "run/w/0-train/data-log.tsv:1: found the header \"block_num,exp_num\" without a tab, expected a tab between columns",
+        ),
+        (
             E::MissingColumn {
                 path: path(),
                 column: text("reward"),

@@ -262,3 +262,13 @@ fn a_quote_that_is_never_closed_is_told_from_a_torn_row() {
         &[],
     );
 }
+
+#[test]
+fn columns_that_nobody_declared_may_be_empty() {
+    let header = HEADER.replace("reward\n", "reward\tnote\n");
+    check(
+        [header, row(0, 0, "complete").replace("\t1\n", "\t1\t\n")].concat(),
+        &[],
+        &[],
+    );
+}

@@ -15,6 +15,7 @@ const MOST_LOGS: usize = 10_000;
 pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for argument in arguments {
+        is_folder(argument)?;
         let before = found.len();
         collect(argument, MOST_LEVELS, &mut found)?;
         if found.len() == before {
@@ -31,6 +32,7 @@ pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
 /// Every log that the arguments name, in order, each once. A folder that is no log, but has logs below, is refused with advice.
 pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     if let Some(argument) = arguments.iter().find(|argument| !is_log(argument)) {
+        is_folder(argument)?;
         let mut below = Vec::new();
         collect(argument, MOST_LEVELS, &mut below)?;
         let path = argument.display();
@@ -47,6 +49,19 @@ pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         }));
     }
     Ok(each_once(arguments.to_vec()))
+}
+
+fn is_folder(argument: &Path) -> Result<(), Failure> {
+    let found = match fs::metadata(argument) {
+        Ok(kind) if kind.is_dir() => return Ok(()),
+        Ok(_) => "a file".to_owned(),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => "nothing".to_owned(),
+        Err(error) => error.to_string(),
+    };
+    let path = argument.display();
+    Err(Failure::input(format!(
+        "{path}: found {found}, expected the folder of a log, which holds logger_info.json"
+    )))
 }
 
 fn each_once(mut logs: Vec<PathBuf>) -> Vec<PathBuf> {
@@ -147,7 +162,13 @@ mod tests {
             named(&[root.join("absent")])
                 .unwrap_err()
                 .text()
-                .contains("cannot be read")
+                .contains("found nothing")
+        );
+        assert!(
+            below(&[root.join("other/notes.txt")])
+                .unwrap_err()
+                .text()
+                .contains("found a file")
         );
     }
 }

@@ -5,6 +5,7 @@ mod console;
 mod curriculum;
 mod general;
 mod lived;
+mod logs;
 mod metrics;
 mod original_scenarios;
 mod run;

@@ -97,7 +97,7 @@ impl Check {
         let table = self.read(dir, &files, &logger_info)?;
         self.order_in_files(&table, &files);
         self.completions(&table, &files);
-        self.metrics(&table);
+        self.metrics(&table, logger_info.metrics_columns());
         self.count(&table);
         self.sorted(table, &files);
         Ok(())
@@ -260,13 +260,11 @@ impl Check {
     }
 
     /// A declared metric that never has a number is good for nothing.
-    fn metrics(&mut self, table: &Table<'_>) {
-        for name in table.rows.metric_names() {
+    fn metrics(&mut self, table: &Table<'_>, declared: &[String]) {
+        for name in declared {
             let numbers = table.rows.metric(name).unwrap_or_default();
             if !numbers.is_empty() && numbers.iter().all(|number| number.is_nan()) {
-                self.warnings.add(LogWarning::NoNumbers {
-                    column: name.to_owned(),
-                });
+                self.warnings.add(LogWarning::NoNumbers { column: name.clone() });
             }
         }
     }

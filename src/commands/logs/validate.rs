@@ -12,7 +12,7 @@ use super::{count, grouped};
 /// Name every problem of logs with its file and line.
 ///
 /// Checked is all that scoring needs, and what only the writer of a log could have kept to: numbers that never fall, exactly one
-/// complete row for each experience, the same columns in every file. A log without problems can be scored; warnings are about what
+/// complete row for each experience, the same columns in every file. A log without problems can be read; warnings are about what
 /// is odd. Problems and warnings go to standard error, one line for each log to standard output. Ends with exit code 1 where there
 /// is a problem.
 #[derive(Args)]
@@ -84,7 +84,7 @@ impl Verdict {
     fn print(&self) -> Result<(), Failure> {
         let (found, log) = (&self.found, self.log.display());
         for problem in &found.problems {
-            output::note(problem.to_string());
+            output::note(placed(&self.log, &problem.to_string()));
         }
         if found.more_problems > 0 {
             output::note(format!(
@@ -125,20 +125,20 @@ impl Verdict {
             count(counts.tasks as u64, "task", "tasks"),
         );
         if let Some((columns, version)) = &self.info {
-            text += &format!("; metrics {}; format {version}", columns.join(", "));
+            text.extend(["; metrics ", &columns.join(", "), "; format ", version]);
         }
         text
     }
 
     fn to_json(&self) -> Value {
         let found = &self.found;
-        let problem = |problem: &driftworld::metrics::MetricsError| json!({ "code": problem.code(), "message": problem.to_string() });
+        let problem = |problem: &driftworld::metrics::MetricsError| json!({ "code": problem.code(), "message": placed(&self.log, &problem.to_string()) });
         json!({
             "log": self.log,
             "valid": found.is_valid(),
             "problems": found.problems.iter().map(problem).collect::<Vec<_>>(),
             "more_problems": found.more_problems,
-            "warnings": found.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "warnings": found.warnings.iter().map(|warning| placed(&self.log, &warning.to_string())).collect::<Vec<_>>(),
             "more_warnings": found.more_warnings,
             "rows": found.counts.rows,
             "complete_rows": found.counts.complete_rows,
@@ -153,12 +153,12 @@ impl Verdict {
     }
 }
 
-/// A warning with the log in front, unless it begins with it: some name a file below the log, others only what is meant.
-fn placed(log: &Path, warning: &str) -> String {
+/// A message with the log in front, unless it begins with it: some name a file below the log, others only what is meant.
+fn placed(log: &Path, message: &str) -> String {
     let log = log.display().to_string();
-    if warning.starts_with(&log) {
-        warning.to_owned()
+    if message.starts_with(&log) {
+        message.to_owned()
     } else {
-        format!("{log}: {warning}")
+        format!("{log}: {message}")
     }
 }
