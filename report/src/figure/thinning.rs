@@ -51,7 +51,7 @@ mod tests {
     #[test]
     fn a_million_points_become_four_in_each_column() {
         let points: Vec<(f64, f64)> = (0..1_000_000)
-            .map(|x| (f64::from(x), f64::from(x * 7919 % 1000)))
+            .map(|x| (f64::from(x), f64::from(x % 1009 * 7 % 1000)))
             .collect();
         let thin = line(&points, |x| (x / 10_000.0) as i64);
         assert!(thin.len() <= 400, "{}", thin.len());

@@ -7,16 +7,16 @@ use driftworld_metrics::{
 use driftworld_report::{Chapter, ChapterOptions, Report, neighbours};
 
 /// A lifetime in which tasks take turns, each evaluated before and after every learning block.
-pub struct Life<'a> {
-    pub name: &'a str,
-    pub tasks: Vec<String>,
+pub(crate) struct Life<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) tasks: Vec<String>,
     /// How often each task is learnt.
-    pub rounds: u64,
+    pub(crate) rounds: u64,
     /// Experiences of a learning block; an evaluation has a tenth of them.
-    pub length: u64,
+    pub(crate) length: u64,
     /// Whether the first task has an expert.
-    pub expert: bool,
-    pub steps: bool,
+    pub(crate) expert: bool,
+    pub(crate) steps: bool,
 }
 
 impl Default for Life<'_> {
@@ -33,14 +33,14 @@ impl Default for Life<'_> {
 }
 
 /// The lifetime and what was scored.
-pub struct Lived {
-    pub lifetime: Lifetime,
-    pub metrics: LifetimeMetrics,
-    pub options: Options,
+pub(crate) struct Lived {
+    pub(crate) lifetime: Lifetime,
+    pub(crate) metrics: LifetimeMetrics,
+    pub(crate) options: Options,
 }
 
 impl Life<'_> {
-    pub fn live(&self) -> Lived {
+    pub(crate) fn live(&self) -> Lived {
         let base = tempfile::tempdir().expect("a temporary folder can be made");
         let dir = base.path().join(self.name);
         self.write(&dir, &self.tasks, self.rounds);
@@ -109,7 +109,7 @@ impl Life<'_> {
 
 impl Lived {
     /// A page with this lifetime alone, distances and a warning included.
-    pub fn page(&self) -> String {
+    pub(crate) fn page(&self) -> String {
         let mut options = ChapterOptions {
             warnings: vec!["data-log.tsv:7: something <odd>".to_owned()],
             distance_note: "Stems: distances made up for a test.".to_owned(),
