@@ -74,7 +74,7 @@ pub(crate) enum Command {
     Curriculum(curriculum::Curriculum),
     /// Live a curriculum with an agent and log every experience.
     Run(run::Run),
-    /// Check logs, or bring their rows together as one table.
+    // No words here: they would take the place of the long ones that stand with the command.
     Logs(logs::Logs),
     /// Score the log of a lifetime.
     Metrics(metrics::Metrics),

@@ -23,9 +23,8 @@ pub(crate) struct Logs {
 
 #[derive(Subcommand)]
 enum What {
-    /// Name every problem of logs with its file and line.
+    // No words here: they would take the place of the long ones that stand with each command.
     Validate(validate::Validate),
-    /// Write the rows of one log or several as one table.
     Aggregate(aggregate::Aggregate),
 }
 
