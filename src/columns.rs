@@ -83,9 +83,45 @@ pub struct WorldTable<W: Write + Send> {
     rows: Rows,
 }
 
-enum Sink<W: Write + Send> {
+/// A file of either format, which takes batches.
+pub(crate) enum Sink<W: Write + Send> {
     Parquet(Box<ArrowWriter<W>>),
     Arrow(Box<FileWriter<W>>),
+}
+
+impl<W: Write + Send> Sink<W> {
+    pub(crate) fn new(writer: W, schema: SchemaRef, format: Format) -> Result<Self, ColumnsError> {
+        Ok(match format {
+            Format::Parquet => {
+                let properties = WriterProperties::builder()
+                    .set_compression(Compression::SNAPPY)
+                    .set_created_by(format!("driftworld {}", env!("CARGO_PKG_VERSION")))
+                    .build();
+                Self::Parquet(Box::new(ArrowWriter::try_new(writer, schema, Some(properties))?))
+            }
+            Format::Arrow => Self::Arrow(Box::new(FileWriter::try_new(writer, &schema)?)),
+        })
+    }
+
+    /// Adds a batch; in Parquet it is a row group, so that readers skip to those they want and memory stays bounded.
+    pub(crate) fn write(&mut self, batch: &RecordBatch) -> Result<(), ColumnsError> {
+        match self {
+            Self::Parquet(writer) => writer.write(batch).and_then(|()| writer.flush())?,
+            Self::Arrow(writer) => writer.write(batch)?,
+        }
+        Ok(())
+    }
+
+    /// Ends the file and hands back what it was written to.
+    pub(crate) fn finish(self) -> Result<W, ColumnsError> {
+        Ok(match self {
+            Self::Parquet(writer) => writer.into_inner()?,
+            Self::Arrow(mut writer) => {
+                writer.finish()?;
+                writer.into_inner()?
+            }
+        })
+    }
 }
 
 impl<W: Write + Send> WorldTable<W> {
@@ -94,19 +130,8 @@ impl<W: Write + Send> WorldTable<W> {
     /// # Errors
     /// [`ColumnsError`] if the beginning of the file cannot be written.
     pub fn new(writer: W, format: Format) -> Result<Self, ColumnsError> {
-        let schema = schema();
-        let sink = match format {
-            Format::Parquet => {
-                let properties = WriterProperties::builder()
-                    .set_compression(Compression::SNAPPY)
-                    .set_created_by(format!("driftworld {}", env!("CARGO_PKG_VERSION")))
-                    .build();
-                Sink::Parquet(Box::new(ArrowWriter::try_new(writer, schema, Some(properties))?))
-            }
-            Format::Arrow => Sink::Arrow(Box::new(FileWriter::try_new(writer, &schema)?)),
-        };
         Ok(Self {
-            sink,
+            sink: Sink::new(writer, schema(), format)?,
             rows: Rows::default(),
         })
     }
@@ -129,12 +154,7 @@ impl<W: Write + Send> WorldTable<W> {
             return Ok(());
         }
         let batch = self.rows.take()?;
-        match &mut self.sink {
-            // A row group for each batch: readers skip to those they want, and memory stays bounded.
-            Sink::Parquet(writer) => writer.write(&batch).and_then(|()| writer.flush())?,
-            Sink::Arrow(writer) => writer.write(&batch)?,
-        }
-        Ok(())
+        self.sink.write(&batch)
     }
 
     /// Ends the table and hands back what it was written to.
@@ -143,13 +163,7 @@ impl<W: Write + Send> WorldTable<W> {
     /// [`ColumnsError`] if the rest of the file cannot be written.
     pub fn finish(mut self) -> Result<W, ColumnsError> {
         self.flush()?;
-        Ok(match self.sink {
-            Sink::Parquet(writer) => writer.into_inner()?,
-            Sink::Arrow(mut writer) => {
-                writer.finish()?;
-                writer.into_inner()?
-            }
-        })
+        self.sink.finish()
     }
 }
 

@@ -21,6 +21,7 @@ pub use driftworld_spec as spec;
 
 pub mod columns;
 pub mod distances;
+pub mod log_columns;
 pub mod picture_distance;
 pub mod tasks;
 

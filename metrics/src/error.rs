@@ -116,6 +116,15 @@ pub enum MetricsError {
         path: PathBuf,
     },
 
+    /// A data file's header is one cell, as where something else than tabs stands between columns.
+    #[error("{}:1: found the header {found} without a tab, expected a tab between columns", path.display())]
+    NoTabs {
+        /// The data file.
+        path: PathBuf,
+        /// Its header, cut after 60 characters.
+        found: String,
+    },
+
     /// A data file lacks a column.
     #[error("{}:1: found the columns {found}, expected also {column}", path.display())]
     MissingColumn {
@@ -230,6 +239,71 @@ pub enum MetricsError {
         expected: u64,
     },
 
+    /// A number falls from one row of a data file to the next.
+    #[error(
+        "{}:{line}, column {column}: found {found}, expected at least {expected} as in the row above: \
+         numbers never fall", path.display()
+    )]
+    NumberFalls {
+        /// The data file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u64,
+        /// `block_num` or `exp_num`.
+        column: &'static str,
+        /// The number there.
+        found: u64,
+        /// The number above.
+        expected: u64,
+    },
+
+    /// Two data files of one log have different columns.
+    #[error(
+        "{}:1: found the columns {found}, expected {expected} as in {}", path.display(), first.display()
+    )]
+    ColumnsDiffer {
+        /// The data file.
+        path: PathBuf,
+        /// Its columns, comma separated.
+        found: String,
+        /// Those of the first file, comma separated.
+        expected: String,
+        /// The first file.
+        first: PathBuf,
+    },
+
+    /// An experience has no complete row, though its worker went on to the next.
+    #[error(
+        "{}:{line}: found experience {exp_num} of {worker} without a complete row, expected exactly one: \
+         it is not scored", path.display()
+    )]
+    NotCompleted {
+        /// The data file.
+        path: PathBuf,
+        /// Line of the experience's first row, from 1.
+        line: u64,
+        /// Number of the experience.
+        exp_num: u64,
+        /// Its worker.
+        worker: String,
+    },
+
+    /// An experience goes on after its complete row.
+    #[error(
+        "{}:{line}: found another row of experience {exp_num} of {worker} after its complete one, expected the complete row \
+         to be the last: give the next experience a number of its own", path.display()
+    )]
+    RowAfterComplete {
+        /// The data file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u64,
+        /// Number of the experience.
+        exp_num: u64,
+        /// Its worker.
+        worker: String,
+    },
+
     /// A record that was to be written breaks a rule of the format.
     #[error("record of experience {exp_num}, {field}: found {found}, expected {expected}")]
     Record {
@@ -263,8 +337,22 @@ pub enum MetricsError {
         expected: String,
     },
 
+    /// A log has a column under a name that the table of several logs gives to one of its own.
+    #[error(
+        "log {run_id}: found a column {column} of its own, expected another name: a table of logs has a column of that name; \
+         rename it in the log's files and in logger_info.json"
+    )]
+    TableColumn {
+        /// Name of the log.
+        run_id: String,
+        /// The column.
+        column: String,
+    },
+
     /// The performance column is not in the log.
-    #[error("log {run_id}: found no metrics column {column:?}, expected one of {available}; set Options::perf_measure")]
+    #[error(
+        "log {run_id}: found no metrics column {column:?}, expected one of {available}; choose one by Options::perf_measure or --perf-measure"
+    )]
     UnknownColumn {
         /// Name of the log.
         run_id: String,
@@ -386,6 +474,7 @@ impl MetricsError {
             Self::LoggerInfo { .. } => "metrics/logger-info",
             Self::TooLarge { .. } => "metrics/too-large",
             Self::EmptyFile { .. } => "metrics/empty-file",
+            Self::NoTabs { .. } => "metrics/no-tabs",
             Self::MissingColumn { .. } => "metrics/missing-column",
             Self::RepeatedColumn { .. } => "metrics/repeated-column",
             Self::OtherColumns { .. } => "metrics/other-columns",
@@ -395,9 +484,14 @@ impl MetricsError {
             Self::OpenQuote { .. } => "metrics/open-quote",
             Self::NotUtf8 { .. } => "metrics/not-utf8",
             Self::BlockOrder { .. } => "metrics/block-order",
+            Self::NumberFalls { .. } => "metrics/number-falls",
+            Self::ColumnsDiffer { .. } => "metrics/columns-differ",
+            Self::NotCompleted { .. } => "metrics/not-completed",
+            Self::RowAfterComplete { .. } => "metrics/row-after-complete",
             Self::Record { .. } => "metrics/record",
             Self::Timestamp { .. } => "metrics/timestamp",
             Self::UnknownWord { .. } => "metrics/unknown-word",
+            Self::TableColumn { .. } => "metrics/table-column",
             Self::UnknownColumn { .. } => "metrics/unknown-column",
             Self::NoUsableRows { .. } => "metrics/no-usable-rows",
             Self::NotSingleTask { .. } => "metrics/not-single-task",

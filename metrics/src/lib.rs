@@ -21,9 +21,10 @@
 //! # }
 //! ```
 //!
-//! The definitions are those of New et al. 2022, "Lifelong Learning Metrics for L2M"; the numbers are those of the
-//! public package l2metrics 3.1 to 1e-9. Where that package departs from the plain definition, the file that follows
-//! it says so under the word QUIRK.
+//! The definitions are those of New et al. 2022, "Lifelong Learning Metrics"; the numbers are those of the public package
+//! l2metrics 3.1 to 1e-9. Where that package departs from what it documents, the file that follows it says so under the
+//! word QUIRK, and [`Definitions::Published`] does not follow. Repeated lifetimes are summed up by [`over_repeats`] and
+//! compared by [`compare_agents`]; a [`Metric`] of one's own is computed by a [`Scorer`].
 //!
 //! What is not here: running agents (that is the curriculum's), plots and printing (the command's), and the clock:
 //! time stamps are handed in.
@@ -42,10 +43,11 @@ mod statistics;
 pub use error::MetricsError;
 pub use lifetime::{Lifetime, MAX_REGIMES, Regime, SteLog};
 pub use log::{
-    BlockSubtype, BlockType, Complexity, DEFAULT_WORKER, Difficulty, ExpStatus, LOG_FORMAT_VERSION, Log, LogWarning,
-    LogWriter, LoggerInfo, MAX_CELL_BYTES, MAX_CELLS, MAX_COLUMNS, MAX_FILE_BYTES, MAX_LOG_FILES, MAX_RECORDS, Record,
-    Row, Rows, ScenarioInfo, ScenarioType, SharedColumn, SteStoreMode, StoredRun, StoredTask, TaskParams, TextColumn,
-    Timestamp, begun_log, clear_ste, find_ste, read_log, read_log_with_texts, read_ste_log, store_ste,
+    BlockSubtype, BlockType, Complexity, DEFAULT_WORKER, Delimiter, Difficulty, ExpStatus, KeptRows,
+    LOG_FORMAT_VERSION, Log, LogColumn, LogCounts, LogTable, LogWarning, LogWriter, LoggerInfo, MAX_CELL_BYTES,
+    MAX_CELLS, MAX_COLUMNS, MAX_FILE_BYTES, MAX_LISTED, MAX_LOG_FILES, MAX_RECORDS, Record, Row, Rows, ScenarioInfo,
+    ScenarioType, SharedColumn, SteStoreMode, StoredRun, StoredTask, TaskParams, TextColumn, Timestamp, Validation,
+    Words, begun_log, clear_ste, find_ste, read_log, read_log_with_texts, read_ste_log, store_ste, validate_log,
 };
 pub use options::{
     AggregationMethod, DataRange, Definitions, MAX_WINDOW_LENGTH, MaintenanceMethod, Noise, NormalizationMethod,
@@ -61,3 +63,8 @@ pub use report::{
     SavedTables, Settings, SummaryRow, Value, Values, compare_agents, over_repeats, regimes_tsv, save_all,
 };
 pub use score::{Assessment, Metric, Scorer, score};
+
+/// The Rust in `docs/metrics.md` is compiled with the documentation's tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/metrics.md")]
+struct Documentation;

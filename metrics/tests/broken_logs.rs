@@ -49,6 +49,17 @@ fn with_cell(index: usize, text: &str) -> String {
 }
 
 #[test]
+fn a_header_without_tabs_is_one_problem_and_not_one_for_each_column() {
+    let data = format!("{HEADER}{ROW}").replace('\t', ",");
+    check(
+        data,
+        "metrics/no-tabs",
+        "LOG/w/0-train/data-log.tsv:1: found the header \"block_num,exp_num,worker_id,block_type,block_subtype,task_na\"… without \
+         a tab, expected a tab between columns",
+    );
+}
+
+#[test]
 fn a_cell_that_is_wrong_is_named_with_what_should_stand_there() {
     let cell = |index: usize, text: &str, column: &str, found: &str, expected: &str| {
         let message = format!("LOG/w/0-train/data-log.tsv:2, column {column}: found {found}, expected {expected}");
@@ -143,6 +154,23 @@ fn a_table_that_is_no_table_is_refused_with_its_place() {
 }
 
 #[test]
+fn lines_are_counted_whatever_they_end_with_and_whatever_lies_between() {
+    let at_line = |data: String, line: u64| {
+        let message = "expected a finite number, or nothing for a missing one";
+        let place = format!("LOG/w/0-train/data-log.tsv:{line}, column reward: found \"much\", {message}");
+        check(data, "metrics/cell", &place);
+    };
+    let bad = with_cell(9, "much").replace(HEADER, "");
+    let two_lines = ROW.replace("a_b", "\"a\nb\"");
+    at_line(format!("{HEADER}{ROW}{bad}"), 3);
+    at_line(format!("{HEADER}{ROW}{bad}").replace('\n', "\r\n"), 3);
+    at_line(format!("{HEADER}\n\n{ROW}\n{bad}"), 6);
+    at_line(format!("{HEADER}{two_lines}{bad}{ROW}"), 4);
+    at_line(format!("{HEADER}{two_lines}{bad}").replace('\n', "\r\n"), 4);
+    at_line(format!("{HEADER}{}", bad.replace("a_b", "\"a\nb\"")), 2);
+}
+
+#[test]
 fn the_advice_for_a_torn_last_line_works() {
     let base = tempfile::tempdir().unwrap();
     write_log(base.path(), format!("{HEADER}{ROW}0\t1\tw\ttra"));
@@ -195,7 +223,7 @@ fn a_log_without_usable_rows_says_which_column_was_asked_for() {
     check(
         format!("{HEADER}{ROW}"),
         "score",
-        ": found no metrics column \"score\", expected one of reward; set Options::perf_measure",
+        ": found no metrics column \"score\", expected one of reward; choose one by Options::perf_measure or --perf-measure",
     );
     let none = ": found no complete row with a number in column \"reward\", expected at least one";
     check(HEADER.to_owned(), "reward", none);

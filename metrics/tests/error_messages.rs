@@ -96,6 +96,14 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
             "run/w/0-train/data-log.tsv:1: found an empty file, expected a header line that begins with block_num",
         ),
         (
+            E::NoTabs {
+                path: path(),
+                found: text("\"block_num,exp_num\""),
+            },
+            "metrics/no-tabs",
+            "run/w/0-train/data-log.tsv:1: found the header \"block_num,exp_num\" without a tab, expected a tab between columns",
+        ),
+        (
             E::MissingColumn {
                 path: path(),
                 column: text("reward"),
@@ -182,6 +190,49 @@ fn of_rows() -> Vec<(MetricsError, &'static str, &'static str)> {
              block numbers never fall",
         ),
         (
+            E::NumberFalls {
+                path: path(),
+                line: 7,
+                column: "exp_num",
+                found: 2,
+                expected: 3,
+            },
+            "metrics/number-falls",
+            "run/w/0-train/data-log.tsv:7, column exp_num: found 2, expected at least 3 as in the row above: numbers never fall",
+        ),
+        (
+            E::ColumnsDiffer {
+                path: path(),
+                found: text("a, b"),
+                expected: text("a, c"),
+                first: "run/v/0-train/data-log.tsv".into(),
+            },
+            "metrics/columns-differ",
+            "run/w/0-train/data-log.tsv:1: found the columns a, b, expected a, c as in run/v/0-train/data-log.tsv",
+        ),
+        (
+            E::NotCompleted {
+                path: path(),
+                line: 7,
+                exp_num: 2,
+                worker: text("w"),
+            },
+            "metrics/not-completed",
+            "run/w/0-train/data-log.tsv:7: found experience 2 of w without a complete row, expected exactly one: \
+             it is not scored",
+        ),
+        (
+            E::RowAfterComplete {
+                path: path(),
+                line: 7,
+                exp_num: 2,
+                worker: text("w"),
+            },
+            "metrics/row-after-complete",
+            "run/w/0-train/data-log.tsv:7: found another row of experience 2 of w after its complete one, expected the \
+             complete row to be the last: give the next experience a number of its own",
+        ),
+        (
             E::Record {
                 exp_num: 4,
                 field: text("reward"),
@@ -213,13 +264,22 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
             "transfer: found \"sum\", expected one of ratio, contrast, both",
         ),
         (
+            E::TableColumn {
+                run_id: text("run"),
+                column: text("regime_num"),
+            },
+            "metrics/table-column",
+            "log run: found a column regime_num of its own, expected another name: a table of logs has a column of that name; \
+             rename it in the log's files and in logger_info.json",
+        ),
+        (
             E::UnknownColumn {
                 run_id: text("run"),
                 column: text("score"),
                 available: text("reward"),
             },
             "metrics/unknown-column",
-            "log run: found no metrics column \"score\", expected one of reward; set Options::perf_measure",
+            "log run: found no metrics column \"score\", expected one of reward; choose one by Options::perf_measure or --perf-measure",
         ),
         (
             E::NoUsableRows {

@@ -1,6 +1,6 @@
 //! What is written is what is read: records with awkward words and numbers, several workers, interrupted runs.
 //!
-//! Not here: logs that cannot be read, see `broken_logs`.
+//! Not here: logs that cannot be read, see `broken_logs`; any record that may be written, see `properties`.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
@@ -8,8 +8,8 @@ use std::fs;
 use std::path::Path;
 
 use driftworld_metrics::{
-    BlockSubtype, BlockType, ExpStatus, LogWarning, LogWriter, LoggerInfo, Record, Row, ScenarioInfo, ScenarioType,
-    Timestamp, read_log,
+    BlockSubtype, BlockType, LogWarning, LogWriter, LoggerInfo, Record, Row, ScenarioInfo, ScenarioType, Timestamp,
+    read_log,
 };
 use proptest::prelude::*;
 
@@ -233,73 +233,7 @@ fn records_that_break_a_rule_are_refused_and_nothing_is_written() {
     );
 }
 
-/// Strings that tables get wrong.
-fn awkward() -> impl Strategy<Value = String> {
-    prop_oneof![
-        "[a-z]{1,6}_[0-9]{1,3}",
-        "\\PC{0,12}",
-        "[\t\n\r\"' ,;#\\\\]{1,6}",
-        Just("nan".to_owned()),
-        Just(String::new()),
-    ]
-}
-
-fn any_record() -> impl Strategy<Value = Record> {
-    let metric = prop_oneof![
-        any::<f64>().prop_filter("finite", |value| value.is_finite()),
-        Just(f64::MIN_POSITIVE / 3.0),
-        Just(-0.0),
-    ];
-    let params = proptest::collection::vec((awkward(), prop_oneof![Just(None), any::<i32>().prop_map(Some)]), 0..3);
-    let words = (
-        awkward(),
-        params,
-        "[0-9a-zA-Z_.-]{0,4}w",
-        any::<[bool; 3]>(),
-        0_i64..1_000_000_000,
-    );
-    (words, metric).prop_map(|((task_name, params, worker_id, choices, micros), metric)| {
-        let params = params.into_iter().map(|(key, value)| (key, value.into()));
-        Record {
-            task_name,
-            block_type: if choices[0] { BlockType::Train } else { BlockType::Test },
-            block_subtype: if choices[1] {
-                BlockSubtype::Wake
-            } else {
-                BlockSubtype::Sleep
-            },
-            exp_status: if choices[2] {
-                ExpStatus::Complete
-            } else {
-                ExpStatus::Incomplete
-            },
-            timestamp: stamp(micros),
-            ..record(0, 0, BlockType::Train)
-                .with_task_params(params.collect::<serde_json::Map<_, _>>())
-                .with_worker(worker_id)
-                .with_metric("reward", metric)
-                .with_metric("a \"b\"\tc", 1.5)
-        }
-    })
-}
-
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
-    #[test]
-    fn whatever_is_written_is_read(records in proptest::collection::vec(any_record(), 1..8)) {
-        let base = tempfile::tempdir().unwrap();
-        let mut writer = create(base.path());
-        let numbered: Vec<Record> = records
-            .into_iter()
-            .enumerate()
-            .map(|(index, record)| Record { block_num: index as u64 / 3, exp_num: index as u64, ..record })
-            .collect();
-        for record in &numbered {
-            writer.write(record).unwrap();
-        }
-        prop_assert_eq!(read_records(base.path()), numbered);
-    }
-
     #[test]
     fn no_file_makes_the_reader_panic(text in "([0-9a-z\t\"{}:.]|\n){0,80}", with_header in any::<bool>()) {
         let base = tempfile::tempdir().unwrap();

@@ -9,9 +9,10 @@ mod demo;
 mod distance;
 mod doctor;
 mod draw_maps;
-mod find_logs;
 mod input;
 mod interrupt;
+mod log_folders;
+mod logs;
 mod matrix_file;
 mod metrics;
 mod modality;
@@ -73,6 +74,8 @@ pub(crate) enum Command {
     Curriculum(curriculum::Curriculum),
     /// Live a curriculum with an agent and log every experience.
     Run(run::Run),
+    // No words here: they would take the place of the long ones that stand with the command.
+    Logs(logs::Logs),
     /// Score the log of a lifetime.
     Metrics(metrics::Metrics),
     /// Show lifetimes on one page: metrics, curriculum, curves.
@@ -106,6 +109,7 @@ impl Command {
             Self::Order(command) => command.run(),
             Self::Curriculum(command) => command.run(),
             Self::Run(command) => command.run(),
+            Self::Logs(command) => command.run(),
             Self::Metrics(command) => command.run(),
             Self::Report(command) => command.run(),
             Self::TransferReport(command) => command.run(),

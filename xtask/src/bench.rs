@@ -12,10 +12,11 @@ pub(crate) enum Suite {
     Generator,
     Similarity,
     Env,
+    Metrics,
 }
 
 impl Suite {
-    pub(crate) const ALL: [Self; 3] = [Self::Generator, Self::Similarity, Self::Env];
+    pub(crate) const ALL: [Self; 4] = [Self::Generator, Self::Similarity, Self::Env, Self::Metrics];
 
     /// The word after `bench`.
     pub(crate) fn name(self) -> &'static str {
@@ -23,6 +24,7 @@ impl Suite {
             Self::Generator => "generator",
             Self::Similarity => "similarity",
             Self::Env => "env",
+            Self::Metrics => "metrics",
         }
     }
 
@@ -37,6 +39,7 @@ impl Suite {
             Self::Generator => &["driftworld-spec", "driftworld-generator"],
             Self::Similarity => &["driftworld-similarity"],
             Self::Env => &["driftworld-env"],
+            Self::Metrics => &["driftworld-metrics"],
         }
     }
 }

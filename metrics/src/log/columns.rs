@@ -41,8 +41,13 @@ pub(super) fn header(metrics: &[String]) -> Vec<String> {
 /// The crate `csv` quotes a bare carriage return only where lines end with one, so the line is written that way and
 /// its end replaced: a `\n` alone, as l2logger writes.
 pub(crate) fn line(cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> Vec<u8> {
+    delimited(b'\t', cells)
+}
+
+/// One line as [`line`] has it, with another character between cells.
+pub(super) fn delimited(delimiter: u8, cells: impl IntoIterator<Item = impl AsRef<[u8]>>) -> Vec<u8> {
     let mut writer = csv::WriterBuilder::new()
-        .delimiter(b'\t')
+        .delimiter(delimiter)
         .terminator(csv::Terminator::CRLF)
         .from_writer(Vec::new());
     writer

@@ -11,7 +11,7 @@ use csv::{ErrorKind, StringRecord};
 use super::faults::Faults;
 use super::header::Header;
 use super::table::Table;
-use super::whole_rows;
+use super::whole_rows::{self, WholeRows};
 use crate::MetricsError;
 
 /// Largest data file that is read, in bytes.
@@ -42,29 +42,37 @@ pub(super) fn read(
         // Rows that a running writer adds meanwhile are left for the next reading.
         .from_reader((&source.file).take(source.whole));
     let mut row = StringRecord::new();
-    let mut next = |row: &mut StringRecord| match rows.read_record(row) {
-        Ok(true) => Ok(Some(rows.position().byte() >= source.whole)),
-        Ok(false) => Ok(None),
-        Err(error) => Err(row_error(path, error)),
-    };
-    if next(&mut row)?.is_none() {
+    if !next_row(&mut rows, &mut row, path)? {
         return Err(source
             .torn
             .unwrap_or_else(|| MetricsError::EmptyFile { path: path.to_owned() }));
     }
+    let is_last = |rows: &csv::Reader<_>| rows.position().byte() >= source.whole;
+    if is_last(&rows)
+        && let Some(fault) = source.open_quote(path, 0, 1)?
+    {
+        return Err(fault);
+    }
     let mut header = Header::new(path, &row, metrics_columns, table, faults)?;
+    // Where lines end with two characters, the second of them still lies ahead of the reader.
+    let line_ends = (rows.position().line() - line_breaks(&row) - 1).min(1);
     loop {
-        let is_last = match next(&mut row) {
-            Ok(None) => break,
-            Ok(Some(is_last)) => is_last,
-            Err(error @ MetricsError::NotUtf8 { .. }) => {
-                faults.add(error)?;
+        match next_row(&mut rows, &mut row, path) {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(fault @ MetricsError::NotUtf8 { .. }) => {
+                faults.add(fault)?;
                 continue;
             }
             Err(error) => return Err(error),
-        };
-        let (start, line) = row.position().map_or((0, 0), |place| (place.byte(), place.line()));
-        if is_last && let Some(fault) = source.open_quote(path, start, line)? {
+        }
+        // Blank lines before a row are skipped, so that its line is known from its end.
+        let line = rows.position().line() - line_breaks(&row) - line_ends;
+        let start = row.position().map_or(0, csv::Position::byte);
+        if is_last(&rows)
+            // A row that ends within quotes has no line end of its own.
+            && let Some(fault) = source.open_quote(path, start, line + line_ends)?
+        {
             faults.add(fault)?;
             return Ok(header.names);
         }
@@ -74,6 +82,15 @@ pub(super) fn read(
         faults.add(fault)?;
     }
     Ok(header.names)
+}
+
+/// Line breaks within the cells of a row.
+fn line_breaks(row: &StringRecord) -> u64 {
+    row.as_slice().bytes().filter(|byte| *byte == b'\n').count() as u64
+}
+
+fn next_row(rows: &mut csv::Reader<impl Read>, row: &mut StringRecord, path: &Path) -> Result<bool, MetricsError> {
+    rows.read_record(row).map_err(|error| row_error(path, error))
 }
 
 fn row_error(path: &Path, error: csv::Error) -> MetricsError {
@@ -134,7 +151,9 @@ impl Source {
         file.seek(SeekFrom::Start(start)).map_err(failed())?;
         let piece = BufReader::with_capacity(PIECE, file.take(self.whole - start));
         let found = whole_rows::measure(piece).map_err(failed())?;
-        Ok((found.bytes < self.whole - start).then(|| found.fault(path, line)))
+        // What comes before the open row are blank lines.
+        let found_here = WholeRows { lines: 0, ..found };
+        Ok((found.bytes < self.whole - start).then(|| found_here.fault(path, line)))
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use csv::StringRecord;
 
-use super::cell::Cell;
+use super::cell::{Cell, shown};
 use super::columns::{SINCE_1_1, STANDARD};
 use super::data_file::MAX_CELL_BYTES;
 use super::faults::Faults;
@@ -40,6 +40,12 @@ impl<'a> Header<'a> {
     ) -> Result<Self, MetricsError> {
         check_num_columns(path, row.len())?;
         let names: Vec<String> = row.iter().map(str::to_owned).collect();
+        if names.len() == 1 && names[0].contains([',', ';', ' ']) {
+            return Err(MetricsError::NoTabs {
+                path: path.to_owned(),
+                found: shown(&names[0]),
+            });
+        }
         let place = |column: &str| names.iter().position(|name| name == column);
         let missing = |column: &str| MetricsError::MissingColumn {
             path: path.to_owned(),

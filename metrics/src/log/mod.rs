@@ -2,6 +2,7 @@
 //!
 //! Not here: what the numbers mean; that is `lifetime` and `score`.
 
+mod aggregate;
 mod begun;
 mod cell;
 mod columns;
@@ -23,13 +24,16 @@ mod ste_store;
 mod table;
 mod text_column;
 mod timestamp;
+mod validation;
 mod warning;
 mod whole_rows;
 mod writer;
 
+pub use aggregate::{Delimiter, KeptRows, LogColumn, LogTable, Words};
 pub use begun::begun_log;
 pub use data_file::{MAX_CELL_BYTES, MAX_FILE_BYTES};
 pub use data_files::MAX_LOG_FILES;
+pub use faults::MAX_LISTED;
 pub use logger_info::{LOG_FORMAT_VERSION, LoggerInfo};
 pub use reader::{Log, read_log, read_log_with_texts, read_ste_log};
 pub use record::{BlockSubtype, BlockType, DEFAULT_WORKER, ExpStatus, Record, TaskParams};
@@ -40,6 +44,7 @@ pub use ste_store::{SteStoreMode, StoredRun, StoredTask, clear_ste, find_ste, st
 pub use table::{MAX_CELLS, MAX_COLUMNS, MAX_RECORDS};
 pub use text_column::TextColumn;
 pub use timestamp::Timestamp;
+pub use validation::{LogCounts, Validation, validate_log};
 pub use warning::LogWarning;
 pub use writer::LogWriter;
 

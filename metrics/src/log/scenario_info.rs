@@ -94,6 +94,25 @@ impl ScenarioInfo {
     }
 }
 
+impl ScenarioInfo {
+    /// Warns of each of the three words that is not there.
+    pub(super) fn warn_of_missing(&self, warnings: &mut Vec<LogWarning>) {
+        let mut warn = |field: &'static str, is_missing: bool, expected: fn() -> String| {
+            let told = |warning: &LogWarning| matches!(warning, LogWarning::ScenarioInfo { field: other, .. } if *other == field);
+            if is_missing && !warnings.iter().any(told) {
+                warnings.push(LogWarning::ScenarioInfo {
+                    field,
+                    found: "nothing".to_owned(),
+                    expected: expected(),
+                });
+            }
+        };
+        warn("complexity", self.complexity.is_none(), Complexity::expected);
+        warn("difficulty", self.difficulty.is_none(), Difficulty::expected);
+        warn("scenario_type", self.scenario_type.is_none(), ScenarioType::expected);
+    }
+}
+
 /// Takes a field out of the object. A value that is none of the words is warned about and left out.
 fn take_word<T: FromStr>(
     field: &'static str,

@@ -50,7 +50,8 @@ pub struct StoredTask {
 ///
 /// # Errors
 /// Those of [`read_ste_log`]; [`MetricsError::InUse`] while a writer of ours is at work on the log;
-/// [`MetricsError::TooLarge`] for a task whose name makes no folder's name; [`MetricsError::Io`].
+/// [`MetricsError::TooLarge`] for a task whose name makes no folder's name; [`MetricsError::BadOption`] for a data folder inside
+/// the log, which would become a part of it; [`MetricsError::Io`].
 ///
 /// # Example
 /// ```
@@ -75,6 +76,7 @@ pub fn store_ste(
 ) -> Result<StoredRun, MetricsError> {
     let (data_folder, log_dir) = (data_folder.as_ref(), log_dir.as_ref());
     let files = data_files::find(log_dir)?;
+    check_outside(data_folder, log_dir)?;
     let lock = writer::lock(log_dir)?;
     let expert = read_ste_log(log_dir)?;
     let task_name = expert.task_name().to_owned();
@@ -166,6 +168,22 @@ pub fn clear_ste(data_folder: impl AsRef<Path>, task: Option<&str>) -> Result<Ve
         }
     }
     Ok(removed)
+}
+
+/// Whatever lies in a log's directory is read as a part of it.
+fn check_outside(data_folder: &Path, log_dir: &Path) -> Result<(), MetricsError> {
+    let place = std::path::absolute(data_folder).map_err(MetricsError::io(data_folder, "find this directory"))?;
+    let log = (log_dir.canonicalize()).map_err(MetricsError::io(log_dir, "find this directory"))?;
+    // The folder may not be there yet, but what it will lie in is.
+    let there = place.ancestors().find_map(|ancestor| ancestor.canonicalize().ok());
+    if there.is_some_and(|there| there.starts_with(&log)) {
+        return Err(MetricsError::BadOption {
+            option: "STE data folder",
+            found: data_folder.display().to_string(),
+            expected: "a folder outside the log that is stored".to_owned(),
+        });
+    }
+    Ok(())
 }
 
 /// Copies what makes up a log.
@@ -420,6 +438,18 @@ mod tests {
         let error = store_ste(&data, &log, SteStoreMode::Append).unwrap_err();
         assert_eq!(error.code(), "metrics/not-single-task");
         assert!(!data.exists());
+    }
+
+    #[test]
+    fn a_log_is_not_stored_into_itself() {
+        let base = tempfile::tempdir().unwrap();
+        let log = expert(base.path(), "log", "a_1", 1.0);
+        for data in [log.clone(), log.join("data/deep")] {
+            let error = store_ste(&data, &log, SteStoreMode::Append).unwrap_err();
+            assert_eq!(error.code(), "metrics/bad-option");
+        }
+        assert!(!log.join("data").exists());
+        assert_eq!(read_log(&log).unwrap().rows.len(), 1);
     }
 
     #[cfg(unix)]

@@ -150,6 +150,15 @@ impl<'a> Table<'a> {
         Ok(())
     }
 
+    /// Whether one of the limits for the log as a whole is reached.
+    pub(super) fn is_full(&self) -> bool {
+        self.rows.len() == MAX_RECORDS || self.others.len() > MAX_COLUMNS || self.num_cells > MAX_CELLS
+    }
+
+    pub(super) fn num_files(&self) -> usize {
+        self.starts.len()
+    }
+
     fn count_cells(&mut self, more: u64) -> Result<(), MetricsError> {
         self.num_cells += more;
         self.check_limit("numbers or more", self.num_cells, MAX_CELLS)

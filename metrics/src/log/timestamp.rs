@@ -78,29 +78,40 @@ impl fmt::Display for Timestamp {
 }
 
 fn parse(text: &str) -> Option<Timestamp> {
-    let (whole, fraction) = text.split_once('.')?;
-    let (date, time) = whole.split_once('T')?;
-    if date.len() != 8 || time.len() != 6 || !(1..=6).contains(&fraction.len()) {
+    let (whole, fraction) = text.as_bytes().split_at_checked("YYYYMMDDTHHMMSS.".len())?;
+    if whole[8] != b'T' || whole[15] != b'.' || !(1..=6).contains(&fraction.len()) {
         return None;
     }
-    let digits = |part: &str| {
-        part.bytes()
-            .all(|byte| byte.is_ascii_digit())
-            .then(|| part.parse::<i64>().ok())
-            .flatten()
-    };
-    let (date, time) = (digits(date)?, digits(time)?);
-    let (year, month, day) = (date / 10_000, date / 100 % 100, date % 100);
-    let (hour, minute, second) = (time / 10_000, time / 100 % 100, time % 100);
-    let days = days_from_civil(year, month, day);
-    if year < 1 || civil_from_days(days) != (year, month, day) || hour > 23 || minute > 59 || second > 59 {
+    let (year, month, day) = (number(&whole[..4])?, number(&whole[4..6])?, number(&whole[6..8])?);
+    let (hour, minute, second) = (number(&whole[9..11])?, number(&whole[11..13])?, number(&whole[13..15])?);
+    if year < 1 || !(1..=12).contains(&month) || !(1..=days_in_month(year, month)).contains(&day) {
         return None;
     }
-    let micros = digits(&format!("{fraction:0<6}"))?;
-    let seconds = days * SECONDS_PER_DAY + hour * 3600 + minute * 60 + second;
+    if hour > 23 || minute > 59 || second > 59 {
+        return None;
+    }
+    // Missing digits are zeros.
+    let micros = (fraction.len()..6).fold(number(fraction)?, |micros, _| micros * 10);
+    let seconds = days_from_civil(year, month, day) * SECONDS_PER_DAY + hour * 3600 + minute * 60 + second;
     Some(Timestamp {
         micros: seconds * MICROS_PER_SECOND + micros,
     })
+}
+
+/// The number that a few digits stand for; `None` where there is anything else.
+fn number(digits: &[u8]) -> Option<i64> {
+    digits.iter().try_fold(0, |number, digit| {
+        digit.is_ascii_digit().then(|| number * 10 + i64::from(digit - b'0'))
+    })
+}
+
+fn days_in_month(year: i64, month: i64) -> i64 {
+    match month {
+        2 if year % 4 == 0 && (year % 100 != 0 || year % 400 == 0) => 29,
+        2 => 28,
+        4 | 6 | 9 | 11 => 30,
+        _ => 31,
+    }
 }
 
 /// Days from 1970-01-01 to a date of the Gregorian calendar. Years are counted from March, so that the leap day is
@@ -181,6 +192,12 @@ mod tests {
         fn every_microsecond_survives_writing_and_reading(micros in -60_000_000_000_000_000_i64..250_000_000_000_000_000) {
             let stamp = Timestamp::from_unix_micros(micros).unwrap();
             prop_assert_eq!(stamp.to_string().parse::<Timestamp>().unwrap(), stamp);
+        }
+
+        #[test]
+        fn days_that_exist_are_those_that_come_back(year in 1_i64..10_000, month in 0_i64..14, day in 0_i64..33) {
+            let exists = (1..=12).contains(&month) && (1..=days_in_month(year, month)).contains(&day);
+            prop_assert_eq!(civil_from_days(days_from_civil(year, month, day)) == (year, month, day), exists);
         }
 
         #[test]

@@ -3,8 +3,10 @@
 //! Not here: what does, see `MetricsError`.
 
 use std::fmt;
+use std::path::PathBuf;
 
 use super::cell::shown;
+use super::timestamp::Timestamp;
 
 /// Something about a log that is not as it should be, but does not keep it from being read.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,6 +23,40 @@ pub enum LogWarning {
         /// The words it may be.
         expected: String,
     },
+    /// The version that `logger_info.json` names and the columns do not go together; the columns count.
+    Version {
+        /// The first data file.
+        path: PathBuf,
+        /// The version, `1.0` or `1.1`.
+        version: String,
+        /// Whether there is the column `block_subtype`, which came with 1.1.
+        has_subtype: bool,
+    },
+    /// A time stamp is earlier than the one in the row above.
+    TimeRunsBack {
+        /// The data file.
+        path: PathBuf,
+        /// Line, from 1; the first such line of the file.
+        line: u64,
+        /// The time stamp.
+        found: Timestamp,
+        /// The one above.
+        before: Timestamp,
+    },
+    /// A worker's last experience has no complete row: the run was stopped, or goes on.
+    Unfinished {
+        /// The data file.
+        path: PathBuf,
+        /// Line of the experience's first row, from 1.
+        line: u64,
+        /// Number of the experience.
+        exp_num: u64,
+    },
+    /// A metrics column without a single number.
+    NoNumbers {
+        /// The column.
+        column: String,
+    },
     /// A task's name is not `task_variant`; it is used as it is.
     TaskName {
         /// The name.
@@ -36,6 +72,47 @@ impl fmt::Display for LogWarning {
                 write!(
                     f,
                     "scenario_info.json, {field}: found {found}, expected one of {expected}; left out"
+                )
+            }
+            Self::Version {
+                path,
+                version,
+                has_subtype,
+            } => {
+                let path = path.display();
+                let found = if *has_subtype { "the column" } else { "no column" };
+                let expected = if *has_subtype { "none" } else { "one" };
+                let read = if *has_subtype { "it counts" } else { "read as wake" };
+                write!(
+                    f,
+                    "{path}:1: found {found} block_subtype, expected {expected} in a log of format {version}; {read}"
+                )
+            }
+            Self::TimeRunsBack {
+                path,
+                line,
+                found,
+                before,
+            } => {
+                let path = path.display();
+                write!(
+                    f,
+                    "{path}:{line}, column timestamp: found {found}, expected not earlier than {before} in the row above; \
+                     it counts all the same"
+                )
+            }
+            Self::Unfinished { path, line, exp_num } => {
+                let path = path.display();
+                write!(
+                    f,
+                    "{path}:{line}: found experience {exp_num} without a complete row, the last of its worker; left out until \
+                     it has one"
+                )
+            }
+            Self::NoNumbers { column } => {
+                write!(
+                    f,
+                    "column {column}: found no number in any row, expected some; it cannot be scored"
                 )
             }
             Self::TaskName { found } => {

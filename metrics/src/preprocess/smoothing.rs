@@ -47,14 +47,38 @@ pub(crate) fn smoothed(values: &[f64], window_length: Option<usize>, method: Smo
         .collect();
     // Of the num + length - 1 places the window fits in, the num from here on are kept.
     let start = (length / 2).saturating_sub(1);
-    let weighted = |part: &[f64]| {
-        part.iter()
-            .zip(&weights)
-            .map(|(value, weight)| value * weight)
-            .sum::<f64>()
-            / total
-    };
-    mirrored.windows(length).skip(start).take(num).map(weighted).collect()
+    moving_sums(&mirrored[start..start + num + length - 1], &weights)
+        .into_iter()
+        .map(|sum| sum / total)
+        .collect()
+}
+
+/// Windows that are summed side by side: as many as there are sums in flight at once, so that none waits for another.
+const SIDE_BY_SIDE: usize = 16;
+
+/// The weighted sum of each window, from the first place it fits in to the last.
+///
+/// Each is added up from its first value to its last, as if it were the only one: no bit depends on its neighbours.
+fn moving_sums(values: &[f64], weights: &[f64]) -> Vec<f64> {
+    let num = values.len() + 1 - weights.len();
+    let mut sums = Vec::with_capacity(num + SIDE_BY_SIDE);
+    while sums.len() + SIDE_BY_SIDE <= num {
+        let mut side = [0.0; SIDE_BY_SIDE];
+        for (part, weight) in values[sums.len()..].windows(SIDE_BY_SIDE).zip(weights) {
+            for (sum, value) in side.iter_mut().zip(part) {
+                *sum += value * weight;
+            }
+        }
+        sums.extend(side);
+    }
+    for part in values[sums.len()..].windows(weights.len()) {
+        sums.push(
+            part.iter()
+                .zip(weights)
+                .fold(0.0, |sum, (value, weight)| sum + value * weight),
+        );
+    }
+    sums
 }
 
 /// Weights of a symmetric window, not normalised.
@@ -128,6 +152,17 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn sums_side_by_side_have_the_bits_of_sums_one_by_one(
+            values in proptest::collection::vec(-100.0..100.0, 7..100),
+            weights in proptest::collection::vec(0.0..1.0, 3..7),
+        ) {
+            let sum = |part: &[f64]| part.iter().zip(&weights).fold(0.0, |sum: f64, (value, weight)| sum + value * weight);
+            let expected: Vec<u64> = values.windows(weights.len()).map(|part| sum(part).to_bits()).collect();
+            let found: Vec<u64> = moving_sums(&values, &weights).into_iter().map(f64::to_bits).collect();
+            prop_assert_eq!(found, expected);
+        }
+
         #[test]
         fn smoothing_keeps_length_and_bounds(
             values in proptest::collection::vec(-100.0..100.0, 0..60),

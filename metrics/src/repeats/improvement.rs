@@ -39,7 +39,7 @@ pub struct StratumImprovement {
 /// often A is better and not by how much. Higher scores must be better.
 ///
 /// Intervals draw the scores within each stratum, whatever [`BootstrapOptions::resampling`] says: pairs of runs are formed
-/// stratum by stratum. Time `O(resamples · scores)`.
+/// stratum by stratum. What [`ScoreTable::caution`] says of either table is true of them. Time `O(resamples · scores)`.
 ///
 /// # Errors
 /// [`MetricsError::Scores`] where the tables have no stratum in common; [`MetricsError::BadOption`] as

@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 /// Values from one trained task to each other task, in order of the later evaluation.
 pub type PairValues = IndexMap<String, Vec<f64>>;
 
-/// One value of a metric. In JSON it stands as itself: a number, a list, a list of lists, or an object of lists.
+/// One value of a metric. In JSON it stands as itself: a number, a list, a list of lists, or an object of lists; of an empty
+/// list, JSON does not tell what it would hold.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Value {
@@ -68,10 +69,11 @@ impl Values {
         }
     }
 
-    /// Several numbers.
+    /// Several numbers; none for a list of counts.
     pub fn numbers(&self, name: &str) -> Option<&[f64]> {
         match self.get(name)? {
             Value::Numbers(numbers) => Some(numbers),
+            Value::Counts(counts) if counts.is_empty() => Some(&[]),
             _ => None,
         }
     }

@@ -3,14 +3,16 @@
 //! Not here: the single recovery times, see `recovery_time`.
 
 use super::{Assessment, Metric, recovery_time};
-use crate::MetricsError;
 use crate::report::{Direction, Headline};
 use crate::statistics::theil_sen_slope;
+use crate::{Definitions, MetricsError};
 
 /// `perf_recovery` of every task, and the `recovery_times` it is made of.
 ///
 /// Minus the Theil–Sen slope of a task's recovery times, in experiences per learning regime; positive when each
 /// recovery is faster than the last. None for fewer than two recovery times, that is, three learning regimes.
+///
+/// QUIRK: where there is one recovery time in the whole lifetime, it is not listed. It is under the published definitions.
 pub(super) struct PerformanceRecovery;
 
 const NAME: &str = "perf_recovery";
@@ -25,8 +27,16 @@ impl Metric for PerformanceRecovery {
     }
 
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
-        for task in assessment.lifetime().tasks() {
-            let times = recovery_time::of_task(assessment, task);
+        let tasks = assessment.lifetime().tasks();
+        let mut times: Vec<Vec<f64>> = tasks
+            .iter()
+            .map(|task| recovery_time::of_task(assessment, task))
+            .collect();
+        let is_alone = times.iter().map(Vec::len).sum::<usize>() == 1;
+        if is_alone && assessment.options().definitions == Definitions::Reference {
+            times.iter_mut().for_each(Vec::clear);
+        }
+        for (task, times) in tasks.iter().zip(times) {
             assessment.set_task(task, NAME, theil_sen_slope(&times).map(|slope| -slope));
             assessment.set_task(task, "recovery_times", Some(times));
         }

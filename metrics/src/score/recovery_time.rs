@@ -7,8 +7,7 @@ use super::Assessment;
 /// Recovery time, in experiences, of the second and every later wake learning regime of a task.
 ///
 /// The first index at which the regime reaches the terminal performance of the one before; its number of rows plus
-/// one where it never does. They are listed even where there are too few for `perf_recovery`; the reference lists
-/// none when the whole lifetime has only one.
+/// one where it never does.
 pub(super) fn of_task(assessment: &Assessment<'_>, task: &str) -> Vec<f64> {
     let trained: Vec<_> = (assessment.lifetime().regimes_of(task))
         .filter(|regime| regime.is_wake_training())

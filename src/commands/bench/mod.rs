@@ -3,6 +3,7 @@
 
 mod environment;
 mod generator;
+mod metrics;
 mod similarity;
 
 use std::time::{Duration, Instant};
@@ -39,6 +40,19 @@ enum What {
     /// Steps with pictures, and resets, each second on one core; what a second core adds; memory.
     #[command(after_help = "Example:\n  driftworld bench env --json")]
     Env(EnvOptions),
+    /// Writing, reading and scoring the log of a lifetime of 1,000,000 experiences, on one core.
+    #[command(after_help = "Example:\n  driftworld bench metrics --quick --json")]
+    Metrics(MetricsOptions),
+}
+
+#[derive(Args)]
+struct MetricsOptions {
+    /// Print the figures as JSON.
+    #[arg(long)]
+    json: bool,
+    /// Take a lifetime of 20,000 experiences.
+    #[arg(long)]
+    quick: bool,
 }
 
 #[derive(Args)]
@@ -70,21 +84,15 @@ fn seconds(text: &str) -> Result<f64, String> {
 impl Bench {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let round = |options: &Options| Duration::from_secs_f64(options.seconds);
-        let (options, figures) = match self.what {
-            What::Generator(options) => {
-                let figures = generator::measure(round(&options))?;
-                (options, figures)
-            }
-            What::Similarity(options) => {
-                let figures = similarity::measure(round(&options))?;
-                (options, figures)
-            }
+        let (json, figures) = match self.what {
+            What::Generator(options) => (options.json, generator::measure(round(&options))?),
+            What::Similarity(options) => (options.json, similarity::measure(round(&options))?),
             What::Env(EnvOptions { options, renderer }) => {
-                let figures = environment::measure(round(&options), renderer)?;
-                (options, figures)
+                (options.json, environment::measure(round(&options), renderer)?)
             }
+            What::Metrics(options) => (options.json, metrics::measure(options.quick)?),
         };
-        if options.json {
+        if json {
             return output::json(&figures);
         }
         for (name, value) in &figures {
@@ -122,4 +130,15 @@ fn rates<const N: usize>(figures: [(&str, f64); N]) -> Figures {
     named
         .map(|(name, rate)| (name.to_owned(), json!(rate.round())))
         .collect()
+}
+
+/// The least seconds that a job takes in three times.
+fn best_of_three<E: Into<Failure>>(mut job: impl FnMut() -> Result<(), E>) -> Result<f64, Failure> {
+    let mut best = f64::INFINITY;
+    for _ in 0..3 {
+        let start = Instant::now();
+        job().map_err(Into::into)?;
+        best = best.min(start.elapsed().as_secs_f64());
+    }
+    Ok(best)
 }

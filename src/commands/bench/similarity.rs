@@ -1,7 +1,7 @@
 //! How fast distances are measured and orders found: the jobs of the peers' script on inputs of the same kind, and two that only
 //! we have.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use driftworld::generator::Sampler;
 use driftworld::similarity::distribution::SortedSamples;
@@ -14,7 +14,7 @@ use driftworld::tasks;
 use serde_json::json;
 
 use super::super::Failure;
-use super::{Figures, rate};
+use super::{Figures, best_of_three, rate};
 
 /// Items of the matrix and of the order.
 const NUM_ITEMS: usize = 1000;
@@ -183,15 +183,4 @@ fn ordering() -> Result<f64, Failure> {
     let matrix =
         DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>(apart(a, b)))?.with_nature(Nature::Metric);
     best_of_three(|| order(&matrix, Method::TwoOpt, &OrderOptions::default()).map(drop))
-}
-
-/// The least seconds that a job takes in three times.
-fn best_of_three<E: Into<Failure>>(mut job: impl FnMut() -> Result<(), E>) -> Result<f64, Failure> {
-    let mut best = f64::INFINITY;
-    for _ in 0..3 {
-        let start = Instant::now();
-        job().map_err(Into::into)?;
-        best = best.min(start.elapsed().as_secs_f64());
-    }
-    Ok(best)
 }

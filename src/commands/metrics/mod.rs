@@ -14,7 +14,7 @@ pub(crate) use score::{score_log, score_logs};
 pub(crate) use tables::summary;
 
 use super::scoring::Scoring;
-use super::{Failure, find_logs, output};
+use super::{Failure, log_folders, output};
 
 /// What several lifetimes are called together, as in l2metrics.
 const NAME_OF_MANY: &str = "ll_metrics";
@@ -114,7 +114,7 @@ impl Metrics {
                 let others = if self.against.is_empty() {
                     Vec::new()
                 } else {
-                    score_logs(&find_logs::find(&self.against)?, &experts, &options)?
+                    score_logs(&log_folders::below(&self.against)?, &experts, &options)?
                 };
                 let together = many::together(&lifetimes, &others, &self.intervals.options())?;
                 if self.json {
@@ -137,19 +137,10 @@ impl Metrics {
             return Err(Failure::usage("found no DIR, expected the folder of a log, or several"));
         }
         if self.recursive {
-            return find_logs::find(&named);
+            log_folders::below(&named)
+        } else {
+            log_folders::named(&named)
         }
-        if let Some(folder) = named
-            .iter()
-            .find(|folder| folder.is_dir() && !find_logs::is_log(folder))
-            && find_logs::find(std::slice::from_ref(folder)).is_ok()
-        {
-            return Err(Failure::input(format!(
-                "{}: found a folder of logs, expected a log; add -R to score all logs in it",
-                folder.display()
-            )));
-        }
-        Ok(named)
     }
 
     fn save(&self, lifetimes: &[LifetimeMetrics], options: Options) -> Result<(), Failure> {

@@ -14,7 +14,7 @@ use driftworld::report::{
 
 use super::metrics::{Intervals, score_logs};
 use super::scoring::Scoring;
-use super::{Failure, find_logs, output};
+use super::{Failure, log_folders, output};
 use lived::Lived;
 use neighbours::Neighbours;
 
@@ -102,7 +102,7 @@ fn in_arguments(error: ReportError) -> Failure {
 impl Report {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let (shown, figures) = (self.figures.shown()?, self.figures.options()?);
-        let logs = find_logs::find(&self.logs)?;
+        let logs = log_folders::below(&self.logs)?;
         if logs.len() > MAX_LIFETIMES {
             let (found, limit) = (logs.len(), MAX_LIFETIMES);
             return Err(ReportError::TooManyLifetimes { found, limit }.into());
@@ -133,7 +133,7 @@ impl Report {
         let intervals = self.intervals.options();
         let mut comparisons = Vec::new();
         if !self.against.is_empty() {
-            let others = score_logs(&find_logs::find(&self.against)?, &experts, &options)?;
+            let others = score_logs(&log_folders::below(&self.against)?, &experts, &options)?;
             comparisons.push(Comparison {
                 agent: called(&self.logs),
                 other: called(&self.against),

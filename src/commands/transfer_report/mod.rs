@@ -13,7 +13,7 @@ use driftworld::similarity::MAX_RELABELLINGS;
 use super::metrics::score_logs;
 use super::pictures::scatter;
 use super::scoring::Experts;
-use super::{Failure, find_logs, matrix_file, output};
+use super::{Failure, log_folders, matrix_file, output};
 
 /// Ask whether similar variants transferred more: correlate distances with the transfer that logs measured.
 ///
@@ -95,7 +95,7 @@ impl TransferReport {
             smoothing_method: self.smoothing_method,
             ..Options::default()
         };
-        let lifetimes = score_logs(&find_logs::find(&self.logs)?, &Experts::default(), &options)?;
+        let lifetimes = score_logs(&log_folders::below(&self.logs)?, &Experts::default(), &options)?;
         let options = TransferOptions {
             measure,
             relabellings: self.relabellings,

@@ -1,56 +1,8 @@
 //! The `driftworld` command as its users meet it: output, exit codes, messages, files that are whole or absent.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
 
-fn driftworld(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_driftworld"))
-        .args(arguments)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .expect("the command was built by cargo and starts")
-}
-
-#[track_caller]
-fn succeed(arguments: &[&str]) -> String {
-    let output = driftworld(arguments);
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {error}");
-    String::from_utf8(output.stdout).expect("the command prints UTF-8")
-}
-
-/// What a failing command says on standard error.
-#[track_caller]
-fn fail(code: i32, arguments: &[&str]) -> String {
-    let output = driftworld(arguments);
-    let error = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
-    assert!(!error.contains("panicked"), "{error}");
-    error
-}
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("the machine has a folder for temporary files")
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("temporary paths are UTF-8")
-}
-
-/// The original's files, or a visible skip.
-fn reference(file: &str) -> Option<PathBuf> {
-    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/reference");
-    let root = std::env::var_os("DRIFTWORLD_REFERENCE").map_or(default, PathBuf::from);
-    let path = root.join("l2explorer").join(file);
-    if !path.exists() {
-        #[expect(clippy::print_stdout, reason = "a skip must be seen")]
-        {
-            println!("skipped: {} is not there; set DRIFTWORLD_REFERENCE", path.display());
-        }
-        return None;
-    }
-    Some(path)
-}
+use crate::terminal::{driftworld, fail, output, reference, scratch, succeed, text};
 
 #[test]
 fn every_subcommand_has_help_with_an_example() {
@@ -71,6 +23,7 @@ fn every_subcommand_has_help_with_an_example() {
         "order",
         "curriculum",
         "run",
+        "logs",
         "metrics",
         "report",
         "transfer-report",
@@ -120,7 +73,9 @@ fn validate_accepts_the_examples_and_the_maps_of_the_original() {
     assert_eq!(said.lines().count(), 7, "{said}");
     assert_eq!(succeed(&["validate", "examples/curricula"]).lines().count(), 6);
     for map in ["map_findobjects_0.json", "map_simple.json", "map_spawning.json"] {
-        let Some(path) = reference(map) else { return };
+        let Some(path) = reference(&format!("l2explorer/{map}")) else {
+            return;
+        };
         succeed(&["validate", "--l2explorer", text(&path)]);
         let refused = fail(1, &["validate", text(&path)]);
         assert!(
@@ -140,7 +95,7 @@ fn a_trailing_comma_is_refused_with_line_and_column() {
         error.contains("world.json:3:1: not valid JSON: trailing comma"),
         "{error}"
     );
-    let json = driftworld(&["validate", "--json", text(&path)]);
+    let json = output(&mut driftworld(&["validate", "--json", text(&path)]));
     let json: serde_json::Value = serde_json::from_slice(&json.stdout).expect("--json prints JSON also for bad files");
     assert_eq!(json[0]["valid"], false);
 }
@@ -230,7 +185,7 @@ fn a_group_that_cannot_be_placed_says_which_and_what_to_loosen() {
 
 #[test]
 fn render_draws_a_map_of_the_original() {
-    let Some(map) = reference("map_findobjects_0.json") else {
+    let Some(map) = reference("l2explorer/map_findobjects_0.json") else {
         return;
     };
     let folder = scratch();
@@ -525,7 +480,7 @@ fn worlds_go_to_l2explorer_and_come_back() {
     ]);
     let back = succeed(&["convert", text(&path), "--l2explorer"]);
     assert!(back.contains("\"max_steps\": 300"), "{back}");
-    let Some(maps) = reference("predefined_maps.json") else {
+    let Some(maps) = reference("l2explorer/predefined_maps.json") else {
         return;
     };
     let world = succeed(&["convert", "examples/tasks/settlement.json#near", "--maps", text(&maps)]);
@@ -543,6 +498,19 @@ fn the_bench_prints_its_figures_under_their_names() {
         "validations_per_second_per_core",
     ] {
         assert!(figures[name].as_f64().is_some_and(|rate| rate > 0.0), "{figures}");
+    }
+}
+
+#[test]
+fn the_bench_of_logs_reads_and_scores_what_it_wrote() {
+    let figures = succeed(&["bench", "metrics", "--json", "--quick"]);
+    let figures: serde_json::Value = serde_json::from_str(&figures).expect("--json prints JSON");
+    assert_eq!(figures["rows"], 20_000);
+    for name in ["write", "read", "score"] {
+        for unit in ["seconds", "rows_per_second"] {
+            let figure = &figures[format!("{name}_{unit}")];
+            assert!(figure.as_f64().is_some_and(|figure| figure > 0.0), "{figures}");
+        }
     }
 }
 

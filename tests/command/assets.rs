@@ -1,46 +1,19 @@
 //! Models from a file to a world, as users take them there: packed, listed, drawn, bumped into.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use driftworld::env::{Action, Catalogue, Environment, Library, Warning};
 use driftworld::spec::World;
 
+use crate::terminal::{driftworld, fail, output, root, scratch, succeed, text};
+
 const MODEL: &str = "examples/assets/lighthouse.gltf";
 const WORLD: &str = "examples/assets/harbour.json";
 
-/// What the command says: its exit code, its results and its messages.
-fn driftworld(arguments: &[&str]) -> (Option<i32>, String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_driftworld"))
-        .args(arguments)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .expect("the command was built by cargo and starts");
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    (output.status.code(), text(&output.stdout), text(&output.stderr))
-}
-
-#[track_caller]
-fn succeed(arguments: &[&str]) -> String {
-    let (code, said, error) = driftworld(arguments);
-    assert_eq!(code, Some(0), "{arguments:?}: {error}");
-    said
-}
-
-#[track_caller]
-fn fail(arguments: &[&str]) -> String {
-    let (code, _, error) = driftworld(arguments);
-    assert_eq!(code, Some(1), "{arguments:?}: {error}");
-    assert!(!error.contains("panicked"), "{error}");
-    error
-}
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("the machine has a folder for temporary files")
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("temporary paths are UTF-8")
+/// What the command says on standard error, however it ends.
+fn warnings(arguments: &[&str]) -> String {
+    let output = output(&mut driftworld(arguments));
+    String::from_utf8(output.stderr).expect("the command prints UTF-8")
 }
 
 /// The lighthouse in a library of its own.
@@ -51,8 +24,7 @@ fn packed(folder: &tempfile::TempDir) -> PathBuf {
 }
 
 fn world() -> World {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let json = std::fs::read_to_string(root.join(WORLD)).expect("the example is committed");
+    let json = std::fs::read_to_string(root().join(WORLD)).expect("the example is committed");
     World::from_json(WORLD, &json).expect("the example is a sound world")
 }
 
@@ -155,10 +127,10 @@ fn a_run_is_not_taken_up_with_other_libraries() {
     let with = [&resume[..], &["--assets", text(&library)]].concat();
     succeed(&with);
     succeed(&with);
-    let error = fail(&resume);
+    let error = fail(1, &resume);
     assert!(error.contains("/made_from/assets: found"), "{error}");
     succeed(&["assets", "pack", MODEL, "--class", "beacon", "-o", text(&library)]);
-    let error = fail(&with);
+    let error = fail(1, &with);
     assert!(error.contains("/made_from/assets/0/sha256: found"), "{error}");
 }
 
@@ -186,10 +158,10 @@ fn models_are_listed_and_drawn() {
         assert!(picture.exists());
     }
     let drawn = ["render", WORLD, "--view", "rgb", "--size", "64", "-o", output];
-    let (_, _, warned) = driftworld(&drawn);
+    let warned = warnings(&drawn);
     assert_eq!(warned.matches("a placeholder stands there").count(), 3, "{warned}");
     let placeholder = std::fs::read(&picture).expect("the picture was written");
-    let (_, _, silent) = driftworld(&[drawn.as_slice(), &["--assets", text(&library)]].concat());
+    let silent = warnings(&[drawn.as_slice(), &["--assets", text(&library)]].concat());
     assert_eq!(silent, "");
     assert!(std::fs::read(&picture).expect("the picture was written") != placeholder);
 }
@@ -198,7 +170,7 @@ fn models_are_listed_and_drawn() {
 fn what_cannot_be_packed_says_why_and_leaves_no_library() {
     #[track_caller]
     fn check(model: &Path, library: &Path, expected: &str) {
-        let error = fail(&["assets", "pack", text(model), "-o", text(library)]);
+        let error = fail(1, &["assets", "pack", text(model), "-o", text(library)]);
         assert!(error.contains(expected), "{error}");
         assert!(!library.exists(), "nothing is half written");
     }
@@ -210,7 +182,7 @@ fn what_cannot_be_packed_says_why_and_leaves_no_library() {
         "absent.glb: cannot be read",
     );
     check(folder.path(), &library, "it is a folder or a device, not a file");
-    let hostile = Path::new(env!("CARGO_MANIFEST_DIR")).join("env/tests/hostile");
+    let hostile = root().join("env/tests/hostile");
     check(
         &hostile.join("uri_above.gltf"),
         &library,
@@ -219,19 +191,22 @@ fn what_cannot_be_packed_says_why_and_leaves_no_library() {
     check(&hostile.join("cycle_of_nodes.gltf"), &library, "a tree of nodes");
     let broken = folder.path().join("broken.assets");
     std::fs::write(&broken, b"DRIFTLIB and nothing more").expect("the scratch folder can be written");
-    let error = fail(&["assets", "list", text(&broken)]);
+    let error = fail(1, &["assets", "list", text(&broken)]);
     assert!(error.contains("broken.assets: library, byte"), "{error}");
-    assert!(fail(&["assets", "show", "dragon"]).contains("\"dragon\" is not known"));
+    assert!(fail(1, &["assets", "show", "dragon"]).contains("\"dragon\" is not known"));
 }
 
 #[test]
 fn only_libraries_are_written_over() {
     let folder = scratch();
     let model = folder.path().join("tower.gltf");
-    std::fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(MODEL), &model).expect("the example is committed");
+    std::fs::copy(root().join(MODEL), &model).expect("the example is committed");
     let before = std::fs::read(&model).expect("it was copied");
     for add in [["--class", "tower"].as_slice(), &["--add"]] {
-        let error = fail(&[["assets", "pack", text(&model), "-o", text(&model)].as_slice(), add].concat());
+        let error = fail(
+            1,
+            &[["assets", "pack", text(&model), "-o", text(&model)].as_slice(), add].concat(),
+        );
         let expected = "tower.gltf: found a file that is no library, expected a new name or a library";
         assert!(error.contains(expected), "{error}");
         assert_eq!(std::fs::read(&model).expect("it is still there"), before);
@@ -250,9 +225,9 @@ fn what_is_asked_of_a_model_is_read_with_care() {
     let pack = ["assets", "pack", MODEL, "-o", text(&library)];
     let said = succeed(&[pack.as_slice(), &["--class", " Lamp "]].concat());
     assert!(said.lines().any(|line| line.starts_with("lamp  ")), "{said}");
-    let error = fail(&[pack.as_slice(), &["--scale", "-1"]].concat());
+    let error = fail(1, &[pack.as_slice(), &["--scale", "-1"]].concat());
     assert!(error.contains("scale: found -1, expected a number above 0"), "{error}");
-    let error = fail(&[pack.as_slice(), &["--height", "-2.5"]].concat());
+    let error = fail(1, &[pack.as_slice(), &["--height", "-2.5"]].concat());
     assert!(
         error.contains("height: found -2.5, expected a number above 0"),
         "{error}"
@@ -273,10 +248,10 @@ fn links_out_of_the_folder_are_not_followed() {
     std::fs::write(&model, json).expect("the scratch folder can be written");
     let library = folder.path().join("x.assets");
     let pack = ["assets", "pack", text(&model), "-o", text(&library)];
-    let error = fail(&pack);
+    let error = fail(1, &pack);
     assert!(error.contains("it leads out of the model's folder"), "{error}");
     std::fs::remove_file(inside.join("lamp.bin")).expect("the link is there");
     std::fs::write(inside.join("lamp.bin"), [0; 36]).expect("the scratch folder can be written");
-    let error = fail(&pack);
+    let error = fail(1, &pack);
     assert!(error.contains("nothing to draw"), "now the file is read: {error}");
 }

@@ -2,11 +2,12 @@
 //! The learners are a few lines of arithmetic; what they log is read like anyone's log.
 
 use std::path::Path;
-use std::process::{Command, Output};
 
 use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp};
 use driftworld::similarity::{DistanceMatrix, SimilarityError};
 use serde_json::Value;
+
+use crate::terminal::{fail_in, succeed_in};
 
 /// Where six variants lie on a line.
 const PLACES: [f64; 6] = [0.0, 0.1, 0.25, 0.5, 0.8, 1.0];
@@ -120,37 +121,20 @@ fn write_matrix(folder: &Path, labels: Vec<String>) {
     std::fs::write(folder.join("distances.csv"), text).expect("the folder can be written");
 }
 
-fn report(folder: &Path, more: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_driftworld"))
-        .args(["transfer-report", "logs", "--distances", "distances.csv"])
-        .args(more)
-        .current_dir(folder)
-        .output()
-        .expect("the command was built by cargo and starts")
+const REPORT: [&str; 4] = ["transfer-report", "logs", "--distances", "distances.csv"];
+
+#[track_caller]
+fn reported(folder: &Path, more: &[&str]) -> String {
+    succeed_in(folder, &[&REPORT, more].concat())
 }
 
 #[track_caller]
-fn succeed(folder: &Path, more: &[&str]) -> String {
-    let output = report(folder, more);
-    assert_eq!(
-        output.status.code(),
-        Some(0),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    String::from_utf8(output.stdout).expect("the command prints UTF-8")
-}
-
-#[track_caller]
-fn fail(folder: &Path, code: i32, more: &[&str]) -> String {
-    let output = report(folder, more);
-    let error = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(code), "{error}");
-    error
+fn refused(folder: &Path, code: i32, more: &[&str]) -> String {
+    fail_in(folder, code, &[&REPORT, more].concat())
 }
 
 fn json(folder: &Path) -> Value {
-    serde_json::from_str(&succeed(folder, &["--json"])).expect("--json prints JSON")
+    serde_json::from_str(&reported(folder, &["--json"])).expect("--json prints JSON")
 }
 
 fn every_order() -> Vec<&'static [usize]> {
@@ -178,7 +162,7 @@ fn a_learner_whose_transfer_falls_with_distance_is_told_from_one_whose_transfer_
 #[test]
 fn the_report_explains_itself_and_draws_a_picture() {
     let folder = lived(&every_order(), by_distance, true);
-    let said = succeed(folder.path(), &["-o", "transfer.png"]);
+    let said = reported(folder.path(), &["-o", "transfer.png"]);
     for words in [
         "6 lifetimes",
         "line#v0",
@@ -199,13 +183,13 @@ fn the_report_explains_itself_and_draws_a_picture() {
         .expect("a folder");
     }
     let one = lived(&[&ORDERS[0]], by_distance, true);
-    assert!(succeed(one.path(), &[]).contains("learned in one order"));
+    assert!(reported(one.path(), &[]).contains("learned in one order"));
 }
 
 #[test]
 fn what_cannot_be_reported_says_what_is_needed() {
     let folder = lived(&[&ORDERS[0]], by_distance, false);
-    let error = fail(folder.path(), 1, &[]);
+    let error = refused(folder.path(), 1, &[]);
     assert!(
         error.contains("no evaluation in 1 logs") && error.contains("--evaluate every"),
         "{error}"
@@ -213,23 +197,23 @@ fn what_cannot_be_reported_says_what_is_needed() {
 
     let folder = lived(&[&ORDERS[0][..2]], by_distance, true);
     write_matrix(folder.path(), vec!["line#v0".to_owned(), "line#v1".to_owned()]);
-    let error = fail(folder.path(), 1, &[]);
+    let error = refused(folder.path(), 1, &[]);
     assert!(
         error.contains("1 forward and 1 backward") && error.contains("at least 3"),
         "{error}"
     );
 
     write_matrix(folder.path(), vec!["curve#v0".to_owned(), "curve#v1".to_owned()]);
-    let error = fail(folder.path(), 1, &[]);
+    let error = refused(folder.path(), 1, &[]);
     assert!(error.contains("line_v0") && error.contains("curve#v0"), "{error}");
 
-    let error = fail(folder.path(), 1, &["--perf-measure", "joy"]);
+    let error = refused(folder.path(), 1, &["--perf-measure", "joy"]);
     assert!(error.contains("\"joy\"") && error.contains("reward"), "{error}");
     std::fs::write(folder.path().join("distances.csv"), "nothing").expect("the folder can be written");
-    assert!(fail(folder.path(), 1, &[]).contains("distances.csv: matrix, line 1: found \"nothing\""));
+    assert!(refused(folder.path(), 1, &[]).contains("distances.csv: matrix, line 1: found \"nothing\""));
     std::fs::remove_dir_all(folder.path().join("logs")).expect("it is there");
     std::fs::create_dir(folder.path().join("logs")).expect("it is gone");
     write_matrix(folder.path(), vec!["line#v0".to_owned(), "line#v1".to_owned()]);
-    assert!(fail(folder.path(), 1, &[]).contains("logs: found no log"));
-    fail(folder.path(), 2, &["--relabellings", "0"]);
+    assert!(refused(folder.path(), 1, &[]).contains("logs: found no log"));
+    refused(folder.path(), 2, &["--relabellings", "0"]);
 }

@@ -2,20 +2,20 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 
 use driftworld::spec::World;
+
+use crate::terminal::{driftworld, root, scratch};
 
 const WORLD: &str = "examples/console/world.json";
 
 /// Runs the console with lines on its standard input, and `--out` in a folder of the test's own.
 fn console(arguments: &[&str], out: &Path, lines: impl AsRef<[u8]>) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_driftworld"))
-        .arg("console")
+    let mut child = driftworld(&["console"])
         .args(arguments)
         .arg("--out")
         .arg(out)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -35,7 +35,7 @@ fn said(output: &Output, out: &Path) -> String {
 
 /// A transcript without the world's hash, which is another as soon as worlds get another key.
 fn without_hash(transcript: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(WORLD);
+    let path = root().join(WORLD);
     let text = std::fs::read_to_string(path).expect("the example is there");
     let hash = World::from_json(WORLD, &text).expect("the example is sound").hash();
     let token = format!("{}-{}-8{}-8{}-", &hash[..8], &hash[8..12], &hash[12..15], &hash[15..18]);
@@ -43,10 +43,6 @@ fn without_hash(transcript: &str) -> String {
         .replace(&hash, "HASH")
         .replace(&hash[..12], "HASH")
         .replace(&token, "TOKEN-")
-}
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("the machine has a folder for temporary files")
 }
 
 /// A transcript that must end well.
@@ -207,7 +203,7 @@ fn a_variant_has_worlds_by_number() {
 
 /// The original's messages, or a visible skip.
 fn original() -> Option<PathBuf> {
-    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/reference");
+    let default = root().join("../shared/reference");
     let root = std::env::var_os("DRIFTWORLD_REFERENCE").map_or(default, PathBuf::from);
     let messages = root.join("l2explorer/channel_messages.json");
     if messages.exists() {

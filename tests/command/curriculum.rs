@@ -1,14 +1,18 @@
 //! `driftworld curriculum` as its users meet it: probes with their proof, forms, drifts, even steps, controls, pictures, errors.
 
+use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Output};
 use std::sync::LazyLock;
 
 use serde_json::Value;
 
+use crate::terminal::{driftworld, fail, output, scratch, text};
+
 /// A task that stays as it is when the built-in ones grow.
 static PARK: LazyLock<String> = LazyLock::new(|| {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("park.json");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let path = folder.join("park.json");
     let task = r#"{ "version": 2, "name": "park", "parameters": {
         "color": { "role": "variant", "type": "color", "affects": ["O"], "choices": ["blue", "red", "green"], "default": "blue" },
         "reward": { "role": "variant", "type": "number", "affects": ["R"], "range": [-100, 100], "default": 100 },
@@ -16,7 +20,10 @@ static PARK: LazyLock<String> = LazyLock::new(|| {
         "spread": { "role": "variant", "type": "number", "affects": ["S"], "range": [2, 40], "default": 20 } },
       "variants": { "blue": {}, "red": { "color": "red" }, "green": { "color": "green" }, "dusk": { "extends": "red", "light": 0.6 },
         "huddle": { "spread": 6 }, "penalty": { "extends": "red", "reward": -100 } } }"#;
-    std::fs::write(&path, task).expect("cargo has made the folder");
+    // Tests run in processes of their own: one must not read what another is writing.
+    let mut file = tempfile::NamedTempFile::new_in(folder).expect("cargo has made the folder");
+    file.write_all(task.as_bytes()).expect("there is room for a task");
+    file.persist(&path).expect("a file can be put in place of another");
     text(&path).to_owned()
 });
 
@@ -25,41 +32,26 @@ fn park(variant: &str) -> &'static str {
     format!("{}{variant}", *PARK).leak()
 }
 
-fn driftworld(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_driftworld"))
-        .arg("curriculum")
-        .args(arguments)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .expect("the command was built by cargo and starts")
+/// `driftworld curriculum` with these arguments, to its end.
+fn curriculum(arguments: &[&str]) -> Output {
+    output(driftworld(&["curriculum"]).args(arguments))
+}
+
+/// What it says when it ends with this exit code.
+#[track_caller]
+fn refused(code: i32, arguments: &[&str]) -> String {
+    fail(code, &[&["curriculum"], arguments].concat())
 }
 
 /// The scenario on standard output, and what is said beside it.
 #[track_caller]
 fn designed(arguments: &[&str]) -> (Value, String) {
-    let output = driftworld(arguments);
+    let output = curriculum(arguments);
     let beside = String::from_utf8(output.stderr).expect("the command prints UTF-8");
     assert_eq!(output.status.code(), Some(0), "{arguments:?}: {beside}");
     let scenario =
         serde_json::from_slice(&output.stdout).expect("a scenario is JSON, and nothing else is printed with it");
     (scenario, beside)
-}
-
-#[track_caller]
-fn fail(code: i32, arguments: &[&str]) -> String {
-    let output = driftworld(arguments);
-    let error = String::from_utf8(output.stderr).expect("the command prints UTF-8");
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
-    assert!(!error.contains("panicked"), "{error}");
-    error
-}
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("the machine has a folder for temporary files")
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("temporary paths are UTF-8")
 }
 
 fn read(path: &Path) -> Value {
@@ -163,7 +155,7 @@ fn every_element_of_the_five_tasks_can_be_probed() {
 fn what_a_probe_makes_is_in_the_scenario_and_as_far_as_the_table_says() {
     let folder = scratch();
     let path = folder.path().join("reward.json");
-    let said = driftworld(&[park(""), "--probe", "reward", "--variants", "5", "-o", text(&path)]);
+    let said = curriculum(&[park(""), "--probe", "reward", "--variants", "5", "-o", text(&path)]);
     assert_eq!(said.status.code(), Some(0));
     let table = String::from_utf8(said.stdout).expect("the command prints UTF-8");
     let scenario = read(&path);
@@ -191,7 +183,7 @@ fn orders_differ_and_controls_are_matched_in_everything_else() {
     let at = |name: &str| folder.path().join(name);
     let controls = at("controls");
     let main = at("main.json");
-    let status = driftworld(&[
+    let status = curriculum(&[
         park(""),
         "--probe",
         "reward",
@@ -236,7 +228,7 @@ fn controls_learn_as_often_and_before_deployment_the_same() {
     let folder = scratch();
     let main = folder.path().join("main.json");
     let controls = folder.path().join("controls");
-    let said = driftworld(&[
+    let said = curriculum(&[
         park("#blue"),
         park("#red"),
         park("#dusk"),
@@ -267,14 +259,14 @@ fn controls_learn_as_often_and_before_deployment_the_same() {
             "{table}"
         );
     }
-    let permuted = fail(2, &[park(""), "--form", "permuted", "--controls", text(&controls)]);
+    let permuted = refused(2, &[park(""), "--form", "permuted", "--controls", text(&controls)]);
     assert!(permuted.contains("leave one of them out"), "{permuted}");
 }
 
 #[test]
 fn experts_of_two_tasks_are_written_side_by_side() {
     let folder = scratch();
-    let output = driftworld(&[
+    let output = curriculum(&[
         "find_objects#dusk",
         "get_to_goal#dusk",
         "--form",
@@ -298,10 +290,10 @@ fn experts_of_two_tasks_are_written_side_by_side() {
 fn a_probe_ends_where_it_is_asked_to() {
     let (scenario, _) = designed(&[park(""), "--probe", "observation", "--end", park("#blue")]);
     assert_eq!(learned(&scenario).last().map(String::as_str), Some("blue"));
-    let error = fail(1, &[park(""), "--probe", "observation", "--end", park("#bleu")]);
+    let error = refused(1, &[park(""), "--probe", "observation", "--end", park("#bleu")]);
     assert!(error.contains("--end: found"), "{error}");
     for wanted in ["0", "1", "201"] {
-        let error = fail(1, &[park(""), "--probe", "reward", "--variants", wanted]);
+        let error = refused(1, &[park(""), "--probe", "reward", "--variants", wanted]);
         assert!(error.contains("variants wanted, expected 2 to 200"), "{error}");
     }
 }
@@ -324,7 +316,8 @@ fn evaluation_never_draws_what_is_learned_and_stands_where_it_is_wanted() {
     assert!(seeds("evaluation").iter().all(|seed| seed == "13"));
     assert!(regimes(&places, "evaluation").iter().all(|regime| regime["count"] == 3));
     assert!(
-        fail(1, &[&three[..], &["--evaluate-after", "4"]].concat()).contains("after learning block 4, expected 0 to 3")
+        refused(1, &[&three[..], &["--evaluate-after", "4"]].concat())
+            .contains("after learning block 4, expected 0 to 3")
     );
 }
 
@@ -361,7 +354,7 @@ fn the_forms_arrange_the_blocks_and_say_so() {
     let folder = scratch();
     let several = |arguments: &[&str], file: &str| {
         let output = folder.path().join("several");
-        let output = driftworld(&[&[park(""), "-o", text(&output)], arguments].concat());
+        let output = curriculum(&[&[park(""), "-o", text(&output)], arguments].concat());
         assert_eq!(
             output.status.code(),
             Some(0),
@@ -401,7 +394,7 @@ fn drifts_lead_from_variant_to_variant_across_blocks() {
     };
     assert_eq!(drift(&[]), ["blue>dusk 0-1"]);
     assert_eq!(drift(&["--blocks", "2"]), ["blue>dusk 0-0.5", "blue>dusk 0.5-1"]);
-    let error = fail(1, &[park("#blue"), "get_to_goal#plain", "--drift", "linear"]);
+    let error = refused(1, &[park("#blue"), "get_to_goal#plain", "--drift", "linear"]);
     assert!(error.contains("expected two variants of one task"), "{error}");
 }
 
@@ -430,7 +423,7 @@ fn even_steps_are_made_and_proven_or_it_is_said_how_far_they_reach() {
         );
     }
     assert_eq!(learned(&scenario).len(), 6);
-    let error = fail(1, &[&steps[..], &["--steps", "6"]].concat());
+    let error = refused(1, &[&steps[..], &["--steps", "6"]].concat());
     assert!(
         error.contains("found at most 5 of 0.2 ± 0.01, expected 6; the farthest variant is 1.0000 away"),
         "{error}"
@@ -494,28 +487,28 @@ fn a_scenario_is_validated_against_the_tasks_it_names() {
 
 #[test]
 fn what_is_asked_for_wrongly_is_answered_with_what_is_possible() {
-    let none = fail(1, &[park(""), "--probe", "transition"]);
+    let none = refused(1, &[park(""), "--probe", "transition"]);
     assert!(
         none.contains("park#blue: found no parameters that affect T alone"),
         "{none}"
     );
-    let few = fail(1, &[park(""), "--probe", "reward", "--start", park("#bleu")]);
+    let few = refused(1, &[park(""), "--probe", "reward", "--start", park("#bleu")]);
     assert!(few.contains(&format!("expected one of {}", park("#blue"))), "{few}");
-    let mixed = fail(1, &[park(""), "get_to_goal", "--probe", "reward"]);
+    let mixed = refused(1, &[park(""), "get_to_goal", "--probe", "reward"]);
     assert!(mixed.contains("measure within a task"), "{mixed}");
-    let word = fail(2, &[park(""), "--probe", "colour"]);
+    let word = refused(2, &[park(""), "--probe", "colour"]);
     assert!(
         word.contains("expected state, action, transition, reward or observation"),
         "{word}"
     );
-    let form = fail(1, &[park(""), "--form", "alternating"]);
+    let form = refused(1, &[park(""), "--form", "alternating"]);
     assert!(
         form.contains("the form alternating: found 6 variants, expected 2 variants"),
         "{form}"
     );
-    assert!(fail(2, &[park(""), "--form", "expert"]).contains("--output"));
-    assert!(fail(2, &[park(""), "--lifetimes", "2"]).contains("--form permuted"));
-    assert!(fail(2, &[park(""), "--steps", "3"]).contains("--step-distance"));
-    assert!(fail(1, &[park(""), "--blocks", "0"]).contains("expected 1 to 10000"));
-    assert!(fail(1, &[park(""), "--step-distance", "2"]).contains("a distance above 0 and at most 1"));
+    assert!(refused(2, &[park(""), "--form", "expert"]).contains("--output"));
+    assert!(refused(2, &[park(""), "--lifetimes", "2"]).contains("--form permuted"));
+    assert!(refused(2, &[park(""), "--steps", "3"]).contains("--step-distance"));
+    assert!(refused(1, &[park(""), "--blocks", "0"]).contains("expected 1 to 10000"));
+    assert!(refused(1, &[park(""), "--step-distance", "2"]).contains("a distance above 0 and at most 1"));
 }

@@ -1,56 +1,11 @@
-//! `driftworld run` as it is interrupted: killed at any moment, told to stop, out of room; and the original's scenario files.
+//! `driftworld run` as it is interrupted: killed at any moment, told to stop, out of room.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command, Stdio};
 
-/// Whether a file's name is that of a table of a log.
-fn is_table(name: &str) -> bool {
-    Path::new(name).extension().is_some_and(|ending| ending == "tsv")
-}
-
-fn driftworld(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_driftworld"));
-    command.args(arguments).current_dir(env!("CARGO_MANIFEST_DIR"));
-    command
-}
-
-fn output(arguments: &[&str]) -> Output {
-    driftworld(arguments)
-        .output()
-        .expect("the command was built by cargo and starts")
-}
-
-#[track_caller]
-fn succeed(arguments: &[&str]) -> String {
-    let output = output(arguments);
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {error}");
-    String::from_utf8(output.stdout).expect("the command prints UTF-8")
-}
-
-#[track_caller]
-fn fail(code: i32, arguments: &[&str]) -> String {
-    let output = output(arguments);
-    let error = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
-    assert!(!error.contains("panicked"), "{error}");
-    error
-}
-
-fn scratch() -> tempfile::TempDir {
-    tempfile::tempdir().expect("the machine has a folder for temporary files")
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().expect("temporary paths are UTF-8")
-}
-
-fn write(path: &Path, text: &str) {
-    fs::create_dir_all(path.parent().expect("a file lies in a folder")).expect("the scratch folder can be written");
-    fs::write(path, text).expect("the scratch folder can be written");
-}
+use crate::lived::{files, num_rows, write};
+use crate::terminal::{driftworld, fail, output, scratch, succeed, text};
 
 /// A lifetime of 3 blocks and 36 experiences, a few milliseconds each.
 fn scenario(folder: &Path) -> PathBuf {
@@ -75,44 +30,6 @@ fn longer_scenario(folder: &Path, max_steps: u32) -> PathBuf {
     );
     write(&path, &text);
     path
-}
-
-/// All files of a log by their paths, without the times at which rows were written.
-fn files(log: &Path) -> BTreeMap<String, String> {
-    let mut found = BTreeMap::new();
-    let mut folders = vec![log.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(folder).expect("the log can be listed") {
-            let path = entry.expect("the log can be listed").path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            let name = path
-                .strip_prefix(log)
-                .expect("it lies in the log")
-                .display()
-                .to_string();
-            let text = fs::read_to_string(&path).expect("logs are text");
-            let text = if is_table(&name) { timeless(&text) } else { text };
-            found.insert(name, text);
-        }
-    }
-    found
-}
-
-fn timeless(table: &str) -> String {
-    let header: Vec<&str> = table.lines().next().unwrap_or_default().split('\t').collect();
-    let place = header
-        .iter()
-        .position(|name| *name == "timestamp")
-        .expect("rows say when");
-    let row = |line: &str| {
-        let mut cells: Vec<&str> = line.split('\t').collect();
-        cells.remove(place);
-        cells.join("\t") + "\n"
-    };
-    table.lines().map(row).collect()
 }
 
 /// Bytes in all files of a folder, which may not be there yet.
@@ -218,12 +135,6 @@ fn a_run_told_to_stop_finishes_its_row_and_says_how_to_go_on() {
         succeed(&[&arguments[..], &["--resume"]].concat());
         assert_eq!(files(&log), files(&whole), "{signal}");
     }
-}
-
-/// How many rows a log has, all of them with a line end.
-fn num_rows(log: &Path) -> usize {
-    let tables = files(log).into_iter().filter(|(name, _)| is_table(name));
-    tables.map(|(_, text)| text.lines().count() - 1).sum()
 }
 
 #[test]
@@ -369,7 +280,7 @@ fn a_scenario_converted_away_from_its_worlds_is_warned_about() {
     write(&folder.path().join("yard.json"), "{}");
     let said = |to: &str| {
         let to = folder.path().join(to);
-        let output = output(&["convert", text(&scenario), "-o", text(&to)]);
+        let output = output(&mut driftworld(&["convert", text(&scenario), "-o", text(&to)]));
         String::from_utf8_lossy(&output.stderr).contains("names the world file \"yard.json\", which is not there")
     };
     assert!(said("elsewhere/scenario.json"));
@@ -446,172 +357,4 @@ fn a_folder_that_cannot_be_made_is_an_error() {
     );
     fail(2, &["run", text(&scenario), "--jobs", "0"]);
     assert!(fail(2, &["run", text(&scenario), "--agent", "onrail"]).contains("did you mean \"onrails\"?"));
-}
-
-/// The original's files, or a visible skip.
-fn reference(file: &str) -> Option<PathBuf> {
-    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/reference");
-    let root = std::env::var_os("DRIFTWORLD_REFERENCE").map_or(default, PathBuf::from);
-    let path = root.join("l2explorer").join(file);
-    if !path.exists() {
-        #[expect(clippy::print_stdout, reason = "a skip must be seen")]
-        {
-            println!("skipped: {} is not there; set DRIFTWORLD_REFERENCE", path.display());
-        }
-        return None;
-    }
-    Some(path)
-}
-
-#[test]
-fn the_originals_scenario_is_lived_as_it_stands() {
-    let Some(original) = reference("scenario_findobjects.json") else {
-        return;
-    };
-    let Some(map) = reference("map_findobjects_0.json") else {
-        return;
-    };
-    let folder = scratch();
-    // As in the original: the maps lie above the scenario.
-    let scenario = folder.path().join("scenarios/scenario_findobjects.json");
-    let copy = |from: &Path, to: &Path| write(to, &fs::read_to_string(from).expect("the reference can be read"));
-    copy(&original, &scenario);
-    copy(&map, &folder.path().join("map_findobjects_0.json"));
-    copy(&map, &folder.path().join("map_findobjects_1.json"));
-    let log = folder.path().join("log");
-    let few = ["--agent", "onrails", "--logs", text(&log)];
-    succeed(&[&["run", text(&scenario)][..], &few].concat());
-    let tables = files(&log);
-    let names: Vec<&str> = tables
-        .keys()
-        .map(String::as_str)
-        .filter(|name| name.ends_with("tsv"))
-        .collect();
-    let blocks = ["0-train", "1-test", "2-train", "3-test"];
-    assert_eq!(
-        names,
-        blocks.map(|block| format!("worker-default/{block}/data-log.tsv"))
-    );
-    assert_eq!(num_rows(&log), 2 + 3 + 6 + 4);
-    assert!(
-        tables[names[3]].contains("\ttask2_mapfindobjects1\t"),
-        "{}",
-        tables[names[3]]
-    );
-    let metrics = succeed(&["metrics", text(&log), "--json"]);
-    assert!(metrics.contains("task1_mapfindobjects0"), "{metrics}");
-
-    // As it stands beside us: one map lies beside the scenario, the other is nowhere.
-    let error = fail(
-        1,
-        &[
-            "run",
-            text(&original),
-            "--no-stand-in",
-            "--logs",
-            text(&folder.path().join("none")),
-        ],
-    );
-    assert!(
-        error.contains("found no file \"../map_findobjects_1.json\", looked for"),
-        "{error}"
-    );
-    assert!(
-        error.contains("map_findobjects_0.json stand in for it without --no-stand-in"),
-        "{error}"
-    );
-    let stand_in = folder.path().join("stand-in");
-    let run = ["run", text(&original), "--agent", "random", "--logs", text(&stand_in)];
-    let output = output(&run);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
-    assert!(said.contains("which lies beside the scenario"), "{said}");
-    assert!(
-        said.contains("map_findobjects_1.json: not there; map_findobjects_0.json stood in for it"),
-        "{said}"
-    );
-    let info = &files(&stand_in)["scenario_info.json"];
-    assert!(
-        info.contains("\"../map_findobjects_1.json\": \"not there; map_findobjects_0.json stood in for it\""),
-        "{info}"
-    );
-    let again = [&run[..], &["--resume"]].concat();
-    succeed(&again);
-}
-
-#[test]
-fn the_originals_scenario_goes_to_ours_and_back() {
-    let Some(original) = reference("scenario_findobjects.json") else {
-        return;
-    };
-    succeed(&["validate", text(&original)]);
-    let folder = scratch();
-    let (ours, back) = (folder.path().join("ours.json"), folder.path().join("back.json"));
-    succeed(&["convert", text(&original), "-o", text(&ours)]);
-    succeed(&["validate", text(&ours)]);
-    succeed(&["convert", text(&ours), "--to", "l2explorer", "-o", text(&back)]);
-    let json = |path: &Path| -> serde_json::Value {
-        serde_json::from_str(&fs::read_to_string(path).expect("it was written")).expect("it is JSON")
-    };
-    assert_eq!(json(&back), json(&original));
-}
-
-#[test]
-fn worlds_that_a_scenario_draws_become_maps_that_are_lived_alike() {
-    let folder = scratch();
-    // Without a reward for each step, which maps of the original cannot say.
-    let (task, scenario) = (folder.path().join("cubes.json"), folder.path().join("scenario.json"));
-    write(
-        &task,
-        r#"{ "name": "cubes", "world": { "max_steps": 150 }, "variants": { "few": {} },
-            "groups": [{ "name": "cubes", "count": 3, "separation": 2, "placement": { "disc": { "center": [0, 0], "radius": 20 } },
-                "object": { "class": "cube", "reward": 10, "reward_stimulus": ["AgentCollide"], "destroy_stimulus": ["AgentCollide"] } }] }"#,
-    );
-    let regime = |count: u32| {
-        format!(
-            r#"{{ "task": {:?}, "variant": "few", "count": {count}, "seed": 2 }}"#,
-            text(&task)
-        )
-    };
-    let blocks = [("evaluation", 2), ("learning", 5), ("evaluation", 2)]
-        .map(|(kind, count)| format!(r#"{{ "type": "{kind}", "regimes": [{}] }}"#, regime(count)));
-    write(
-        &scenario,
-        &format!(r#"{{ "name": "s", "blocks": [{}] }}"#, blocks.join(", ")),
-    );
-    let error = fail(2, &["convert", text(&scenario), "--to", "l2explorer"]);
-    assert!(error.contains("-o"), "{error}");
-    let original = folder.path().join("original/scenario.json");
-    succeed(&["convert", text(&scenario), "--to", "l2explorer", "-o", text(&original)]);
-    let (ours, theirs) = (folder.path().join("ours"), folder.path().join("theirs"));
-    let live = |scenario: &Path, log: &Path| {
-        succeed(&["run", text(scenario), "--agent", "onrails", "--logs", text(log)]);
-        rewards(log)
-    };
-    let lived = live(&scenario, &ours);
-    assert_eq!(lived.len(), 9);
-    assert!(lived.iter().any(|reward| reward == "30.0"), "{lived:?}");
-    assert_eq!(lived, live(&original, &theirs), "the same rewards in the same order");
-}
-
-/// The rewards of a log, in order.
-fn rewards(log: &Path) -> Vec<String> {
-    let tables = files(log).into_iter().filter(|(name, _)| is_table(name));
-    tables
-        .flat_map(|(_, table)| {
-            let header: Vec<String> = table
-                .lines()
-                .next()
-                .unwrap_or_default()
-                .split('\t')
-                .map(str::to_owned)
-                .collect();
-            let place = header
-                .iter()
-                .position(|name| name == "reward")
-                .expect("rows say the reward");
-            let cell = |line: &str| line.split('\t').nth(place).unwrap_or_default().to_owned();
-            table.lines().skip(1).map(cell).collect::<Vec<_>>()
-        })
-        .collect()
 }

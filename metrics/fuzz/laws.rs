@@ -1,0 +1,180 @@
+//! What must hold of every log, whatever its files hold: the laws that the fuzzer and `tests/fuzzed.rs` check.
+//!
+//! Not here: where the bytes come from.
+
+use std::fs;
+use std::path::Path;
+
+use driftworld_metrics::{
+    AggregationMethod, Log, LogWriter, LoggerInfo, MaintenanceMethod, NormalizationMethod, Options, Row,
+    SmoothingMethod, SteAveragingMethod, SteLog, TransferMethod, VariantMode, read_log, read_log_with_texts, score,
+    validate_log,
+};
+
+/// What stands between the files of a log in one piece of bytes.
+const BETWEEN: &[u8] = b"\n%%\n";
+
+/// The files, in the order of the bytes; `%` stands for one that is not there.
+const FILES: [&str; 4] = [
+    "logger_info.json",
+    "scenario_info.json",
+    "v/0-train/data-log.tsv",
+    "w/0-train/data-log.tsv",
+];
+
+/// Lays out the log that the bytes describe, and checks every law.
+pub fn check(bytes: &[u8]) {
+    let base = tempfile::tempdir().expect("there is room for a small log");
+    let dir = base.path().join("log");
+    lay_out(&dir, bytes);
+    let valid = validate_log(&dir).is_valid();
+    let log = match read_log(&dir) {
+        Ok(log) => {
+            reads_alike_with_texts(&dir, &log);
+            scores_without_nan(&log);
+            writes_back(&base.path().join("copy"), &log);
+            Some(log)
+        }
+        Err(error) => {
+            assert!(!valid, "what is valid can be read: {error}");
+            assert!(!error.to_string().is_empty());
+            None
+        }
+    };
+    resumes(&dir, log.as_ref());
+}
+
+fn lay_out(dir: &Path, bytes: &[u8]) {
+    let mut rest = bytes;
+    for name in FILES {
+        let end = rest.windows(BETWEEN.len()).position(|part| part == BETWEEN);
+        let (text, after) = match end {
+            Some(end) => (&rest[..end], &rest[end + BETWEEN.len()..]),
+            None => (rest, &b"%"[..]),
+        };
+        rest = after;
+        let path = dir.join(name);
+        fs::create_dir_all(path.parent().expect("a file lies in a folder")).expect("there is room for a folder");
+        if text != b"%" {
+            fs::write(path, text).expect("there is room for a small file");
+        }
+    }
+}
+
+fn reads_alike_with_texts(dir: &Path, log: &Log) {
+    let whole = read_log_with_texts(dir).expect("texts are no fault");
+    assert!(
+        whole.rows.iter().map(shown).eq(log.rows.iter().map(shown)),
+        "texts change nothing else"
+    );
+    let order = |row: Row<'_>| (row.exp_num(), row.block_num());
+    assert!(
+        log.rows
+            .iter()
+            .zip(log.rows.iter().skip(1))
+            .all(|(a, b)| order(a) <= order(b))
+    );
+    assert!(
+        log.rows
+            .iter()
+            .eq(read_log(dir).expect("it was read before").rows.iter())
+    );
+}
+
+/// A row in words that are equal where rows are: not a number is one, and columns have no order.
+fn shown(row: Row<'_>) -> String {
+    let mut record = row.to_record();
+    record.metrics.sort_keys();
+    format!("{record:?}")
+}
+
+fn sorted_rows(log: &Log) -> Vec<String> {
+    let mut rows: Vec<String> = log.rows.iter().map(shown).collect();
+    rows.sort();
+    rows
+}
+
+/// No score is not a number, and none is infinite; what cannot be scored says why.
+fn scores_without_nan(log: &Log) {
+    let experts: Vec<SteLog> = SteLog::new(log.clone()).into_iter().collect();
+    let mut choices = vec![Options::default(); 3];
+    choices[1].variant_mode = VariantMode::Agnostic;
+    choices[1].smoothing_method = SmoothingMethod::Hanning;
+    choices[1].window_length = Some(3);
+    choices[1].clamp_outliers = true;
+    choices[1].transfer_method = TransferMethod::Both;
+    choices[1].maintenance_method = MaintenanceMethod::Both;
+    choices[1].ste_averaging_method = SteAveragingMethod::Time;
+    choices[2].normalization_method = NormalizationMethod::Off;
+    choices[2].aggregation_method = AggregationMethod::Median;
+    choices[2].smooth_eval_data = true;
+    for mut options in choices {
+        for column in log.logger_info.metrics_columns() {
+            options.perf_measure.clone_from(column);
+            match score(log, &experts, &options) {
+                Ok(metrics) => {
+                    let numbers = without_quoted(&format!("{metrics:?}"));
+                    assert!(!numbers.contains("NaN") && !numbers.contains("inf,"), "{numbers}");
+                }
+                Err(error) => assert!(!error.to_string().is_empty()),
+            }
+        }
+    }
+}
+
+/// The words of a value without what stands in quotes.
+fn without_quoted(text: &str) -> String {
+    let mut found = String::new();
+    let (mut quoted, mut escaped) = (false, false);
+    for letter in text.chars() {
+        match letter {
+            _ if escaped => escaped = false,
+            '\\' if quoted => escaped = true,
+            '"' => quoted = !quoted,
+            _ if !quoted => found.push(letter),
+            _ => {}
+        }
+    }
+    found
+}
+
+/// What was read can be written, if its rows keep the rules of a writer, and reads the same.
+fn writes_back(dir: &Path, log: &Log) {
+    let info = LoggerInfo::new(log.logger_info.metrics_columns()).expect("they were taken before");
+    let mut writer = LogWriter::create(dir, &info, &log.scenario_info).expect("the folder is new");
+    for row in log.rows.iter() {
+        if writer.write(&row.to_record()).is_err() {
+            return;
+        }
+    }
+    writer.finish().expect("there is room for a small log");
+    if log.rows.is_empty() {
+        return;
+    }
+    let copy = read_log(dir).expect("what is written can be read");
+    assert_eq!(sorted_rows(&copy), sorted_rows(log));
+    for problem in validate_log(dir).problems {
+        assert_eq!(
+            problem.code(),
+            "metrics/not-completed",
+            "what is written is valid: {problem}"
+        );
+    }
+    LogWriter::resume(dir).expect("what is written can be continued");
+}
+
+/// A log that is taken up can be read, and what could be read before is all there.
+fn resumes(dir: &Path, log: Option<&Log>) {
+    if LogWriter::resume(dir).is_err() {
+        return;
+    }
+    match read_log(dir) {
+        Ok(after) => assert!(log.is_none_or(|log| log.rows == after.rows)),
+        Err(error) => assert!(
+            error.code() == "metrics/no-data-files"
+                || error.code() == "metrics/json"
+                || error.code() == "metrics/block-order",
+            "what was repaired can be read: {error}"
+        ),
+    }
+}

@@ -1,0 +1,290 @@
+//! Every fault of a log at once, those included that do not keep it from being read: the rules its writer should have kept.
+//!
+//! Not here: reading it to score it, see `reader`.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use super::faults::{Faults, Listed};
+use super::logger_info::LoggerInfo;
+use super::reader::{block_order, warn_of_task_names};
+use super::record::ExpStatus;
+use super::scenario_info::ScenarioInfo;
+use super::table::{Table, Texts};
+use super::warning::LogWarning;
+use super::{columns, data_file, data_files};
+use crate::MetricsError;
+
+/// What [`validate_log`] found.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Validation {
+    /// What is wrong, file by file, the first [`MAX_LISTED`](crate::MAX_LISTED) of it.
+    pub problems: Vec<MetricsError>,
+    /// How many more problems there are.
+    pub more_problems: u64,
+    /// What is odd, the first [`MAX_LISTED`](crate::MAX_LISTED) of it.
+    pub warnings: Vec<LogWarning>,
+    /// How many more odd things there are.
+    pub more_warnings: u64,
+    /// How much was looked at.
+    pub counts: LogCounts,
+}
+
+impl Validation {
+    /// Whether nothing is wrong; odd things do not count.
+    pub fn is_valid(&self) -> bool {
+        self.problems.is_empty()
+    }
+}
+
+/// How much there is of a log; of rows that can be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub struct LogCounts {
+    /// Data files.
+    pub files: usize,
+    /// Rows.
+    pub rows: usize,
+    /// Rows that close an experience.
+    pub complete_rows: usize,
+    /// Experiences: pairs of number and worker.
+    pub experiences: usize,
+    /// Different block numbers.
+    pub blocks: usize,
+    /// Workers.
+    pub workers: usize,
+    /// Different task names.
+    pub tasks: usize,
+}
+
+/// Checks a log: all that [`read_log`](crate::read_log) checks, and what only its writer could have kept to. Numbers never fall
+/// within a file; every file has the same columns, those of the version the log says it has; each experience has exactly one
+/// complete row, its last. What is no rule but usual is warned about: task names of two words, the words of
+/// `scenario_info.json`, time stamps that do not run backwards, a last experience that was finished, metrics that hold numbers.
+///
+/// A log without problems can be read.
+pub fn validate_log(dir: impl AsRef<Path>) -> Validation {
+    let dir = dir.as_ref();
+    let mut check = Check::default();
+    check.all(dir).unwrap_or_else(|error| check.problems.add(error));
+    Validation {
+        problems: check.problems.first,
+        more_problems: check.problems.more,
+        warnings: check.warnings.first,
+        more_warnings: check.warnings.more,
+        counts: check.counts,
+    }
+}
+
+#[derive(Default)]
+struct Check {
+    problems: Listed<MetricsError>,
+    warnings: Listed<LogWarning>,
+    counts: LogCounts,
+}
+
+impl Check {
+    /// The error is a problem after which nothing more can be said.
+    fn all(&mut self, dir: &Path) -> Result<(), MetricsError> {
+        let files = data_files::find(dir)?;
+        self.counts.files = files.len();
+        self.scenario_info(dir);
+        let logger_info = LoggerInfo::read(dir)?;
+        if files.is_empty() {
+            return Err(MetricsError::NoDataFiles { path: dir.to_owned() });
+        }
+        let table = self.read(dir, &files, &logger_info)?;
+        self.order_in_files(&table, &files);
+        self.completions(&table, &files);
+        self.metrics(&table, logger_info.metrics_columns());
+        self.count(&table);
+        self.sorted(table, &files);
+        Ok(())
+    }
+
+    fn scenario_info(&mut self, dir: &Path) {
+        let mut warnings = Vec::new();
+        match ScenarioInfo::read(dir, &mut warnings) {
+            Err(error) => self.problems.add(error),
+            Ok(_) if warnings.contains(&LogWarning::NoScenarioInfo) => {}
+            Ok(info) => info.warn_of_missing(&mut warnings),
+        }
+        for warning in warnings {
+            self.warnings.add(warning);
+        }
+    }
+
+    /// Reads every file as far as it can be read.
+    fn read<'d>(
+        &mut self,
+        dir: &'d Path,
+        files: &[PathBuf],
+        logger_info: &LoggerInfo,
+    ) -> Result<Table<'d>, MetricsError> {
+        let metrics = logger_info.metrics_columns();
+        let mut table = Table::new(dir, metrics, Texts::Leave);
+        let mut faults = Faults::List(std::mem::take(&mut self.problems));
+        let mut headers: Vec<(usize, Vec<String>)> = Vec::new();
+        let mut ended = Ok(());
+        for (file, path) in files.iter().enumerate() {
+            match data_file::read(path, metrics, &mut table, &mut faults) {
+                Ok(header) => headers.push((file, header)),
+                // The log as a whole is too large: there is no use in going on.
+                Err(error @ MetricsError::TooLarge { .. }) if table.is_full() => {
+                    ended = Err(error);
+                    break;
+                }
+                Err(error) => faults.add(error)?,
+            }
+        }
+        if let Faults::List(listed) = faults {
+            self.problems = listed;
+        }
+        ended?;
+        self.headers(&headers, files, logger_info);
+        table.complete()?;
+        Ok(table)
+    }
+
+    /// Every file has the columns of the first, and those of the log's version.
+    fn headers(&mut self, headers: &[(usize, Vec<String>)], files: &[PathBuf], logger_info: &LoggerInfo) {
+        let sorted = |names: &[String]| names.iter().cloned().collect::<BTreeSet<String>>();
+        let Some((first, expected)) = headers.first() else {
+            return;
+        };
+        for (file, names) in &headers[1..] {
+            if sorted(names) != sorted(expected) {
+                self.problems.add(MetricsError::ColumnsDiffer {
+                    path: files[*file].clone(),
+                    found: names.join(", "),
+                    expected: expected.join(", "),
+                    first: files[*first].clone(),
+                });
+            }
+        }
+        let has_subtype = expected.iter().any(|name| name == columns::SINCE_1_1);
+        let version = logger_info.log_format_version();
+        if has_subtype == (version == "1.0") {
+            let path = files[*first].clone();
+            let version = version.to_owned();
+            self.warnings.add(LogWarning::Version {
+                path,
+                version,
+                has_subtype,
+            });
+        }
+    }
+
+    /// Numbers never fall within a file; time stamps that do are warned about, once a file.
+    fn order_in_files(&mut self, table: &Table<'_>, files: &[PathBuf]) {
+        let rows = &table.rows;
+        for (file, path) in files.iter().enumerate().take(table.num_files()) {
+            let mut told = false;
+            let mut range = table.rows_of_file(file);
+            let Some(mut before) = range.next() else { continue };
+            for row in range {
+                for (column, numbers) in [("block_num", rows.block_nums()), ("exp_num", rows.exp_nums())] {
+                    if numbers[row] < numbers[before] {
+                        self.problems.add(MetricsError::NumberFalls {
+                            path: path.clone(),
+                            line: table.place(row).1,
+                            column,
+                            found: numbers[row],
+                            expected: numbers[before],
+                        });
+                    }
+                }
+                let stamps = rows.timestamps();
+                if stamps[row] < stamps[before] && !std::mem::replace(&mut told, true) {
+                    self.warnings.add(LogWarning::TimeRunsBack {
+                        path: path.clone(),
+                        line: table.place(row).1,
+                        found: stamps[row],
+                        before: stamps[before],
+                    });
+                }
+                before = row;
+            }
+        }
+    }
+
+    /// Exactly one complete row for each experience of a worker, the last; its very last experience may be unfinished.
+    fn completions(&mut self, table: &Table<'_>, files: &[PathBuf]) {
+        let rows = &table.rows;
+        let key = |row: usize| (rows.workers().ids()[row], rows.exp_nums()[row]);
+        let mut by_experience: Vec<u32> = (0..rows.len() as u32).collect();
+        by_experience.sort_by_key(|&row| key(row as usize));
+        let mut experiences = by_experience
+            .chunk_by(|&a, &b| key(a as usize) == key(b as usize))
+            .peekable();
+        while let Some(experience) = experiences.next() {
+            self.counts.experiences += 1;
+            // An experience has at least one row.
+            let first = experience[0] as usize;
+            let of_worker = |other: &&[u32]| key(other[0] as usize).0 == key(first).0;
+            let is_last = !experiences.peek().is_some_and(of_worker);
+            let is_complete = |&&row: &&u32| rows.exp_statuses()[row as usize] == ExpStatus::Complete;
+            let place = |row: usize| {
+                let (file, line) = table.place(row);
+                (files[file].clone(), line)
+            };
+            let (exp_num, worker) = (rows.exp_nums()[first], rows.workers().of(first).clone());
+            match experience.iter().position(|row| is_complete(&row)) {
+                None if is_last => {
+                    let (path, line) = place(first);
+                    self.warnings.add(LogWarning::Unfinished { path, line, exp_num });
+                }
+                None => {
+                    let (path, line) = place(first);
+                    self.problems.add(MetricsError::NotCompleted {
+                        path,
+                        line,
+                        exp_num,
+                        worker,
+                    });
+                }
+                Some(end) => {
+                    if let Some(&after) = experience.get(end + 1) {
+                        let (path, line) = place(after as usize);
+                        self.problems.add(MetricsError::RowAfterComplete {
+                            path,
+                            line,
+                            exp_num,
+                            worker,
+                        });
+                    }
+                }
+            }
+        }
+    }
+
+    /// A declared metric that never has a number is good for nothing.
+    fn metrics(&mut self, table: &Table<'_>, declared: &[String]) {
+        for name in declared {
+            let numbers = table.rows.metric(name).unwrap_or_default();
+            if !numbers.is_empty() && numbers.iter().all(|number| number.is_nan()) {
+                self.warnings.add(LogWarning::NoNumbers { column: name.clone() });
+            }
+        }
+    }
+
+    fn count(&mut self, table: &Table<'_>) {
+        let rows = &table.rows;
+        let complete = |status: &&ExpStatus| **status == ExpStatus::Complete;
+        self.counts.rows = rows.len();
+        self.counts.complete_rows = rows.exp_statuses().iter().filter(complete).count();
+        self.counts.blocks = rows.block_nums().iter().collect::<BTreeSet<_>>().len();
+        self.counts.workers = rows.workers().values().iter().collect::<BTreeSet<_>>().len();
+        self.counts.tasks = rows.task_names().values().iter().collect::<BTreeSet<_>>().len();
+    }
+
+    /// What shows once all rows are in the order of experiences.
+    fn sorted(&mut self, mut table: Table<'_>, files: &[PathBuf]) {
+        let order = table.rows.sort();
+        if let Some(fault) = block_order(&table, order.as_deref(), files) {
+            self.problems.add(fault);
+        }
+        warn_of_task_names(&table.rows, |warning| self.warnings.add(warning));
+    }
+}

@@ -1,0 +1,64 @@
+//! `docs/metrics.md` says of the metrics what the metrics say of themselves.
+//!
+//! Not here: its examples, which are compiled with the documentation's tests.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
+
+use driftworld_metrics::{
+    BlockType, Direction, LogWriter, LoggerInfo, Options, Record, ScenarioInfo, Timestamp, read_log, score,
+};
+
+const PAGE: &str = include_str!("../../docs/metrics.md");
+
+#[test]
+fn the_table_of_metrics_is_that_of_the_code() {
+    let base = tempfile::tempdir().unwrap();
+    let dir = base.path().join("life");
+    let mut log = LogWriter::create(&dir, &LoggerInfo::new(["reward"]).unwrap(), &ScenarioInfo::default()).unwrap();
+    let when = Timestamp::from_unix_micros(0).unwrap();
+    log.write(&Record::new(0, 0, BlockType::Train, "a_1", when).with_metric("reward", 1.0))
+        .unwrap();
+    let summary = score(&read_log(&dir).unwrap(), &[], &Options::default())
+        .unwrap()
+        .summary();
+    let rows = summary.iter().map(|row| {
+        let good = match row.good {
+            Direction::Higher => "higher".to_owned(),
+            Direction::Lower => "lower".to_owned(),
+            Direction::HigherThan(neutral) => format!("above {neutral}"),
+            Direction::LowerThan(neutral) => format!("below {neutral}"),
+        };
+        format!("| `{}` | {} | {good} |\n", row.name, row.explanation)
+    });
+    let table = format!(
+        "| metric | what it says | good |\n|---|---|---|\n{}\n",
+        rows.collect::<String>()
+    );
+    assert!(
+        PAGE.contains(&table),
+        "docs/metrics.md should have this table:\n{table}"
+    );
+}
+
+#[test]
+fn every_value_of_a_task_is_named() {
+    let base = tempfile::tempdir().unwrap();
+    let dir = base.path().join("life");
+    let mut log = LogWriter::create(&dir, &LoggerInfo::new(["reward"]).unwrap(), &ScenarioInfo::default()).unwrap();
+    let when = Timestamp::from_unix_micros(0).unwrap();
+    log.write(&Record::new(0, 0, BlockType::Train, "a_1", when).with_metric("reward", 1.0))
+        .unwrap();
+    let scores = score(&read_log(&dir).unwrap(), &[], &Options::default()).unwrap();
+    let columns = scores.regimes[0].values.iter().map(|(name, _)| name);
+    for name in columns.chain([
+        "recovery_times",
+        "avg_train_perf_vals",
+        "avg_eval_perf_vals",
+        "ste_rel_perf_vals",
+    ]) {
+        assert!(
+            PAGE.contains(&format!("`{name}`")),
+            "docs/metrics.md does not say what {name} is"
+        );
+    }
+}

@@ -1,0 +1,196 @@
+//! What must hold of every log and of every score, whatever the lifetime was.
+//!
+//! Not here: single lifetimes with their numbers, see `tiny_lifetime` and `reference`; logs that are broken, see `fuzzed`.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
+
+mod generators;
+
+use std::path::Path;
+
+use driftworld_metrics::{
+    LogWriter, LoggerInfo, MaintenanceMethod, NormalizationMethod, Options, Record, Row, ScenarioInfo, SmoothingMethod,
+    TransferMethod, read_log, read_ste_log, score,
+};
+use generators::{Lived, any_log, expert, lay_out, lifetime};
+use proptest::prelude::*;
+use serde_json::Value;
+
+/// Everything that is asked for at once.
+fn options(normalization_method: NormalizationMethod, smoothing_method: SmoothingMethod) -> Options {
+    Options {
+        normalization_method,
+        smoothing_method,
+        maintenance_method: MaintenanceMethod::Both,
+        transfer_method: TransferMethod::Both,
+        ..Options::default()
+    }
+}
+
+/// The scores of a log as JSON, without what tells of the performances as they were logged.
+fn scores(dir: &Path, expert: Option<&Path>, options: &Options) -> Value {
+    let experts: Vec<_> = expert.into_iter().map(|dir| read_ste_log(dir).unwrap()).collect();
+    let mut scores = serde_json::to_value(score(&read_log(dir).unwrap(), &experts, options).unwrap()).unwrap();
+    scores.as_object_mut().unwrap().shift_remove("normalization_data_range");
+    scores
+}
+
+/// Where two JSON values differ by more than rounding: 1e-9 of the number.
+fn difference(a: &Value, b: &Value, place: &str) -> Option<String> {
+    match (a, b) {
+        (Value::Object(a), Value::Object(b)) if a.keys().eq(b.keys()) => a
+            .iter()
+            .find_map(|(key, value)| difference(value, &b[key], &format!("{place}/{key}"))),
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+            (0..a.len()).find_map(|index| difference(&a[index], &b[index], &format!("{place}/{index}")))
+        }
+        (Value::Number(x), Value::Number(y)) => {
+            let (x, y) = (x.as_f64()?, y.as_f64()?);
+            ((x - y).abs() > 1e-9 * x.abs().max(1.0)).then(|| format!("{place}: {x} {y}"))
+        }
+        _ => (a != b).then(|| format!("{place}: {a} {b}")),
+    }
+}
+
+/// Whether the performances of every task are one, or far enough apart that rounding does not count.
+fn is_spread(rows: &[&[Lived]]) -> bool {
+    let rows = || rows.iter().copied().flatten();
+    rows().all(|row| {
+        let of_task = || {
+            rows()
+                .filter(|other| other.task == row.task)
+                .map(|other| other.performance)
+        };
+        let width = of_task().fold(f64::MIN, f64::max) - of_task().fold(f64::MAX, f64::min);
+        width == 0.0 || width > 0.1
+    })
+}
+
+/// Data of so many rows are smoothed.
+const SMOOTHED: usize = 15;
+
+/// Whether the learning of a task, or of the expert, is smoothed. The first windows of smoothed data tie by mirroring (of x2 x1 | x0 x1 x2
+/// the first three and the last three have one sum), and the last bit of the sums says which of them is the first maximum.
+fn ties(rows: &[&[Lived]]) -> bool {
+    rows.iter().any(|rows| {
+        let num_of = |row: &Lived| rows.iter().filter(|other| other.task == row.task).count();
+        rows.iter().any(|row| num_of(row) >= SMOOTHED)
+    })
+}
+
+/// Leaves out what depends on which of two equal maxima comes first.
+fn without_places_of_maxima(scores: &mut Value) {
+    let depends = |key: &str| {
+        ["exp_to_sat", "sample_efficiency", "saturation_vals"]
+            .iter()
+            .any(|part| key.contains(part))
+    };
+    if let Value::Object(fields) = scores {
+        fields.retain(|key, _| !depends(key));
+        fields.values_mut().for_each(without_places_of_maxima);
+    }
+}
+
+/// Compares the scores of a lifetime with those of the same one whose performances are all changed in the same way.
+fn check_invariance(
+    lived: &[Lived],
+    expert: &[Lived],
+    options: &Options,
+    change: impl Fn(f64) -> f64,
+) -> Result<(), TestCaseError> {
+    prop_assume!(is_spread(&[lived, expert]));
+    let base = tempfile::tempdir().unwrap();
+    let changed = |rows: &[Lived]| -> Vec<Lived> {
+        let row = |row: &Lived| Lived {
+            performance: change(row.performance),
+            ..row.clone()
+        };
+        rows.iter().map(row).collect()
+    };
+    let scored = |name: &str, lived: &[Lived], expert: &[Lived]| {
+        let (dir, expert_dir) = (base.path().join(name).join("log"), base.path().join(name).join("ste"));
+        lay_out(&dir, lived.iter().map(|row| (row, 0)));
+        lay_out(&expert_dir, expert.iter().map(|row| (row, 0)));
+        let mut scores = scores(&dir, Some(&expert_dir), options);
+        if ties(&[lived, expert]) {
+            without_places_of_maxima(&mut scores);
+        }
+        scores
+    };
+    let before = scored("before", lived, expert);
+    let after = scored("after", &changed(lived), &changed(expert));
+    prop_assert_eq!(difference(&before, &after, ""), None);
+    Ok(())
+}
+
+fn normalized() -> impl Strategy<Value = Options> {
+    let by = prop::sample::select(vec![NormalizationMethod::Task, NormalizationMethod::Run]);
+    (by, prop::sample::select(SmoothingMethod::ALL)).prop_map(|(by, smoothing)| options(by, smoothing))
+}
+
+/// A record in words that are equal where records are.
+fn shown(record: &Record) -> String {
+    format!("{record:?}")
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn what_is_written_is_read(records in any_log()) {
+        let base = tempfile::tempdir().unwrap();
+        let info = LoggerInfo::new(["reward"]).unwrap();
+        let mut writer = LogWriter::create(base.path(), &info, &ScenarioInfo::default()).unwrap();
+        for record in &records {
+            writer.write(record).unwrap();
+        }
+        let mut found: Vec<Record> = read_log(base.path()).unwrap().rows.iter().map(Row::to_record).collect();
+        prop_assert!(found.is_sorted_by_key(|record| (record.exp_num, record.block_num)));
+        // Rows of several workers may have the same numbers; their time stamps say which was written first.
+        found.sort_by_key(|record| record.timestamp);
+        prop_assert_eq!(found.iter().map(shown).collect::<Vec<_>>(), records.iter().map(|record| {
+            let mut record = record.clone();
+            record.metrics.sort_by(|a, _, b, _| (a != "reward").cmp(&(b != "reward")));
+            shown(&record)
+        }).collect::<Vec<_>>());
+        // A log goes on where it stopped, whatever is in it.
+        drop(writer);
+        let last = records.last().unwrap();
+        let next = Record { exp_num: last.exp_num + 1, ..last.clone() };
+        LogWriter::resume(base.path()).unwrap().write(&next).unwrap();
+        prop_assert_eq!(read_log(base.path()).unwrap().rows.len(), records.len() + 1);
+    }
+
+    #[test]
+    fn scores_do_not_depend_on_files_and_the_order_of_lines(
+        lived in lifetime(),
+        folders in prop::collection::vec(0_usize..5, 1..40),
+        order in any::<u64>(),
+    ) {
+        let base = tempfile::tempdir().unwrap();
+        let (one, many) = (base.path().join("one/log"), base.path().join("many/log"));
+        lay_out(&one, lived.iter().map(|row| (row, 0)));
+        // Any folder for each row, and any order of all of them: that of a number that is as good as random.
+        let mut rows: Vec<(&Lived, usize)> = lived.iter().zip(folders.iter().copied().cycle()).collect();
+        rows.sort_by_key(|(row, _)| (row.exp_num + 1).wrapping_mul(order | 1).rotate_left(17).wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        lay_out(&many, rows);
+        for normalization in NormalizationMethod::ALL {
+            let options = options(*normalization, SmoothingMethod::Flat);
+            prop_assert_eq!(scores(&one, None, &options), scores(&many, None, &options));
+        }
+    }
+
+    #[test]
+    fn normalised_scores_do_not_depend_on_where_zero_lies(
+        lived in lifetime(), expert in expert(), options in normalized(), shift in -1000.0..1000.0,
+    ) {
+        check_invariance(&lived, &expert, &options, |performance| performance + shift)?;
+    }
+
+    #[test]
+    fn normalised_scores_do_not_depend_on_the_unit(
+        lived in lifetime(), expert in expert(), options in normalized(), scale in 0.01..100.0,
+    ) {
+        check_invariance(&lived, &expert, &options, |performance| performance * scale)?;
+    }
+}

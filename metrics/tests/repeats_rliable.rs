@@ -1,0 +1,154 @@
+//! Statistics over repeats against rliable: `tests/oracles/repeats_rliable.py` says how its numbers were made.
+//!
+//! Not here: laws that hold for any scores, see `repeats_laws`.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
+
+use driftworld_metrics::{
+    Aggregate, BootstrapOptions, Estimate, ScoreTable, estimate, performance_profile, probability_of_improvement,
+};
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+struct Oracle {
+    gamma: f64,
+    resamples: Resamples,
+    seeds: Resamples,
+    thresholds: Vec<f64>,
+    cases: Vec<Case>,
+    comparisons: Vec<Comparison>,
+}
+
+#[derive(Deserialize)]
+struct Resamples {
+    aggregates: u32,
+    improvement: u32,
+}
+
+#[derive(Deserialize)]
+struct Case {
+    name: String,
+    scores: Vec<Vec<f64>>,
+    values: [f64; 4],
+    ends: [[f64; 4]; 2],
+    profile: Vec<f64>,
+}
+
+#[derive(Deserialize)]
+struct Comparison {
+    name: String,
+    a: Vec<Vec<f64>>,
+    b: Vec<Vec<f64>>,
+    value: f64,
+    strata: Vec<f64>,
+    ends: [[f64; 1]; 2],
+}
+
+fn oracle() -> Oracle {
+    serde_json::from_str(include_str!("oracles/repeats_rliable.json")).unwrap()
+}
+
+/// From rows of runs.
+fn table(scores: &[Vec<f64>]) -> ScoreTable {
+    let run = |scores: &Vec<f64>| {
+        let named = scores.iter().enumerate().map(|(k, score)| (k.to_string(), *score));
+        named.collect::<Vec<_>>()
+    };
+    ScoreTable::from_runs(
+        scores
+            .iter()
+            .enumerate()
+            .map(|(k, scores)| (k.to_string(), run(scores))),
+    )
+    .unwrap()
+}
+
+/// How often ours draws: fewer than rliable's 50,000, for the time of a build without optimisation.
+const RESAMPLES: u32 = 20_000;
+
+/// Our ends, and theirs as the mean over seeds, are where two samples of resamples leave out 2.5 %. The share that a sample of
+/// size n leaves out beyond a fixed point scatters by √(0.025 · 0.975 / n); five deviations of the difference are allowed. The
+/// comparison is by share, since few runs have few different resamples, between whose values there are wide gaps.
+fn allowed_share(theirs: u32, seeds: u32) -> f64 {
+    let of_one = |resamples: u32| 0.025 * 0.975 / f64::from(resamples);
+    5.0 * (of_one(RESAMPLES) + of_one(theirs * seeds)).sqrt()
+}
+
+/// Intervals that leave out as much more and as much less at either end as is allowed: narrow, wide.
+fn options(theirs: u32, seeds: u32) -> [BootstrapOptions; 2] {
+    [-2.0, 2.0].map(|sides| BootstrapOptions {
+        confidence: 0.95 + sides * allowed_share(theirs, seeds),
+        resamples: RESAMPLES,
+        ..BootstrapOptions::default()
+    })
+}
+
+#[track_caller]
+fn check_value(name: &str, found: f64, expected: f64) {
+    let tolerance = 1e-12 * expected.abs().max(1.0);
+    assert!(
+        (found - expected).abs() <= tolerance,
+        "{name}: found {found}, expected {expected}"
+    );
+}
+
+/// Their ends lie between our narrow interval's and our wide one's; rounding aside.
+#[track_caller]
+fn check_ends(name: &str, narrow: &Estimate, wide: &Estimate, expected: [f64; 2]) {
+    let (narrow, wide) = (narrow.interval.unwrap(), wide.interval.unwrap());
+    let [low, high] = expected;
+    let rounding = 1e-9;
+    assert!(
+        wide.low - rounding <= low
+            && low <= narrow.low + rounding
+            && narrow.high - rounding <= high
+            && high <= wide.high + rounding,
+        "{name}: expected {expected:?} between {narrow:?} and {wide:?}"
+    );
+}
+
+#[test]
+fn aggregates_and_profiles_are_those_of_rliable() {
+    let oracle = oracle();
+    for case in &oracle.cases {
+        let gamma = oracle.gamma;
+        let aggregates = [
+            Aggregate::Mean,
+            Aggregate::Median,
+            Aggregate::Iqm,
+            Aggregate::OptimalityGap { gamma },
+        ];
+        let table = table(&case.scores);
+        let options = options(oracle.resamples.aggregates, oracle.seeds.aggregates);
+        let [narrow, wide] = options.map(|options| estimate(&table, aggregates, &options).unwrap());
+        for k in 0..aggregates.len() {
+            let name = format!("{}, {:?}", case.name, aggregates[k]);
+            check_value(&name, narrow[k].value, case.values[k]);
+            check_ends(&name, &narrow[k], &wide[k], case.ends.map(|ends| ends[k]));
+        }
+        let profile = performance_profile(&table, &oracle.thresholds, &options[0]).unwrap();
+        for (found, expected) in profile.iter().zip(&case.profile) {
+            check_value(&case.name, found.value, *expected);
+        }
+    }
+}
+
+#[test]
+fn probabilities_of_improvement_are_those_of_rliable() {
+    let oracle = oracle();
+    for case in &oracle.comparisons {
+        let (a, b) = (table(&case.a), table(&case.b));
+        let options = options(oracle.resamples.improvement, oracle.seeds.improvement);
+        let [narrow, wide] = options.map(|options| probability_of_improvement(&a, &b, &options).unwrap());
+        check_value(&case.name, narrow.probability.value, case.value);
+        for (found, expected) in narrow.strata.iter().zip(&case.strata) {
+            check_value(&case.name, found.probability.value, *expected);
+        }
+        check_ends(
+            &case.name,
+            &narrow.probability,
+            &wide.probability,
+            case.ends.map(|ends| ends[0]),
+        );
+    }
+}

@@ -1,0 +1,196 @@
+//! A log may be torn at any byte: whatever a killed run leaves is taken up, and only the torn row is lost.
+//!
+//! Not here: logs that are wrong in other ways, see `broken_logs`.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use driftworld_metrics::{
+    BlockType, ExpStatus, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp, read_log, validate_log,
+};
+
+/// Bytes of every file by its path within the log.
+type Files = BTreeMap<PathBuf, Vec<u8>>;
+
+/// Records whose cells hold all that makes tables hard: line breaks, tabs and quotes within quotes, letters of several bytes.
+fn records() -> Vec<Record> {
+    let record = |index: u64, block_num: u64, exp_num: u64, worker: &str, task: &str| {
+        let stamp = Timestamp::from_unix_micros(1_600_000_000_000_000 + index as i64).unwrap();
+        let params = serde_json::Map::from_iter([("é \"quoted\"\n".to_owned(), index.into())]);
+        let block_type = if block_num == 1 {
+            BlockType::Test
+        } else {
+            BlockType::Train
+        };
+        Record::new(block_num, exp_num, block_type, task, stamp)
+            .with_worker(worker)
+            .with_task_params(params)
+            .with_metric("reward", index as f64 / 3.0)
+            .with_metric("a\n\"b\"\té", f64::NAN)
+    };
+    let mut begun = record(2, 0, 1, "v", "\n\"\n");
+    begun.exp_status = ExpStatus::Incomplete;
+    vec![
+        record(0, 0, 0, "v", "find_red"),
+        record(1, 0, 0, "w", "line\nbreak\ttab"),
+        begun,
+        record(3, 0, 1, "v", "é\n"),
+        record(4, 1, 2, "w", "\r\n"),
+        record(5, 1, 3, "v", "\"\"\t"),
+        record(6, 2, 3, "w", "ü"),
+    ]
+}
+
+fn files(dir: &Path) -> Files {
+    let mut found = Files::new();
+    let mut to_search = vec![dir.to_owned()];
+    while let Some(current) = to_search.pop() {
+        for entry in fs::read_dir(&current).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                to_search.push(path);
+            } else {
+                found.insert(path.strip_prefix(dir).unwrap().to_owned(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+fn lay_out(dir: &Path, files: &Files) {
+    for (path, bytes) in files {
+        let path = dir.join(path);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, bytes).unwrap();
+    }
+}
+
+/// The log after each record, from none to all.
+fn stages(records: &[Record]) -> Vec<Files> {
+    let base = tempfile::tempdir().unwrap();
+    let info = LoggerInfo::new(["reward"]).unwrap();
+    let mut writer = LogWriter::create(base.path(), &info, &ScenarioInfo::default()).unwrap();
+    let mut stages = vec![files(base.path())];
+    for record in records {
+        writer.write(record).unwrap();
+        stages.push(files(base.path()));
+    }
+    stages
+}
+
+/// Every state of the disk on the way from one stage to the next: the bytes of the one file that grew, cut everywhere. The file
+/// may be there without a byte.
+fn cuts<'a>(before: &'a Files, after: &'a Files) -> impl Iterator<Item = Files> + 'a {
+    let mut grown = after.iter().filter(|(path, bytes)| before.get(*path) != Some(bytes));
+    let (path, bytes) = grown.next().unwrap();
+    assert!(grown.next().is_none(), "a record goes to one file");
+    let start = before.get(path).map_or(0, Vec::len);
+    (start..bytes.len()).map(move |end| {
+        let mut cut = before.clone();
+        cut.insert(path.clone(), bytes[..end].to_vec());
+        cut
+    })
+}
+
+#[test]
+fn a_log_cut_at_any_byte_goes_on_as_if_it_never_had_been() {
+    let records = records();
+    let stages = stages(&records);
+    let whole = stages.last().unwrap();
+    let mut num_cuts = 0;
+    for (done, pair) in stages.windows(2).enumerate() {
+        for cut in cuts(&pair[0], &pair[1]) {
+            let base = tempfile::tempdir().unwrap();
+            lay_out(base.path(), &cut);
+            let mut writer = LogWriter::resume(base.path()).unwrap_or_else(|error| panic!("{done}: {error}\n{cut:?}"));
+            if done > 0 {
+                let kept = read_log(base.path()).unwrap().rows.len();
+                assert_eq!(kept, done, "nothing but the torn row is lost: {cut:?}");
+            }
+            for record in &records[done..] {
+                writer.write(record).unwrap();
+            }
+            writer.finish().unwrap();
+            assert!(files(base.path()) == *whole, "after {done} records and a cut: {cut:?}");
+            num_cuts += 1;
+        }
+    }
+    let num_bytes = |files: &Files| files.values().map(Vec::len).sum::<usize>();
+    assert_eq!(num_cuts, num_bytes(whole) - num_bytes(&stages[0]), "every byte was cut");
+}
+
+#[test]
+fn what_is_torn_is_told_at_its_line_and_never_read_as_a_row() {
+    let records = records();
+    let stages = stages(&records);
+    for (done, pair) in stages.windows(2).enumerate().skip(1) {
+        for cut in cuts(&pair[0], &pair[1]) {
+            let base = tempfile::tempdir().unwrap();
+            lay_out(base.path(), &cut);
+            let codes: Vec<&str> = validate_log(base.path())
+                .problems
+                .iter()
+                .map(driftworld_metrics::MetricsError::code)
+                .collect();
+            match read_log(base.path()) {
+                // The cut lies between two rows.
+                Ok(log) => assert_eq!((log.rows.len(), codes.len()), (done, 0), "{cut:?}"),
+                Err(error) => {
+                    assert!(
+                        ["metrics/torn-last-line", "metrics/empty-file"].contains(&error.code()),
+                        "{error}\n{cut:?}"
+                    );
+                    assert_eq!(codes, [error.code()], "{cut:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_quote_that_swallowed_rows_is_no_torn_row_and_nothing_is_removed() {
+    let mut records = records();
+    for record in &mut records {
+        record.task_name = "a_b".to_owned();
+        record.block_num = 0;
+        record.block_type = BlockType::Train;
+        record.worker_id = "w".to_owned();
+    }
+    records.dedup_by_key(|record| record.exp_num);
+    let mut log = stages(&records).pop().unwrap();
+    let path = Path::new("w/0-train/data-log.tsv");
+    let text = String::from_utf8(log[path].clone())
+        .unwrap()
+        .replacen("a_b", "\"a_b", 1);
+    log.insert(path.to_owned(), text.replace("\\n\"\"", "n").into_bytes());
+    let base = tempfile::tempdir().unwrap();
+    lay_out(base.path(), &log);
+    // The quotes of the parameters close the cell again and again; what is left is no table, but all of it is left.
+    LogWriter::resume(base.path()).unwrap_err();
+    assert!(files(base.path()) == log);
+}
+
+#[test]
+fn info_files_cut_anywhere_are_told_and_rows_are_kept() {
+    let log = stages(&records()).pop().unwrap();
+    for name in ["logger_info.json", "scenario_info.json"] {
+        for end in 0..log[Path::new(name)].len() - 1 {
+            let mut cut = log.clone();
+            cut.get_mut(Path::new(name)).unwrap().truncate(end);
+            let base = tempfile::tempdir().unwrap();
+            lay_out(base.path(), &cut);
+            assert_eq!(
+                read_log(base.path()).unwrap_err().code(),
+                "metrics/json",
+                "{name} {end}"
+            );
+            if name == "logger_info.json" {
+                assert_eq!(LogWriter::resume(base.path()).unwrap_err().code(), "metrics/json");
+            }
+            assert!(files(base.path()) == cut);
+        }
+    }
+}

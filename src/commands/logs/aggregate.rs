@@ -1,0 +1,171 @@
+//! `driftworld logs aggregate`: the rows of logs as one table in a file. Which rows and columns it has is `metrics`'s business.
+
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use driftworld::columns;
+use driftworld::log_columns::write_log_table;
+use driftworld::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
+use tempfile::NamedTempFile;
+
+use super::super::{Failure, log_folders, output};
+use super::count;
+
+/// Files of a log that a table must not take the place of, or stand beside as one more.
+const OF_LOGS: [&str; 3] = ["data-log.tsv", "logger_info.json", "scenario_info.json"];
+
+/// Write the rows of one log or several as one table.
+///
+/// The columns are those of l2logger's aggregate: `block_num`, `regime_num`, `exp_num`, the other standard ones, then the log's own in
+/// alphabetical order; several logs have `run_id` in front. A regime is a stretch of rows with one block, subtype and task. Task names
+/// are in lower case, as scoring takes them. Rows that do not complete an experience are left out unless --incomplete is given.
+///
+/// Parquet and Feather hold types: integers, dictionaries for words that repeat, time stamps in microseconds, floats, and null where
+/// a value is missing. Feather is the Arrow file format, which pandas, polars and pyarrow read.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld logs aggregate demo-out/logs/demo -o demo.tsv
+  driftworld logs aggregate logs --recursive -o all.parquet
+  driftworld logs aggregate demo-out/logs/demo --format csv -o - | head")]
+pub(crate) struct Aggregate {
+    /// Folders of logs.
+    #[arg(required = true, value_name = "DIR")]
+    logs: Vec<PathBuf>,
+    /// The file; its ending says the format: .tsv, .csv, .parquet, .feather or .arrow. - for standard output.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// The format, where the ending does not say it.
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    format: Option<Format>,
+    /// Take every log below the folders.
+    #[arg(short = 'R', long)]
+    recursive: bool,
+    /// Keep rows that do not complete an experience.
+    #[arg(long)]
+    incomplete: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// Text, cells parted by tabs.
+    Tsv,
+    /// Text, cells parted by commas.
+    Csv,
+    /// Apache Parquet.
+    Parquet,
+    /// Feather's second version, which is the Arrow file format.
+    Feather,
+}
+
+impl Aggregate {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let format = self.format()?;
+        let logs = if self.recursive {
+            log_folders::below(&self.logs)?
+        } else {
+            log_folders::named(&self.logs)?
+        };
+        self.spare(&logs)?;
+        let mut table = LogTable::new(if self.incomplete {
+            KeptRows::All
+        } else {
+            KeptRows::Complete
+        });
+        for log in &logs {
+            // Warnings are the business of `logs validate`: nothing of a row is lost for them.
+            table.add(&read_log_with_texts(log)?)?;
+        }
+        if self.output == Path::new("-") {
+            return print(&table, format);
+        }
+        self.write(&table, format)?;
+        output::line(format!(
+            "{} of {} in {}",
+            count(table.len() as u64, "row", "rows"),
+            count(logs.len() as u64, "log", "logs"),
+            self.output.display()
+        ))
+    }
+
+    fn format(&self) -> Result<Format, Failure> {
+        let ending = self
+            .output
+            .extension()
+            .and_then(|ending| ending.to_str())
+            .unwrap_or_default();
+        let by_name = match ending {
+            "tsv" => Some(Format::Tsv),
+            "csv" => Some(Format::Csv),
+            "parquet" => Some(Format::Parquet),
+            "feather" | "arrow" => Some(Format::Feather),
+            _ => None,
+        };
+        self.format.or(by_name).ok_or_else(|| {
+            Failure::usage(format!(
+                "--output: found {:?}, expected a name ending in .tsv, .csv, .parquet, .feather or .arrow, or the format as \
+                 --format tsv",
+                self.output.display().to_string()
+            ))
+        })
+    }
+
+    /// Refuses a name that is a file of one of the logs, or would be read as one.
+    fn spare(&self, logs: &[PathBuf]) -> Result<(), Failure> {
+        let name = self.output.file_name().unwrap_or_default();
+        if !OF_LOGS.iter().any(|of_logs| name == *of_logs) {
+            return Ok(());
+        }
+        let folder = self.output.parent().unwrap_or(Path::new(""));
+        let folder = if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            folder
+        };
+        let absolute = |path: &Path| path.canonicalize().ok();
+        let inside = |log: &&PathBuf| match (absolute(folder), absolute(log)) {
+            (Some(folder), Some(log)) => folder.starts_with(log),
+            _ => false,
+        };
+        match logs.iter().find(inside) {
+            None => Ok(()),
+            Some(log) => Err(Failure::input(format!(
+                "{}: found a name that is part of the log {}, expected another file; the log would be lost",
+                self.output.display(),
+                log.display()
+            ))),
+        }
+    }
+
+    fn write(&self, table: &LogTable, format: Format) -> Result<(), Failure> {
+        let failed = |error: &dyn std::fmt::Display| {
+            Failure::input(format!("{}: cannot be written: {error}", self.output.display()))
+        };
+        let file = output::temporary(&self.output).map_err(|error| failed(&error))?;
+        let file = written(table, format, BufWriter::new(file)).map_err(|error| failed(&error))?;
+        let file: NamedTempFile = file.into_inner().map_err(|error| failed(&error.into_error()))?;
+        output::persist(file, &self.output)
+    }
+}
+
+/// Writes the table and hands back what it was written to.
+fn written<W: Write + Send>(table: &LogTable, format: Format, mut to: W) -> Result<W, Box<dyn std::error::Error>> {
+    match format {
+        Format::Tsv => table.write(&mut to, Delimiter::Tab)?,
+        Format::Csv => table.write(&mut to, Delimiter::Comma)?,
+        Format::Parquet => return Ok(write_log_table(table, to, columns::Format::Parquet)?),
+        Format::Feather => return Ok(write_log_table(table, to, columns::Format::Arrow)?),
+    }
+    Ok(to)
+}
+
+fn print(table: &LogTable, format: Format) -> Result<(), Failure> {
+    if matches!(format, Format::Parquet | Format::Feather) {
+        return Err(Failure::usage(
+            "--output: Parquet and Feather are no text, expected the name of a file",
+        ));
+    }
+    let failed = |error: &dyn std::fmt::Display| Failure::input(format!("standard output: {error}"));
+    let bytes = written(table, format, Vec::new()).map_err(|error| failed(&error))?;
+    output::print(&String::from_utf8(bytes).map_err(|error| failed(&error))?)
+}

@@ -1,0 +1,71 @@
+//! `driftworld logs`: logs checked, and brought together as one table. What a log may hold is `metrics`'s business.
+
+mod aggregate;
+mod validate;
+
+use clap::{Args, Subcommand};
+
+use super::Failure;
+
+/// Check logs, or bring their rows together as one table.
+///
+/// Logs are folders in l2logger's format, as `driftworld run` writes them: `logger_info.json`, `scenario_info.json`, and
+/// WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv. To score them, see `driftworld metrics`.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld logs validate demo-out/logs/demo
+  driftworld logs aggregate demo-out/logs/demo -o demo.parquet
+  driftworld logs aggregate logs --recursive -o all.csv")]
+pub(crate) struct Logs {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Subcommand)]
+enum What {
+    // No words here: they would take the place of the long ones that stand with each command.
+    Validate(validate::Validate),
+    Aggregate(aggregate::Aggregate),
+}
+
+impl Logs {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        match self.what {
+            What::Validate(command) => command.run(),
+            What::Aggregate(command) => command.run(),
+        }
+    }
+}
+
+/// `1 row`, `2 rows`, `1,200,000 rows`.
+fn count(number: u64, one: &str, many: &str) -> String {
+    format!("{} {}", grouped(number), if number == 1 { one } else { many })
+}
+
+/// `1,200,000`.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut grouped = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            grouped.push(',');
+        }
+        grouped.push(digit);
+    }
+    grouped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_easy_to_read() {
+        let check = |number: u64, expected: &str| assert_eq!(count(number, "row", "rows"), expected);
+        check(0, "0 rows");
+        check(1, "1 row");
+        check(999, "999 rows");
+        check(1_000, "1,000 rows");
+        check(12_345_678, "12,345,678 rows");
+    }
+}

@@ -1,0 +1,164 @@
+//! `driftworld logs validate`: every problem of a log with its place. The rules are the library's.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use driftworld::metrics::{Validation, begun_log, validate_log};
+use serde_json::{Value, json};
+
+use super::super::{Failure, log_folders, output};
+use super::{count, grouped};
+
+/// Name every problem of logs with its file and line.
+///
+/// Checked is all that scoring needs, and what only the writer of a log could have kept to: numbers that never fall, exactly one
+/// complete row for each experience, the same columns in every file. A log without problems can be read; warnings are about what
+/// is odd. Problems and warnings go to standard error, one line for each log to standard output. Ends with exit code 1 where there
+/// is a problem.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld logs validate demo-out/logs/demo
+  driftworld logs validate logs --recursive --json")]
+pub(crate) struct Validate {
+    /// Folders of logs.
+    #[arg(required = true, value_name = "DIR")]
+    logs: Vec<PathBuf>,
+    /// Take every log below the folders.
+    #[arg(short = 'R', long)]
+    recursive: bool,
+    /// Print the result as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What was found of one log.
+struct Verdict {
+    log: PathBuf,
+    found: Validation,
+    /// Metrics columns and format version; nothing where `logger_info.json` cannot be read.
+    info: Option<(Vec<String>, String)>,
+}
+
+impl Validate {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let logs = if self.recursive {
+            log_folders::below(&self.logs)?
+        } else {
+            log_folders::named(&self.logs)?
+        };
+        let (mut wrong, total) = (0, logs.len());
+        let mut listed = Vec::new();
+        for log in logs {
+            let verdict = Verdict::of(log);
+            wrong += usize::from(!verdict.found.is_valid());
+            if self.json {
+                listed.push(verdict.to_json());
+            } else {
+                verdict.print()?;
+            }
+        }
+        if self.json {
+            output::json(&listed)?;
+        }
+        match (wrong, total) {
+            (0, _) => Ok(()),
+            (_, 1) => Err(Failure::input("the log has problems")),
+            _ => Err(Failure::input(format!("{wrong} of {total} logs have problems"))),
+        }
+    }
+}
+
+impl Verdict {
+    fn of(log: PathBuf) -> Self {
+        let info = begun_log(&log).ok().flatten().map(|(info, _)| {
+            let columns = info.metrics_columns().to_vec();
+            (columns, info.log_format_version().to_owned())
+        });
+        Self {
+            found: validate_log(&log),
+            log,
+            info,
+        }
+    }
+
+    fn print(&self) -> Result<(), Failure> {
+        let (found, log) = (&self.found, self.log.display());
+        for problem in &found.problems {
+            output::note(placed(&self.log, &problem.to_string()));
+        }
+        if found.more_problems > 0 {
+            output::note(format!(
+                "{log}: and {}",
+                count(found.more_problems, "more problem", "more problems")
+            ));
+        }
+        for warning in &found.warnings {
+            output::note(format!("warning: {}", placed(&self.log, &warning.to_string())));
+        }
+        if found.more_warnings > 0 {
+            output::note(format!(
+                "{log}: and {}",
+                count(found.more_warnings, "more warning", "more warnings")
+            ));
+        }
+        output::line(self.summary())
+    }
+
+    fn summary(&self) -> String {
+        let counts = &self.found.counts;
+        let problems = self.found.problems.len() as u64 + self.found.more_problems;
+        let verdict = match problems {
+            0 => "valid".to_owned(),
+            problems => count(problems, "problem", "problems"),
+        };
+        let incomplete = match (counts.rows - counts.complete_rows) as u64 {
+            0 => String::new(),
+            rows => format!(" ({} incomplete)", grouped(rows)),
+        };
+        let mut text = format!(
+            "{}: {verdict}; {}{incomplete} in {}, {}, {}, {}",
+            self.log.display(),
+            count(counts.rows as u64, "row", "rows"),
+            count(counts.files as u64, "file", "files"),
+            count(counts.workers as u64, "worker", "workers"),
+            count(counts.blocks as u64, "block", "blocks"),
+            count(counts.tasks as u64, "task", "tasks"),
+        );
+        if let Some((columns, version)) = &self.info {
+            text.extend(["; metrics ", &columns.join(", "), "; format ", version]);
+        }
+        text
+    }
+
+    fn to_json(&self) -> Value {
+        let found = &self.found;
+        let problem = |problem: &driftworld::metrics::MetricsError| json!({ "code": problem.code(), "message": placed(&self.log, &problem.to_string()) });
+        json!({
+            "log": self.log,
+            "valid": found.is_valid(),
+            "problems": found.problems.iter().map(problem).collect::<Vec<_>>(),
+            "more_problems": found.more_problems,
+            "warnings": found.warnings.iter().map(|warning| placed(&self.log, &warning.to_string())).collect::<Vec<_>>(),
+            "more_warnings": found.more_warnings,
+            "rows": found.counts.rows,
+            "complete_rows": found.counts.complete_rows,
+            "experiences": found.counts.experiences,
+            "files": found.counts.files,
+            "workers": found.counts.workers,
+            "blocks": found.counts.blocks,
+            "tasks": found.counts.tasks,
+            "metrics_columns": self.info.as_ref().map(|(columns, _)| columns),
+            "log_format_version": self.info.as_ref().map(|(_, version)| version),
+        })
+    }
+}
+
+/// A message with the log in front, unless it begins with it: some name a file below the log, others only what is meant.
+fn placed(log: &Path, message: &str) -> String {
+    let log = log.display().to_string();
+    if message.starts_with(&log) {
+        message.to_owned()
+    } else {
+        format!("{log}: {message}")
+    }
+}

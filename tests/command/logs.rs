@@ -1,0 +1,266 @@
+//! `driftworld logs` as its users meet it: what is said of broken logs, and tables that other programs read.
+//!
+//! Not here: each fault by itself, which is the business of `metrics`.
+
+use std::fs;
+use std::path::Path;
+
+use crate::lived::write;
+use crate::terminal::{driftworld_in, output, scratch};
+
+const HEADER: &str = "block_num\texp_num\tworker_id\tblock_type\tblock_subtype\ttask_name\ttask_params\texp_status\ttimestamp\treward\tdebug\n";
+
+/// What is printed, and what is said beside it.
+#[track_caller]
+fn run(folder: &Path, code: i32, arguments: &[&str]) -> (String, String) {
+    let output = output(&mut driftworld_in(folder, arguments));
+    let [out, error] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("UTF-8"));
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {out}{error}");
+    (out, error)
+}
+
+/// A log of two blocks and three rows, one of them incomplete and one without its number.
+fn write_log(dir: &Path) {
+    let info = r#"{"metrics_columns": ["reward"], "log_format_version": "1.1"}"#;
+    write(&dir.join("logger_info.json"), info);
+    let scenario = r#"{"complexity": "1-low", "difficulty": "1-easy", "scenario_type": "custom"}"#;
+    write(&dir.join("scenario_info.json"), scenario);
+    let params = r#""{""size"": 0.1}""#;
+    let train = format!(
+        "0\t0\tw\ttrain\twake\tA_b\t{params}\tincomplete\t20200101T000000.0\t1\thm\n\
+         0\t0\tw\ttrain\twake\tA_b\t{params}\tcomplete\t20200101T000001.25\t0.1\t\"a, b\"\n"
+    );
+    write(&dir.join("w/0-train/data-log.tsv"), &(HEADER.to_owned() + &train));
+    let test = "1\t1\tw\ttest\twake\ta_b\t{}\tcomplete\t20200101T000002.0\tnan\t\n";
+    write(&dir.join("w/1-test/data-log.tsv"), &(HEADER.to_owned() + test));
+}
+
+#[test]
+fn a_sound_log_is_called_valid_with_what_it_holds() {
+    let base = scratch();
+    write_log(&base.path().join("run"));
+    let (out, error) = run(base.path(), 0, &["logs", "validate", "run"]);
+    let expected =
+        "run: valid; 3 rows (1 incomplete) in 2 files, 1 worker, 2 blocks, 2 tasks; metrics reward; format 1.1\n";
+    assert_eq!((out.as_str(), error.as_str()), (expected, ""));
+}
+
+#[test]
+fn every_problem_of_every_log_is_named_with_its_place() {
+    let base = scratch();
+    write_log(&base.path().join("logs/good"));
+    let bad = base.path().join("logs/bad");
+    write_log(&bad);
+    let rows = "0\t0\tw\ttrain\twake\ta_b\t{}\tcomplete\t20200101T000000.0\t1\tok\n\
+                0\tx\tw\ttrain\twake\ta_b\t{}\tcomplete\tnow\t1\t\n0\t1\n";
+    write(&bad.join("w/0-train/data-log.tsv"), &(HEADER.to_owned() + rows));
+    let version = base.path().join("logs/version");
+    write_log(&version);
+    write(
+        &version.join("logger_info.json"),
+        r#"{"metrics_columns": ["reward"], "log_format_version": "2.0"}"#,
+    );
+
+    let (out, error) = run(base.path(), 1, &["logs", "validate", "--recursive", "logs"]);
+    let lines: Vec<&str> = error.lines().collect();
+    let file = "logs/bad/w/0-train/data-log.tsv";
+    assert_eq!(lines.len(), 5, "{error}");
+    assert_eq!(
+        lines[0],
+        format!("{file}:3, column exp_num: found \"x\", expected a whole number, 0 or more")
+    );
+    assert!(
+        lines[1].starts_with(&format!("{file}:3, column timestamp: found \"now\"")),
+        "{error}"
+    );
+    assert!(
+        lines[2].starts_with(&format!("{file}:4: found 2 cells, expected 11")),
+        "{error}"
+    );
+    assert!(
+        lines[3].starts_with("logs/version: logger_info.json, log_format_version"),
+        "{error}"
+    );
+    assert_eq!(lines[4], "error: 2 of 3 logs have problems");
+    assert!(
+        out.contains("logs/bad: 3 problems;") && out.contains("logs/good: valid;"),
+        "{out}"
+    );
+
+    let (out, _) = run(base.path(), 1, &["logs", "validate", "-R", "logs", "--json"]);
+    let found: serde_json::Value = serde_json::from_str(&out).expect("JSON");
+    let valid: Vec<_> = found
+        .as_array()
+        .into_iter()
+        .flatten()
+        .map(|log| &log["valid"])
+        .collect();
+    assert_eq!(valid, [false, true, false]);
+    assert_eq!(found[0]["problems"][0]["code"], "metrics/cell");
+    assert_eq!(found[1]["rows"], 3);
+}
+
+#[test]
+fn what_is_no_log_is_refused_with_what_was_looked_for() {
+    let base = scratch();
+    write_log(&base.path().join("logs/run"));
+    fs::create_dir(base.path().join("empty")).expect("temporary folders can be made");
+    for what in [&["logs", "validate"][..], &["logs", "aggregate", "-o", "table.csv"]] {
+        let with = |folder| [what, &[folder]].concat();
+        assert!(
+            run(base.path(), 1, &with("empty"))
+                .1
+                .contains("found no log, expected a folder with logger_info.json")
+        );
+        assert!(
+            run(base.path(), 1, &with("absent"))
+                .1
+                .contains("absent: found nothing, expected the folder of a log")
+        );
+        let (_, error) = run(base.path(), 1, &with("logs"));
+        assert!(
+            error.contains("such as logs/run") && error.contains("--recursive"),
+            "{error}"
+        );
+    }
+    assert!(!base.path().join("table.csv").exists());
+}
+
+const COLUMNS: &str = "block_num,regime_num,exp_num,worker_id,block_type,block_subtype,task_name,task_params,exp_status,timestamp,debug,reward";
+
+#[test]
+fn rows_are_written_as_text_under_l2loggers_columns() {
+    let base = scratch();
+    write_log(&base.path().join("run"));
+    let (out, _) = run(base.path(), 0, &["logs", "aggregate", "run", "-o", "table.csv"]);
+    assert_eq!(out, "2 rows of 1 log in table.csv\n");
+    let text = fs::read_to_string(base.path().join("table.csv")).expect("it was written");
+    let expected = format!(
+        "{COLUMNS}\n0,0,0,w,train,wake,a_b,\"{{\"\"size\"\": 0.1}}\",complete,20200101T000001.250000,\"a, b\",0.1\n\
+         1,1,1,w,test,wake,a_b,{{}},complete,20200101T000002.000000,,\n"
+    );
+    assert_eq!(text, expected);
+    let (out, _) = run(
+        base.path(),
+        0,
+        &["logs", "aggregate", "run", "--incomplete", "--format", "tsv", "-o", "-"],
+    );
+    assert_eq!(out.lines().count(), 4);
+    assert_eq!(
+        out.lines().next().map(|header| header.replace('\t', ",")).as_deref(),
+        Some(COLUMNS)
+    );
+}
+
+#[test]
+fn several_logs_make_one_table_that_names_them() {
+    let base = scratch();
+    write_log(&base.path().join("logs/one"));
+    write_log(&base.path().join("logs/two"));
+    run(base.path(), 0, &["logs", "aggregate", "-R", "logs", "-o", "all.tsv"]);
+    let text = fs::read_to_string(base.path().join("all.tsv")).expect("it was written");
+    let first: Vec<&str> = text.lines().filter_map(|line| line.split('\t').next()).collect();
+    assert_eq!(first, ["run_id", "one", "one", "two", "two"]);
+}
+
+#[test]
+fn a_log_is_never_written_over() {
+    let base = scratch();
+    write_log(&base.path().join("run"));
+    let before = fs::read(base.path().join("run/w/0-train/data-log.tsv")).expect("it was written");
+    for name in [
+        "run/w/0-train/data-log.tsv",
+        "run/logger_info.json",
+        "run/./w/data-log.tsv",
+    ] {
+        let arguments = ["logs", "aggregate", "run", "-o", name, "--format", "tsv"];
+        assert!(run(base.path(), 1, &arguments).1.contains("part of the log"), "{name}");
+    }
+    assert_eq!(
+        fs::read(base.path().join("run/w/0-train/data-log.tsv")).expect("it is there"),
+        before
+    );
+    assert!(!base.path().join("run/w/data-log.tsv").exists());
+}
+
+#[test]
+fn formats_are_known_by_name_and_binary_ones_need_a_file() {
+    let base = scratch();
+    write_log(&base.path().join("run"));
+    let (_, error) = run(base.path(), 2, &["logs", "aggregate", "run", "-o", "table.xlsx"]);
+    assert!(
+        error.contains("expected a name ending in .tsv, .csv, .parquet, .feather or .arrow"),
+        "{error}"
+    );
+    let (_, error) = run(
+        base.path(),
+        2,
+        &["logs", "aggregate", "run", "-o", "-", "--format", "parquet"],
+    );
+    assert!(error.contains("expected the name of a file"), "{error}");
+}
+
+/// Prints the types of a table's columns and its rows, as pyarrow reads them, as JSON.
+const READ: &str = "
+import json, sys
+import pyarrow.feather, pyarrow.parquet
+read = pyarrow.parquet.read_table if sys.argv[1].endswith('parquet') else pyarrow.feather.read_table
+table = read(sys.argv[1])
+print(json.dumps([[str(field.type) for field in table.schema], table.to_pylist()], default=str))
+";
+
+#[test]
+fn pyarrow_reads_parquet_and_feather_with_their_types() {
+    let python = std::env::var_os("DRIFTWORLD_PYTHON").unwrap_or_else(|| "python3".into());
+    let read = |file: &Path| Command::new(&python).args(["-c", READ]).arg(file).output();
+    let has_pyarrow = Command::new(&python)
+        .args(["-c", "import pyarrow.parquet, pyarrow.feather"])
+        .output();
+    if !has_pyarrow.is_ok_and(|output| output.status.success()) {
+        #[expect(clippy::print_stdout, reason = "a skip must be seen")]
+        {
+            println!(
+                "skipped: {} cannot import pyarrow; name a Python that can in DRIFTWORLD_PYTHON",
+                python.display()
+            );
+        }
+        return;
+    }
+    let base = scratch();
+    write_log(&base.path().join("logs/one"));
+    write_log(&base.path().join("logs/two"));
+    for name in ["table.parquet", "table.feather", "table.arrow"] {
+        run(base.path(), 0, &["logs", "aggregate", "-R", "logs", "-o", name]);
+        let output = read(&base.path().join(name)).expect("it ran just now");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let found: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let word = "dictionary<values=string, indices=int32, ordered=0>";
+        let (whole, time) = ("int64", "timestamp[us]");
+        let types = [
+            word, whole, whole, whole, word, word, word, word, word, word, time, "string", "double",
+        ];
+        assert_eq!(found[0], serde_json::json!(types), "{name}");
+        let row = |run: &str, rest: serde_json::Value| {
+            let mut row = serde_json::json!({ "run_id": run, "worker_id": "w", "block_subtype": "wake", "task_name": "a_b",
+                "exp_status": "complete" });
+            let cells = rest.as_object().into_iter().flatten();
+            cells.for_each(|(column, cell)| row[column] = cell.clone());
+            row
+        };
+        let of = |run: &str| {
+            [
+                row(
+                    run,
+                    serde_json::json!({ "block_num": 0, "regime_num": 0, "exp_num": 0, "block_type": "train",
+                        "task_params": "{\"size\": 0.1}", "timestamp": "2020-01-01 00:00:01.250000", "debug": "a, b", "reward": 0.1 }),
+                ),
+                row(
+                    run,
+                    serde_json::json!({ "block_num": 1, "regime_num": 1, "exp_num": 1, "block_type": "test", "task_params": "{}",
+                        "timestamp": "2020-01-01 00:00:02", "debug": null, "reward": null }),
+                ),
+            ]
+        };
+        assert_eq!(found[1], serde_json::json!([of("one"), of("two")].concat()), "{name}");
+    }
+}

@@ -1,0 +1,13 @@
+//! The `driftworld` command as its users meet it, a file per subcommand. What the libraries under it do is tested in their rooms.
+
+mod assets;
+mod console;
+mod curriculum;
+mod general;
+mod lived;
+mod logs;
+mod metrics;
+mod original_scenarios;
+mod run;
+mod terminal;
+mod transfer_report;

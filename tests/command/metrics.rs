@@ -1,0 +1,316 @@
+//! `driftworld metrics`: one lifetime, many, experts that were stored, settings, two agents. The numbers themselves are tested
+//! in `metrics/tests`.
+
+use std::path::Path;
+
+use crate::terminal::{fail_in, read, reference, scratch, succeed_in};
+use driftworld::metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp};
+use serde_json::{Value, json};
+
+/// A lifetime of two tasks in turn, evaluated around each; `skill` is what it reaches.
+fn live(folder: &Path, tasks: &[&str], skill: f64) {
+    let info = LoggerInfo::new(["reward"]).expect("a column");
+    let mut log = LogWriter::create(folder, &info, &ScenarioInfo::default()).expect("the folder is new");
+    let mut exp_num = 0;
+    let mut experience = |block: u64, kind: BlockType, task: &str, reward: f64| {
+        let when = Timestamp::from_unix_micros(1_600_000_000_000_000 + exp_num as i64).expect("a day in 2020");
+        let record = Record::new(block, exp_num, kind, task, when).with_metric("reward", reward);
+        log.write(&record).expect("the folder can be written");
+        exp_num += 1;
+    };
+    for (round, learnt) in (0..).zip(tasks) {
+        for task in tasks {
+            (0..3).for_each(|k| {
+                experience(
+                    2 * round,
+                    BlockType::Test,
+                    task,
+                    skill * (round + 1) as f64 + f64::from(k),
+                )
+            });
+        }
+        (0..20).for_each(|k| experience(2 * round + 1, BlockType::Train, learnt, skill * f64::from(k) / 10.0));
+    }
+    for task in tasks {
+        experience(2 * tasks.len() as u64, BlockType::Test, task, skill * 4.0);
+    }
+}
+
+const TASKS: [&str; 2] = ["find_red", "find_blue"];
+
+/// A folder with `mine/run0` to `run3`, and the worse `theirs/run0` to `run2`.
+fn two_agents() -> tempfile::TempDir {
+    let folder = scratch();
+    for k in 0..4_u8 {
+        live(&folder.path().join(format!("mine/run{k}")), &TASKS, 5.0 + f64::from(k));
+    }
+    for k in 0..3_u8 {
+        live(
+            &folder.path().join(format!("theirs/run{k}")),
+            &TASKS,
+            1.0 + f64::from(k),
+        );
+    }
+    folder
+}
+
+fn parsed(text: &str) -> Value {
+    serde_json::from_str(text).expect("it prints JSON")
+}
+
+#[test]
+fn the_references_example_gives_its_files() {
+    let Some(dir) = reference("l2metrics") else { return };
+    let folder = scratch();
+    let of = |name: &str| dir.join(name).display().to_string();
+    let log = of("ll_logs/multi_task");
+    let experts =
+        ["task1_1_run1", "task2_1_run1", "task3_1_run1", "task3_1_run2"].map(|run| of(&format!("ste_logs/ste_{run}")));
+    let mut arguments = vec!["metrics", "-l", &log, "-p", "performance", "-O", "results", "--ste"];
+    arguments.extend(experts.iter().map(String::as_str));
+    let shown = succeed_in(folder.path(), &arguments);
+    assert!(shown.contains("sample_efficiency         0.913"), "{shown}");
+    let file = |name: &str| parsed(&read(folder.path().join("results").join(name)));
+    let expected = parsed(&read(dir.join("expected/multi_task_metrics.json")));
+    assert_eq!(
+        file("multi_task_metrics.json")["perf_recovery"],
+        expected["perf_recovery"]
+    );
+    let check_near = |name: &str| {
+        let value = |document: &Value| document[name].as_f64().expect("a number");
+        let (found, expected) = (value(&file("multi_task_metrics.json")), value(&expected));
+        assert!(
+            (found - expected).abs() <= 1e-9 * expected.abs(),
+            "{name}: {found}, {expected}"
+        );
+    };
+    for name in [
+        "avg_train_perf",
+        "avg_eval_perf",
+        "forward_transfer_ratio",
+        "ste_rel_perf",
+        "sample_efficiency",
+    ] {
+        check_near(name);
+    }
+    let settings = file("multi_task_settings.json");
+    let expected = parsed(&read(dir.join("expected/multi_task_settings.json")));
+    for (name, value) in expected
+        .as_object()
+        .expect("settings")
+        .iter()
+        .filter(|(name, _)| *name != "log_dir")
+    {
+        assert_eq!(&settings[name], value, "{name}");
+    }
+    // The settings that were saved give the same again.
+    let settings = folder
+        .path()
+        .join("results/multi_task_settings.json")
+        .display()
+        .to_string();
+    let mut again = vec!["metrics", "-c", &settings, "--ste"];
+    again.extend(experts.iter().map(String::as_str));
+    assert_eq!(succeed_in(folder.path(), &again), shown);
+}
+
+#[test]
+fn experts_are_stored_replaced_and_found() {
+    let folder = scratch();
+    for run in ["one", "two", "three"] {
+        live(
+            &folder.path().join(run),
+            &["find_red"],
+            if run == "one" { 2.0 } else { 4.0 },
+        );
+    }
+    live(&folder.path().join("life"), &TASKS, 5.0);
+    let store = |mode: &str, runs: &[&str]| {
+        let mut arguments = vec!["metrics"];
+        arguments.extend(runs);
+        arguments.extend(["-s", mode, "--ste-data", "experts"]);
+        succeed_in(folder.path(), &arguments)
+    };
+    let relative = || {
+        let scored = succeed_in(folder.path(), &["metrics", "life", "--ste-data", "experts", "--json"]);
+        parsed(&scored)["task_metrics"]["find_red"]["ste_rel_perf_vals"]
+            .as_array()
+            .map(Vec::len)
+    };
+    assert_eq!(
+        store("w", &["one"]),
+        "experts/find_red/one: stored as an expert of find_red\n"
+    );
+    assert_eq!(relative(), Some(1));
+    store("a", &["two"]);
+    assert_eq!(relative(), Some(2));
+    store("w", &["three"]);
+    assert_eq!(relative(), Some(1));
+    // Together they are the runs of one expert, also where they replace others.
+    store("w", &["one", "two", "three"]);
+    assert_eq!(relative(), Some(3));
+    let error = fail_in(
+        folder.path(),
+        1,
+        &["metrics", "life", "-s", "w", "--ste-data", "experts"],
+    );
+    assert_eq!(
+        error,
+        "error: single-task expert log life: found find_red, find_blue, expected exactly one trained task\n"
+    );
+}
+
+#[test]
+fn many_lifetimes_come_with_intervals_and_tables() {
+    let folder = two_agents();
+    let arguments = ["metrics", "-R", "mine", "-O", "out", "--resamples", "500"];
+    let shown = succeed_in(folder.path(), &arguments);
+    assert!(
+        shown.starts_with("4 lifetimes: 160 learning and 56 evaluation experiences in all, scored by reward"),
+        "{shown}"
+    );
+    let row = shown
+        .lines()
+        .find(|line| line.starts_with("avg_eval_perf"))
+        .expect("a row of that metric");
+    assert!(row.contains(" to ") && row.contains("4 x 2"), "{row}");
+    assert_eq!(
+        succeed_in(folder.path(), &arguments),
+        shown,
+        "the same seed, the same intervals"
+    );
+    let other = succeed_in(
+        folder.path(),
+        &["metrics", "-R", "mine", "--resamples", "500", "--bootstrap-seed", "1"],
+    );
+    assert_ne!(other, shown);
+    let table = read(folder.path().join("out/ll_metrics.tsv"));
+    assert_eq!(table.lines().count(), 5);
+    assert!(table.starts_with("run_id\t") && table.contains("\nrun3\t"), "{table}");
+    let all = parsed(&read(folder.path().join("out/ll_metrics.json")));
+    assert_eq!(all.as_array().map(Vec::len), Some(4));
+    let regimes = read(folder.path().join("out/ll_metrics_regime.tsv"));
+    assert!(regimes.starts_with("run_id\tblock_num"), "{regimes}");
+    assert_eq!(regimes.lines().count(), 1 + 4 * 8);
+    let json = parsed(&succeed_in(
+        folder.path(),
+        &["metrics", "mine/run0", "mine/run1", "--json"],
+    ));
+    assert_eq!(
+        (
+            json["repeats"][0]["num_runs"].clone(),
+            json["lifetimes"][1]["run_id"].clone()
+        ),
+        (json!(2), json!("run1"))
+    );
+}
+
+#[test]
+fn two_agents_are_compared() {
+    let folder = two_agents();
+    let arguments = ["metrics", "-R", "mine", "--against", "theirs", "-n", "none", "--json"];
+    let json = parsed(&succeed_in(folder.path(), &arguments));
+    let improvement = json["improvement"].as_array().expect("a list of metrics");
+    let of = |name: &str| {
+        let row = improvement
+            .iter()
+            .find(|row| row["name"] == name)
+            .unwrap_or_else(|| panic!("no {name}"));
+        row["improvement"]["probability"]["value"].as_f64()
+    };
+    assert_eq!(
+        (of("avg_train_perf"), of("avg_eval_perf")),
+        (Some(1.0), Some(1.0)),
+        "every run beats every run"
+    );
+    let shown = succeed_in(
+        folder.path(),
+        &["metrics", "-R", "theirs", "--against", "mine", "-n", "none"],
+    );
+    assert!(shown.contains("against 4 lifetimes of another agent"), "{shown}");
+    let row = shown
+        .lines()
+        .rev()
+        .find(|line| line.starts_with("avg_eval_perf"))
+        .expect("a row of that metric");
+    assert!(
+        row.split_whitespace().collect::<Vec<_>>() == ["avg_eval_perf", "0.000", "0.000", "to", "0.000", "2"],
+        "{row}"
+    );
+}
+
+#[test]
+fn strict_definitions_and_noise_reach_the_result() {
+    let folder = scratch();
+    live(&folder.path().join("life"), &TASKS, 5.0);
+    let scored = |more: &[&str]| {
+        let mut arguments = vec!["metrics", "life", "--json"];
+        arguments.extend(more);
+        parsed(&succeed_in(folder.path(), &arguments))
+    };
+    assert_eq!(scored(&["--strict-definitions"])["definitions"], "published");
+    assert_eq!(scored(&[]).get("definitions"), None);
+    let noisy = scored(&["-N", "0", "0.5"]);
+    assert_ne!(noisy["avg_eval_perf"], scored(&[])["avg_eval_perf"]);
+    assert_eq!(noisy, scored(&["-N", "0", "0.5", "--noise-seed", "0"]));
+    std::fs::write(
+        folder.path().join("range.json"),
+        r#"{"Find_Red": {"min": 0, "max": 100}, "find_blue": {"min": 0, "max": 50}}"#,
+    )
+    .expect("the folder can be written");
+    let ranged = scored(&["-d", "range.json"]);
+    assert_eq!(
+        ranged["normalization_data_range"]["find_blue"],
+        json!({ "min": 0.0, "max": 50.0 })
+    );
+}
+
+#[test]
+fn what_cannot_be_scored_is_told() {
+    let folder = two_agents();
+    let check = |code: i32, arguments: &[&str], expected: &str| {
+        let mut all = vec!["metrics"];
+        all.extend(arguments);
+        assert_eq!(fail_in(folder.path(), code, &all), format!("error: {expected}\n"));
+    };
+    check(2, &[], "found no DIR, expected the folder of a log, or several");
+    check(
+        1,
+        &["mine"],
+        "mine: found a folder of 4 logs such as mine/run0, expected one log; name that, or take all with --recursive",
+    );
+    check(
+        1,
+        &["nowhere"],
+        "nowhere: cannot be read: No such file or directory (os error 2)",
+    );
+    for run in ["mine/run1", "mine/run3"] {
+        std::fs::remove_file(folder.path().join(run).join("logger_info.json")).expect("it is there");
+    }
+    let lacks = |run: &str| {
+        format!("{run}/logger_info.json: found no such file, expected a JSON object with the list metrics_columns")
+    };
+    let error = fail_in(folder.path(), 1, &["metrics", "-R", "mine"]);
+    let lines: Vec<&str> = error.lines().collect();
+    assert_eq!(lines.len(), 2, "every log that cannot be scored is told:\n{error}");
+    assert!(
+        lines[0].contains(&lacks("mine/run1")) && lines[1].contains(&lacks("mine/run3")),
+        "{error}"
+    );
+    check(
+        1,
+        &["mine/run0", "-p", "joy"],
+        "log run0: found no metrics column \"joy\", expected one of reward; choose one by Options::perf_measure or --perf-measure",
+    );
+    check(
+        1,
+        &["mine/run0", "mine/run2", "--confidence", "1.5"],
+        "option confidence: found 1.5, expected a number between 0 and 1, as 0.95",
+    );
+    std::fs::write(folder.path().join("bad.json"), r#"{"perf_mesure": "reward"}"#).expect("the folder can be written");
+    check(
+        1,
+        &["mine/run0", "-c", "bad.json"],
+        "bad.json: found the setting \"perf_mesure\", expected one of l2metrics; did you mean \"perf_measure\"?",
+    );
+}

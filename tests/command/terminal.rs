@@ -1,0 +1,87 @@
+//! What tests of the command share: running it, and reading what it says. What it should say is the tests' own.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The project's folder.
+pub(crate) fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The command with these arguments, to be run in the project's folder.
+pub(crate) fn driftworld(arguments: &[&str]) -> Command {
+    driftworld_in(root(), arguments)
+}
+
+/// The same in another folder.
+pub(crate) fn driftworld_in(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_driftworld"));
+    command.args(arguments).current_dir(folder);
+    command
+}
+
+/// Runs it to its end.
+pub(crate) fn output(command: &mut Command) -> Output {
+    command.output().expect("the command was built by cargo and starts")
+}
+
+/// What it prints; it must end well.
+#[track_caller]
+pub(crate) fn succeed(arguments: &[&str]) -> String {
+    succeed_in(root(), arguments)
+}
+
+/// The same in another folder.
+#[track_caller]
+pub(crate) fn succeed_in(folder: &Path, arguments: &[&str]) -> String {
+    let output = output(&mut driftworld_in(folder, arguments));
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {error}");
+    String::from_utf8(output.stdout).expect("the command prints UTF-8")
+}
+
+/// What it says on standard error; it must end with this exit code.
+#[track_caller]
+pub(crate) fn fail(code: i32, arguments: &[&str]) -> String {
+    fail_in(root(), code, arguments)
+}
+
+/// The same in another folder.
+#[track_caller]
+pub(crate) fn fail_in(folder: &Path, code: i32, arguments: &[&str]) -> String {
+    let output = output(&mut driftworld_in(folder, arguments));
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
+    assert!(!error.contains("panicked"), "{error}");
+    error
+}
+
+/// A folder for files that nobody needs afterwards.
+pub(crate) fn scratch() -> tempfile::TempDir {
+    tempfile::tempdir().expect("the machine has a folder for temporary files")
+}
+
+/// A path as an argument.
+pub(crate) fn text(path: &Path) -> &str {
+    path.to_str().expect("temporary paths are UTF-8")
+}
+
+/// What a file holds.
+pub(crate) fn read(path: impl AsRef<Path>) -> String {
+    let path = path.as_ref();
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// A file or folder of the reference data; where it is absent nothing, said aloud.
+#[expect(clippy::print_stderr, reason = "a skip must be seen")]
+pub(crate) fn reference(name: &str) -> Option<PathBuf> {
+    let default = root().join("../shared/reference");
+    let path = std::env::var_os("DRIFTWORLD_REFERENCE")
+        .map_or(default, PathBuf::from)
+        .join(name);
+    if path.exists() {
+        return Some(path);
+    }
+    eprintln!("skipped: {} is not there; set DRIFTWORLD_REFERENCE", path.display());
+    None
+}
