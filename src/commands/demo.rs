@@ -12,7 +12,7 @@ use driftworld::spec::{BlockKind, Scenario, Variant, World};
 use driftworld::tasks;
 
 use super::curriculum::{blocks, choices};
-use super::metrics::{score_log, summary};
+use super::metrics::{Lived, summary};
 use super::order::{matrix, path_table};
 use super::pictures::{SheetRow, heat_map, sheet};
 use super::render::Views;
@@ -95,7 +95,7 @@ impl Demo {
 
         heading("5", "What the lifetime is worth, by the metrics of lifelong learning")?;
         let options = Options::default();
-        let scores = score_log(&logs, &Experts::default(), &options)?;
+        let scores = Lived::read(&logs, &Experts::default(), &options)?.metrics;
         let settings = Settings {
             log_dir: logs.display().to_string(),
             options,
