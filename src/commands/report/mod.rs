@@ -5,8 +5,8 @@ mod neighbours;
 use std::path::PathBuf;
 
 use clap::Args;
-use driftworld::metrics::{LifetimeMetrics, compare_agents, over_repeats};
-use driftworld::report::{Chapter, ChapterOptions, Comparison, FigureOptions, MAX_LIFETIMES, ReportError};
+use driftworld::metrics::{LifetimeMetrics, Options, compare_agents, over_repeats};
+use driftworld::report::{Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, ReportError};
 
 use super::figures::{FigureChoice, Files, drawn};
 use super::metrics::{Intervals, Lived, score_logs};
@@ -71,16 +71,7 @@ impl Report {
         let mut scores: Vec<LifetimeMetrics> = Vec::new();
         for log in &logs {
             let lived = Lived::read(log, &experts, &options)?;
-            let (distances, distance_note) = neighbours.of(&lived.log, &lived.lifetime);
-            let chapter = ChapterOptions {
-                figures: FigureOptions {
-                    distances,
-                    ..figures.clone()
-                },
-                shown: shown.clone(),
-                warnings: lived.warnings,
-                distance_note,
-            };
+            let chapter = options_of(&lived, &mut neighbours, &figures, &shown);
             chapters.push(Chapter::write(&lived.lifetime, &lived.metrics, &chapter)?);
             if let Some(files) = &mut files {
                 files.write(drawn(
@@ -123,6 +114,36 @@ impl Report {
         output::line(format!("{path}: {} {many}, {kilobytes} kB", logs.len()))?;
         files.map_or(Ok(()), |files| output::line(files.told()))
     }
+}
+
+/// How the chapter of a lifetime is written.
+fn options_of(lived: &Lived, neighbours: &mut Neighbours, figures: &FigureOptions, shown: &[Figure]) -> ChapterOptions {
+    let (distances, distance_note) = neighbours.of(&lived.log, &lived.lifetime);
+    ChapterOptions {
+        figures: FigureOptions {
+            distances,
+            ..figures.clone()
+        },
+        shown: shown.to_vec(),
+        warnings: lived.warnings.clone(),
+        distance_note,
+    }
+}
+
+/// The page of one lifetime, with all figures.
+pub(crate) fn page_of(title: &str, lived: &Lived, options: &Options) -> Result<String, Failure> {
+    let mut neighbours = Neighbours::new(None)?;
+    let chapter = options_of(lived, &mut neighbours, &FigureOptions::default(), &Figure::ALL);
+    let report = driftworld::report::Report {
+        title: Some(title.to_owned()),
+        chapters: vec![Chapter::write(&lived.lifetime, &lived.metrics, &chapter)?],
+        overall: Vec::new(),
+        comparisons: Vec::new(),
+        warnings: Vec::new(),
+        options: serde_json::to_value(options)?,
+        date: None,
+    };
+    Ok(report.to_html()?)
 }
 
 /// What the lifetimes under these folders are called together: by the folder, or the first of several.
