@@ -134,7 +134,7 @@ fn shown(record: &Record) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(40))]
 
     #[test]
     fn what_is_written_is_read(records in any_log()) {
