@@ -152,7 +152,7 @@ function measure(frame) {
   result.textContent = "MEASURED " + frame.clientWidth + " " + out.join(" ") + " END";
   document.body.append(result);
 }
-for (const width of [320, 360, 414, 719, 720, 1000, 1400]) {
+for (const width of [320, 360, 414, 799, 800, 1000, 1400]) {
   const frame = document.createElement("iframe");
   frame.style = "border:0;height:800px;width:" + width + "px";
   frame.onload = () => measure(frame);

@@ -228,7 +228,7 @@ pub(crate) fn number(value: f64) -> String {
     };
     match value.abs() {
         0.0 => "0".to_owned(),
-        size if size >= 1e12 || size < 1e-4 => format!("{value:.1e}").replace('-', "−"),
+        size if !(1e-4..1e12).contains(&size) => format!("{value:.1e}").replace('-', "−"),
         size if size >= 1e9 => trimmed(value / 1e9, 2) + "G",
         size if size >= 1e6 => trimmed(value / 1e6, 2) + "M",
         size if size >= 1e4 => trimmed(value / 1e3, 1) + "k",

@@ -77,7 +77,7 @@ impl Chapter {
             super::calm(&options.distance_note)
         );
         let lines = if options.figures.show_eval_lines {
-            ", joined by dotted lines"
+            ", joined by lines"
         } else {
             ""
         };

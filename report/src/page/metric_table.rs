@@ -28,7 +28,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
                 }
                 td.number { span.value { (number(value)) } }
                 td {
-                    (judged(name, value, row.good))
+                    (judged(name, value, &marks, row.good))
                     span.from { (verdict::good_from(row.good)) }
                 }
                 td.marks { @if !marks.is_empty() { (drawing_of(&drawing, &verdict::title(name))) } }
@@ -66,9 +66,10 @@ fn sentence(words: &str) -> String {
     first + letters.as_str()
 }
 
-fn judged(name: &str, value: f64, direction: Direction) -> Markup {
+fn judged(name: &str, value: f64, marks: &[(usize, f64)], direction: Direction) -> Markup {
+    let tasks: Vec<f64> = marks.iter().map(|mark| mark.1).collect();
     html! {
-        @if let Some(found) = verdict::of(name, value, direction) {
+        @if let Some(found) = verdict::of_lifetime(name, value, &tasks, direction) {
             span class={ "verdict " (found.class) } { span aria-hidden="true" { (found.sign) " " } (found.word) }
         }
     }

@@ -10,7 +10,7 @@ mod pair_table;
 mod task_table;
 mod verdict;
 
-use driftworld_metrics::RepeatedMetric;
+use driftworld_metrics::{BootstrapOptions, RepeatedMetric};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::Value;
 
@@ -35,6 +35,8 @@ pub struct Report {
     pub chapters: Vec<Chapter>,
     /// Values over all lifetimes; default none, and then no such section.
     pub overall: Vec<RepeatedMetric>,
+    /// How the intervals of both were made; default the metrics' own.
+    pub intervals: BootstrapOptions,
     /// Comparisons of two agents; default none, and then no such section.
     pub comparisons: Vec<Comparison>,
     /// Warnings about all of it; those of one lifetime stand in its chapter.
@@ -88,7 +90,7 @@ impl Report {
                     }
                     main {
                         (warnings(&self.warnings))
-                        (overall::section(&self.overall, &self.comparisons))
+                        (overall::section(&self.overall, &self.comparisons, &self.intervals))
                         @for (index, chapter) in self.chapters.iter().enumerate() { (self.life(index + 1, chapter)) }
                         (how(&self.options))
                     }
@@ -159,8 +161,9 @@ fn how(options: &Value) -> Markup {
                 "A value that cannot be computed is left out, never guessed."
             }
             p.note {
-                "Words like “helps” compare a value with the one that means no effect, to the digits shown. One lifetime cannot tell "
-                "effect from chance; several can, see intervals over all lifetimes where there are any."
+                "Words like “helps” compare a value with the one that means no effect, to the digits shown; “mixed” means that more than "
+                "a quarter of the tasks say the opposite. One lifetime cannot tell effect from chance; several can, by intervals over "
+                "all of them."
             }
             div.card {
                 table.options {
@@ -229,7 +232,7 @@ fn count(value: usize) -> String {
     let digits = value.to_string();
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index) % 3 == 0 {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
             text.push('\u{202f}');
         }
         text.push(digit);

@@ -1,6 +1,6 @@
 //! Values over all lifetimes with their intervals, and comparisons of two agents. They are estimated elsewhere, by `driftworld_metrics`.
 
-use driftworld_metrics::{ComparedMetric, Estimate, Interval, RepeatedMetric};
+use driftworld_metrics::{BootstrapOptions, ComparedMetric, Estimate, Interval, RepeatedMetric};
 use maud::{Markup, html};
 
 use super::verdict::{self, Verdict};
@@ -19,24 +19,26 @@ pub struct Comparison {
 }
 
 /// Both, where there are any.
-pub(super) fn section(overall: &[RepeatedMetric], comparisons: &[Comparison]) -> Markup {
+pub(super) fn section(overall: &[RepeatedMetric], comparisons: &[Comparison], intervals: &BootstrapOptions) -> Markup {
+    let percent = format!("{} %", number_plain(intervals.confidence * 100.0));
     html! {
         @if !overall.is_empty() || !comparisons.is_empty() {
             section.part.only id="overall" aria-labelledby="overall-name" {
                 h2 id="overall-name" { "Over all lifetimes" }
-                (values(overall))
-                @for comparison in comparisons { (improvement(comparison)) }
+                (values(overall, &percent))
+                @for comparison in comparisons { (improvement(comparison, &percent)) }
+                p.note { "Intervals: " (intervals.resamples) " resamples of " (intervals.resampling) ", seed " (intervals.seed) "." }
             }
         }
     }
 }
 
-fn values(rows: &[RepeatedMetric]) -> Markup {
+fn values(rows: &[RepeatedMetric], percent: &str) -> Markup {
     html! {
         @if !rows.is_empty() {
             p.note {
                 "Interquartile mean: the mean of the middle half of all values, task by task and lifetime by lifetime. In brackets, its "
-                "95 % bootstrap interval: what other repeats of the same experiment may well have shown."
+                (percent) " bootstrap interval: what other repeats of the same experiment may well have shown."
             }
             div.scroll role="region" aria-label="Metrics over all lifetimes" tabindex="0" {
                 table {
@@ -87,13 +89,13 @@ fn estimate(found: Estimate) -> Markup {
     }
 }
 
-fn improvement(comparison: &Comparison) -> Markup {
+fn improvement(comparison: &Comparison, percent: &str) -> Markup {
     let title = format!("{} against {}", shown(&comparison.agent), shown(&comparison.other));
     html! {
         h3 { (title) }
         p.note {
             "Probability of improvement: how likely a lifetime of " (shown(&comparison.agent)) " has the better value; 0.5 means that "
-            "neither is better. In brackets, its 95 % bootstrap interval."
+            "neither is better. In brackets, its " (percent) " bootstrap interval."
         }
         div.scroll role="region" aria-label=(title) tabindex="0" {
             table {
@@ -116,6 +118,12 @@ fn improvement(comparison: &Comparison) -> Markup {
             }
         }
     }
+}
+
+/// A share of a hundred without needless digits.
+fn number_plain(value: f64) -> String {
+    let text = format!("{value:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// What an interval says that does, or does not, hold one half.

@@ -59,10 +59,13 @@ fn cell(row: &SummaryRow, value: Option<f64>) -> Markup {
     let Some(value) = value else {
         return html! { td.even { span aria-hidden="true" { "·" } } };
     };
-    match verdict::of(&row.name, value, row.good) {
-        Some(found) => html! {
-            td class=(found.class) { (number(value)) " " span aria-hidden="true" { (found.sign) } }
-        },
-        None => html! { td { (number(value)) } },
+    // A change of less than a twentieth has a sign and no colour.
+    let faint = |neutral: f64| (value - neutral).abs() < 0.05;
+    let faint = verdict::neutral(row.good).is_some_and(faint);
+    let Some(found) = verdict::of(&row.name, value, row.good) else {
+        return html! { td { (number(value)) } };
+    };
+    html! {
+        td.(if faint { "faint" } else { found.class }) { (number(value)) " " span aria-hidden="true" { (found.sign) } }
     }
 }

@@ -57,6 +57,19 @@ pub(super) fn of(name: &str, value: f64, direction: Direction) -> Option<Verdict
     })
 }
 
+/// Judges the value of a lifetime beside those of its tasks: where more than a quarter of these say the opposite, it is mixed.
+pub(super) fn of_lifetime(name: &str, value: f64, tasks: &[f64], direction: Direction) -> Option<Verdict> {
+    let (found, neutral) = (of(name, value, direction)?, neutral(direction)?);
+    let opposite = tasks
+        .iter()
+        .filter(|task| (**task - neutral) * (value - neutral) < 0.0)
+        .count();
+    if found.class != EVEN.class && opposite * 4 > tasks.len() {
+        return Some(Verdict { word: "mixed", ..EVEN });
+    }
+    Some(found)
+}
+
 /// Judges an interval: nothing can be told where it holds the value that means no effect.
 pub(super) fn of_interval(name: &str, interval: Interval, direction: Direction) -> Option<Verdict> {
     let neutral = neutral(direction)?;
@@ -133,6 +146,17 @@ mod tests {
         assert_eq!(of("avg_eval_perf", 3.0, Direction::Higher), None);
         let lower = of("of_my_own", 3.0, Direction::LowerThan(1.0)).expect("there is a neutral value");
         assert_eq!(lower.word, "bad");
+    }
+
+    #[test]
+    fn tasks_that_say_the_opposite_make_a_value_mixed() {
+        let check = |tasks: &[f64], expected: &str| {
+            let found = of_lifetime("ste_rel_perf", 1.2, tasks, Direction::HigherThan(1.0));
+            assert_eq!(found.expect("there is a neutral value").word, expected, "{tasks:?}");
+        };
+        check(&[], "beats the expert");
+        check(&[1.9, 1.3, 1.0, 0.6], "beats the expert");
+        check(&[2.5, 0.9, 0.8], "mixed");
     }
 
     #[test]

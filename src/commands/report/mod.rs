@@ -102,6 +102,7 @@ impl Report {
             title: self.title,
             chapters,
             overall,
+            intervals,
             comparisons,
             warnings: Vec::new(),
             options: serde_json::to_value(&options)?,
