@@ -23,7 +23,7 @@ const FILES: [&str; 4] = [
 ];
 
 /// Lays out the log that the bytes describe, and checks every law.
-pub fn check(bytes: &[u8]) {
+pub(crate) fn check(bytes: &[u8]) {
     let base = tempfile::tempdir().expect("there is room for a small log");
     let dir = base.path().join("log");
     lay_out(&dir, bytes);

@@ -132,6 +132,7 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
         ),
     ];
     errors.extend(of_rows());
+    errors.extend(of_order());
     errors.extend(of_scoring());
     errors
 }
@@ -189,6 +190,13 @@ fn of_rows() -> Vec<(MetricsError, &'static str, &'static str)> {
             "run/w/0-train/data-log.tsv:3, column block_num: found 0, expected at least 1: read in order of exp_num, \
              block numbers never fall",
         ),
+    ]
+}
+
+fn of_order() -> Vec<(MetricsError, &'static str, &'static str)> {
+    use MetricsError as E;
+    let text = str::to_owned;
+    vec![
         (
             E::NumberFalls {
                 path: path(),

@@ -12,10 +12,11 @@ use driftworld::spec::{BlockKind, Scenario, Variant, World};
 use driftworld::tasks;
 
 use super::curriculum::{blocks, choices};
-use super::metrics::{score_log, summary};
+use super::metrics::{Lived, summary};
 use super::order::{matrix, path_table};
 use super::pictures::{SheetRow, heat_map, sheet};
 use super::render::Views;
+use super::report::page_of;
 use super::run::{Life, Start, processors};
 use super::scenario_file;
 use super::scoring::Experts;
@@ -95,7 +96,12 @@ impl Demo {
 
         heading("5", "What the lifetime is worth, by the metrics of lifelong learning")?;
         let options = Options::default();
-        let scores = score_log(&logs, &Experts::default(), &options)?;
+        let lived = Lived::read(&logs, &Experts::default(), &options)?;
+        output::write(
+            &folder.join("report.html"),
+            page_of("An agent that knows the map", &lived, &options)?.as_bytes(),
+        )?;
+        let scores = lived.metrics;
         let settings = Settings {
             log_dir: logs.display().to_string(),
             options,
@@ -234,6 +240,7 @@ fn contents(folder: &Path) -> String {
         ("distances.png", "the same as a heat map"),
         ("scenario.json", "the curriculum: driftworld run FILE lives it"),
         ("log/", "every experience, in l2logger's format"),
+        ("report.html", "the lifetime on one page, for a browser"),
         ("scores/", "the metrics: driftworld metrics on the log prints them"),
     ];
     let line = |(name, what): &(&str, &str)| format!("  {:<36} {what}", folder.join(name).display().to_string());

@@ -9,6 +9,7 @@ mod demo;
 mod distance;
 mod doctor;
 mod draw_maps;
+mod figures;
 mod input;
 mod interrupt;
 mod log_folders;
@@ -44,49 +45,28 @@ use clap::Parser;
 #[derive(Parser)]
 #[command(name = "driftworld", version, arg_required_else_help = true)]
 pub(crate) enum Command {
-    /// Go the whole way once: worlds, pictures, distances, a curriculum, a lifetime, its scores.
     Demo(demo::Demo),
-    /// List the built-in tasks, or show what varies in one.
     Tasks(tasks::Tasks),
-    /// Check task specs, worlds and scenarios, and name every problem with its place.
     Validate(validate::Validate),
-    /// Draw worlds from a variant of a task.
     Sample(sample::Sample),
-    /// Find a variant at a wanted distance from another.
     Vary(vary::Vary),
-    /// Write a world or a scenario in L2Explorer's form, or one of L2Explorer's in ours.
     Convert(convert::Convert),
-    /// Draw what an agent sees of a world, and the world from above.
     Render(render::Render),
-    /// Draw one world of each of many variants: what the agent sees, and the world from above.
     Sheet(sheet::Sheet),
-    /// Turn glTF models into libraries that worlds can use, and look at what there is.
     Assets(assets::Assets),
-    /// Step through a world by hand: act, look, change it, send it messages.
     Console(console::Console),
-    /// Photograph every object of a world from around and above.
     Photograph(photograph::Photograph),
-    /// Measure how far apart two variants or two worlds are.
     Distance(distance::Distance),
-    /// Put variants into an order by their distances.
     Order(order::Order),
-    /// Design learning and evaluation blocks from variants and their distances.
     Curriculum(curriculum::Curriculum),
-    /// Live a curriculum with an agent and log every experience.
     Run(run::Run),
     // No words here: they would take the place of the long ones that stand with the command.
     Logs(logs::Logs),
-    /// Score the log of a lifetime.
     Metrics(metrics::Metrics),
-    /// Show lifetimes on one page: metrics, curriculum, curves.
     Report(report::Report),
-    /// Ask whether similar variants transferred more, by logs and distances.
     TransferReport(transfer_report::TransferReport),
-    /// Write or check the JSON Schemas of the documents.
     Schema(schema::Schema),
-    /// Measure how fast this build is on this machine.
     Bench(bench::Bench),
-    /// Say which renderers work on this machine, and what is missing for the others.
     Doctor(doctor::Doctor),
 }
 

@@ -29,6 +29,7 @@ const LONGEST_NAME: usize = 40;
   driftworld photograph world.json -o photographs
   driftworld photograph find_objects#red --seed 7 --modalities rgb,depth,instance -o photographs
 
+/// Photograph every object of a world from around and above.
 Depths are 16-bit, in the manifest's metres_per_level; classes and instances are 16-bit numbers, 0 where there is no object.")]
 pub(crate) struct Photograph {
     #[command(flatten)]

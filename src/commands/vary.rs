@@ -9,7 +9,9 @@ use serde_json::{Map, json};
 
 use super::{Failure, output};
 
-/// Find a variant at a wanted distance from another, changing one element of the decision process or some parameters.
+/// Find a variant at a wanted distance from another.
+///
+/// One element of the decision process is changed, or some parameters.
 ///
 /// Prints what the variant sets, ready to be pasted among the variants of the task spec.
 #[derive(Args)]

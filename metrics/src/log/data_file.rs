@@ -53,7 +53,7 @@ pub(super) fn read(
     {
         return Err(fault);
     }
-    let mut header = Header::new(path, &row, metrics_columns, table, faults)?;
+    let header = Header::new(path, &row, metrics_columns, table, faults)?;
     // Where lines end with two characters, the second of them still lies ahead of the reader.
     let line_ends = (rows.position().line() - line_breaks(&row) - 1).min(1);
     loop {

@@ -26,8 +26,6 @@ pub(super) struct Header<'a> {
     metrics: Vec<usize>,
     /// Columns nobody declared, each with its number in the table.
     others: Vec<(usize, usize)>,
-    /// Numbers of the row at hand.
-    numbers: Vec<f64>,
 }
 
 impl<'a> Header<'a> {
@@ -83,7 +81,6 @@ impl<'a> Header<'a> {
             subtype: place(SINCE_1_1),
             standard: STANDARD.map(|column| place(column).unwrap_or_default()),
             others: others.into_iter().zip(numbers).collect(),
-            numbers: Vec::with_capacity(metrics.len()),
             metrics,
             names,
         })
@@ -91,7 +88,7 @@ impl<'a> Header<'a> {
 
     /// Adds a row to the table, unless there is a fault in it.
     pub(super) fn add(
-        &mut self,
+        &self,
         row: &StringRecord,
         line: u64,
         table: &mut Table<'_>,
@@ -106,78 +103,85 @@ impl<'a> Header<'a> {
                 expected,
             });
         }
-        // Every index is below the number of names, which is the number of cells.
-        let cell = |index: usize| Cell {
-            path: self.path,
-            line,
-            column: &self.names[index],
-            text: &row[index],
-        };
+        let cell = |index: usize| self.cell(row, line, index);
         if row.as_slice().len() > MAX_CELL_BYTES
             && let Some(index) = (0..row.len()).find(|index| row[*index].len() > MAX_CELL_BYTES)
         {
             return faults.add(cell(index).error(format!("at most {MAX_CELL_BYTES} bytes; is a quote not closed?")));
         }
-        let cells = standard_cells(self.standard.map(cell), self.subtype.map(cell), table, faults)?;
-        self.numbers.clear();
+        let cells = self.standard_cells(cell, table, faults)?;
+        let mut numbers = table.spare_numbers();
         for &index in &self.metrics {
             if let Some(number) = faults.sift(cell(index).number())? {
-                self.numbers.push(number);
+                numbers.push(number);
             }
         }
         match cells {
-            Some(cells) if self.numbers.len() == self.metrics.len() => {
+            Some(cells) if numbers.len() == self.metrics.len() => {
                 let others = self.others.iter().map(|&(index, number)| (number, &row[index]));
-                table.push(line, &cells, &self.numbers, others)
+                table.push(line, &cells, numbers, others)
             }
             _ => Ok(()),
         }
     }
-}
 
-/// The cells of the standard columns; nothing where one of them is wrong.
-fn standard_cells(
-    standard: [Cell<'_>; STANDARD.len()],
-    subtype: Option<Cell<'_>>,
-    table: &mut Table<'_>,
-    faults: &mut Faults,
-) -> Result<Option<Cells>, MetricsError> {
-    let [
-        block_num,
-        exp_num,
-        worker_id,
-        block_type,
-        _,
-        task_name,
-        task_params,
-        exp_status,
-        timestamp,
-    ] = standard;
-    let block_num = faults.sift(block_num.whole_number())?;
-    let exp_num = faults.sift(exp_num.whole_number())?;
-    let worker = (table.workers).id(&mut table.rows.workers, worker_id.text, |_| worker_id.worker());
-    let worker = faults.sift(worker)?;
-    let block_type = faults.sift(block_type.word(BlockType::expected))?;
-    let block_subtype = subtype.map_or(Ok(BlockSubtype::Wake), |cell| cell.word(BlockSubtype::expected));
-    let block_subtype = faults.sift(block_subtype)?;
-    let task = (table.task_names).id(&mut table.rows.task_names, task_name.text, |text| Ok(text.to_owned()));
-    let task = faults.sift(task)?;
-    let params = (table.task_params).id(&mut table.rows.task_params, task_params.text, |_| task_params.params());
-    let params = faults.sift(params)?;
-    let exp_status = faults.sift(exp_status.word(ExpStatus::expected))?;
-    let timestamp = faults.sift(timestamp.timestamp())?;
-    let cells = || {
-        Some(Cells {
-            block_num: block_num?,
-            exp_num: exp_num?,
-            shared: [worker?, task?, params?],
-            block_type: block_type?,
-            block_subtype: block_subtype?,
-            exp_status: exp_status?,
-            timestamp: timestamp?,
-        })
-    };
-    Ok(cells())
+    /// A cell of a row that has as many of them as the header.
+    fn cell<'r>(&'r self, row: &'r StringRecord, line: u64, index: usize) -> Cell<'r> {
+        Cell {
+            path: self.path,
+            line,
+            column: &self.names[index],
+            text: &row[index],
+        }
+    }
+
+    /// The cells of the standard columns; nothing where one of them is wrong.
+    fn standard_cells<'r>(
+        &self,
+        cell: impl Fn(usize) -> Cell<'r>,
+        table: &mut Table<'_>,
+        faults: &mut Faults,
+    ) -> Result<Option<Cells>, MetricsError> {
+        let [
+            block_num,
+            exp_num,
+            worker_id,
+            block_type,
+            _,
+            task_name,
+            task_params,
+            exp_status,
+            timestamp,
+        ] = self.standard.map(&cell);
+        let block_num = faults.sift(block_num.whole_number())?;
+        let exp_num = faults.sift(exp_num.whole_number())?;
+        let worker = (table.workers).id(&mut table.rows.workers, worker_id.text, |_| worker_id.worker());
+        let worker = faults.sift(worker)?;
+        let block_type = faults.sift(block_type.word(BlockType::expected))?;
+        let block_subtype = match self.subtype {
+            Some(index) => cell(index).word(BlockSubtype::expected),
+            None => Ok(BlockSubtype::Wake),
+        };
+        let block_subtype = faults.sift(block_subtype)?;
+        let task = (table.task_names).id(&mut table.rows.task_names, task_name.text, |text| Ok(text.to_owned()));
+        let task = faults.sift(task)?;
+        let params = (table.task_params).id(&mut table.rows.task_params, task_params.text, |_| task_params.params());
+        let params = faults.sift(params)?;
+        let exp_status = faults.sift(exp_status.word(ExpStatus::expected))?;
+        let timestamp = faults.sift(timestamp.timestamp())?;
+        let cells = || {
+            Some(Cells {
+                block_num: block_num?,
+                exp_num: exp_num?,
+                shared: [worker?, task?, params?],
+                block_type: block_type?,
+                block_subtype: block_subtype?,
+                exp_status: exp_status?,
+                timestamp: timestamp?,
+            })
+        };
+        Ok(cells())
+    }
 }
 
 fn check_num_columns(path: &Path, num: usize) -> Result<(), MetricsError> {

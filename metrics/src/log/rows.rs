@@ -13,6 +13,22 @@ use super::timestamp::Timestamp;
 ///
 /// Two tables are equal when they have the same columns and their rows are equal one by one; a missing number (NaN) equals
 /// another.
+///
+/// ```
+/// # use driftworld_metrics::{BlockType, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp, read_log};
+/// # let base = tempfile::tempdir().unwrap();
+/// # let dir = base.path().join("log");
+/// # let mut writer = LogWriter::create(&dir, &LoggerInfo::new(["reward"])?, &ScenarioInfo::default())?;
+/// # for (exp_num, reward) in [(0, 1.0), (1, 3.0)] {
+/// #     let record = Record::new(exp_num, exp_num, BlockType::Train, "find_red", Timestamp::from_unix_micros(0)?);
+/// #     writer.write(&record.with_metric("reward", reward))?;
+/// # }
+/// let rows = read_log(&dir)?.rows;
+/// assert_eq!(rows.metric("reward"), Some(&[1.0, 3.0][..]), "columns are slices");
+/// let late = rows.iter().find(|row| row.block_num() == 1).expect("there are two blocks");
+/// assert_eq!((late.task_name(), late.metric("reward")), ("find_red", Some(3.0)));
+/// # Ok::<(), driftworld_metrics::MetricsError>(())
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Rows {
     pub(super) block_nums: Vec<u64>,

@@ -82,19 +82,18 @@ impl Seen {
         {
             return Ok(*id);
         }
-        let id = match self.ids.get(text) {
-            Some(&id) => id,
-            None => {
-                let value = make(text)?;
-                // Rows are bounded far below what a u32 counts, and each adds one value at most.
-                let id = column.values.len() as u32;
-                column.values.push(value);
-                if self.ids.len() == REMEMBERED {
-                    self.ids.clear();
-                }
-                self.ids.insert(text.to_owned(), id);
-                id
+        let id = if let Some(&id) = self.ids.get(text) {
+            id
+        } else {
+            let value = make(text)?;
+            // Rows are bounded far below what a u32 counts, and each adds one value at most.
+            let id = column.values.len() as u32;
+            column.values.push(value);
+            if self.ids.len() == REMEMBERED {
+                self.ids.clear();
             }
+            self.ids.insert(text.to_owned(), id);
+            id
         };
         let (last, last_id) = self.last.get_or_insert_default();
         last.clear();

@@ -43,6 +43,7 @@ pub(super) struct Table<'a> {
     pub(super) task_params: Seen,
     others: IndexMap<String, Other>,
     num_cells: u64,
+    spare: Vec<f64>,
 }
 
 /// A column that nobody declared.
@@ -56,8 +57,11 @@ struct Other {
 
 impl<'a> Table<'a> {
     pub(super) fn new(dir: &'a Path, metrics_columns: &[String], texts: Texts) -> Self {
-        let mut rows = Rows::default();
-        rows.metrics = metrics_columns.iter().map(|name| (name.clone(), Vec::new())).collect();
+        let metrics = metrics_columns.iter().map(|name| (name.clone(), Vec::new()));
+        let rows = Rows {
+            metrics: metrics.collect(),
+            ..Rows::default()
+        };
         Self {
             dir,
             texts,
@@ -69,6 +73,7 @@ impl<'a> Table<'a> {
             task_params: Seen::default(),
             others: IndexMap::new(),
             num_cells: 0,
+            spare: Vec::new(),
         }
     }
 
@@ -100,12 +105,17 @@ impl<'a> Table<'a> {
         Ok(numbers)
     }
 
+    /// Room for the metrics of a row, which [`push`](Self::push) gives back.
+    pub(super) fn spare_numbers(&mut self) -> Vec<f64> {
+        std::mem::take(&mut self.spare)
+    }
+
     /// Adds a row: the declared metrics in their order, and the cells of other columns with the columns' numbers.
     pub(super) fn push<'c>(
         &mut self,
         line: u64,
         cells: &Cells,
-        metrics: &[f64],
+        mut metrics: Vec<f64>,
         others: impl ExactSizeIterator<Item = (usize, &'c str)>,
     ) -> Result<(), MetricsError> {
         self.check_limit("rows or more", self.rows.len() as u64 + 1, MAX_RECORDS as u64)?;
@@ -113,9 +123,10 @@ impl<'a> Table<'a> {
         // A file has fewer bytes than a u32 counts, and so fewer lines.
         self.lines.push(line as u32);
         self.rows.push(cells);
-        for (column, number) in self.rows.metrics.values_mut().zip(metrics) {
-            column.push(*number);
+        for (column, number) in self.rows.metrics.values_mut().zip(metrics.drain(..)) {
+            column.push(number);
         }
+        self.spare = metrics;
         for (column, text) in others {
             self.others[column].push(text, self.texts);
         }
@@ -199,12 +210,11 @@ impl Other {
 
     fn push(&mut self, text: &str, texts: Texts) {
         if self.is_number {
-            match super::cell::number(text) {
-                Some(number) => self.numbers.push(number),
-                None => {
-                    self.is_number = false;
-                    self.numbers = Vec::new();
-                }
+            if let Some(number) = super::cell::number(text) {
+                self.numbers.push(number);
+            } else {
+                self.is_number = false;
+                self.numbers = Vec::new();
             }
         }
         if texts == Texts::Keep {

@@ -89,9 +89,8 @@ impl Scan {
     fn take(&mut self, byte: u8, found: &mut WholeRows) {
         self.bytes += 1;
         self.place = match (self.place, byte) {
-            (Place::CellStart, b'"') | (Place::QuoteInQuotes, b'"') => Place::Quotes,
             (Place::Quotes, b'"') => Place::QuoteInQuotes,
-            (Place::Quotes, _) => Place::Quotes,
+            (Place::Quotes, _) | (Place::CellStart | Place::QuoteInQuotes, b'"') => Place::Quotes,
             (_, b'\t' | b'\n' | b'\r') => Place::CellStart,
             _ => Place::Cell,
         };

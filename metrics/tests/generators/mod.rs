@@ -3,9 +3,9 @@
 //! Not here: what must hold of them, see the tests that take them.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-#![allow(clippy::allow_attributes, dead_code, reason = "each test takes what it needs")]
 
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use driftworld_metrics::{BlockSubtype, BlockType, ExpStatus, Record, Timestamp};
 use proptest::prelude::*;
 
 /// A time stamp so many microseconds after a fixed one.
-pub fn stamp(micros: i64) -> Timestamp {
+pub(crate) fn stamp(micros: i64) -> Timestamp {
     Timestamp::from_unix_micros(1_600_000_000_000_000 + micros).unwrap()
 }
 
@@ -54,7 +54,7 @@ fn any_record() -> impl Strategy<Value = Record> {
 
 /// Records as they may be written one after the other: numbers stay or rise, also by much, and a worker's experience ends with its
 /// complete row. Each has a time stamp of its own.
-pub fn any_log() -> impl Strategy<Value = Vec<Record>> {
+pub(crate) fn any_log() -> impl Strategy<Value = Vec<Record>> {
     let step = || prop_oneof![4 => Just(0_u64), 4 => Just(1), 1 => 2_u64..1_000_000];
     let rows = prop::collection::vec((any_record(), step(), step(), any::<bool>()), 1..10);
     rows.prop_map(|rows| {
@@ -86,13 +86,13 @@ pub fn any_log() -> impl Strategy<Value = Vec<Record>> {
 
 /// One row of a lifetime: what scoring depends on.
 #[derive(Debug, Clone)]
-pub struct Lived {
-    pub block_num: u64,
-    pub exp_num: u64,
-    pub block_type: BlockType,
-    pub block_subtype: BlockSubtype,
-    pub task: &'static str,
-    pub performance: f64,
+pub(crate) struct Lived {
+    pub(crate) block_num: u64,
+    pub(crate) exp_num: u64,
+    pub(crate) block_type: BlockType,
+    pub(crate) block_subtype: BlockSubtype,
+    pub(crate) task: &'static str,
+    pub(crate) performance: f64,
 }
 
 const TASKS: [&str; 3] = ["find_red", "find_blue", "reach_near"];
@@ -103,7 +103,7 @@ fn performances(num: std::ops::Range<usize>) -> impl Strategy<Value = Vec<f64>> 
 }
 
 /// Lifetimes of several blocks, some long enough to be smoothed; each experience is one row.
-pub fn lifetime() -> impl Strategy<Value = Vec<Lived>> {
+pub(crate) fn lifetime() -> impl Strategy<Value = Vec<Lived>> {
     let subtype = prop_oneof![6 => Just(BlockSubtype::Wake), 1 => Just(BlockSubtype::Sleep)];
     let stretch = (
         prop::sample::select(BlockType::ALL),
@@ -134,7 +134,7 @@ pub fn lifetime() -> impl Strategy<Value = Vec<Lived>> {
 }
 
 /// A run of an expert in the first task.
-pub fn expert() -> impl Strategy<Value = Vec<Lived>> {
+pub(crate) fn expert() -> impl Strategy<Value = Vec<Lived>> {
     performances(1..40).prop_map(|performances| {
         let row = |(exp_num, performance)| Lived {
             block_num: 0,
@@ -149,7 +149,7 @@ pub fn expert() -> impl Strategy<Value = Vec<Lived>> {
 }
 
 /// Writes a log whose rows lie, in the order given, each in the data file of its folder; the folder's name is the worker's.
-pub fn lay_out<'a>(dir: &Path, rows: impl IntoIterator<Item = (&'a Lived, usize)>) {
+pub(crate) fn lay_out<'a>(dir: &Path, rows: impl IntoIterator<Item = (&'a Lived, usize)>) {
     fs::create_dir_all(dir).unwrap();
     fs::write(
         dir.join("logger_info.json"),
@@ -171,9 +171,11 @@ pub fn lay_out<'a>(dir: &Path, rows: impl IntoIterator<Item = (&'a Lived, usize)
             performance,
         } = row;
         let stamp = stamp(*exp_num as i64);
-        *text += &format!(
-            "{block_num}\t{exp_num}\tw{folder}\t{block_type}\t{block_subtype}\t{task}\t{{}}\tcomplete\t{stamp}\t{performance:?}\n"
-        );
+        writeln!(
+            text,
+            "{block_num}\t{exp_num}\tw{folder}\t{block_type}\t{block_subtype}\t{task}\t{{}}\tcomplete\t{stamp}\t{performance:?}"
+        )
+        .unwrap();
     }
     for (folder, text) in files {
         let folder = dir.join(format!("w{folder}/0-train"));

@@ -35,6 +35,7 @@ const LONGEST_LINE: u64 = 64 << 20;
   driftworld console world.json --script tour.txt --out pictures
   printf 'step 10 2 0 0\\nobjects\\n' | driftworld console find_objects
 
+/// Step through a world by hand: act, look, change it, send it messages.
 Type help for the commands.")]
 pub(crate) struct Console {
     #[command(flatten)]

@@ -1,7 +1,7 @@
 //! `driftworld metrics`: what agents kept and transferred, from the logs of their lifetimes. The metrics are the library's.
 
+mod lived;
 mod many;
-mod score;
 mod store;
 mod tables;
 
@@ -10,10 +10,13 @@ use std::path::PathBuf;
 use clap::Args;
 use driftworld::metrics::{BootstrapOptions, LifetimeMetrics, Options, Settings, SteStoreMode, save_all};
 
-pub(crate) use score::{score_log, score_logs};
+pub(crate) use lived::{Lived, score_logs};
 pub(crate) use tables::summary;
 
-use super::scoring::Scoring;
+use lived::each_lived;
+
+use super::figures::{FigureChoice, Files, drawn};
+use super::scoring::{Experts, Scoring};
 use super::{Failure, log_folders, output};
 
 /// What several lifetimes are called together, as in l2metrics.
@@ -48,20 +51,34 @@ pub(crate) struct Metrics {
     /// Keep the logs as experts in the folder --ste-data, in place of those of their tasks (w) or beside them (a), and score nothing.
     #[arg(short = 's', long, value_name = "w|a", requires = "ste_data")]
     ste_store_mode: Option<SteStoreMode>,
+    /// Print the result as JSON.
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     scoring: Scoring,
     #[command(flatten)]
     intervals: Intervals,
-    /// Save results in this folder: `NAME_metrics.json`, `NAME_regime.tsv`, `NAME_settings.json`; of several lifetimes or with -R
-    /// `NAME.json`, `NAME.tsv`, `NAME_regime.tsv`, `NAME_settings.json`.
-    #[arg(short = 'O', long, value_name = "DIR")]
+    /// Save results: `NAME_metrics.json`, `NAME_regime.tsv`, `NAME_settings.json`; of several lifetimes or with -R `NAME.json`,
+    /// `NAME.tsv`, `NAME_regime.tsv`, `NAME_settings.json`.
+    #[arg(short = 'S', long, help_heading = "Saving")]
+    do_save: bool,
+    /// Save results in this folder [default: results].
+    #[arg(short = 'O', long, value_name = "DIR", help_heading = "Saving")]
     output_dir: Option<PathBuf>,
-    /// The NAME in the names of files [default: the log's; of several `ll_metrics`].
-    #[arg(short, long, value_name = "NAME", requires = "output_dir")]
+    /// Save results under this NAME [default: the log's; of several `ll_metrics`].
+    #[arg(short, long, value_name = "NAME", help_heading = "Saving")]
     output: Option<String>,
-    /// Print the result as JSON.
-    #[arg(long)]
-    json: bool,
+    /// Draw figures, too, as PNG and SVG into the folder plots/ below --output-dir.
+    #[arg(short = 'P', long, help_heading = "Saving")]
+    do_plot: bool,
+    /// What l2metrics' users say to keep it from writing, which this command does not do by itself.
+    #[arg(long, hide = true, conflicts_with_all = ["do_save", "output_dir", "output"])]
+    no_save: bool,
+    /// The same of figures.
+    #[arg(long, hide = true, conflicts_with = "do_plot")]
+    no_plot: bool,
+    #[command(flatten)]
+    figures: FigureChoice,
 }
 
 /// How sure numbers over several lifetimes are.
@@ -101,7 +118,7 @@ impl Metrics {
         }
         let options = self.scoring.options()?;
         let experts = self.scoring.experts()?;
-        let lifetimes = score_logs(&logs, &experts, &options)?;
+        let lifetimes = self.scored(&logs, &experts, &options)?;
         match lifetimes.as_slice() {
             [lifetime] if !self.recursive && self.against.is_empty() => {
                 if self.json {
@@ -127,6 +144,28 @@ impl Metrics {
         self.save(&lifetimes, options)
     }
 
+    /// The scores of the logs; figures are drawn and written on the way where they are asked for.
+    fn scored(&self, logs: &[PathBuf], experts: &Experts, options: &Options) -> Result<Vec<LifetimeMetrics>, Failure> {
+        if !self.do_plot {
+            return score_logs(logs, experts, options);
+        }
+        let (shown, how) = (self.figures.shown()?, self.figures.options()?);
+        let draw = |lived: Lived| {
+            let drawn = drawn(&lived.lifetime, &lived.metrics.metrics_column, &shown, &how)?;
+            Ok((lived.metrics, drawn))
+        };
+        let (lifetimes, figures): (Vec<_>, Vec<_>) = each_lived(logs, experts, options, draw)?.into_iter().unzip();
+        let mut files = Files::new(&self.folder().join("plots"));
+        figures.into_iter().try_for_each(|drawn| files.write(drawn))?;
+        output::note(format!("wrote {}", files.told()));
+        Ok(lifetimes)
+    }
+
+    /// Where results are saved.
+    fn folder(&self) -> PathBuf {
+        self.output_dir.clone().unwrap_or_else(|| "results".into())
+    }
+
     /// The logs that the arguments name; those of the settings file where there is no argument.
     fn logs(&self) -> Result<Vec<PathBuf>, Failure> {
         let mut named: Vec<PathBuf> = self.logs.iter().chain(&self.log_dir).cloned().collect();
@@ -144,7 +183,10 @@ impl Metrics {
     }
 
     fn save(&self, lifetimes: &[LifetimeMetrics], options: Options) -> Result<(), Failure> {
-        let Some(folder) = &self.output_dir else { return Ok(()) };
+        if !self.do_save && self.output_dir.is_none() && self.output.is_none() {
+            return Ok(());
+        }
+        let folder = self.folder();
         let log_dir = self
             .logs
             .iter()
@@ -157,12 +199,12 @@ impl Metrics {
         let files = match lifetimes {
             [lifetime] if !self.recursive => {
                 let name = self.output.as_deref().unwrap_or(&lifetime.run_id);
-                let files = lifetime.save(folder, name, &settings)?;
+                let files = lifetime.save(&folder, name, &settings)?;
                 vec![files.metrics, files.regimes, files.settings]
             }
             _ => {
                 let name = self.output.as_deref().unwrap_or(NAME_OF_MANY);
-                let files = save_all(lifetimes, folder, name, &settings)?;
+                let files = save_all(lifetimes, &folder, name, &settings)?;
                 vec![files.lifetimes, files.metrics, files.regimes, files.settings]
             }
         };

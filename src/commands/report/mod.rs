@@ -1,24 +1,20 @@
 //! `driftworld report`: lifetimes on one page, and their figures as files. Scores are `metrics`', pages and figures `report`'s.
 
-mod lived;
 mod neighbours;
-mod plots;
 
 use std::path::PathBuf;
 
 use clap::Args;
-use driftworld::metrics::{LifetimeMetrics, compare_agents, over_repeats};
-use driftworld::report::{
-    Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, ReportError, Unit,
-};
+use driftworld::metrics::{LifetimeMetrics, Options, compare_agents, over_repeats};
+use driftworld::report::{Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, ReportError};
 
-use super::metrics::{Intervals, score_logs};
+use super::figures::{FigureChoice, Files, drawn};
+use super::metrics::{Intervals, Lived, score_logs};
 use super::scoring::Scoring;
 use super::{Failure, log_folders, output};
-use lived::Lived;
 use neighbours::Neighbours;
 
-/// Show lifetimes on one page: metrics and what they say, the curriculum, curves, comparisons with experts.
+/// Show lifetimes on one page: metrics, curriculum, curves.
 ///
 /// The page is one HTML file that loads nothing and needs no network. Of several lifetimes each has a chapter, and together they
 /// have intervals; with --against, two agents are compared.
@@ -49,54 +45,15 @@ pub(crate) struct Report {
     /// A distance matrix, as `driftworld order --matrix` writes it: .csv, .json or .npy.
     #[arg(long, value_name = "FILE")]
     distances: Option<PathBuf>,
+    /// Write the figures into this folder too: `NAME_raw.png`, `NAME_raw.svg` and so on; NAME is the log's.
+    #[arg(long, value_name = "DIR")]
+    plots: Option<PathBuf>,
     #[command(flatten)]
     figures: FigureChoice,
     #[command(flatten)]
     scoring: Scoring,
     #[command(flatten)]
     intervals: Intervals,
-}
-
-/// What is drawn, and how.
-#[derive(Args)]
-#[command(next_help_heading = "Figures")]
-struct FigureChoice {
-    /// Write the figures into this folder too: `NAME_raw.png`, `NAME_raw.svg` and so on; NAME is the log's.
-    #[arg(long, value_name = "DIR")]
-    plots: Option<PathBuf>,
-    /// Which figures: all, or some of raw, lb (learning), eb (evaluation), ste (against the expert), timeline.
-    #[arg(short = 'T', long, value_name = "TYPE", num_args = 1.., default_value = "all")]
-    plot_types: Vec<String>,
-    /// What the horizontal axis counts: exp_num, or steps by the column episode_step_count.
-    #[arg(short, long, value_name = "UNIT", default_value = "exp_num")]
-    unit: String,
-    /// Do not join the means of evaluations across learning.
-    #[arg(long)]
-    no_show_eval_lines: bool,
-}
-
-impl FigureChoice {
-    /// The figures asked for, in the order of a report.
-    fn shown(&self) -> Result<Vec<Figure>, Failure> {
-        let asked = self.plot_types.iter().map(|word| Figure::asked_for(word));
-        let asked = asked.collect::<Result<Vec<_>, _>>().map_err(in_arguments)?.concat();
-        Ok(Figure::ALL
-            .into_iter()
-            .filter(|figure| asked.contains(figure))
-            .collect())
-    }
-
-    fn options(&self) -> Result<FigureOptions, Failure> {
-        Ok(FigureOptions {
-            unit: self.unit.parse::<Unit>().map_err(in_arguments)?,
-            show_eval_lines: !self.no_show_eval_lines,
-            distances: None,
-        })
-    }
-}
-
-fn in_arguments(error: ReportError) -> Failure {
-    Failure::usage(error.to_string())
 }
 
 impl Report {
@@ -109,24 +66,20 @@ impl Report {
         }
         let (options, experts) = (self.scoring.options()?, self.scoring.experts()?);
         let mut neighbours = Neighbours::new(self.distances.as_deref())?;
-        let mut files = self.figures.plots.as_deref().map(plots::Files::new);
+        let mut files = self.plots.as_deref().map(Files::new);
         let mut chapters = Vec::new();
         let mut scores: Vec<LifetimeMetrics> = Vec::new();
         for log in &logs {
             let lived = Lived::read(log, &experts, &options)?;
-            let (distances, distance_note) = neighbours.of(&lived.log, &lived.lifetime);
-            let chapter = ChapterOptions {
-                figures: FigureOptions {
-                    distances,
-                    ..figures.clone()
-                },
-                shown: shown.clone(),
-                warnings: lived.warnings,
-                distance_note,
-            };
+            let chapter = options_of(&lived, &mut neighbours, &figures, &shown);
             chapters.push(Chapter::write(&lived.lifetime, &lived.metrics, &chapter)?);
             if let Some(files) = &mut files {
-                files.write(&lived.lifetime, &lived.metrics.metrics_column, &chapter)?;
+                files.write(drawn(
+                    &lived.lifetime,
+                    &lived.metrics.metrics_column,
+                    &chapter.shown,
+                    &chapter.figures,
+                )?)?;
             }
             scores.push(lived.metrics);
         }
@@ -162,6 +115,36 @@ impl Report {
         output::line(format!("{path}: {} {many}, {kilobytes} kB", logs.len()))?;
         files.map_or(Ok(()), |files| output::line(files.told()))
     }
+}
+
+/// How the chapter of a lifetime is written.
+fn options_of(lived: &Lived, neighbours: &mut Neighbours, figures: &FigureOptions, shown: &[Figure]) -> ChapterOptions {
+    let (distances, distance_note) = neighbours.of(&lived.log, &lived.lifetime);
+    ChapterOptions {
+        figures: FigureOptions {
+            distances,
+            ..figures.clone()
+        },
+        shown: shown.to_vec(),
+        warnings: lived.warnings.clone(),
+        distance_note,
+    }
+}
+
+/// The page of one lifetime, with all figures.
+pub(crate) fn page_of(title: &str, lived: &Lived, options: &Options) -> Result<String, Failure> {
+    let mut neighbours = Neighbours::new(None)?;
+    let chapter = options_of(lived, &mut neighbours, &FigureOptions::default(), &Figure::ALL);
+    let report = driftworld::report::Report {
+        title: Some(title.to_owned()),
+        chapters: vec![Chapter::write(&lived.lifetime, &lived.metrics, &chapter)?],
+        overall: Vec::new(),
+        comparisons: Vec::new(),
+        warnings: Vec::new(),
+        options: serde_json::to_value(options)?,
+        date: None,
+    };
+    Ok(report.to_html()?)
 }
 
 /// What the lifetimes under these folders are called together: by the folder, or the first of several.

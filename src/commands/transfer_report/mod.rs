@@ -15,7 +15,7 @@ use super::pictures::scatter;
 use super::scoring::Experts;
 use super::{Failure, log_folders, matrix_file, output};
 
-/// Ask whether similar variants transferred more: correlate distances with the transfer that logs measured.
+/// Ask whether similar variants transferred more, by logs and distances.
 ///
 /// Transfer from A to B is what learning A did to B: B's evaluation after it against the one before. It is forward where B was
 /// still to be learned, backward where it had been. A curriculum ordered by distance rests on the belief that the nearer two

@@ -1,0 +1,54 @@
+//! Figures in a folder, under the reference's names. Drawing them is done before.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use super::Drawn;
+use crate::commands::{Failure, output};
+
+/// A folder of figures, and what is in it already.
+pub(crate) struct Files {
+    folder: PathBuf,
+    names: BTreeSet<String>,
+    count: usize,
+    bytes: usize,
+}
+
+impl Files {
+    pub(crate) fn new(folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            names: BTreeSet::new(),
+            count: 0,
+            bytes: 0,
+        }
+    }
+
+    /// Writes the figures of a lifetime. Lifetimes of one name are numbered from the second on.
+    pub(crate) fn write(&mut self, drawn: Drawn) -> Result<(), Failure> {
+        let numbered = |number: usize| match number {
+            1 => drawn.run_id.clone(),
+            number => format!("{}_{number}", drawn.run_id),
+        };
+        let free = (1..).map(numbered).find(|name| !self.names.contains(name));
+        let name = free.unwrap_or_default();
+        for (ending, bytes) in &drawn.files {
+            self.put(&format!("{name}_{ending}"), bytes)?;
+        }
+        self.names.insert(name);
+        Ok(())
+    }
+
+    fn put(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+        output::write(&self.folder.join(name), bytes)?;
+        self.count += 1;
+        self.bytes += bytes.len();
+        Ok(())
+    }
+
+    /// What was written, in words.
+    pub(crate) fn told(&self) -> String {
+        let (folder, kilobytes) = (self.folder.display(), self.bytes.div_ceil(1000));
+        format!("{folder}: {} figures, {kilobytes} kB", self.count)
+    }
+}

@@ -1,0 +1,65 @@
+//! A log, the lifetime in it, and its scores; many at once. What a score is, is the library's.
+
+use std::path::{Path, PathBuf};
+
+use driftworld::metrics::{Lifetime, LifetimeMetrics, Log, Options, Scorer, read_log};
+use rayon::prelude::*;
+
+use crate::commands::scoring::Experts;
+use crate::commands::{Failure, output};
+
+/// One lifetime with everything that is known of it.
+pub(crate) struct Lived {
+    pub(crate) log: Log,
+    pub(crate) lifetime: Lifetime,
+    pub(crate) metrics: LifetimeMetrics,
+    /// Told on standard error already.
+    pub(crate) warnings: Vec<String>,
+}
+
+impl Lived {
+    /// Reads a log, with its warnings to standard error, and scores it.
+    pub(crate) fn read(folder: &Path, experts: &Experts, options: &Options) -> Result<Self, Failure> {
+        let log = read_log(folder)?;
+        let warnings: Vec<String> = log.warnings.iter().map(ToString::to_string).collect();
+        for warning in &warnings {
+            output::note(format!("warning: {}: {warning}", folder.display()));
+        }
+        let lifetime = Lifetime::prepare(&log, &experts.of(&log, options)?, options)?;
+        let metrics = Scorer::default().judge(&log, &lifetime, options)?;
+        Ok(Self {
+            log,
+            lifetime,
+            metrics,
+            warnings,
+        })
+    }
+}
+
+/// Reads and scores many logs and keeps of each what `keep` makes of it; where several cannot be scored, every one is told.
+pub(crate) fn each_lived<T: Send>(
+    logs: &[PathBuf],
+    experts: &Experts,
+    options: &Options,
+    keep: impl Fn(Lived) -> Result<T, Failure> + Sync,
+) -> Result<Vec<T>, Failure> {
+    let read = |log: &PathBuf| keep(Lived::read(log, experts, options)?);
+    let kept: Vec<_> = logs.par_iter().map(read).collect();
+    let failures: Vec<&str> = kept
+        .iter()
+        .filter_map(|kept| Some(kept.as_ref().err()?.text()))
+        .collect();
+    if failures.is_empty() {
+        return kept.into_iter().collect();
+    }
+    Err(Failure::input(failures.join("\n")))
+}
+
+/// The scores of many logs.
+pub(crate) fn score_logs(
+    logs: &[PathBuf],
+    experts: &Experts,
+    options: &Options,
+) -> Result<Vec<LifetimeMetrics>, Failure> {
+    each_lived(logs, experts, options, |lived| Ok(lived.metrics))
+}
