@@ -4,6 +4,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use crate::lived::write;
 use crate::terminal::{driftworld_in, output, scratch};

@@ -138,11 +138,8 @@ pub(crate) fn page_of(title: &str, lived: &Lived, options: &Options) -> Result<S
     let report = driftworld::report::Report {
         title: Some(title.to_owned()),
         chapters: vec![Chapter::write(&lived.lifetime, &lived.metrics, &chapter)?],
-        overall: Vec::new(),
-        comparisons: Vec::new(),
-        warnings: Vec::new(),
         options: serde_json::to_value(options)?,
-        date: None,
+        ..driftworld::report::Report::default()
     };
     Ok(report.to_html()?)
 }
