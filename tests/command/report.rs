@@ -80,10 +80,8 @@ fn distances_of_a_matrix_win_and_those_of_other_variants_are_said_to_be() {
     assert!(page.contains("0.77\n</text>") && page.contains("from far.csv"));
     write(&folder.path().join("other.csv"), ",a#b,c#d\na#b,0,1\nc#d,1,0\n");
     succeed_in(folder.path(), &["report", "log", "--distances", "other.csv"]);
-    assert!(
-        read(folder.path().join("report.html")).contains("other.csv has none of the log&#39;s variants")
-            || read(folder.path().join("report.html")).contains("other.csv has none of the log's variants")
-    );
+    let page = read(folder.path().join("report.html"));
+    assert!(page.contains("other.csv has none of the log's variants"));
 }
 
 #[test]
