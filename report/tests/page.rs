@@ -22,7 +22,10 @@ fn tags(text: &str) -> Vec<(String, bool)> {
             .take_while(|c| !c.is_whitespace() && *c != '/')
             .collect();
         rest = &rest[end + 1..];
-        assert!(tag.matches('"').count().is_multiple_of(2), "quotes are closed in <{tag}>");
+        assert!(
+            tag.matches('"').count().is_multiple_of(2),
+            "quotes are closed in <{tag}>"
+        );
         if name == "style" && !tag.starts_with('/') {
             rest = &rest[rest.find("</style").expect("the style ends")..];
         }
