@@ -25,9 +25,9 @@ const OF_LOGS: [&str; 3] = ["data-log.tsv", "logger_info.json", "scenario_info.j
 /// a value is missing. Feather is the Arrow file format, which pandas, polars and pyarrow read.
 #[derive(Args)]
 #[command(after_help = "Examples:
-  driftworld logs aggregate demo-out/logs/demo -o demo.tsv
+  driftworld logs aggregate demo-out/log -o demo.tsv
   driftworld logs aggregate logs --recursive -o all.parquet
-  driftworld logs aggregate demo-out/logs/demo --format csv -o - | head")]
+  driftworld logs aggregate demo-out/log --format csv -o - | head")]
 pub(crate) struct Aggregate {
     /// Folders of logs.
     #[arg(required = true, value_name = "DIR")]
