@@ -8,6 +8,7 @@ mod lived;
 mod logs;
 mod metrics;
 mod original_scenarios;
+mod report;
 mod run;
 mod terminal;
 mod transfer_report;

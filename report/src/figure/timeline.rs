@@ -10,7 +10,7 @@ use super::paper::{Area, Drawn, Entry, Paper, Sample, draw_mark, number, text_wi
 use super::scene::{Scene, Stretch};
 
 /// Rows beyond these are left out.
-const MOST_ROWS: usize = 40;
+const MOST_ROWS: usize = super::scene::MOST_TASKS;
 /// Heights, in pixels of the layout: the strip of distances, a bar that learns, the axis.
 const STRIP: i32 = 76;
 const BAR: i32 = 18;

@@ -5,7 +5,7 @@ mod neighbours;
 use std::path::PathBuf;
 
 use clap::Args;
-use driftworld::metrics::{BootstrapOptions, LifetimeMetrics, Options, compare_agents, over_repeats};
+use driftworld::metrics::{LifetimeMetrics, Options, compare_agents, over_repeats};
 use driftworld::report::{Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, ReportError};
 
 use super::figures::{FigureChoice, Files, drawn};
@@ -138,12 +138,8 @@ pub(crate) fn page_of(title: &str, lived: &Lived, options: &Options) -> Result<S
     let report = driftworld::report::Report {
         title: Some(title.to_owned()),
         chapters: vec![Chapter::write(&lived.lifetime, &lived.metrics, &chapter)?],
-        overall: Vec::new(),
-        comparisons: Vec::new(),
-        intervals: BootstrapOptions::default(),
-        warnings: Vec::new(),
         options: serde_json::to_value(options)?,
-        date: None,
+        ..driftworld::report::Report::default()
     };
     Ok(report.to_html()?)
 }

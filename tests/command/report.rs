@@ -1,0 +1,149 @@
+//! `driftworld report`: the page and its figures as files, and where the distances on the timeline come from. What is on a page is
+//! tested in `report/tests`.
+
+use std::fs;
+use std::path::Path;
+
+use crate::lived::write;
+use crate::terminal::{driftworld_in, fail_in, output, read, scratch, succeed_in};
+
+/// A lifetime of ours in `log`: three learning blocks of two variants with an evaluation before each.
+fn live(folder: &Path) {
+    let regime = |variant: &str, count: u32| {
+        format!(r#"{{ "task": "find_objects", "variant": "{variant}", "count": {count}, "max_steps": 20 }}"#)
+    };
+    let blocks = ["blue", "red", "blue"].map(|learnt| {
+        let (blue, red, learnt) = (regime("blue", 2), regime("red", 2), regime(learnt, 6));
+        format!(
+            r#"{{ "type": "evaluation", "regimes": [{blue}, {red}] }}, {{ "type": "learning", "regimes": [{learnt}] }}"#
+        )
+    });
+    let scenario = format!(r#"{{ "name": "in_turns", "blocks": [{}] }}"#, blocks.join(", "));
+    write(&folder.join("scenario.json"), &scenario);
+    succeed_in(folder, &["run", "scenario.json", "--agent", "random", "--logs", "log"]);
+}
+
+#[test]
+fn a_lifetime_becomes_a_page_and_figures_with_the_distances_of_its_scenario() {
+    let folder = scratch();
+    live(folder.path());
+    let said = succeed_in(
+        folder.path(),
+        &["report", "log", "-o", "out/page.html", "--plots", "figures"],
+    );
+    assert!(said.starts_with("out/page.html: 1 lifetime, "), "{said}");
+    assert!(said.contains("figures: 8 figures, "), "{said}");
+    let page = read(folder.path().join("out/page.html"));
+    assert!(
+        page.contains("as measured from the scenario in the log"),
+        "where the distances come from"
+    );
+    let apart = succeed_in(
+        folder.path(),
+        &["distance", "find_objects#blue", "find_objects#red", "--json"],
+    );
+    let apart: serde_json::Value = serde_json::from_str(&apart).expect("it prints JSON");
+    let told = format!("{:.2}\n</text>", apart["total"].as_f64().expect("a total"));
+    assert_eq!(
+        page.matches(&told).count(),
+        4,
+        "{told} twice, on wide and on narrow paper"
+    );
+    for name in ["timeline", "learning", "evaluation", "raw"] {
+        let svg = read(folder.path().join(format!("figures/log_{name}.svg")));
+        assert!(svg.starts_with("<svg "), "{name}");
+        let png = fs::read(folder.path().join(format!("figures/log_{name}.png"))).expect("it was written");
+        assert!(png.starts_with(b"\x89PNG"), "{name}");
+    }
+    assert!(
+        !folder.path().join("figures/log_ste.svg").exists(),
+        "there is no expert"
+    );
+    succeed_in(folder.path(), &["report", "log", "-o", "again.html"]);
+    assert_eq!(
+        read(folder.path().join("again.html")),
+        page,
+        "the same log gives the same bytes"
+    );
+}
+
+#[test]
+fn distances_of_a_matrix_win_and_those_of_other_variants_are_said_to_be() {
+    let folder = scratch();
+    live(folder.path());
+    write(
+        &folder.path().join("far.csv"),
+        ",find_objects#blue,find_objects#red\nfind_objects#blue,0,0.77\nfind_objects#red,0.77,0\n",
+    );
+    succeed_in(folder.path(), &["report", "log", "--distances", "far.csv"]);
+    let page = read(folder.path().join("report.html"));
+    assert!(page.contains("0.77\n</text>") && page.contains("from far.csv"));
+    write(&folder.path().join("other.csv"), ",a#b,c#d\na#b,0,1\nc#d,1,0\n");
+    succeed_in(folder.path(), &["report", "log", "--distances", "other.csv"]);
+    let page = read(folder.path().join("report.html"));
+    assert!(page.contains("other.csv has none of the log's variants"));
+}
+
+#[test]
+fn several_lifetimes_have_intervals_and_steps_are_counted_where_asked_for() {
+    let folder = scratch();
+    live(folder.path());
+    succeed_in(
+        folder.path(),
+        &["run", "scenario.json", "--agent", "random", "--logs", "more/second"],
+    );
+    let arguments = [
+        "report",
+        "log",
+        "more",
+        "-u",
+        "steps",
+        "--against",
+        "more",
+        "--title",
+        "All of it",
+        "-T",
+        "lb",
+        "timeline",
+    ];
+    let said = succeed_in(folder.path(), &arguments);
+    assert!(said.starts_with("report.html: 2 lifetimes, "), "{said}");
+    let page = read(folder.path().join("report.html"));
+    for part in [
+        "<h1>All of it</h1>",
+        "Over all lifetimes",
+        "against more",
+        "step\n</text>",
+        "#life-2",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert_eq!(page.matches("<figure>").count(), 4, "two figures of each");
+}
+
+#[test]
+fn wrong_words_are_contradictions_and_missing_logs_are_not_found() {
+    let folder = scratch();
+    live(folder.path());
+    let error = fail_in(folder.path(), 2, &["report", "log", "-T", "pie"]);
+    assert_eq!(
+        error,
+        "error: plot type: found \"pie\", expected one of all, raw, lb, eb, ste, timeline\n"
+    );
+    let error = fail_in(folder.path(), 2, &["report", "log", "-u", "hours"]);
+    assert_eq!(error, "error: unit: found \"hours\", expected exp_num or steps\n");
+    let error = fail_in(folder.path(), 1, &["report", "nowhere"]);
+    assert!(error.contains("nowhere"), "{error}");
+    assert!(!folder.path().join("report.html").exists(), "nothing was written");
+}
+
+#[test]
+fn warnings_of_the_log_are_told_and_stand_on_the_page() {
+    let folder = scratch();
+    live(folder.path());
+    fs::remove_file(folder.path().join("log/scenario_info.json")).expect("it is there");
+    let done = output(&mut driftworld_in(folder.path(), &["report", "log"]));
+    assert!(String::from_utf8_lossy(&done.stderr).contains("warning: log: "));
+    let page = read(folder.path().join("report.html"));
+    assert!(page.contains("⚠ Warning: ") && page.contains("the log does not say which scenario was lived"));
+}
