@@ -294,13 +294,29 @@ impl Rows {
     }
 }
 
+/// What a file of a table holds; panics where it is no such file.
+#[cfg(test)]
+pub(crate) fn read_back(bytes: Vec<u8>, format: Format) -> Vec<RecordBatch> {
+    match format {
+        Format::Parquet => {
+            let mut file = tempfile::tempfile().unwrap();
+            file.write_all(&bytes).unwrap();
+            let reader = parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder::try_new(file).unwrap();
+            reader.build().unwrap().collect::<Result<_, _>>().unwrap()
+        }
+        Format::Arrow => arrow_ipc::reader::FileReader::try_new(std::io::Cursor::new(bytes), None)
+            .unwrap()
+            .collect::<Result<_, _>>()
+            .unwrap(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use arrow_array::cast::AsArray;
     use arrow_array::types::{Float64Type, UInt64Type};
     use driftworld_spec::Object;
-    use std::io::Cursor;
 
     fn worlds(count: u64) -> Vec<World> {
         (0..count)
@@ -333,27 +349,12 @@ mod tests {
         table.finish().unwrap()
     }
 
-    fn read(bytes: Vec<u8>, format: Format) -> Vec<RecordBatch> {
-        match format {
-            Format::Parquet => {
-                let mut file = tempfile::tempfile().unwrap();
-                file.write_all(&bytes).unwrap();
-                let reader = parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder::try_new(file).unwrap();
-                reader.build().unwrap().collect::<Result<_, _>>().unwrap()
-            }
-            Format::Arrow => arrow_ipc::reader::FileReader::try_new(Cursor::new(bytes), None)
-                .unwrap()
-                .collect::<Result<_, _>>()
-                .unwrap(),
-        }
-    }
-
     #[test]
     fn every_column_comes_back() {
         let worlds = worlds(2500);
         for format in [Format::Parquet, Format::Arrow] {
             let mut index = 0;
-            for batch in read(written(&worlds, format), format) {
+            for batch in read_back(written(&worlds, format), format) {
                 let column = |name: &str| batch.column_by_name(name).unwrap();
                 for row in 0..batch.num_rows() {
                     let world = &worlds[index];
@@ -389,7 +390,7 @@ mod tests {
         for format in [Format::Parquet, Format::Arrow] {
             assert_eq!(written(&worlds, format), written(&worlds, format));
             assert_eq!(
-                read(written(&[], format), format)
+                read_back(written(&[], format), format)
                     .iter()
                     .map(RecordBatch::num_rows)
                     .sum::<usize>(),

@@ -119,13 +119,13 @@ fn array(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::columns::read_back;
     use arrow_array::Array;
     use arrow_array::cast::AsArray;
     use arrow_array::types::{Float64Type, Int64Type, TimestampMicrosecondType};
     use driftworld_metrics::{
         BlockType, KeptRows, LogWriter, LoggerInfo, Record, ScenarioInfo, Timestamp, read_log_with_texts,
     };
-    use std::io::Cursor;
 
     /// A log of so many experiences, alternately of two tasks, and every third without its reward.
     fn table(num_rows: u64) -> LogTable {
@@ -150,28 +150,13 @@ mod tests {
         table
     }
 
-    fn read(bytes: Vec<u8>, format: Format) -> Vec<RecordBatch> {
-        match format {
-            Format::Parquet => {
-                let mut file = tempfile::tempfile().unwrap();
-                file.write_all(&bytes).unwrap();
-                let reader = parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder::try_new(file).unwrap();
-                reader.build().unwrap().collect::<Result<_, _>>().unwrap()
-            }
-            Format::Arrow => arrow_ipc::reader::FileReader::try_new(Cursor::new(bytes), None)
-                .unwrap()
-                .collect::<Result<_, _>>()
-                .unwrap(),
-        }
-    }
-
     #[test]
     fn every_cell_comes_back_with_its_type_over_several_batches() {
         let num_rows = ROWS as u64 + 100;
         let table = table(num_rows);
         for format in [Format::Parquet, Format::Arrow] {
             let mut row = 0_u64;
-            for batch in read(write_log_table(&table, Vec::new(), format).unwrap(), format) {
+            for batch in read_back(write_log_table(&table, Vec::new(), format).unwrap(), format) {
                 let column = |name: &str| batch.column_by_name(name).unwrap();
                 let tasks = column("task_name").as_dictionary::<Int32Type>().clone();
                 let tasks = tasks.downcast_dict::<StringArray>().unwrap();
@@ -198,7 +183,13 @@ mod tests {
         for format in [Format::Parquet, Format::Arrow] {
             let empty = LogTable::default();
             let bytes = write_log_table(&empty, Vec::new(), format).unwrap();
-            assert_eq!(read(bytes, format).iter().map(RecordBatch::num_rows).sum::<usize>(), 0);
+            assert_eq!(
+                read_back(bytes, format)
+                    .iter()
+                    .map(RecordBatch::num_rows)
+                    .sum::<usize>(),
+                0
+            );
             let again = write_log_table(&table(10), Vec::new(), format).unwrap();
             assert_eq!(
                 again,

@@ -5,22 +5,26 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
 use driftworld_metrics::{
-    BlockType, Direction, LogWriter, LoggerInfo, Options, Record, ScenarioInfo, Timestamp, read_log, score,
+    BlockType, Direction, LifetimeMetrics, LogWriter, LoggerInfo, Options, Record, ScenarioInfo, Timestamp, read_log,
+    score,
 };
 
 const PAGE: &str = include_str!("../../docs/metrics.md");
 
-#[test]
-fn the_table_of_metrics_is_that_of_the_code() {
+/// The scores of a lifetime of one experience: what they are called is all that matters here.
+fn scores() -> LifetimeMetrics {
     let base = tempfile::tempdir().unwrap();
     let dir = base.path().join("life");
     let mut log = LogWriter::create(&dir, &LoggerInfo::new(["reward"]).unwrap(), &ScenarioInfo::default()).unwrap();
     let when = Timestamp::from_unix_micros(0).unwrap();
     log.write(&Record::new(0, 0, BlockType::Train, "a_1", when).with_metric("reward", 1.0))
         .unwrap();
-    let summary = score(&read_log(&dir).unwrap(), &[], &Options::default())
-        .unwrap()
-        .summary();
+    score(&read_log(&dir).unwrap(), &[], &Options::default()).unwrap()
+}
+
+#[test]
+fn the_table_of_metrics_is_that_of_the_code() {
+    let summary = scores().summary();
     let rows = summary.iter().map(|row| {
         let good = match row.good {
             Direction::Higher => "higher".to_owned(),
@@ -42,13 +46,7 @@ fn the_table_of_metrics_is_that_of_the_code() {
 
 #[test]
 fn every_value_of_a_task_is_named() {
-    let base = tempfile::tempdir().unwrap();
-    let dir = base.path().join("life");
-    let mut log = LogWriter::create(&dir, &LoggerInfo::new(["reward"]).unwrap(), &ScenarioInfo::default()).unwrap();
-    let when = Timestamp::from_unix_micros(0).unwrap();
-    log.write(&Record::new(0, 0, BlockType::Train, "a_1", when).with_metric("reward", 1.0))
-        .unwrap();
-    let scores = score(&read_log(&dir).unwrap(), &[], &Options::default()).unwrap();
+    let scores = scores();
     let columns = scores.regimes[0].values.iter().map(|(name, _)| name);
     for name in columns.chain([
         "recovery_times",

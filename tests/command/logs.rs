@@ -193,6 +193,12 @@ fn formats_are_known_by_name_and_binary_ones_need_a_file() {
         error.contains("expected a name ending in .tsv, .csv, .parquet, .feather or .arrow"),
         "{error}"
     );
+    let contradiction = ["logs", "aggregate", "run", "-o", "table.csv", "--format", "tsv"];
+    let (_, error) = run(base.path(), 2, &contradiction);
+    assert!(
+        error.contains("found another format than that of \"table.csv\""),
+        "{error}"
+    );
     let (_, error) = run(
         base.path(),
         2,
@@ -218,13 +224,10 @@ fn pyarrow_reads_parquet_and_feather_with_their_types() {
         .args(["-c", "import pyarrow.parquet, pyarrow.feather"])
         .output();
     if !has_pyarrow.is_ok_and(|output| output.status.success()) {
-        #[expect(clippy::print_stdout, reason = "a skip must be seen")]
-        {
-            println!(
-                "skipped: {} cannot import pyarrow; name a Python that can in DRIFTWORLD_PYTHON",
-                python.display()
-            );
-        }
+        println!(
+            "skipped: {} cannot import pyarrow; name a Python that can in DRIFTWORLD_PYTHON",
+            python.display()
+        );
         return;
     }
     let base = scratch();

@@ -80,8 +80,7 @@ impl ScoreTable {
             }
         }
         if table.strata.is_empty() {
-            let found = format!("{} runs without a score", table.runs.len());
-            return Err(wrong("the table".to_owned(), found, "at least one score"));
+            return Err(wrong("the table".to_owned(), "no score in any run", "at least one"));
         }
         for scores in table.strata.values_mut() {
             scores.sort_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -213,11 +212,11 @@ mod tests {
         let check = |runs: Runs, expected: &str| assert_eq!(table(runs).unwrap_err().to_string(), expected);
         check(
             &[],
-            "scores, the table: found 0 runs without a score, expected at least one score",
+            "scores, the table: found no score in any run, expected at least one",
         );
         check(
             &[("1", &[])],
-            "scores, the table: found 1 runs without a score, expected at least one score",
+            "scores, the table: found no score in any run, expected at least one",
         );
         check(
             &[("1", &[("a", 1.0)]), ("1", &[])],

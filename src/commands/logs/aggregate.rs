@@ -25,9 +25,9 @@ const OF_LOGS: [&str; 3] = ["data-log.tsv", "logger_info.json", "scenario_info.j
 /// a value is missing. Feather is the Arrow file format, which pandas, polars and pyarrow read.
 #[derive(Args)]
 #[command(after_help = "Examples:
-  driftworld logs aggregate demo-out/logs/demo -o demo.tsv
+  driftworld logs aggregate demo-out/log -o demo.tsv
   driftworld logs aggregate logs --recursive -o all.parquet
-  driftworld logs aggregate demo-out/logs/demo --format csv -o - | head")]
+  driftworld logs aggregate demo-out/log --format csv -o - | head")]
 pub(crate) struct Aggregate {
     /// Folders of logs.
     #[arg(required = true, value_name = "DIR")]
@@ -101,13 +101,17 @@ impl Aggregate {
             "feather" | "arrow" => Some(Format::Feather),
             _ => None,
         };
-        self.format.or(by_name).ok_or_else(|| {
-            Failure::usage(format!(
-                "--output: found {:?}, expected a name ending in .tsv, .csv, .parquet, .feather or .arrow, or the format as \
-                 --format tsv",
-                self.output.display().to_string()
-            ))
-        })
+        let found = self.output.display().to_string();
+        match (self.format, by_name) {
+            (Some(format), Some(by_name)) if format != by_name => Err(Failure::usage(format!(
+                "--format: found another format than that of {found:?}, expected the same; leave one of them out"
+            ))),
+            (Some(format), _) | (None, Some(format)) => Ok(format),
+            (None, None) => Err(Failure::usage(format!(
+                "--output: found {found:?}, expected a name ending in .tsv, .csv, .parquet, .feather or .arrow, or the format as \
+                 --format tsv"
+            ))),
+        }
     }
 
     /// Refuses a name that is a file of one of the logs, or would be read as one.

@@ -13,8 +13,8 @@ use super::Failure;
 /// WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv. To score them, see `driftworld metrics`.
 #[derive(Args)]
 #[command(after_help = "Examples:
-  driftworld logs validate demo-out/logs/demo
-  driftworld logs aggregate demo-out/logs/demo -o demo.parquet
+  driftworld logs validate demo-out/log
+  driftworld logs aggregate demo-out/log -o demo.parquet
   driftworld logs aggregate logs --recursive -o all.csv")]
 pub(crate) struct Logs {
     #[command(subcommand)]

@@ -17,7 +17,7 @@ use super::{count, grouped};
 /// is a problem.
 #[derive(Args)]
 #[command(after_help = "Examples:
-  driftworld logs validate demo-out/logs/demo
+  driftworld logs validate demo-out/log
   driftworld logs validate logs --recursive --json")]
 pub(crate) struct Validate {
     /// Folders of logs.
