@@ -317,7 +317,7 @@ fn what_cannot_be_scored_is_told() {
     check(
         1,
         &["nowhere"],
-        "nowhere: cannot be read: No such file or directory (os error 2)",
+        "nowhere: found nothing, expected the folder of a log, which holds logger_info.json",
     );
     for run in ["mine/run1", "mine/run3"] {
         std::fs::remove_file(folder.path().join(run).join("logger_info.json")).expect("it is there");
