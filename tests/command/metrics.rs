@@ -206,6 +206,41 @@ fn many_lifetimes_come_with_intervals_and_tables() {
 }
 
 #[test]
+fn figures_are_drawn_beside_the_results() {
+    let folder = two_agents();
+    succeed_in(folder.path(), &["metrics", "mine/run0", "-P", "-T", "raw", "lb"]);
+    let plots = folder.path().join("results/plots");
+    let mut names: Vec<String> = std::fs::read_dir(&plots)
+        .expect("the folder was made")
+        .map(|entry| {
+            entry
+                .expect("it can be listed")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
+        .collect();
+    names.sort();
+    assert_eq!(
+        names,
+        ["run0_learning.png", "run0_learning.svg", "run0_raw.png", "run0_raw.svg"]
+    );
+    assert!(read(plots.join("run0_raw.svg")).contains("find_red"));
+    // Lifetimes of one name do not take each other's place.
+    succeed_in(
+        folder.path(),
+        &["metrics", "mine/run0", "theirs/run0", "-P", "-T", "raw", "-O", "both"],
+    );
+    let both = folder.path().join("both/plots");
+    assert!(both.join("run0_raw.png").is_file() && both.join("run0_2_raw.png").is_file());
+    let error = fail_in(folder.path(), 2, &["metrics", "mine/run0", "-P", "-T", "pie"]);
+    assert_eq!(
+        error,
+        "error: plot type: found \"pie\", expected one of all, raw, lb, eb, ste, timeline\n"
+    );
+}
+
+#[test]
 fn two_agents_are_compared() {
     let folder = two_agents();
     let arguments = ["metrics", "-R", "mine", "--against", "theirs", "-n", "none", "--json"];
@@ -282,7 +317,7 @@ fn what_cannot_be_scored_is_told() {
     check(
         1,
         &["nowhere"],
-        "nowhere: cannot be read: No such file or directory (os error 2)",
+        "nowhere: found nothing, expected the folder of a log, which holds logger_info.json",
     );
     for run in ["mine/run1", "mine/run3"] {
         std::fs::remove_file(folder.path().join(run).join("logger_info.json")).expect("it is there");
