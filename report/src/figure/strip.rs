@@ -38,8 +38,21 @@ pub(crate) fn strip(tasks: &[(usize, f64)], value: Option<f64>, neutral: Option<
                 ))?;
             }
         }
+        let mut placed: Vec<(i32, i32)> = Vec::new();
         for (task, value) in tasks.iter().take(MOST_MARKS) {
-            draw_mark(area, Look::of(*task), (x(*value), middle), d(5))?;
+            let at = (x(*value), middle);
+            let free = |place: &(i32, i32)| {
+                placed
+                    .iter()
+                    .all(|other| other.1 != place.1 || (other.0 - place.0).abs() >= d(9))
+            };
+            // Equal values would hide each other: they stand above and below.
+            let place = [0, -d(9), d(9)]
+                .map(|aside| (at.0, at.1 + aside))
+                .into_iter()
+                .find(free);
+            placed.push(place.unwrap_or(at));
+            draw_mark(area, Look::of(*task), place.unwrap_or(at), d(4))?;
         }
         if let Some(value) = value {
             let at = x(value);
