@@ -238,6 +238,22 @@ fn figures_count_steps_where_the_log_does() {
 }
 
 #[test]
+fn few_variants_of_a_task_share_a_panel_and_many_do_not() {
+    let panels = |variants: usize| {
+        let life = Life {
+            tasks: (0..variants).map(|variant| format!("find_{variant}")).collect(),
+            rounds: 1,
+            ..Life::default()
+        };
+        let (lived, options) = (life.live(), FigureOptions::default());
+        let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
+        // The name of the axis stands once in each panel.
+        count(&figures.svg(Figure::Evaluation).unwrap(), "experience\n</text>")
+    };
+    assert_eq!([1, 3, 5, 6, 8].map(panels), [1, 1, 1, 6, 8]);
+}
+
+#[test]
 fn pictures_have_ink_in_the_colours_of_the_tasks() {
     let lived = Life::default().live();
     let options = FigureOptions::default();

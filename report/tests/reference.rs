@@ -63,7 +63,7 @@ fn the_reference_example_is_a_small_page_with_every_figure() -> Result<(), Box<d
     ] {
         assert!(page.contains(part), "{part}");
     }
-    for part in ["relearns slower", "beats the expert", "below the expert", "9.552"] {
+    for part in ["mixed", "beats the expert", "below the expert", "9.552"] {
         assert!(page.contains(part), "{part}");
     }
     assert!(page.len() < 400_000, "{} bytes", page.len());

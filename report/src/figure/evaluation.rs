@@ -11,8 +11,8 @@ use super::panels::{Grid, MOST_PANELS};
 use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, draw_mark};
 use super::scene::{Scene, Stretch, joined, roomy, task_entry};
 
-/// Variants of a task beyond these are left out of its panel: more cannot be told apart.
-const MOST_VARIANTS: usize = 28;
+/// Variants of a task that share a panel; of more, each has its own: there, they would hide each other.
+const MOST_VARIANTS: usize = 5;
 /// Points of all panels together; with more, what is near is one point.
 const MOST_POINTS: usize = 3000;
 
@@ -41,15 +41,18 @@ fn clusters(scene: &Scene) -> Vec<Cluster> {
             .or_default()
             .push(task);
     }
-    found.values_mut().for_each(|tasks| tasks.truncate(MOST_VARIANTS));
-    let named = |(name, tasks): (&str, Vec<usize>)| Cluster {
-        name: match tasks[..] {
-            [task] => scene.names[task].clone(),
-            _ => crate::words::shown(name),
-        },
-        tasks,
+    let alone = |task: usize| Cluster {
+        name: scene.names[task].clone(),
+        tasks: vec![task],
     };
-    found.into_iter().map(named).collect()
+    let panels = |(name, tasks): (&str, Vec<usize>)| match tasks.len() {
+        2..=MOST_VARIANTS => vec![Cluster {
+            name: crate::words::shown(name),
+            tasks,
+        }],
+        _ => tasks.into_iter().map(alone).collect(),
+    };
+    found.into_iter().flat_map(panels).collect()
 }
 
 fn entries(scene: &Scene, clusters: &[Cluster]) -> Vec<Entry> {

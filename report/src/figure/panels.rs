@@ -29,7 +29,12 @@ impl Grid {
         Self {
             columns,
             rows: panels.div_ceil(columns),
-            height: if columns == 1 && !paper.is_narrow() { 280 } else { 210 },
+            height: match panels {
+                1 if !paper.is_narrow() => 280,
+                // Many panels are for an overview.
+                10.. => 170,
+                _ => 210,
+            },
         }
     }
 
@@ -51,5 +56,24 @@ impl Grid {
     /// The panels' areas, row by row.
     pub(super) fn areas<DB: DrawingBackend>(&self, area: &Area<DB>) -> Vec<Area<DB>> {
         area.split_evenly((self.rows, self.columns))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Layout;
+    use super::*;
+
+    #[test]
+    fn every_panel_has_a_place() {
+        let check = |layout: Layout, panels: usize, expected: (usize, usize)| {
+            let grid = Grid::of(panels, &Paper { layout, title: None });
+            assert_eq!((grid.rows, grid.columns), expected, "{panels} panels");
+        };
+        check(Layout::Wide, 0, (1, 1));
+        check(Layout::Wide, 4, (2, 2));
+        check(Layout::Wide, 5, (2, 3));
+        check(Layout::Wide, 500, (8, 3));
+        check(Layout::Narrow, 5, (5, 1));
     }
 }

@@ -161,8 +161,8 @@ fn how(options: &Value) -> Markup {
                 "A value that cannot be computed is left out, never guessed."
             }
             p.note {
-                "Words like “helps” compare a value with the one that means no effect, to the digits shown; “mixed” means that more than "
-                "a quarter of the tasks say the opposite. One lifetime cannot tell effect from chance; several can, by intervals over "
+                "Words like “helps” compare a value with the one that means no effect, to the digits shown; “mixed” means that fewer "
+                "than three in four tasks, or pairs of tasks, agree with it. One lifetime cannot tell effect from chance; several can, by intervals over "
                 "all of them."
             }
             div.card {

@@ -57,14 +57,14 @@ pub(super) fn of(name: &str, value: f64, direction: Direction) -> Option<Verdict
     })
 }
 
-/// Judges the value of a lifetime beside those of its tasks: where more than a quarter of these say the opposite, it is mixed.
+/// Judges the value of a lifetime beside those of its tasks: unless three in four of these say the same, it is mixed.
 pub(super) fn of_lifetime(name: &str, value: f64, tasks: &[f64], direction: Direction) -> Option<Verdict> {
     let (found, neutral) = (of(name, value, direction)?, neutral(direction)?);
-    let opposite = tasks
+    let agreeing = tasks
         .iter()
-        .filter(|task| (**task - neutral) * (value - neutral) < 0.0)
+        .filter(|task| (**task - neutral) * (value - neutral) > 0.0)
         .count();
-    if found.class != EVEN.class && opposite * 4 > tasks.len() {
+    if found.class != EVEN.class && agreeing * 4 < tasks.len() * 3 {
         return Some(Verdict { word: "mixed", ..EVEN });
     }
     Some(found)
@@ -149,13 +149,14 @@ mod tests {
     }
 
     #[test]
-    fn tasks_that_say_the_opposite_make_a_value_mixed() {
+    fn a_value_is_mixed_unless_three_in_four_tasks_agree() {
         let check = |tasks: &[f64], expected: &str| {
             let found = of_lifetime("ste_rel_perf", 1.2, tasks, Direction::HigherThan(1.0));
             assert_eq!(found.expect("there is a neutral value").word, expected, "{tasks:?}");
         };
         check(&[], "beats the expert");
-        check(&[1.9, 1.3, 1.0, 0.6], "beats the expert");
+        check(&[1.9, 1.3, 1.1, 0.6], "beats the expert");
+        check(&[2.5, 1.3, 1.0, 0.6], "mixed");
         check(&[2.5, 0.9, 0.8], "mixed");
     }
 
