@@ -258,6 +258,7 @@ fn of_order() -> Vec<(MetricsError, &'static str, &'static str)> {
     ]
 }
 
+#[expect(clippy::too_many_lines, reason = "a flat table")]
 fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
     use MetricsError as E;
     let text = str::to_owned;

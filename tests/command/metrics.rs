@@ -20,14 +20,10 @@ fn live(folder: &Path, tasks: &[&str], skill: f64) {
     };
     for (round, learnt) in (0..).zip(tasks) {
         for task in tasks {
-            (0..3).for_each(|k| {
-                experience(
-                    2 * round,
-                    BlockType::Test,
-                    task,
-                    skill * (round + 1) as f64 + f64::from(k),
-                )
-            });
+            for k in 0..3 {
+                let reward = skill * (round + 1) as f64 + f64::from(k);
+                experience(2 * round, BlockType::Test, task, reward);
+            }
         }
         (0..20).for_each(|k| experience(2 * round + 1, BlockType::Train, learnt, skill * f64::from(k) / 10.0));
     }

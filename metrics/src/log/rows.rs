@@ -145,7 +145,7 @@ impl Rows {
         self.texts.get(name)
     }
 
-    /// A table without numbers, for tests of what is made from rows.
+    /// A table of records that all have the same metrics, for tests of what is made from rows.
     #[cfg(test)]
     pub(crate) fn from_records(records: &[Record]) -> Self {
         let mut rows = Self::default();
@@ -162,6 +162,9 @@ impl Rows {
                 exp_status: record.exp_status,
                 timestamp: record.timestamp,
             });
+            for (name, number) in &record.metrics {
+                rows.metrics.entry(name.clone()).or_default().push(*number);
+            }
         }
         rows
     }

@@ -48,7 +48,7 @@ impl LifetimeMetrics {
     ///
     /// The column `task_params` is there only where regimes differ in them; it holds the first 25 characters.
     pub fn regime_tsv(&self) -> String {
-        tsv(std::slice::from_ref(self), |row, run_id| row.push(run_id))
+        tsv(std::slice::from_ref(self), Vec::push)
     }
 }
 

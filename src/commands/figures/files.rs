@@ -25,13 +25,14 @@ impl Files {
     }
 
     /// Writes the figures of a lifetime. Lifetimes of one name are numbered from the second on.
-    pub(crate) fn write(&mut self, drawn: Drawn) -> Result<(), Failure> {
+    pub(crate) fn write(&mut self, drawn: &Drawn) -> Result<(), Failure> {
         let numbered = |number: usize| match number {
             1 => drawn.run_id.clone(),
             number => format!("{}_{number}", drawn.run_id),
         };
-        let free = (1..).map(numbered).find(|name| !self.names.contains(name));
-        let name = free.unwrap_or_default();
+        // Of one name more than there are, one is free.
+        let mut names = (1..=self.names.len() + 1).map(numbered);
+        let name = names.find(|name| !self.names.contains(name)).unwrap_or_default();
         for (ending, bytes) in &drawn.files {
             self.put(&format!("{name}_{ending}"), bytes)?;
         }

@@ -17,7 +17,7 @@ pub(crate) struct FigureChoice {
     /// Which figures: all, or some of raw, lb (learning), eb (evaluation), ste (against the expert), timeline.
     #[arg(short = 'T', long, value_name = "TYPE", num_args = 1.., default_value = "all")]
     plot_types: Vec<String>,
-    /// What the horizontal axis counts: exp_num, or steps by the column episode_step_count.
+    /// What the horizontal axis counts: `exp_num`, or steps by the column `episode_step_count`.
     #[arg(short, long, value_name = "UNIT", default_value = "exp_num")]
     unit: String,
     /// Do not join the means of evaluations across learning.
@@ -32,7 +32,10 @@ impl FigureChoice {
     /// The figures asked for, in the order of a report.
     pub(crate) fn shown(&self) -> Result<Vec<Figure>, Failure> {
         let asked = self.plot_types.iter().map(|word| Figure::asked_for(word));
-        let asked = asked.collect::<Result<Vec<_>, _>>().map_err(in_arguments)?.concat();
+        let asked = asked
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(|error| in_arguments(&error))?
+            .concat();
         Ok(Figure::ALL
             .into_iter()
             .filter(|figure| asked.contains(figure))
@@ -41,14 +44,14 @@ impl FigureChoice {
 
     pub(crate) fn options(&self) -> Result<FigureOptions, Failure> {
         Ok(FigureOptions {
-            unit: self.unit.parse::<Unit>().map_err(in_arguments)?,
+            unit: self.unit.parse::<Unit>().map_err(|error| in_arguments(&error))?,
             show_eval_lines: !self.no_show_eval_lines,
             distances: None,
         })
     }
 }
 
-fn in_arguments(error: ReportError) -> Failure {
+fn in_arguments(error: &ReportError) -> Failure {
     Failure::usage(error.to_string())
 }
 

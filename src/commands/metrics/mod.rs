@@ -35,6 +35,7 @@ const NAME_OF_MANY: &str = "ll_metrics";
   driftworld metrics -R runs/mine --against runs/theirs
   driftworld metrics EXPERT_LOG -s a --ste-data experts
   driftworld metrics LOG --ste-data experts")]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 pub(crate) struct Metrics {
     /// Folders of logs in l2logger's format.
     #[arg(value_name = "DIR")]
@@ -156,7 +157,7 @@ impl Metrics {
         };
         let (lifetimes, figures): (Vec<_>, Vec<_>) = each_lived(logs, experts, options, draw)?.into_iter().unzip();
         let mut files = Files::new(&self.folder().join("plots"));
-        figures.into_iter().try_for_each(|drawn| files.write(drawn))?;
+        figures.iter().try_for_each(|drawn| files.write(drawn))?;
         output::note(format!("wrote {}", files.told()));
         Ok(lifetimes)
     }

@@ -33,23 +33,31 @@ pub(super) fn many(
     confidence: f64,
 ) -> String {
     let share = format!("{}% interval", confidence * 100.0);
-    let mut text = format!(
-        "{} learning and {} evaluation experiences in all, scored by {}\n\n",
-        counted(lifetimes.len(), "lifetime")
-            + ": "
-            + &lifetimes.iter().map(|life| life.num_lx).sum::<usize>().to_string(),
-        lifetimes.iter().map(|life| life.num_ex).sum::<usize>(),
-        lifetimes.first().map_or("", |life| &life.metrics_column),
-    );
-    text += &repeats(&together.repeats, &share);
-    text += &cautions(together.repeats.iter());
-    if others.is_empty() {
-        return text;
+    let mut parts = vec![
+        format!(
+            "{}: {} learning and {} evaluation experiences in all, scored by {}",
+            counted(lifetimes.len(), "lifetime"),
+            lifetimes.iter().map(|life| life.num_lx).sum::<usize>(),
+            lifetimes.iter().map(|life| life.num_ex).sum::<usize>(),
+            lifetimes.first().map_or("", |life| &life.metrics_column),
+        ),
+        repeats(&together.repeats, &share),
+    ];
+    if !others.is_empty() {
+        parts.push(format!(
+            "against {} of another agent",
+            counted(others.len(), "lifetime")
+        ));
+        parts.push(repeats(&together.repeats_against, &share));
+        parts.push(
+            "how probably a lifetime of the first agent is better than one of the other, 0.5 for neither".to_owned(),
+        );
+        parts.push(improvements(together, &share));
     }
-    text += &format!("\n\nagainst {} of another agent\n\n", counted(others.len(), "lifetime"));
-    text += &repeats(&together.repeats_against, &share);
-    text += &cautions(together.repeats_against.iter());
-    text += "\n\nhow probably a lifetime of the first agent is better than one of the other, 0.5 for neither\n\n";
+    parts.join("\n\n")
+}
+
+fn improvements(together: &Together<'_>, share: &str) -> String {
     let rows = together.improvement.iter().map(|row| {
         [
             row.headline.name.to_string(),
@@ -58,9 +66,10 @@ pub(super) fn many(
             row.improvement.strata.len().to_string(),
         ]
     });
-    text + &table(["metric", "P(better)", &share, "tasks"], rows.collect(), &[1, 3])
+    table(["metric", "P(better)", share, "tasks"], rows.collect(), &[1, 3])
 }
 
+/// Each metric over the lifetimes, and what a reader must be told of the intervals.
 fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
     let rows = metrics.iter().map(|row| {
         [
@@ -72,20 +81,14 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
             good(row.headline.good),
         ]
     });
-    table(
+    let cautions: BTreeSet<&str> = metrics.iter().filter_map(|row| row.caution.as_deref()).collect();
+    let mut lines = vec![table(
         ["metric", "IQM", share, "mean", "runs x tasks", "good"],
         rows.collect(),
         &[1, 3],
-    )
-}
-
-/// What a reader must be told of the intervals, each once.
-fn cautions<'a>(metrics: impl Iterator<Item = &'a RepeatedMetric>) -> String {
-    let different: BTreeSet<&str> = metrics.filter_map(|row| row.caution.as_deref()).collect();
-    different
-        .into_iter()
-        .map(|caution| format!("\nnote: {caution}"))
-        .collect()
+    )];
+    lines.extend(cautions.into_iter().map(|caution| format!("note: {caution}")));
+    lines.join("\n")
 }
 
 fn counted(number: usize, what: &str) -> String {

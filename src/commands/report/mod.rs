@@ -74,7 +74,7 @@ impl Report {
             let chapter = options_of(&lived, &mut neighbours, &figures, &shown);
             chapters.push(Chapter::write(&lived.lifetime, &lived.metrics, &chapter)?);
             if let Some(files) = &mut files {
-                files.write(drawn(
+                files.write(&drawn(
                     &lived.lifetime,
                     &lived.metrics.metrics_column,
                     &chapter.shown,

@@ -58,7 +58,7 @@ pub(crate) struct Scoring {
     /// Clip performances to the given ranges, or else to the 0.1 and 0.9 quantiles of each task.
     #[arg(short = 'x', long)]
     clamp_outliers: bool,
-    /// A JSON file with the range of each task: {"find_red": {"min": 0, "max": 10}}.
+    /// A JSON file with the range of each task: `{"find_red": {"min": 0, "max": 10}}`.
     #[arg(short, long, value_name = "FILE")]
     data_range_file: Option<PathBuf>,
     /// Add normal noise to every performance of the lifetime.
