@@ -168,7 +168,7 @@ mod tests {
 
     use super::*;
 
-    fn lifetime(run_id: &str, tasks: serde_json::Value, whole: serde_json::Value) -> LifetimeMetrics {
+    fn lifetime(run_id: &str, tasks: &serde_json::Value, whole: &serde_json::Value) -> LifetimeMetrics {
         let mut fields = json!({
             "run_id": run_id, "complexity": "", "difficulty": "", "scenario_type": "", "metrics_column": "reward",
             "min": 1.0, "max": 101.0, "num_lx": 10, "num_ex": 10, "runtime": 0.0,
@@ -183,8 +183,8 @@ mod tests {
     fn of_task(value: f64) -> LifetimeMetrics {
         lifetime(
             "run",
-            json!({ "a_1": { "avg_eval_perf": value }, "b_1": { "avg_eval_perf": 2.0 } }),
-            json!({}),
+            &json!({ "a_1": { "avg_eval_perf": value }, "b_1": { "avg_eval_perf": 2.0 } }),
+            &json!({}),
         )
     }
 
@@ -205,7 +205,7 @@ mod tests {
     #[test]
     fn pairs_of_tasks_are_the_strata_of_transfer_and_the_first_value_counts() {
         let tasks = json!({ "a_1": { "forward_transfer_ratio": { "b_1": [3.0, 9.0], "c_1": [] } } });
-        let found = over_repeats(&[lifetime("run", tasks, json!({}))], &BootstrapOptions::default()).unwrap();
+        let found = over_repeats(&[lifetime("run", &tasks, &json!({}))], &BootstrapOptions::default()).unwrap();
         assert_eq!(
             (found[0].num_strata, found[0].mean.value, found[0].mean.interval),
             (1, 3.0, None)
@@ -219,7 +219,7 @@ mod tests {
 
     #[test]
     fn a_metric_of_lifetimes_only_has_one_stratum() {
-        let of = |value: f64| lifetime("run", json!({ "a_1": {} }), json!({ "sample_efficiency": value }));
+        let of = |value: f64| lifetime("run", &json!({ "a_1": {} }), &json!({ "sample_efficiency": value }));
         let found = over_repeats(&[of(0.5), of(1.5)], &BootstrapOptions::default()).unwrap();
         assert_eq!((found[0].num_strata, found[0].mean.value), (1, 1.0));
     }
@@ -247,7 +247,7 @@ mod tests {
 
     #[test]
     fn agents_without_a_task_in_common_are_not_compared() {
-        let other = lifetime("run", json!({ "z_1": { "avg_eval_perf": 1.0 } }), json!({}));
+        let other = lifetime("run", &json!({ "z_1": { "avg_eval_perf": 1.0 } }), &json!({}));
         assert_eq!(
             compare_agents(&[of_task(1.0)], &[other], &BootstrapOptions::default()).unwrap(),
             []
