@@ -145,10 +145,7 @@ fn recovery_and_averages_come_regime_by_regime() {
     assert_eq!(published.numbers("recovery_times").unwrap(), [1.0]);
     assert_eq!(published.number("perf_recovery"), None, "one recovery has no trend");
     assert_eq!(
-        (
-            a.numbers("avg_train_perf_vals").unwrap(),
-            a.number("avg_train_perf")
-        ),
+        (a.numbers("avg_train_perf_vals").unwrap(), a.number("avg_train_perf")),
         (&[5.0, 8.0][..], Some(6.5))
     );
     // Regimes count once however long they are: 2, 10, 8, 11.
