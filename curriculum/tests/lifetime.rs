@@ -390,7 +390,7 @@ fn every_row_says_how_far_its_variant_is_from_what_was_learned_last() {
             "findobjects_redtodusk"
         ]
     );
-    assert_eq!(rows[9].task_params["progress"], 0.5);
+    assert_eq!(rows[9].metrics["progress"], 0.5);
     assert_eq!(rows[0].task_params["phase"], "pre_deployment");
     let read = read_log(&log).unwrap_or_else(|error| panic!("{error}"));
     let scores = score(&read, &[], &Options::default()).unwrap_or_else(|error| panic!("{error}"));

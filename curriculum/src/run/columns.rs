@@ -14,6 +14,8 @@ use super::plan::Planned;
 /// - `episode_step_count`: its steps.
 /// - `time_to_completion`: the seconds of the world's time that it took, which is steps times time step.
 /// - `truncated`: 1 if a limit of steps cut it off, 0 if what happened in it ended it.
+/// - `world_index`: the number of its world among those of its variant and seed; `nan` for a world from a file.
+/// - `progress`: how far on its way a drift is, 0..=1; `nan` where nothing drifts.
 /// - `distance`: how far its variant is from the variant that the agent learned last before this regime began, 0..=1: for an
 ///   experience of a learning block the step that the curriculum takes, for one of an evaluation block the way that what was
 ///   learned has to carry. 0 if both are the same; `nan`, the format's word for no value, before anything was learned.
@@ -21,12 +23,14 @@ use super::plan::Planned;
 ///   element of the decision process; 0 where nothing can differ in it.
 ///
 /// Variants of one task are compared by what they declare, others by their first 16 worlds under seed 0.
-pub const COLUMNS: [&str; 11] = [
+pub const COLUMNS: [&str; 13] = [
     "reward",
     "success",
     "episode_step_count",
     "time_to_completion",
     "truncated",
+    "world_index",
+    "progress",
     "distance",
     "distance_state",
     "distance_action",
@@ -45,6 +49,8 @@ pub(super) fn record(planned: &Planned, number: u64, experience: &Experience, ga
         f64::from(experience.steps),
         experience.seconds,
         f64::from(u8::from(experience.truncated)),
+        planned.world_index(number),
+        planned.progress(number),
         gap.total,
         state,
         action,
@@ -57,7 +63,7 @@ pub(super) fn record(planned: &Planned, number: u64, experience: &Experience, ga
         .into_iter()
         .zip(values)
         .fold(record, |record, (name, value)| record.with_metric(name, value))
-        .with_task_params(planned.params(number))
+        .with_task_params(planned.params())
 }
 
 pub(super) fn block_type(kind: BlockKind) -> BlockType {

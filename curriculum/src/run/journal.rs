@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use driftworld_metrics::{
-    LogWriter, LoggerInfo, MetricsError, Row, Rows, ScenarioInfo, ScenarioType, begun_log, read_log,
+    LogWriter, LoggerInfo, MetricsError, Row, Rows, ScenarioInfo, ScenarioType, TaskParams, begun_log, read_log,
 };
 use driftworld_spec::ScenarioForm;
 use serde_json::{Map, Value, json};
@@ -104,24 +104,35 @@ fn take(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> Result
         ));
     }
     let planned = &plan.regimes[plan.regime_of(number)];
-    let told = |block: u64, experience: u64, kind, name: &str, params: &Value| {
-        format!("experience {experience} in block {block}-{kind}, {name} {params}")
+    let value = |name: &str| row.metric(name).unwrap_or(f64::NAN);
+    let told = |block: u64, experience: u64, kind, name: &str, params: &TaskParams, [index, progress]: [f64; 2]| {
+        let params = Value::Object(Map::clone(params));
+        let drift = if progress.is_nan() {
+            String::new()
+        } else {
+            format!(", {progress} of its way")
+        };
+        format!("experience {experience} in block {block}-{kind}, {name} {params}, world {index}{drift}")
     };
-    let params = Value::Object(Map::clone(&planned.params(number)));
-    let kind = block_type(planned.kind);
-    let expected = told(planned.block as u64, number, kind, &planned.log_name, &params);
-    let params = Value::Object(Map::clone(row.task_params()));
+    let expected = told(
+        planned.block as u64,
+        number,
+        block_type(planned.kind),
+        &planned.log_name,
+        &planned.params(),
+        [planned.world_index(number), planned.progress(number)],
+    );
     let found = told(
         row.block_num(),
         row.exp_num(),
         row.block_type(),
         row.task_name(),
-        &params,
+        row.task_params(),
+        [value("world_index"), value("progress")],
     );
     if found != expected {
         return Err((found, expected));
     }
-    let value = |name: &str| row.metric(name).unwrap_or(f64::NAN);
     let steps = value("episode_step_count") as u64;
     summary.count(
         planned,

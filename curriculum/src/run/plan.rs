@@ -373,26 +373,38 @@ impl Planned {
         self.between(self.first + u64::from(self.count) - 1)
     }
 
-    /// What a log says of an experience beside its numbers.
-    pub(super) fn params(&self, number: u64) -> TaskParams {
+    /// The number of an experience's world among those of its variant and seed; NaN for a world from a file.
+    pub(super) fn world_index(&self, number: u64) -> f64 {
+        match self.source {
+            Source::Variant(_) | Source::Drift { .. } => (self.first_index + (number - self.first)) as f64,
+            Source::World { .. } => f64::NAN,
+        }
+    }
+
+    /// How far on its way a drift is in an experience, 0..=1; NaN where nothing drifts.
+    pub(super) fn progress(&self, number: u64) -> f64 {
+        match &self.source {
+            Source::Drift { drift, .. } => drift.progress((number - self.first) as u32, self.count),
+            Source::Variant(_) | Source::World { .. } => f64::NAN,
+        }
+    }
+
+    /// What a log says of the experiences of this regime beside their numbers: the same of each, since programs that read
+    /// logs take experiences with other parameters for other regimes.
+    pub(super) fn params(&self) -> TaskParams {
         let mut params = Map::new();
         let mut say = |key: &str, value: Value| params.insert(key.to_owned(), value);
-        let index = self.first_index + (number - self.first);
         match &self.source {
             Source::Variant(variant) => {
                 say("task", json!(variant.task().name()));
                 say("variant", json!(variant.name()));
                 say("seed", json!(self.seed));
-                say("index", json!(index));
             }
-            Source::Drift { from, to, drift, .. } => {
+            Source::Drift { from, to, .. } => {
                 say("task", json!(from.task().name()));
                 say("variant", json!(from.name()));
                 say("to", json!(to.name()));
-                let progress = drift.progress((number - self.first) as u32, self.count);
-                say("progress", json!(progress));
                 say("seed", json!(self.seed));
-                say("index", json!(index));
             }
             Source::World { path, .. } => {
                 let (task, variant) = self.id.split_once('#').unwrap_or((&self.id, ""));
