@@ -10,7 +10,7 @@ use driftworld::metrics::{
 struct WorstForgetting;
 
 impl Metric for WorstForgetting {
-    fn headlines(&self) -> Vec<Headline> {
+    fn headlines(&self, _: &Options) -> Vec<Headline> {
         vec![Headline::new(
             "worst_forgetting",
             "how much was lost at worst? points below the best evaluation before",

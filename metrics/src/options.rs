@@ -143,13 +143,14 @@ impl Definitions {
     }
 }
 
-/// Noise that is added to every performance before anything else, to see how far metrics depend on the last digit of a reward.
+/// Noise that is added to every performance after it was smoothed, clamped and normalised, as the reference does, to see how far
+/// metrics depend on small differences.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Noise {
-    /// Mean of the noise, in the unit of the log.
+    /// Mean of the noise, in normalised units (1..=101 unless normalisation is off).
     pub mean: f64,
-    /// Standard deviation, in the unit of the log; not negative.
+    /// Standard deviation, in the same units; not negative.
     pub std: f64,
     /// What the noise is drawn from: the same seed, the same noise, on every machine; default 0.
     #[serde(default)]

@@ -5,8 +5,8 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
 use driftworld_metrics::{
-    BlockType, Direction, LifetimeMetrics, LogWriter, LoggerInfo, Options, Record, ScenarioInfo, Timestamp, read_log,
-    score,
+    BlockType, Direction, LifetimeMetrics, LogWriter, LoggerInfo, MaintenanceMethod, Options, Record, ScenarioInfo,
+    Timestamp, TransferMethod, read_log, score,
 };
 
 const PAGE: &str = include_str!("../../docs/metrics.md");
@@ -19,7 +19,12 @@ fn scores() -> LifetimeMetrics {
     let when = Timestamp::from_unix_micros(0).unwrap();
     log.write(&Record::new(0, 0, BlockType::Train, "a_1", when).with_metric("reward", 1.0))
         .unwrap();
-    score(&read_log(&dir).unwrap(), &[], &Options::default()).unwrap()
+    let options = Options {
+        maintenance_method: MaintenanceMethod::Both,
+        transfer_method: TransferMethod::Both,
+        ..Options::default()
+    };
+    score(&read_log(&dir).unwrap(), &[], &options).unwrap()
 }
 
 #[test]

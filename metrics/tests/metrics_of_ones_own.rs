@@ -45,7 +45,7 @@ fn plain() -> Options {
 struct WorstEvaluation;
 
 impl Metric for WorstEvaluation {
-    fn headlines(&self) -> Vec<Headline> {
+    fn headlines(&self, _: &Options) -> Vec<Headline> {
         vec![Headline::new(
             "worst_eval_perf",
             "how bad did it get?",
@@ -115,7 +115,7 @@ fn a_metric_of_ones_own_stands_beside_the_others_at_every_level() {
 struct Broken(&'static str);
 
 impl Metric for Broken {
-    fn headlines(&self) -> Vec<Headline> {
+    fn headlines(&self, _: &Options) -> Vec<Headline> {
         vec![Headline::new(self.0, "", Direction::Lower)]
     }
 
@@ -216,7 +216,7 @@ fn noise_shifts_performances_and_is_the_same_for_the_same_seed() {
         let metrics = score(&log_of(&LIFE), &[], &options).unwrap();
         metrics.lifetime.number("avg_train_perf").unwrap()
     };
-    assert_eq!(with(10.0, 0.0, 1), 11.0);
+    assert_eq!(with(10.0, 0.0, 1), 11.0, "not normalised here");
     assert_eq!(with(0.0, 1.0, 1), with(0.0, 1.0, 1));
     assert_ne!(with(0.0, 1.0, 1), with(0.0, 1.0, 2));
     let options = Options {

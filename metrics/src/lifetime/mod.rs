@@ -56,10 +56,10 @@ impl Lifetime {
             runtime_secs: span_secs(stamps().min(), stamps().max()),
         };
         lifetime.check_bounds("as logged")?;
-        preprocess::disturb(&mut lifetime, options);
         preprocess::smooth(&mut lifetime, options);
         preprocess::clamp(&mut lifetime, options)?;
         lifetime.normalization_data_range = preprocess::normalize(&mut lifetime, options)?;
+        preprocess::disturb(&mut lifetime, options);
         lifetime.check_bounds("after preprocessing")?;
         Ok(lifetime)
     }

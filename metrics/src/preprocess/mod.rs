@@ -1,5 +1,5 @@
-//! What is done to performances before they are judged: noise if asked for, smoothing, clamping of outliers,
-//! normalisation, in that order.
+//! What is done to performances before they are judged: smoothing, clamping of outliers, normalisation, and noise if asked
+//! for, in that order.
 //!
 //! Not here: the metrics.
 

@@ -1,4 +1,4 @@
-//! Normal noise on the performances of a lifetime, before anything else is done to them.
+//! Normal noise on the performances of a lifetime, after all else was done to them.
 //!
 //! Not here: other distributions; the reference has this one.
 
@@ -10,16 +10,16 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use crate::Options;
 use crate::lifetime::Lifetime;
 
-/// Adds noise to every performance of the lifetime, also to the raw ones; the experts' stay as they are.
+/// Adds noise to every performance of the lifetime as it is scored, in normalised units; what was logged and the experts' stay
+/// as they are.
 ///
 /// The same seed gives the same noise on every machine. The reference draws from the generator of `NumPy`, unseeded.
 pub(crate) fn disturb(lifetime: &mut Lifetime, options: &Options) {
     let Some(noise) = options.noise else { return };
     let mut generator = ChaCha8Rng::seed_from_u64(noise.seed);
     for regime in lifetime.own_regimes_mut() {
-        for (raw, performance) in regime.raw.iter_mut().zip(&mut regime.performance) {
-            *raw += noise.mean + noise.std * standard_normal(&mut generator);
-            *performance = *raw;
+        for performance in &mut regime.performance {
+            *performance += noise.mean + noise.std * standard_normal(&mut generator);
         }
     }
 }

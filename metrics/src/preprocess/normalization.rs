@@ -16,7 +16,8 @@ const OFFSET: f64 = 1.0;
 
 /// Stretches every performance, and returns the range per task that it was stretched from.
 ///
-/// A task (under `task`) or run (under `run`) whose performances are all equal becomes 1 everywhere.
+/// A task (under `task`) or run (under `run`) whose performances are all equal becomes 1 everywhere; so does one whose
+/// performances differ by no more than what smoothing rounds, which the reference stretches to 1..=101.
 pub(crate) fn normalize(
     lifetime: &mut Lifetime,
     options: &Options,
@@ -59,10 +60,14 @@ fn hull(values: impl Iterator<Item = f64>) -> DataRange {
     )
 }
 
+/// Part of the largest performance below which differences are rounding: a mean of a hundred equal numbers is off by less.
+const ROUNDING: f64 = 1e-12;
+
 fn stretch(values: &mut [f64], range: DataRange) {
     let width = range.max - range.min;
+    let is_constant = width <= ROUNDING * range.min.abs().max(range.max.abs());
     for value in values {
-        *value = if width == 0.0 {
+        *value = if is_constant {
             OFFSET
         } else {
             (*value - range.min) / width * SCALE + OFFSET
@@ -87,5 +92,8 @@ mod tests {
         );
         check(vec![5.0, 5.0], DataRange { min: 5.0, max: 5.0 }, &[1.0, 1.0]);
         check(vec![20.0], DataRange { min: 0.0, max: 10.0 }, &[201.0]);
+        // A mean of equal numbers may be off in its last bit.
+        let next = f64::from_bits(0.1_f64.to_bits() + 1);
+        check(vec![0.1, next], DataRange { min: 0.1, max: next }, &[1.0, 1.0]);
     }
 }

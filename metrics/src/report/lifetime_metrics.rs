@@ -57,7 +57,7 @@ pub struct LifetimeMetrics {
 #[derive(Serialize)]
 struct Document<'a> {
     #[serde(flatten)]
-    lifetime: Values,
+    lifetime: IndexMap<&'a str, Option<Value>>,
     run_id: &'a str,
     complexity: &'a str,
     difficulty: &'a str,
@@ -82,12 +82,15 @@ impl Serialize for LifetimeMetrics {
             Definitions::Reference => ten_decimals(number),
             Definitions::Published => number,
         };
-        let mut lifetime = Values::default();
+        // As in the reference, what was asked for and could not be computed is null.
+        let asked = self.headlines.iter().map(|headline| (&*headline.name, None));
+        let mut lifetime: IndexMap<&str, Option<Value>> = asked.collect();
         for (name, value) in self.lifetime.iter() {
-            match value {
-                Value::Number(number) => lifetime.set(name, rounded(*number)),
-                other => lifetime.set(name, other.clone()),
-            }
+            let value = match value {
+                Value::Number(number) => Value::Number(rounded(*number)),
+                other => other.clone(),
+            };
+            lifetime.insert(name, Some(value));
         }
         let document = Document {
             lifetime,

@@ -43,8 +43,20 @@ impl Value {
 /// Values by name, in the order in which they were given. A value that could not be computed has no entry; none is
 /// NaN or infinite.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(transparent)]
+#[serde(from = "IndexMap<String, Option<Value>>")]
 pub struct Values(IndexMap<String, Value>);
+
+impl From<IndexMap<String, Option<Value>>> for Values {
+    /// What is `null` could not be computed.
+    fn from(values: IndexMap<String, Option<Value>>) -> Self {
+        Self(
+            values
+                .into_iter()
+                .filter_map(|(name, value)| Some((name, value?)))
+                .collect(),
+        )
+    }
+}
 
 impl Values {
     /// Takes a value in. A value with a number that is not finite is left out; one of the same name is replaced.

@@ -5,7 +5,7 @@
 use super::{Assessment, Metric};
 use crate::report::{Direction, Headline};
 use crate::statistics::mean;
-use crate::{BlockType, MetricsError};
+use crate::{BlockType, MetricsError, Options};
 
 /// `avg_perf` of every regime; `avg_train_perf` and `avg_eval_perf` of every task, the means of its regimes' means,
 /// each counting once however long it is.
@@ -14,7 +14,7 @@ use crate::{BlockType, MetricsError};
 pub(super) struct AveragePerformance;
 
 impl Metric for AveragePerformance {
-    fn headlines(&self) -> Vec<Headline> {
+    fn headlines(&self, _: &Options) -> Vec<Headline> {
         vec![
             Headline::new(
                 "avg_train_perf",

@@ -3,8 +3,8 @@
 //! Not here: what a metric sees, see `assessment`, and in which order metrics are computed, see `scorer`.
 
 use super::Assessment;
-use crate::MetricsError;
 use crate::report::Headline;
+use crate::{MetricsError, Options};
 
 /// A measure of a lifetime. The crate's own are computed through this trait, too; a [`Scorer`](crate::Scorer) takes
 /// others beside them.
@@ -14,13 +14,13 @@ use crate::report::Headline;
 /// it sets a headline for tasks only, the lifetime's value is their mean or median, as the options say.
 ///
 /// ```
-/// use driftworld_metrics::{Assessment, BlockType, Direction, Headline, Metric, MetricsError};
+/// use driftworld_metrics::{Assessment, BlockType, Direction, Headline, Metric, MetricsError, Options};
 ///
 /// /// The worst that a task came to in an evaluation.
 /// struct WorstEvaluation;
 ///
 /// impl Metric for WorstEvaluation {
-///     fn headlines(&self) -> Vec<Headline> {
+///     fn headlines(&self, _: &Options) -> Vec<Headline> {
 ///         vec![Headline::new("worst_eval_perf", "how bad did it get? worst mean of an evaluation", Direction::Higher)]
 ///     }
 ///
@@ -36,8 +36,9 @@ use crate::report::Headline;
 /// }
 /// ```
 pub trait Metric {
-    /// The values by which a lifetime is known that this metric may set, in order. Their names must be its own.
-    fn headlines(&self) -> Vec<Headline>;
+    /// The values by which a lifetime is known that this metric sets under these options, in order. Their names must be its
+    /// own.
+    fn headlines(&self, options: &Options) -> Vec<Headline>;
 
     /// Computes the metric.
     ///

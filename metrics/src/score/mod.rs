@@ -20,6 +20,7 @@ pub use metric::Metric;
 pub use scorer::{Scorer, score};
 
 use crate::report::Headline;
+use crate::{MaintenanceMethod, Options, TransferMethod};
 
 /// The metrics of this crate, in the order in which they are computed and shown.
 fn built_in() -> Vec<Box<dyn Metric>> {
@@ -35,7 +36,20 @@ fn built_in() -> Vec<Box<dyn Metric>> {
     ]
 }
 
-/// The headlines of the metrics of this crate.
+/// The headlines of the metrics of this crate, whatever was asked for.
 pub(crate) fn built_in_headlines() -> Vec<Headline> {
-    built_in().iter().flat_map(|metric| metric.headlines()).collect()
+    let metrics = built_in();
+    metrics
+        .iter()
+        .flat_map(|metric| metric.headlines(&all_asked()))
+        .collect()
+}
+
+/// Options under which every value is asked for that can be.
+fn all_asked() -> Options {
+    Options {
+        maintenance_method: MaintenanceMethod::Both,
+        transfer_method: TransferMethod::Both,
+        ..Options::default()
+    }
 }

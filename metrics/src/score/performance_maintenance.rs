@@ -5,26 +5,30 @@
 use super::{Assessment, Metric};
 use crate::report::{Direction, Headline};
 use crate::statistics::mean;
-use crate::{BlockType, MetricsError};
+use crate::{BlockType, MetricsError, Options};
 
 /// `perf_maintenance_mrlep` and `perf_maintenance_mrtlp` of every task, as far as they are asked for, and the
 /// differences they are the means of, `maintenance_val_…`.
 pub(super) struct PerformanceMaintenance;
 
 impl Metric for PerformanceMaintenance {
-    fn headlines(&self) -> Vec<Headline> {
-        vec![
-            Headline::new(
-                "perf_maintenance_mrlep",
-                "is a learnt task kept? points gained or lost since the evaluation right after learning it",
-                Direction::HigherThan(0.0),
-            ),
-            Headline::new(
-                "perf_maintenance_mrtlp",
-                "is a learnt task kept? points gained or lost since the end of learning it",
-                Direction::HigherThan(0.0),
-            ),
-        ]
+    fn headlines(&self, options: &Options) -> Vec<Headline> {
+        let mrlep = Headline::new(
+            "perf_maintenance_mrlep",
+            "is a learnt task kept? points gained or lost since the evaluation right after learning it",
+            Direction::HigherThan(0.0),
+        );
+        let mrtlp = Headline::new(
+            "perf_maintenance_mrtlp",
+            "is a learnt task kept? points gained or lost since the end of learning it",
+            Direction::HigherThan(0.0),
+        );
+        let method = options.maintenance_method;
+        let asked = [(method.has_mrlep(), mrlep), (method.has_mrtlp(), mrtlp)];
+        asked
+            .into_iter()
+            .filter_map(|(is_asked, headline)| is_asked.then_some(headline))
+            .collect()
     }
 
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {

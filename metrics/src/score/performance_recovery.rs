@@ -5,7 +5,7 @@
 use super::{Assessment, Metric, recovery_time};
 use crate::report::{Direction, Headline};
 use crate::statistics::theil_sen_slope;
-use crate::{Definitions, MetricsError};
+use crate::{Definitions, MetricsError, Options};
 
 /// `perf_recovery` of every task, and the `recovery_times` it is made of.
 ///
@@ -18,7 +18,7 @@ pub(super) struct PerformanceRecovery;
 const NAME: &str = "perf_recovery";
 
 impl Metric for PerformanceRecovery {
-    fn headlines(&self) -> Vec<Headline> {
+    fn headlines(&self, _: &Options) -> Vec<Headline> {
         vec![Headline::new(
             NAME,
             "does relearning a task get faster each time? experiences saved per relearning",

@@ -8,7 +8,7 @@ use super::{Assessment, Metric};
 use crate::lifetime::{SteRun, mean_per_experience};
 use crate::report::{Direction, Headline};
 use crate::statistics::{mean, trend_falls};
-use crate::{MetricsError, SteAveragingMethod};
+use crate::{MetricsError, Options, SteAveragingMethod};
 
 /// An agent that does not reach this part of the expert's saturation has not learnt the task: its efficiency is 0.
 const LEAST_SATURATION: f64 = 0.2;
@@ -19,7 +19,7 @@ pub(super) struct SampleEfficiency;
 const NAME: &str = "sample_efficiency";
 
 impl Metric for SampleEfficiency {
-    fn headlines(&self) -> Vec<Headline> {
+    fn headlines(&self, _: &Options) -> Vec<Headline> {
         vec![Headline::new(
             NAME,
             "how good and how quickly, over an expert trained on the task alone",

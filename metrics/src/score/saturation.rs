@@ -5,13 +5,13 @@
 use super::{Assessment, Metric};
 use crate::preprocess::smoothed;
 use crate::report::Headline;
-use crate::{Definitions, MetricsError, SmoothingMethod};
+use crate::{Definitions, MetricsError, Options, SmoothingMethod};
 
 /// `saturation` and `exp_to_sat` of every regime.
 pub(super) struct Saturation;
 
 impl Metric for Saturation {
-    fn headlines(&self) -> Vec<Headline> {
+    fn headlines(&self, _: &Options) -> Vec<Headline> {
         Vec::new()
     }
 
@@ -40,11 +40,26 @@ pub(super) struct Peak {
 /// a step of preprocessing, and whatever smoothing was chosen there. Not so under the published definitions.
 ///
 /// Additions run in a fixed order, so the result is the same on every machine. Where several windows would tie in
-/// exact arithmetic, rounding says which is the first maximum, and the reference's rounding may say another.
+/// exact arithmetic, rounding says which is the first maximum, and the reference's rounding may say another. Under the
+/// published definitions the first that comes within a billionth is taken.
 pub(super) fn peak(per_experience: &[f64], definitions: Definitions) -> Peak {
     match definitions {
         Definitions::Reference => first_maximum(&smoothed(per_experience, None, SmoothingMethod::Flat)),
-        Definitions::Published => first_maximum(per_experience),
+        Definitions::Published => first_that_reaches(per_experience),
+    }
+}
+
+/// Part of a performance by which sums of the same numbers in another order may differ.
+pub(super) const ROUNDING: f64 = 1e-9;
+
+/// The maximum, and the first place where it is reached but for rounding.
+fn first_that_reaches(values: &[f64]) -> Peak {
+    let Peak { value, experiences } = first_maximum(values);
+    let reached = value - ROUNDING * value.abs();
+    let first = values.iter().position(|value| *value >= reached);
+    Peak {
+        value,
+        experiences: first.unwrap_or(experiences),
     }
 }
 
@@ -74,6 +89,18 @@ mod tests {
         check(&[4.0], 4.0, 0);
         check(&[1.0, 3.0, 2.0, 3.0], 3.0, 1);
         check(&[-2.0, -1.0], -1.0, 1);
+    }
+
+    #[test]
+    fn what_rounding_keeps_apart_is_one_plateau_by_the_published_definition() {
+        let next = f64::from_bits(0.3_f64.to_bits() + 1);
+        let plateau = [0.1, 0.3, 0.3, next];
+        let check = |definitions, experiences| {
+            let found = peak(&plateau, definitions);
+            assert_eq!((found.value, found.experiences), (next, experiences));
+        };
+        check(Definitions::Reference, 3);
+        check(Definitions::Published, 1);
     }
 
     #[test]

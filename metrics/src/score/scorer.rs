@@ -4,7 +4,7 @@
 
 use indexmap::{IndexMap, IndexSet};
 
-use super::{Assessment, Metric, built_in};
+use super::{Assessment, Metric, all_asked, built_in, built_in_headlines};
 use crate::lifetime::{Lifetime, Regime, SteLog};
 use crate::report::{Headline, LifetimeMetrics, RegimeMetrics, Value, Values};
 use crate::{BlockType, Log, MetricsError, Options};
@@ -23,10 +23,10 @@ pub fn score(log: &Log, experts: &[SteLog], options: &Options) -> Result<Lifetim
 /// Metrics in the order in which they are computed; each sees what those before it found.
 ///
 /// ```
-/// # use driftworld_metrics::{Assessment, Headline, Metric, MetricsError, Scorer};
+/// # use driftworld_metrics::{Assessment, Headline, Metric, MetricsError, Options, Scorer};
 /// # struct WorstEvaluation;
 /// # impl Metric for WorstEvaluation {
-/// #     fn headlines(&self) -> Vec<Headline> { Vec::new() }
+/// #     fn headlines(&self, _: &Options) -> Vec<Headline> { Vec::new() }
 /// #     fn judge(&self, _: &mut Assessment<'_>) -> Result<(), MetricsError> { Ok(()) }
 /// # }
 /// let scorer = Scorer::new().with(WorstEvaluation)?;
@@ -40,11 +40,10 @@ pub struct Scorer {
 impl Scorer {
     /// With all metrics of this crate.
     pub fn new() -> Self {
-        let metrics = built_in();
-        let headlines = metrics.iter().flat_map(|metric| metric.headlines());
+        let headlines = built_in_headlines().into_iter();
         Self {
             headlines: headlines.map(|headline| headline.name.into_owned()).collect(),
-            metrics,
+            metrics: built_in(),
         }
     }
 
@@ -54,7 +53,7 @@ impl Scorer {
     /// [`MetricsError::BadOption`] for a headline that is empty, that another metric has, or that the file of results
     /// uses for something else.
     pub fn with(mut self, metric: impl Metric + 'static) -> Result<Self, MetricsError> {
-        for headline in metric.headlines() {
+        for headline in metric.headlines(&all_asked()) {
             let name = headline.name.into_owned();
             let is_free = !name.is_empty() && !TAKEN.contains(&name.as_str());
             if !is_free || !self.headlines.insert(name.clone()) {
@@ -87,7 +86,7 @@ impl Scorer {
         let mut headlines: Vec<Headline> = Vec::new();
         for metric in &self.metrics {
             metric.judge(&mut assessment)?;
-            for headline in metric.headlines() {
+            for headline in metric.headlines(options) {
                 assessment.aggregate_tasks(&headline.name);
                 headlines.push(headline);
             }

@@ -7,7 +7,7 @@ use super::{Assessment, Metric};
 use crate::lifetime::{Lifetime, SteRun};
 use crate::report::{Direction, Headline};
 use crate::statistics::mean;
-use crate::{MetricsError, SteAveragingMethod};
+use crate::{MetricsError, Options, SteAveragingMethod};
 
 /// `ste_rel_perf` of every task, the mean of its `ste_rel_perf_vals`.
 pub(super) struct SteRelativePerformance;
@@ -15,7 +15,7 @@ pub(super) struct SteRelativePerformance;
 const NAME: &str = "ste_rel_perf";
 
 impl Metric for SteRelativePerformance {
-    fn headlines(&self) -> Vec<Headline> {
+    fn headlines(&self, _: &Options) -> Vec<Headline> {
         vec![Headline::new(
             NAME,
             "performance gathered while learning, over that of an expert trained on the task alone",

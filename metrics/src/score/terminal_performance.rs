@@ -5,13 +5,13 @@
 use super::{Assessment, Metric};
 use crate::report::Headline;
 use crate::statistics::mean;
-use crate::{BlockType, Definitions, MetricsError};
+use crate::{BlockType, Definitions, MetricsError, Options};
 
 /// `term_perf` and `exp_to_term_perf` of every regime.
 pub(super) struct TerminalPerformance;
 
 impl Metric for TerminalPerformance {
-    fn headlines(&self) -> Vec<Headline> {
+    fn headlines(&self, _: &Options) -> Vec<Headline> {
         Vec::new()
     }
 

@@ -9,7 +9,7 @@ use indexmap::{IndexMap, IndexSet};
 use super::{Assessment, Metric};
 use crate::lifetime::Lifetime;
 use crate::report::{Direction, Headline, PairValues};
-use crate::{BlockType, Definitions, MetricsError};
+use crate::{BlockType, Definitions, MetricsError, Options};
 
 /// `forward_transfer_…` and `backward_transfer_…` of every trained task, by ratio and contrast as far as they are asked
 /// for.
@@ -18,29 +18,34 @@ use crate::{BlockType, Definitions, MetricsError};
 pub(super) struct Transfer;
 
 impl Metric for Transfer {
-    fn headlines(&self) -> Vec<Headline> {
-        vec![
-            Headline::new(
+    fn headlines(&self, options: &Options) -> Vec<Headline> {
+        let mut headlines = Vec::new();
+        let method = options.transfer_method;
+        if method.has_ratio() {
+            headlines.push(Headline::new(
                 "forward_transfer_ratio",
                 "does learning one task help others not learnt yet? performance after over before",
                 Direction::HigherThan(1.0),
-            ),
-            Headline::new(
+            ));
+            headlines.push(Headline::new(
                 "backward_transfer_ratio",
                 "does learning one task help others learnt before? performance after over before",
                 Direction::HigherThan(1.0),
-            ),
-            Headline::new(
+            ));
+        }
+        if method.has_contrast() {
+            headlines.push(Headline::new(
                 "forward_transfer_contrast",
                 "does learning one task help others not learnt yet? change over sum, from -1 to 1",
                 Direction::HigherThan(0.0),
-            ),
-            Headline::new(
+            ));
+            headlines.push(Headline::new(
                 "backward_transfer_contrast",
                 "does learning one task help others learnt before? change over sum, from -1 to 1",
                 Direction::HigherThan(0.0),
-            ),
-        ]
+            ));
+        }
+        headlines
     }
 
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {

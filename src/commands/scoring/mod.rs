@@ -61,7 +61,7 @@ pub(crate) struct Scoring {
     /// A JSON file with the range of each task: `{"find_red": {"min": 0, "max": 10}}`.
     #[arg(short, long, value_name = "FILE")]
     data_range_file: Option<PathBuf>,
-    /// Add normal noise to every performance of the lifetime.
+    /// Add normal noise to every performance of the lifetime, in normalised units.
     #[arg(short = 'N', long, num_args = 2, value_names = ["MEAN", "STD"], allow_negative_numbers = true)]
     noise: Option<Vec<f64>>,
     /// What the noise is drawn from.
