@@ -223,6 +223,22 @@ fn values_of_a_name_that_the_results_use_are_refused() {
     }
 }
 
+#[test]
+fn one_scorer_scores_many_lifetimes_at_once() {
+    let scorer = Scorer::new().with(WorstEvaluation).unwrap();
+    let logs = [log_of(&LIFE), log_of(&LIFE[..4])];
+    let at_once = std::thread::scope(|scope| {
+        let threads = logs
+            .each_ref()
+            .map(|log| scope.spawn(|| scorer.score(log, &[], &plain()).unwrap()));
+        threads.map(|thread| thread.join().unwrap())
+    });
+    assert_eq!(
+        at_once,
+        logs.each_ref().map(|log| scorer.score(log, &[], &plain()).unwrap())
+    );
+}
+
 fn by(definitions: Definitions, blocks: &[Block<'_>]) -> LifetimeMetrics {
     let options = Options { definitions, ..plain() };
     score(&log_of(blocks), &[], &options).unwrap()
