@@ -14,7 +14,7 @@ impl Metric for WorstForgetting {
         vec![Headline::new(
             "worst_forgetting",
             "how much was lost at worst? points below the best evaluation before",
-            Direction::LowerThan(0.0),
+            Direction::Lower,
         )]
     }
 
@@ -61,12 +61,14 @@ fn live(log: &mut LogWriter) -> Result<(), MetricsError> {
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let mut log = LogWriter::create("forgetful", &LoggerInfo::new(["reward"])?, &ScenarioInfo::default())?;
+    let folder = tempfile::tempdir()?;
+    let logs = folder.path().join("forgetful");
+    let mut log = LogWriter::create(&logs, &LoggerInfo::new(["reward"])?, &ScenarioInfo::default())?;
     live(&mut log)?;
     log.finish()?;
 
     let scorer = Scorer::new().with(WorstForgetting)?;
-    let scores = scorer.score(&read_log("forgetful")?, &[], &Options::default())?;
+    let scores = scorer.score(&read_log(&logs)?, &[], &Options::default())?;
     for row in scores.summary() {
         if let Some(value) = row.value {
             println!("{:24} {value:8.3}  {}", row.name, row.explanation);

@@ -143,6 +143,102 @@ fn names_that_are_taken_are_refused_and_errors_come_through() {
     assert_eq!(error, "metric energy, log life: found no column energy, expected one");
 }
 
+/// A metric without headlines that sets one value of a name.
+struct Sets(Level, &'static str);
+
+#[derive(Clone, Copy, Debug)]
+enum Level {
+    Lifetime,
+    Task,
+    Regime,
+}
+
+impl Metric for Sets {
+    fn headlines(&self, _: &Options) -> Vec<Headline> {
+        Vec::new()
+    }
+
+    fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
+        match self.0 {
+            Level::Lifetime => assessment.set_lifetime(self.1, Some(1.0)),
+            Level::Task => assessment.set_task("b_1", self.1, Some(1.0)),
+            Level::Regime => assessment.set_regime(2, self.1, Some(1.0)),
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn values_of_a_name_that_the_results_use_are_refused() {
+    let log = log_of(&LIFE);
+    let of = |level, name| {
+        let scorer = Scorer::new().with(Sets(level, name)).unwrap();
+        scorer.score(&log, &[], &plain())
+    };
+    let written = serde_json::to_value(score(&log, &[], &plain()).unwrap()).unwrap();
+    let check = |level, name: &'static str, whose: &str| {
+        let error = of(level, name).expect_err(name).to_string();
+        let expected = "a name that no field or column of the results has";
+        assert_eq!(
+            error,
+            format!("option value of a metric: found {name:?} of {whose}, expected {expected}")
+        );
+    };
+    for name in [
+        "run_id",
+        "complexity",
+        "metrics_column",
+        "min",
+        "runtime",
+        "task_metrics",
+    ] {
+        assert!(written.get(name).is_some(), "{name} is a field");
+        check(Level::Lifetime, name, "the lifetime");
+    }
+    check(Level::Lifetime, "definitions", "the lifetime");
+    for name in ["min", "max", "num_lx", "num_ex"] {
+        assert!(written["task_metrics"]["b_1"].get(name).is_some(), "{name} is a field");
+        check(Level::Task, name, "task \"b_1\"");
+    }
+    for name in [
+        "block_num",
+        "block_type",
+        "task_name",
+        "regime_num",
+        "task_params",
+        "run_id",
+    ] {
+        check(Level::Regime, name, "a regime");
+    }
+    // At another level the same name means nothing else.
+    for (level, name) in [
+        (Level::Lifetime, "block_num"),
+        (Level::Task, "run_id"),
+        (Level::Regime, "min"),
+    ] {
+        let metrics = of(level, name).unwrap();
+        let json = serde_json::to_string(&metrics).unwrap();
+        let back: LifetimeMetrics = serde_json::from_str(&json).unwrap();
+        assert_eq!(serde_json::to_string(&back).unwrap(), json, "{level:?}");
+    }
+}
+
+#[test]
+fn one_scorer_scores_many_lifetimes_at_once() {
+    let scorer = Scorer::new().with(WorstEvaluation).unwrap();
+    let logs = [log_of(&LIFE), log_of(&LIFE[..4])];
+    let at_once = std::thread::scope(|scope| {
+        let threads = logs
+            .each_ref()
+            .map(|log| scope.spawn(|| scorer.score(log, &[], &plain()).unwrap()));
+        threads.map(|thread| thread.join().unwrap())
+    });
+    assert_eq!(
+        at_once,
+        logs.each_ref().map(|log| scorer.score(log, &[], &plain()).unwrap())
+    );
+}
+
 fn by(definitions: Definitions, blocks: &[Block<'_>]) -> LifetimeMetrics {
     let options = Options { definitions, ..plain() };
     score(&log_of(blocks), &[], &options).unwrap()

@@ -124,9 +124,9 @@ proptest! {
     }
 
     #[test]
-    fn what_one_agent_wins_the_other_loses(a in rows(), b in rows()) {
+    fn what_one_agent_wins_the_other_loses(a in rows(), b in rows(), how in resampling()) {
         let (a, b) = (table_of(&a), table_of(&b));
-        let of = |a: &ScoreTable, b: &ScoreTable| probability_of_improvement(a, b, &options(Resampling::Strata)).unwrap();
+        let of = |a: &ScoreTable, b: &ScoreTable| probability_of_improvement(a, b, &options(how)).unwrap();
         let (ours, theirs) = (of(&a, &b), of(&b, &a));
         prop_assert!((ours.probability.value + theirs.probability.value - 1.0).abs() < 1e-12);
         prop_assert_eq!(&ours.only_a, &theirs.only_b);
@@ -140,8 +140,8 @@ proptest! {
     }
 
     #[test]
-    fn a_rising_map_of_scores_changes_no_probability(a in rows(), b in rows()) {
-        let of = |a: &ScoreTable, b: &ScoreTable| probability_of_improvement(a, b, &options(Resampling::Strata)).unwrap();
+    fn a_rising_map_of_scores_changes_no_probability(a in rows(), b in rows(), how in resampling()) {
+        let of = |a: &ScoreTable, b: &ScoreTable| probability_of_improvement(a, b, &options(how)).unwrap();
         let map = |score: f64| score.powi(3) + score;
         prop_assert_eq!(of(&table_of(&a), &table_of(&b)), of(&mapped(&a, map), &mapped(&b, map)));
     }

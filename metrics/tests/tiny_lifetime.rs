@@ -188,6 +188,20 @@ fn recovery_that_takes_longer_each_time_is_negative() {
 }
 
 #[test]
+fn recovery_that_takes_as_long_each_time_is_nothing_without_a_sign() {
+    let again: Block<'_> = (Train, "a_1", &[5.0]);
+    let metrics = scored(&[again, again, again], &plain());
+    assert_eq!(
+        metrics.task_metrics["a_1"].numbers("recovery_times").unwrap(),
+        [0.0, 0.0]
+    );
+    for values in [&metrics.task_metrics["a_1"], &metrics.lifetime] {
+        let recovery = values.number("perf_recovery").unwrap();
+        assert_eq!(recovery.to_bits(), 0.0_f64.to_bits(), "{recovery:?}");
+    }
+}
+
+#[test]
 fn where_two_tasks_are_learnt_in_one_gap_the_last_pair_gets_the_transfer() {
     let blocks: [Block<'_>; 5] = [
         (Test, "c_1", &[2.0]),

@@ -24,7 +24,7 @@ choice! {
         /// run in different strata as independent.
         Strata = "strata",
         /// Whole runs with all their scores. Keeps what the scores of one lifetime have in common; the same as `Strata` where
-        /// there is one stratum only.
+        /// there is one stratum only. Where runs lack scores, a stratum of which nothing was drawn is left out of that draw.
         Runs = "runs",
     }
 }

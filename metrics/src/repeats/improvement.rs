@@ -1,13 +1,13 @@
 //! Two agents compared: how probably a run of one scores higher than a run of the other.
 //!
-//! Not here: differences of aggregates; two agents' intervals stand beside each other for that, see `estimate`.
+//! Not here: how pairs of runs are counted and drawn again, see `contest`; differences of aggregates: two agents' intervals stand
+//! beside each other for that, see `estimate`.
 
-use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
+use super::contest::Contests;
 use super::score_table::wrong;
-use super::{BootstrapOptions, Estimate, Resampling, ScoreTable};
+use super::{BootstrapOptions, Estimate, ScoreTable};
 use crate::MetricsError;
 
 /// How probably agent A beats agent B.
@@ -38,8 +38,11 @@ pub struct StratumImprovement {
 /// Corresponds to `probability_of_improvement` of rliable 1.2: the Mann–Whitney statistic over the number of pairs. It says how
 /// often A is better and not by how much. Higher scores must be better.
 ///
-/// Intervals draw the scores within each stratum, whatever [`BootstrapOptions::resampling`] says: pairs of runs are formed
-/// stratum by stratum. What [`ScoreTable::caution`] says of either table is true of them. Time `O(resamples · scores)`.
+/// Pairs of runs are formed stratum by stratum. What is drawn again for the intervals, [`BootstrapOptions::resampling`] says: the
+/// scores within each stratum, or the whole runs of each agent, the same ones in every stratum. Where runs lack scores, of whole
+/// runs there may be none with a score of some stratum: such a stratum is left out of the mean of that draw, and its own interval
+/// is made of the other draws; a draw that leaves no stratum is made again. What [`ScoreTable::caution`] says of either table is
+/// true of the intervals. Time `O(resamples · scores)`.
 ///
 /// # Errors
 /// [`MetricsError::Scores`] where the tables have no stratum in common; [`MetricsError::BadOption`] as
@@ -77,13 +80,13 @@ pub fn probability_of_improvement(
         ));
     }
     options.check(a.num_scores() + b.num_scores())?;
-    let mut contests: Vec<Contest> = shared.iter().map(|name| Contest::new(a, b, name)).collect();
-    let values: Vec<f64> = contests.iter().map(Contest::probability).collect();
-    let varies = a.varies(Resampling::Strata) || b.varies(Resampling::Strata);
-    let intervals = varies.then(|| draw(&mut contests, options));
+    let mut contests = Contests::new(a, b, &shared);
+    let values = contests.probabilities();
+    let varies = a.varies(options.resampling) || b.varies(options.resampling);
+    let intervals = varies.then(|| contests.intervals(options));
     let estimate = |k: usize, value| Estimate {
         value,
-        interval: intervals.as_ref().map(|intervals| intervals[k]),
+        interval: intervals.as_ref().and_then(|intervals| intervals[k]),
     };
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let strata = shared
@@ -92,10 +95,7 @@ pub fn probability_of_improvement(
         .enumerate()
         .map(|(k, (name, value))| StratumImprovement {
             stratum: (*name).to_owned(),
-            probability: Estimate {
-                interval: estimate(k, *value).interval.filter(|_| contests[k].varies()),
-                value: *value,
-            },
+            probability: estimate(k, *value),
         });
     let missing = |from: &ScoreTable, other: &ScoreTable| {
         let alone = from.strata().filter(|name| other.scores(name).is_none());
@@ -109,97 +109,10 @@ pub fn probability_of_improvement(
     })
 }
 
-/// Intervals of the strata, and last that of their mean.
-fn draw(contests: &mut [Contest], options: &BootstrapOptions) -> Vec<super::Interval> {
-    let resamples = options.resamples as usize;
-    let mut drawn = vec![Vec::with_capacity(resamples); contests.len() + 1];
-    let mut chance = options.chance();
-    for _ in 0..resamples {
-        let mut sum = 0.0;
-        for (contest, drawn) in contests.iter_mut().zip(&mut drawn) {
-            contest.draw(&mut chance);
-            let probability = contest.probability();
-            sum += probability;
-            drawn.push(probability);
-        }
-        let mean = sum / contests.len() as f64;
-        drawn.last_mut().expect("one place for the mean").push(mean);
-    }
-    drawn.iter_mut().map(|values| options.interval(values)).collect()
-}
-
-/// The runs of both agents in one stratum, by rank.
-struct Contest {
-    a: Side,
-    b: Side,
-}
-
-/// One agent's runs.
-struct Side {
-    /// The rank of each run's score among the different scores of both agents.
-    ranks: Vec<u32>,
-    /// How many runs stand at each rank.
-    counts: Vec<u32>,
-}
-
-impl Contest {
-    fn new(a: &ScoreTable, b: &ScoreTable, stratum: &str) -> Self {
-        let scores = |table: &ScoreTable| -> Vec<f64> { table.scores(stratum).into_iter().flatten().collect() };
-        let (of_a, of_b) = (scores(a), scores(b));
-        let mut different: Vec<f64> = of_a.iter().chain(&of_b).copied().collect();
-        different.sort_by(f64::total_cmp);
-        different.dedup();
-        Self {
-            a: Side::new(&of_a, &different),
-            b: Side::new(&of_b, &different),
-        }
-    }
-
-    fn varies(&self) -> bool {
-        self.a.ranks.len() > 1 || self.b.ranks.len() > 1
-    }
-
-    fn draw(&mut self, chance: &mut ChaCha8Rng) {
-        self.a.draw(chance);
-        self.b.draw(chance);
-    }
-
-    /// Share of pairs that A wins, ties counted half.
-    fn probability(&self) -> f64 {
-        let (mut halves, mut below) = (0, 0);
-        for (of_a, of_b) in self.a.counts.iter().zip(&self.b.counts) {
-            halves += u64::from(*of_a) * (2 * below + u64::from(*of_b));
-            below += u64::from(*of_b);
-        }
-        let pairs = self.a.ranks.len() * self.b.ranks.len();
-        halves as f64 / (2 * pairs) as f64
-    }
-}
-
-impl Side {
-    fn new(scores: &[f64], different: &[f64]) -> Self {
-        let rank = |score: &f64| different.partition_point(|other| other < score) as u32;
-        let mut side = Self {
-            ranks: scores.iter().map(rank).collect(),
-            counts: vec![0; different.len()],
-        };
-        side.ranks.iter().for_each(|rank| side.counts[*rank as usize] += 1);
-        side
-    }
-
-    fn draw(&mut self, chance: &mut ChaCha8Rng) {
-        self.counts.fill(0);
-        let num_runs = self.ranks.len() as u32;
-        for _ in 0..num_runs {
-            let rank = self.ranks[chance.random_range(0..num_runs) as usize];
-            self.counts[rank as usize] += 1;
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Resampling;
 
     fn table(strata: &[(&str, &[f64])]) -> ScoreTable {
         let num_runs = strata.iter().map(|(_, scores)| scores.len()).max().unwrap();
@@ -258,5 +171,53 @@ mod tests {
         let (a, b) = (table(&[("x", &[1.0])]), table(&[("x", &[1.0])]));
         let found = probability_of_improvement(&a, &b, &BootstrapOptions::default()).unwrap();
         assert_eq!((found.probability.value, found.probability.interval), (0.5, None));
+    }
+
+    /// The numbers of this seed on every machine: when they move, the change is value-breaking.
+    #[test]
+    fn intervals_hold_still() {
+        let a = table(&[
+            ("x", &[1.0, 4.0, 2.0, 7.0, 3.0]),
+            ("y", &[5.0, 2.0, 6.0]),
+            ("z", &[2.0, 8.0]),
+        ]);
+        let b = table(&[
+            ("x", &[3.0, 2.0, 1.0, 5.0]),
+            ("y", &[3.0, 4.0, 1.0, 4.0]),
+            ("z", &[6.0, 3.0, 5.0]),
+        ]);
+        let check = |resampling, expected: [(f64, f64); 4]| {
+            let options = BootstrapOptions {
+                resampling,
+                resamples: 500,
+                seed: 1,
+                ..BootstrapOptions::default()
+            };
+            let found = probability_of_improvement(&a, &b, &options).unwrap();
+            let strata = found.strata.iter().map(|stratum| &stratum.probability);
+            let intervals = strata
+                .chain([&found.probability])
+                .map(|estimate| estimate.interval.unwrap());
+            let ends: Vec<(f64, f64)> = intervals.map(|interval| (interval.low, interval.high)).collect();
+            assert_eq!(ends, expected, "{resampling}");
+        };
+        check(
+            Resampling::Strata,
+            [
+                (0.2, 0.938_124_999_999_999_4),
+                (0.25, 1.0),
+                (0.0, 1.0),
+                (0.295_625_000_000_000_1, 0.891_666_666_666_666_6),
+            ],
+        );
+        check(
+            Resampling::Runs,
+            [
+                (0.186_875_000_000_000_26, 0.938_124_999_999_999_4),
+                (0.25, 1.0),
+                (0.0, 1.0),
+                (0.416_666_666_666_666_7, 0.911_840_277_777_777_8),
+            ],
+        );
     }
 }

@@ -7,6 +7,7 @@
 
 mod aggregate;
 mod bootstrap;
+mod contest;
 mod estimate;
 mod improvement;
 mod profile;

@@ -74,10 +74,7 @@ impl Resample {
     fn draw_runs(&mut self, chance: &mut ChaCha8Rng) {
         let mut runs = vec![0; self.num_runs];
         loop {
-            runs.fill(0);
-            for _ in 0..self.num_runs {
-                runs[chance.random_range(0..self.num_runs as u32) as usize] += 1;
-            }
+            draw_whole_runs(&mut runs, chance);
             for slot in self.strata.iter().flatten() {
                 self.counts[slot.position as usize] = runs[slot.run as usize];
             }
@@ -103,6 +100,14 @@ impl Resample {
             }
             (num_drawn > 0).then(|| sum / f64::from(num_drawn))
         })
+    }
+}
+
+/// Draws as many runs as there are, with replacement: how often each was drawn.
+pub(super) fn draw_whole_runs(counts: &mut [u32], chance: &mut ChaCha8Rng) {
+    counts.fill(0);
+    for _ in 0..counts.len() {
+        counts[chance.random_range(0..counts.len() as u32) as usize] += 1;
     }
 }
 

@@ -127,6 +127,11 @@ impl ScoreTable {
         Some(self.strata.get(stratum)?.iter().map(|(score, _)| *score))
     }
 
+    /// The scores of a stratum with the positions of their runs, ascending by score; empty where there is no such stratum.
+    pub(super) fn scored_runs(&self, stratum: &str) -> &[(f64, u32)] {
+        self.strata.get(stratum).map_or(&[], Vec::as_slice)
+    }
+
     /// What a reader of an interval must be told: that there is none, or that it does not show how much some strata vary,
     /// because only one run scored them.
     pub fn caution(&self, resampling: Resampling) -> Option<String> {

@@ -14,6 +14,7 @@ mod values;
 pub use files::{SavedFiles, SavedTables, Settings, save_all};
 pub use headline::{Direction, Headline, SummaryRow};
 pub use lifetime_metrics::LifetimeMetrics;
+pub(crate) use regime_table::is_regime_column;
 pub use regime_table::{RegimeMetrics, regimes_tsv};
 pub use repeats::{ComparedMetric, RepeatedMetric, compare_agents, over_repeats};
 pub use values::{PairValues, Value, Values};

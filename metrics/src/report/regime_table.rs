@@ -24,6 +24,14 @@ const IDENTITY: [&str; 6] = [
 /// The one of them that is not always there.
 const PARAMS: &str = "task_params";
 
+/// The column that says which lifetime it is from.
+const RUN_ID: &str = "run_id";
+
+/// Whether the table has a column of that name for something other than a value.
+pub(crate) fn is_regime_column(name: &str) -> bool {
+    name == RUN_ID || IDENTITY.contains(&name)
+}
+
 /// What a regime is, and its values, in normalised units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegimeMetrics {
@@ -68,7 +76,7 @@ fn tsv(lifetimes: &[LifetimeMetrics], put_run_id: fn(&mut Vec<String>, String)) 
     let is_shown = |column: &str| params_vary || column != PARAMS;
     let identity = IDENTITY.into_iter().filter(|column| is_shown(column));
     let mut header: Vec<String> = identity.chain(names.iter().copied()).map(str::to_owned).collect();
-    put_run_id(&mut header, "run_id".to_owned());
+    put_run_id(&mut header, RUN_ID.to_owned());
     let mut text = line(header);
     for lifetime in lifetimes {
         for regime in &lifetime.regimes {

@@ -18,12 +18,12 @@ impl Metric for AveragePerformance {
         vec![
             Headline::new(
                 "avg_train_perf",
-                "mean performance while learning, where 1 is the worst and 101 the best seen in each task",
+                "mean performance while learning; by default 1 is the worst and 101 the best seen in each task",
                 Direction::Higher,
             ),
             Headline::new(
                 "avg_eval_perf",
-                "mean performance in evaluations, where 1 is the worst and 101 the best seen in each task",
+                "mean performance in evaluations; by default 1 is the worst and 101 the best seen in each task",
                 Direction::Higher,
             ),
         ]

@@ -11,7 +11,8 @@ use crate::{MetricsError, Options};
 ///
 /// A metric looks at the regimes of a preprocessed lifetime and at what metrics before it found, and sets values: for
 /// regimes (columns of the regime table), for tasks (the numbers, and the lists behind them), for the lifetime. Where
-/// it sets a headline for tasks only, the lifetime's value is their mean or median, as the options say.
+/// it sets a headline for tasks only, the lifetime's value is their mean or median, as the options say. One scorer may
+/// score many lifetimes at once, hence `Send` and `Sync`.
 ///
 /// ```
 /// use driftworld_metrics::{Assessment, BlockType, Direction, Headline, Metric, MetricsError, Options};
@@ -35,7 +36,7 @@ use crate::{MetricsError, Options};
 ///     }
 /// }
 /// ```
-pub trait Metric {
+pub trait Metric: Send + Sync {
     /// The values by which a lifetime is known that this metric sets under these options, in order. Their names must be its
     /// own.
     fn headlines(&self, options: &Options) -> Vec<Headline>;

@@ -37,7 +37,9 @@ impl Metric for PerformanceRecovery {
             times.iter_mut().for_each(Vec::clear);
         }
         for (task, times) in tasks.iter().zip(times) {
-            assessment.set_task(task, NAME, theil_sen_slope(&times).map(|slope| -slope));
+            // A difference, since minus a slope of 0 would be -0.
+            let faster = theil_sen_slope(&times).map(|slope| 0.0 - slope);
+            assessment.set_task(task, NAME, faster);
             assessment.set_task(task, "recovery_times", Some(times));
         }
         Ok(())

@@ -6,7 +6,7 @@ use indexmap::{IndexMap, IndexSet};
 
 use super::{Assessment, Metric, all_asked, built_in, built_in_headlines};
 use crate::lifetime::{Lifetime, Regime, SteLog};
-use crate::report::{Headline, LifetimeMetrics, RegimeMetrics, Value, Values};
+use crate::report::{Headline, LifetimeMetrics, RegimeMetrics, Value, Values, is_regime_column};
 use crate::{BlockType, Log, MetricsError, Options};
 
 /// Scores a lifetime by the metrics of this crate, compared with the single-task experts there are.
@@ -72,7 +72,7 @@ impl Scorer {
     /// Scores a lifetime, compared with the single-task experts there are.
     ///
     /// # Errors
-    /// Those of [`Lifetime::prepare`] and those of the metrics.
+    /// Those of [`Lifetime::prepare`] and of [`Scorer::judge`].
     pub fn score(&self, log: &Log, experts: &[SteLog], options: &Options) -> Result<LifetimeMetrics, MetricsError> {
         self.judge(log, &Lifetime::prepare(log, experts, options)?, options)
     }
@@ -80,7 +80,8 @@ impl Scorer {
     /// Scores a lifetime that was prepared from `log` under `options` before, for whoever wants to look at both.
     ///
     /// # Errors
-    /// Those of the metrics.
+    /// Those of the metrics; [`MetricsError::BadOption`] where one set a value whose name the files of results use for
+    /// something else.
     pub fn judge(&self, log: &Log, lifetime: &Lifetime, options: &Options) -> Result<LifetimeMetrics, MetricsError> {
         let mut assessment = Assessment::new(log, lifetime, options);
         let mut headlines: Vec<Headline> = Vec::new();
@@ -92,6 +93,13 @@ impl Scorer {
             }
         }
         let (regimes, tasks, found) = assessment.into_values();
+        check_names(&found, "the lifetime", |name| TAKEN.contains(&name))?;
+        for (task, values) in &tasks {
+            check_names(values, &format!("task {task:?}"), |name| EXTENT.contains(&name))?;
+        }
+        for values in &regimes {
+            check_names(values, "a regime", is_regime_column)?;
+        }
         let in_order = |values: &Values| headlines_first(values, &headlines);
         let finish = |(task, values): (String, Values)| {
             let values = with_extent(in_order(&values), lifetime, &task);
@@ -129,7 +137,7 @@ impl Default for Scorer {
     }
 }
 
-/// Fields of the results that no headline may have as its name.
+/// Fields of the results that no headline and no value of a lifetime may have as its name.
 const TAKEN: [&str; 13] = [
     "run_id",
     "complexity",
@@ -146,6 +154,21 @@ const TAKEN: [&str; 13] = [
     "task_metrics",
 ];
 
+/// Fields of a task in the results that no value of a task may have as its name.
+const EXTENT: [&str; 4] = ["min", "max", "num_lx", "num_ex"];
+
+/// Checks that metrics set no value whose name the results use for something else: it would stand there twice.
+fn check_names(values: &Values, whose: &str, is_taken: impl Fn(&str) -> bool) -> Result<(), MetricsError> {
+    match values.iter().find(|(name, _)| is_taken(name)) {
+        Some((name, _)) => Err(MetricsError::BadOption {
+            option: "value of a metric",
+            found: format!("{name:?} of {whose}"),
+            expected: "a name that no field or column of the results has".to_owned(),
+        }),
+        None => Ok(()),
+    }
+}
+
 /// Headlines in their order, then everything else as it came.
 fn headlines_first(values: &Values, headlines: &[Headline]) -> Values {
     let mut ordered = Values::default();
@@ -160,10 +183,11 @@ fn headlines_first(values: &Values, headlines: &[Headline]) -> Values {
 /// Adds the range of a task's performances and the number of its rows.
 fn with_extent(mut values: Values, lifetime: &Lifetime, task: &str) -> Values {
     let (min, max) = extent(lifetime.regimes_of(task));
-    values.set("min", min);
-    values.set("max", max);
-    values.set("num_lx", num_rows(lifetime.regimes_of(task), BlockType::Train));
-    values.set("num_ex", num_rows(lifetime.regimes_of(task), BlockType::Test));
+    let [of_min, of_max, of_learning, of_evaluation] = EXTENT;
+    values.set(of_min, min);
+    values.set(of_max, max);
+    values.set(of_learning, num_rows(lifetime.regimes_of(task), BlockType::Train));
+    values.set(of_evaluation, num_rows(lifetime.regimes_of(task), BlockType::Test));
     values
 }
 

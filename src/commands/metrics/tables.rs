@@ -105,8 +105,10 @@ fn interval(estimate: &Estimate) -> String {
     })
 }
 
+/// With three decimals; what rounds to nothing has no sign.
 fn number(value: f64) -> String {
-    format!("{value:.3}")
+    let shown = format!("{value:.3}");
+    if shown == "-0.000" { "0.000".to_owned() } else { shown }
 }
 
 fn good(good: Direction) -> String {
@@ -115,5 +117,20 @@ fn good(good: Direction) -> String {
         Direction::Lower => "lower".to_owned(),
         Direction::HigherThan(neutral) => format!("above {neutral}"),
         Direction::LowerThan(neutral) => format!("below {neutral}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_that_rounds_to_nothing_has_no_sign() {
+        let check = |value: f64, expected: &str| assert_eq!(number(value), expected);
+        check(-0.0, "0.000");
+        check(-0.000_4, "0.000");
+        check(-0.000_6, "-0.001");
+        check(-12.5, "-12.500");
+        check(0.0, "0.000");
     }
 }

@@ -1,0 +1,126 @@
+//! Probability of improvement where whole runs are drawn, against numpy: `tests/oracles/repeats_whole_runs.py` says how its numbers
+//! were made.
+//!
+//! Not here: draws within strata, see `repeats_rliable`.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
+
+use driftworld_metrics::{BootstrapOptions, Improvement, Interval, Resampling, ScoreTable, probability_of_improvement};
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+struct Oracle {
+    resamples: u32,
+    comparisons: Vec<Comparison>,
+}
+
+#[derive(Deserialize)]
+struct Comparison {
+    name: String,
+    a: Vec<Vec<Option<f64>>>,
+    b: Vec<Vec<Option<f64>>>,
+    /// Of the strata, then of all.
+    values: Vec<f64>,
+    /// Low and high, of the strata, then of all.
+    ends: Vec<[f64; 2]>,
+    /// In how many resamples a stratum had a pair.
+    resamples_of_strata: Vec<u32>,
+}
+
+/// From rows of runs.
+fn table(rows: &[Vec<Option<f64>>]) -> ScoreTable {
+    let run = |row: &Vec<Option<f64>>| {
+        let named = row.iter().enumerate();
+        let named = named.filter_map(|(k, score)| Some((k.to_string(), (*score)?)));
+        named.collect::<Vec<_>>()
+    };
+    ScoreTable::from_runs(rows.iter().enumerate().map(|(k, row)| (k.to_string(), run(row)))).unwrap()
+}
+
+/// How often ours draws.
+const RESAMPLES: u32 = 20_000;
+
+/// Compares with an interval that leaves out `share` at either end.
+fn compared(case: &Comparison, share: f64, resampling: Resampling) -> Improvement {
+    let options = BootstrapOptions {
+        confidence: 1.0 - 2.0 * share,
+        resamples: RESAMPLES,
+        resampling,
+        ..BootstrapOptions::default()
+    };
+    probability_of_improvement(&table(&case.a), &table(&case.b), &options).unwrap()
+}
+
+/// Values and intervals of the strata, then of all.
+fn estimates(found: &Improvement) -> Vec<(f64, Option<Interval>)> {
+    let strata = found.strata.iter().map(|stratum| &stratum.probability);
+    let all = strata.chain([&found.probability]);
+    all.map(|estimate| (estimate.value, estimate.interval)).collect()
+}
+
+fn oracle() -> Oracle {
+    serde_json::from_str(include_str!("oracles/repeats_whole_runs.json")).unwrap()
+}
+
+/// The share that a sample of size n leaves out beyond a fixed point scatters by √(0.025 · 0.975 / n): their ends lie between those
+/// of ours that leave out five deviations more and less. Shares are compared, since there are gaps between the values.
+#[test]
+fn whole_runs_give_the_intervals_that_numpy_gives() {
+    let Oracle { resamples, comparisons } = oracle();
+    for case in &comparisons {
+        let rarest = f64::from(*case.resamples_of_strata.iter().min().unwrap()) / f64::from(resamples);
+        let of_one = |resamples: u32| 0.025 * 0.975 / (rarest * f64::from(resamples));
+        let allowed = 5.0 * (of_one(RESAMPLES) + of_one(resamples)).sqrt();
+        let [narrow, wide] = [allowed, -allowed].map(|more| estimates(&compared(case, 0.025 + more, Resampling::Runs)));
+        assert_eq!(narrow.len(), case.values.len(), "{}", case.name);
+        for k in 0..narrow.len() {
+            let place = format!("{}, {k}", case.name);
+            assert!((narrow[k].0 - case.values[k]).abs() < 1e-12, "{place}: {narrow:?}");
+            let ([low, high], rounding) = (case.ends[k], 1e-9);
+            let (Some(narrow), Some(wide)) = (narrow[k].1, wide[k].1) else {
+                assert_eq!(
+                    case.ends[k], [case.values[k]; 2],
+                    "{place}: without an interval, nothing varies"
+                );
+                continue;
+            };
+            assert!(
+                wide.low - rounding <= low && low <= narrow.low + rounding,
+                "{place}: expected {low} between {wide:?} and {narrow:?}"
+            );
+            assert!(
+                narrow.high - rounding <= high && high <= wide.high + rounding,
+                "{place}: expected {high} between {narrow:?} and {wide:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn where_runs_move_all_strata_alike_only_whole_runs_show_how_much_varies() {
+    let Oracle { comparisons, .. } = oracle();
+    let width = |resampling| {
+        let interval = compared(&comparisons[0], 0.025, resampling)
+            .probability
+            .interval
+            .unwrap();
+        interval.high - interval.low
+    };
+    let (runs, strata) = (width(Resampling::Runs), width(Resampling::Strata));
+    assert!(runs > 1.5 * strata, "{runs} {strata}");
+}
+
+#[test]
+fn two_kinds_of_draws_agree_where_there_is_one_stratum() {
+    let run = |k: u32| (k.to_string(), [("a", f64::from(k))]);
+    let a = ScoreTable::from_runs((3..12).map(run)).unwrap();
+    let b = ScoreTable::from_runs((0..8).map(run)).unwrap();
+    let by = |resampling| {
+        let options = BootstrapOptions {
+            resampling,
+            ..BootstrapOptions::default()
+        };
+        probability_of_improvement(&a, &b, &options).unwrap()
+    };
+    assert_eq!(by(Resampling::Strata), by(Resampling::Runs));
+}
