@@ -50,8 +50,8 @@ pub use log::{
     Words, begun_log, clear_ste, find_ste, read_log, read_log_with_texts, read_ste_log, store_ste, validate_log,
 };
 pub use options::{
-    AggregationMethod, DataRange, Definitions, MAX_WINDOW_LENGTH, MaintenanceMethod, Noise, NormalizationMethod,
-    Options, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
+    AggregationMethod, DataRange, DataRanges, Definitions, MAX_WINDOW_LENGTH, MaintenanceMethod, Noise,
+    NormalizationMethod, Options, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
 };
 pub use repeats::{
     Aggregate, BootstrapOptions, Estimate, Improvement, Interval, MAX_RESAMPLES, MAX_RUNS, MAX_SCORES,

@@ -167,6 +167,9 @@ pub struct DataRange {
     pub max: f64,
 }
 
+/// Ranges by task, lower-case names.
+pub type DataRanges = IndexMap<String, DataRange>;
+
 /// The choices under which a lifetime is scored. [`Options::default`] is what l2metrics does when asked for nothing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -194,7 +197,7 @@ pub struct Options {
     /// Whether performances outside the given range, or else the 0.1 and 0.9 quantiles, are clipped; default no.
     pub clamp_outliers: bool,
     /// Known range per task, lower-case name; default none: taken from the data. When given, every task needs one.
-    pub data_range: Option<IndexMap<String, DataRange>>,
+    pub data_range: Option<DataRanges>,
     /// Normal noise on the lifetime's performances, not on the experts'; default none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise: Option<Noise>,

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use driftworld::metrics::{Lifetime, LifetimeMetrics, Log, Options, Scorer, read_log};
+use driftworld::metrics::{ExpStatus, Lifetime, LifetimeMetrics, Log, Options, Scorer, read_log};
 use rayon::prelude::*;
 
 use crate::commands::scoring::Experts;
@@ -21,7 +21,9 @@ impl Lived {
     /// Reads a log, with its warnings to standard error, and scores it.
     pub(crate) fn read(folder: &Path, experts: &Experts, options: &Options) -> Result<Self, Failure> {
         let log = read_log(folder)?;
-        let warnings: Vec<String> = log.warnings.iter().map(ToString::to_string).collect();
+        let mut warnings: Vec<String> = log.warnings.iter().map(ToString::to_string).collect();
+        warnings.extend(missing_numbers(&log, &options.perf_measure));
+        warnings.extend(experts.left_aside(&log, options));
         for warning in &warnings {
             output::note(format!("warning: {}: {warning}", folder.display()));
         }
@@ -34,6 +36,23 @@ impl Lived {
             warnings,
         })
     }
+}
+
+/// Says how many rows are passed over because they have no number.
+fn missing_numbers(log: &Log, column: &str) -> Option<String> {
+    let is_complete = |status: &ExpStatus| *status == ExpStatus::Complete;
+    let complete = log
+        .rows
+        .exp_statuses()
+        .iter()
+        .filter(|status| is_complete(status))
+        .count();
+    let numbers = log.rows.exp_statuses().iter().zip(log.rows.metric(column)?);
+    let missing = numbers
+        .filter(|(status, number)| is_complete(status) && number.is_nan())
+        .count();
+    (missing > 0)
+        .then(|| format!("{missing} of {complete} complete rows have no number in column {column} and are left out"))
 }
 
 /// Reads and scores many logs and keeps of each what `keep` makes of it; where several cannot be scored, every one is told.

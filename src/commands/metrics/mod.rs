@@ -1,15 +1,18 @@
 //! `driftworld metrics`: what agents kept and transferred, from the logs of their lifetimes. The metrics are the library's.
 
+mod common_ranges;
 mod lived;
 mod many;
 mod store;
 mod tables;
 
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 
 use clap::Args;
 use driftworld::metrics::{BootstrapOptions, LifetimeMetrics, Options, Settings, SteStoreMode, save_all};
 
+pub(crate) use common_ranges::with_common_ranges;
 pub(crate) use lived::{Lived, score_logs};
 pub(crate) use tables::summary;
 
@@ -25,7 +28,7 @@ const NAME_OF_MANY: &str = "ll_metrics";
 /// Score the logs of lifetimes.
 ///
 /// One lifetime gives a table of its metrics. Several are taken as repeats by one agent: each metric comes with its interquartile
-/// mean over lifetimes and tasks and a bootstrap interval. With --against, two agents are compared.
+/// mean over lifetimes and tasks and a bootstrap interval. With --against, two agents are compared, on one scale.
 ///
 /// Options have the names they have in l2metrics, and the files are the ones it writes.
 #[derive(Args)]
@@ -49,6 +52,9 @@ pub(crate) struct Metrics {
     /// Folders of another agent's logs: how probably is a lifetime of the first better?
     #[arg(long, value_name = "DIR", num_args = 1..)]
     against: Vec<PathBuf>,
+    /// Scale each task by its range over all lifetimes, not each lifetime by its own; so it is with --against anyway.
+    #[arg(long)]
+    common_ranges: bool,
     /// Keep the logs as experts in the folder --ste-data, in place of those of their tasks (w) or beside them (a), and score nothing.
     #[arg(short = 's', long, value_name = "w|a", requires = "ste_data")]
     ste_store_mode: Option<SteStoreMode>,
@@ -60,7 +66,7 @@ pub(crate) struct Metrics {
     #[command(flatten)]
     intervals: Intervals,
     /// Save results: `NAME_metrics.json`, `NAME_regime.tsv`, `NAME_settings.json`; of several lifetimes or with -R `NAME.json`,
-    /// `NAME.tsv`, `NAME_regime.tsv`, `NAME_settings.json`.
+    /// `NAME.tsv`, `NAME_regime.tsv`, `NAME_settings.json`, and `NAME_repeats.json` with intervals and comparisons.
     #[arg(short = 'S', long, help_heading = "Saving")]
     do_save: bool,
     /// Save results in this folder [default: results].
@@ -117,9 +123,18 @@ impl Metrics {
         if let (Some(mode), Some(data)) = (self.ste_store_mode, self.scoring.ste_data()) {
             return store::store(&logs, mode, data);
         }
-        let options = self.scoring.options()?;
+        let mut options = self.scoring.options()?;
         let experts = self.scoring.experts()?;
+        let others = if self.against.is_empty() {
+            Vec::new()
+        } else {
+            log_folders::below(&self.against)?
+        };
+        if self.common_ranges || !others.is_empty() {
+            options = with_common_ranges(&[&logs[..], &others].concat(), &experts, options);
+        }
         let lifetimes = self.scored(&logs, &experts, &options)?;
+        let mut repeats = None;
         match lifetimes.as_slice() {
             [lifetime] if !self.recursive && self.against.is_empty() => {
                 if self.json {
@@ -129,20 +144,17 @@ impl Metrics {
                 }
             }
             _ => {
-                let others = if self.against.is_empty() {
-                    Vec::new()
-                } else {
-                    score_logs(&log_folders::below(&self.against)?, &experts, &options)?
-                };
+                let others = score_logs(&others, &experts, &options)?;
                 let together = many::together(&lifetimes, &others, &self.intervals.options())?;
                 if self.json {
                     output::json(&together)?;
                 } else {
-                    output::line(tables::many(&lifetimes, &others, &together, self.intervals.confidence))?;
+                    output::line(tables::many(&lifetimes, &others, &together, &options))?;
                 }
+                repeats = Some(together.without_lifetimes()?);
             }
         }
-        self.save(&lifetimes, options)
+        self.save(&lifetimes, repeats, options)
     }
 
     /// The scores of the logs; figures are drawn and written on the way where they are asked for.
@@ -151,13 +163,15 @@ impl Metrics {
             return score_logs(logs, experts, options);
         }
         let (shown, how) = (self.figures.shown()?, self.figures.options()?);
+        let files = Mutex::new(Files::new(&self.folder().join("plots")));
         let draw = |lived: Lived| {
             let drawn = drawn(&lived.lifetime, &lived.metrics.metrics_column, &shown, &how)?;
-            Ok((lived.metrics, drawn))
+            // Whoever panics with the lock has ended the process.
+            files.lock().unwrap_or_else(PoisonError::into_inner).write(&drawn)?;
+            Ok(lived.metrics)
         };
-        let (lifetimes, figures): (Vec<_>, Vec<_>) = each_lived(logs, experts, options, draw)?.into_iter().unzip();
-        let mut files = Files::new(&self.folder().join("plots"));
-        figures.iter().try_for_each(|drawn| files.write(drawn))?;
+        let lifetimes = each_lived(logs, experts, options, draw)?;
+        let files = files.into_inner().unwrap_or_else(PoisonError::into_inner);
         output::note(format!("wrote {}", files.told()));
         Ok(lifetimes)
     }
@@ -174,7 +188,15 @@ impl Metrics {
             named.extend(self.scoring.log_of_settings()?);
         }
         if named.is_empty() {
-            return Err(Failure::usage("found no DIR, expected the folder of a log, or several"));
+            let taken = self.scoring.named_experts();
+            let hint = if taken > 1 {
+                "; --ste took all folders behind it: name the log before"
+            } else {
+                ""
+            };
+            return Err(Failure::usage(format!(
+                "found no DIR, expected the folder of a log, or several{hint}"
+            )));
         }
         if self.recursive {
             log_folders::below(&named)
@@ -183,7 +205,12 @@ impl Metrics {
         }
     }
 
-    fn save(&self, lifetimes: &[LifetimeMetrics], options: Options) -> Result<(), Failure> {
+    fn save(
+        &self,
+        lifetimes: &[LifetimeMetrics],
+        repeats: Option<serde_json::Value>,
+        options: Options,
+    ) -> Result<(), Failure> {
         if !self.do_save && self.output_dir.is_none() && self.output.is_none() {
             return Ok(());
         }
@@ -210,6 +237,12 @@ impl Metrics {
             }
         };
         for file in files {
+            output::note(format!("wrote {}", file.display()));
+        }
+        if let Some(repeats) = repeats {
+            let name = self.output.as_deref().unwrap_or(NAME_OF_MANY).replace(' ', "_");
+            let file = folder.join(format!("{name}_repeats.json"));
+            output::write(&file, serde_json::to_string_pretty(&repeats)?.as_bytes())?;
             output::note(format!("wrote {}", file.display()));
         }
         Ok(())

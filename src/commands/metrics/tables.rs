@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use driftworld::metrics::{Direction, Estimate, LifetimeMetrics, RepeatedMetric};
+use driftworld::metrics::{Direction, Estimate, LifetimeMetrics, NormalizationMethod, Options, RepeatedMetric};
 
 use super::many::Together;
 use crate::commands::table::table;
@@ -30,9 +30,9 @@ pub(super) fn many(
     lifetimes: &[LifetimeMetrics],
     others: &[LifetimeMetrics],
     together: &Together<'_>,
-    confidence: f64,
+    options: &Options,
 ) -> String {
-    let share = format!("{}% interval", confidence * 100.0);
+    let share = format!("{}% interval", together.intervals.confidence * 100.0);
     let mut parts = vec![
         format!(
             "{}: {} learning and {} evaluation experiences in all, scored by {}",
@@ -43,6 +43,7 @@ pub(super) fn many(
         ),
         repeats(&together.repeats, &share),
     ];
+    parts.extend(scale(options).map(str::to_owned));
     if !others.is_empty() {
         parts.push(format!(
             "against {} of another agent",
@@ -55,6 +56,18 @@ pub(super) fn many(
         parts.push(improvements(together, &share));
     }
     parts.join("\n\n")
+}
+
+/// What must be known of the scale before levels of different lifetimes are compared.
+fn scale(options: &Options) -> Option<&'static str> {
+    match (options.normalization_method, &options.data_range) {
+        (NormalizationMethod::Off, _) => None,
+        (_, Some(_)) => Some("Performances of all lifetimes are scaled by the same ranges."),
+        (_, None) => Some(
+            "Each lifetime is scaled by its own smallest and largest performance: levels (avg_train_perf, avg_eval_perf) of one say\n\
+             nothing beside another's. --common-ranges, -d and -n none give one scale.",
+        ),
+    }
 }
 
 fn improvements(together: &Together<'_>, share: &str) -> String {

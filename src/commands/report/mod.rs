@@ -9,7 +9,7 @@ use driftworld::metrics::{LifetimeMetrics, Options, compare_agents, over_repeats
 use driftworld::report::{Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, ReportError};
 
 use super::figures::{FigureChoice, Files, drawn};
-use super::metrics::{Intervals, Lived, score_logs};
+use super::metrics::{Intervals, Lived, score_logs, with_common_ranges};
 use super::scoring::Scoring;
 use super::{Failure, log_folders, output};
 use neighbours::Neighbours;
@@ -64,7 +64,15 @@ impl Report {
             let (found, limit) = (logs.len(), MAX_LIFETIMES);
             return Err(ReportError::TooManyLifetimes { found, limit }.into());
         }
-        let (options, experts) = (self.scoring.options()?, self.scoring.experts()?);
+        let (mut options, experts) = (self.scoring.options()?, self.scoring.experts()?);
+        let others = if self.against.is_empty() {
+            Vec::new()
+        } else {
+            log_folders::below(&self.against)?
+        };
+        if !others.is_empty() {
+            options = with_common_ranges(&[&logs[..], &others].concat(), &experts, options);
+        }
         let mut neighbours = Neighbours::new(self.distances.as_deref())?;
         let mut files = self.plots.as_deref().map(Files::new);
         let mut chapters = Vec::new();
@@ -86,7 +94,7 @@ impl Report {
         let intervals = self.intervals.options();
         let mut comparisons = Vec::new();
         if !self.against.is_empty() {
-            let others = score_logs(&log_folders::below(&self.against)?, &experts, &options)?;
+            let others = score_logs(&others, &experts, &options)?;
             comparisons.push(Comparison {
                 agent: called(&self.logs),
                 other: called(&self.against),

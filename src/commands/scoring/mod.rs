@@ -115,6 +115,11 @@ impl Scoring {
         Ok(path.map(settings::load).transpose()?.and_then(|loaded| loaded.log_dir))
     }
 
+    /// How many experts were named.
+    pub(crate) fn named_experts(&self) -> usize {
+        self.ste.len()
+    }
+
     /// Where experts are kept.
     pub(crate) fn ste_data(&self) -> Option<&Path> {
         self.ste_data.as_deref()

@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 use crate::commands::{Failure, input};
 
 /// Keys of l2metrics' settings that say what is read, written or drawn, not how a lifetime is scored.
-const NOT_SCORING: [&str; 14] = [
+const NOT_SCORING: [&str; 13] = [
     "log_dir",
     "output_dir",
     "output",
@@ -22,7 +22,6 @@ const NOT_SCORING: [&str; 14] = [
     "do_save",
     "do_save_settings",
     "load_settings",
-    "data_range_file",
     "ste",
 ];
 
@@ -45,6 +44,9 @@ pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
     if let Some(noise) = settings.get_mut("noise") {
         *noise = noise_of_l2metrics(noise);
     }
+    let range_file = settings
+        .shift_remove("data_range_file")
+        .and_then(|file| Some(PathBuf::from(file.as_str()?)));
     settings.retain(|key, _| !NOT_SCORING.contains(&key.as_str()));
     let known = json!(Options {
         noise: Some(driftworld::metrics::Noise {
@@ -65,8 +67,11 @@ pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
             path.display()
         )));
     }
-    let options = serde_json::from_value(Value::Object(settings))
+    let mut options: Options = serde_json::from_value(Value::Object(settings))
         .map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+    if let (Some(file), None) = (range_file, &options.data_range) {
+        options.data_range = Some(data_range(&file)?.into_iter().collect());
+    }
     Ok(Loaded { options, log_dir })
 }
 

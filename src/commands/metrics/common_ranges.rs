@@ -1,0 +1,31 @@
+//! One scale for lifetimes that are compared: each task's range over all of them. How performances are scaled is the library's.
+
+use std::path::PathBuf;
+
+use driftworld::metrics::{DataRanges, Lifetime, NormalizationMethod, Options, read_log};
+use rayon::prelude::*;
+
+use crate::commands::scoring::Experts;
+
+/// The options with each task's range over all these logs, so that levels of different lifetimes can be compared.
+///
+/// Where nothing is normalised, or ranges were given, they are as they were.
+pub(crate) fn with_common_ranges(logs: &[PathBuf], experts: &Experts, mut options: Options) -> Options {
+    if options.normalization_method == NormalizationMethod::Off || options.data_range.is_some() {
+        return options;
+    }
+    let own = |log: &PathBuf| {
+        let log = read_log(log).ok()?;
+        let lifetime = Lifetime::prepare(&log, &experts.of(&log, &options).ok()?, &options).ok()?;
+        lifetime.normalization_data_range().cloned()
+    };
+    // What cannot be read or scored is told when all are scored.
+    let own: Vec<_> = logs.par_iter().filter_map(own).collect();
+    let mut common = DataRanges::new();
+    for (task, range) in own.into_iter().flatten() {
+        let known = common.entry(task).or_insert(range);
+        (known.min, known.max) = (known.min.min(range.min), known.max.max(range.max));
+    }
+    options.data_range = Some(common);
+    options
+}
