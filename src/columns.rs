@@ -60,6 +60,17 @@ pub enum ColumnsError {
     /// Writing Arrow failed.
     #[error("the Arrow file cannot be written: {0}; is the disk full?")]
     Arrow(#[from] ArrowError),
+    /// A whole number is larger than the columns of a table of logs hold.
+    #[error(
+        "column {column}: found {found}, expected at most {} in Parquet and Arrow; write it as .tsv or .csv",
+        i64::MAX
+    )]
+    Number {
+        /// The column.
+        column: String,
+        /// The number.
+        found: u64,
+    },
 }
 
 /// A world and where it comes from.

@@ -31,6 +31,7 @@ const ROWS: usize = 65_536;
 /// [`ColumnsError`] where the file cannot be written, or a block or experience number is beyond 2⁶³ − 1.
 pub fn write_log_table<W: Write + Send>(table: &LogTable, writer: W, format: Format) -> Result<W, ColumnsError> {
     let columns = table.columns();
+    check_numbers(&columns)?;
     let schema = schema(&columns);
     let mut sink = Sink::new(writer, schema.clone(), format)?;
     // Every batch has the same dictionaries: the Arrow file format allows no others.
@@ -46,11 +47,23 @@ pub fn write_log_table<W: Write + Send>(table: &LogTable, writer: W, format: For
         let arrays = columns
             .iter()
             .zip(&dictionaries)
-            .map(|((name, column), dictionary)| array(name, *column, dictionary.as_ref(), rows.clone()));
+            .map(|((_, column), dictionary)| array(*column, dictionary.as_ref(), rows.clone()));
         let arrays = arrays.collect::<Result<Vec<ArrayRef>, ArrowError>>()?;
         sink.write(&RecordBatch::try_new(schema.clone(), arrays)?)?;
     }
     sink.finish()
+}
+
+/// Refuses numbers that a signed integer does not hold, before anything is written.
+fn check_numbers(columns: &[(&str, LogColumn<'_>)]) -> Result<(), ColumnsError> {
+    for (name, column) in columns {
+        let LogColumn::Integers(numbers) = column else { continue };
+        if let Some(&found) = numbers.iter().find(|number| i64::try_from(**number).is_err()) {
+            let column = (*name).to_owned();
+            return Err(ColumnsError::Number { column, found });
+        }
+    }
+    Ok(())
 }
 
 fn schema(columns: &[(&str, LogColumn<'_>)]) -> SchemaRef {
@@ -73,22 +86,15 @@ fn schema(columns: &[(&str, LogColumn<'_>)]) -> SchemaRef {
 }
 
 fn array(
-    name: &str,
     column: LogColumn<'_>,
     dictionary: Option<&Arc<StringArray>>,
     rows: Range<usize>,
 ) -> Result<ArrayRef, ArrowError> {
     Ok(match column {
         LogColumn::Integers(numbers) => {
-            let signed = numbers[rows].iter().map(|&number| {
-                i64::try_from(number).map_err(|_| {
-                    ArrowError::CastError(format!(
-                        "{name}: found {number}, expected at most {} in this format",
-                        i64::MAX
-                    ))
-                })
-            });
-            Arc::new(Int64Array::from(signed.collect::<Result<Vec<i64>, _>>()?))
+            // They were checked to be small enough.
+            let signed = numbers[rows].iter().map(|&number| number as i64);
+            Arc::new(Int64Array::from_iter_values(signed))
         }
         LogColumn::Words(words) => {
             // A dictionary has at most as many words as there are rows, of which there are fewer than 2³¹.
@@ -176,6 +182,28 @@ mod tests {
             }
             assert_eq!(row, num_rows, "{format:?}");
         }
+    }
+
+    #[test]
+    fn numbers_beyond_those_of_the_columns_are_refused() {
+        let write = |exp_num: u64| {
+            let base = tempfile::tempdir().unwrap();
+            let dir = base.path().join("run");
+            let info = LoggerInfo::new(["reward"]).unwrap();
+            let mut writer = LogWriter::create(&dir, &info, &ScenarioInfo::default()).unwrap();
+            let when = Timestamp::from_unix_micros(0).unwrap();
+            let record = Record::new(0, exp_num, BlockType::Test, "a_b", when).with_metric("reward", 1.0);
+            writer.write(&record).unwrap();
+            writer.finish().unwrap();
+            let mut table = LogTable::new(KeptRows::Complete);
+            table.add(&read_log_with_texts(&dir).unwrap()).unwrap();
+            write_log_table(&table, Vec::new(), Format::Parquet).map_err(|error| error.to_string())
+        };
+        let largest = i64::MAX as u64;
+        assert!(write(largest).is_ok());
+        let message = "column exp_num: found 9223372036854775808, expected at most 9223372036854775807 in Parquet and Arrow; write \
+                       it as .tsv or .csv";
+        assert_eq!(write(largest + 1).unwrap_err(), message);
     }
 
     #[test]

@@ -70,6 +70,15 @@ pub enum MetricsError {
         expected: &'static str,
     },
 
+    /// A file of the log is something else.
+    #[error("{}: found {found}, expected a file; put the file in its place, or remove it", path.display())]
+    NotAFile {
+        /// The path.
+        path: PathBuf,
+        /// "a directory", "a named pipe", "a link that leads nowhere" and the like.
+        found: &'static str,
+    },
+
     /// A side file is not JSON, or not the JSON that was expected.
     #[error("{}:{line}:{column}: found {found}, expected {expected}", path.display())]
     Json {
@@ -193,9 +202,21 @@ pub enum MetricsError {
     /// The last line of a data file has no line end: its writer was stopped in the middle of a row.
     #[error(
         "{}:{line}: found a last line without a line end, expected whole rows; its writer was stopped in the middle \
-         of it: delete that line, or continue the log with LogWriter::resume, which does", path.display()
+         of it: delete that line, or continue the log, which does so: `driftworld run … --resume`, LogWriter::resume", path.display()
     )]
     TornLastLine {
+        /// The data file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u64,
+    },
+
+    /// Lines of a data file end with a carriage return alone.
+    #[error(
+        "{}:{line}: found lines that end with a carriage return alone, expected a line feed at the end of each, alone or behind it; \
+         save the file with such line ends", path.display()
+    )]
+    CarriageReturns {
         /// The data file.
         path: PathBuf,
         /// Line, from 1.
@@ -470,6 +491,7 @@ impl MetricsError {
             Self::NotADirectory { .. } => "metrics/not-a-directory",
             Self::NoDataFiles { .. } => "metrics/no-data-files",
             Self::MissingFile { .. } => "metrics/missing-file",
+            Self::NotAFile { .. } => "metrics/not-a-file",
             Self::Json { .. } => "metrics/json",
             Self::LoggerInfo { .. } => "metrics/logger-info",
             Self::TooLarge { .. } => "metrics/too-large",
@@ -481,6 +503,7 @@ impl MetricsError {
             Self::RaggedRow { .. } => "metrics/ragged-row",
             Self::Cell { .. } => "metrics/cell",
             Self::TornLastLine { .. } => "metrics/torn-last-line",
+            Self::CarriageReturns { .. } => "metrics/carriage-returns",
             Self::OpenQuote { .. } => "metrics/open-quote",
             Self::NotUtf8 { .. } => "metrics/not-utf8",
             Self::BlockOrder { .. } => "metrics/block-order",

@@ -74,9 +74,23 @@ fn a_cell_that_is_wrong_is_named_with_what_should_stand_there() {
         "\"a b\"",
         "a worker's name of letters, digits, _, - and .",
     );
+    cell(
+        1,
+        "18446744073709551616",
+        "exp_num",
+        "\"18446744073709551616\"",
+        "a whole number of at most 18446744073709551615",
+    );
     cell(3, "eval", "block_type", "\"eval\"", "one of train, test");
     cell(4, "nap", "block_subtype", "\"nap\"", "one of wake, sleep");
     cell(6, "[1]", "task_params", "\"[1]\"", "a JSON object");
+    cell(
+        6,
+        r#"{"a": [1, NaN]}"#,
+        "task_params",
+        r#""{/"a/": [1, NaN]}""#,
+        "a JSON object, which has null and no NaN or Infinity",
+    );
     cell(7, "done", "exp_status", "\"done\"", "one of complete, incomplete");
     cell(
         8,
@@ -134,7 +148,14 @@ fn a_table_that_is_no_table_is_refused_with_its_place() {
         format!("{HEADER}{ROW}0\t1\tw\ttra"),
         "metrics/torn-last-line",
         "LOG/w/0-train/data-log.tsv:3: found a last line without a line end, expected whole rows; its writer was \
-         stopped in the middle of it: delete that line, or continue the log with LogWriter::resume, which does",
+         stopped in the middle of it: delete that line, or continue the log, which does so: `driftworld run … --resume`, \
+         LogWriter::resume",
+    );
+    check(
+        format!("{HEADER}{ROW}").replace('\n', "\r"),
+        "metrics/carriage-returns",
+        "LOG/w/0-train/data-log.tsv:1: found lines that end with a carriage return alone, expected a line feed at the end of each, \
+         alone or behind it; save the file with such line ends",
     );
     check(
         [HEADER.as_bytes(), b"0\t\xff\n"].concat(),
@@ -255,6 +276,20 @@ fn an_expert_trains_one_task() {
 }
 
 #[test]
+fn an_expert_that_cannot_be_scored_is_named_by_its_folder() {
+    let base = tempfile::tempdir().unwrap();
+    let (life, expert) = (base.path().join("life"), base.path().join("experts/log"));
+    write_log(&life, format!("{HEADER}{ROW}"));
+    write_log(&expert, with_cell(9, "nan"));
+    let (life, experts) = (read_log(&life).unwrap(), [read_ste_log(&expert).unwrap()]);
+    let error = score(&life, &experts, &Options::default()).unwrap_err();
+    assert_eq!(
+        message(base.path(), &error),
+        "log LOG/experts/log: found no complete row with a number in column \"reward\", expected at least one"
+    );
+}
+
+#[test]
 fn tasks_that_alternate_row_by_row_for_ever_are_stopped() {
     let base = tempfile::tempdir().unwrap();
     let mut data = HEADER.to_owned();
@@ -265,4 +300,64 @@ fn tasks_that_alternate_row_by_row_for_ever_are_stopped() {
     write_log(base.path(), data);
     let error = score(&read_log(base.path()).unwrap(), &[], &Options::default()).unwrap_err();
     assert_eq!(error.code(), "metrics/too-many-regimes");
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_named_and_never_waited_for() {
+    let base = tempfile::tempdir().unwrap();
+    for name in ["logger_info.json", "scenario_info.json", "w/0-train/data-log.tsv"] {
+        let dir = base.path().join(name.replace('/', "_"));
+        write_log(&dir, [HEADER, ROW].concat());
+        fs::remove_file(dir.join(name)).unwrap();
+        let made = std::process::Command::new("mkfifo").arg(dir.join(name)).status();
+        assert!(made.unwrap().success(), "{name}");
+        let expected =
+            format!("LOG/{name}: found a named pipe, expected a file; put the file in its place, or remove it");
+        assert_eq!(message(&dir, &read_log(&dir).unwrap_err()), expected);
+        let found = driftworld_metrics::validate_log(&dir);
+        assert_eq!(message(&dir, &found.problems[0]), expected);
+        if name != "scenario_info.json" {
+            assert_eq!(message(&dir, &LogWriter::resume(&dir).unwrap_err()), expected);
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_data_file_behind_a_link_is_read_before_it_is_continued() {
+    let base = tempfile::tempdir().unwrap();
+    let dir = base.path().join("log");
+    write_log(&dir, [HEADER, ROW].concat());
+    let (file, target) = (dir.join("w/0-train/data-log.tsv"), base.path().join("kept.tsv"));
+    fs::rename(&file, &target).unwrap();
+    std::os::unix::fs::symlink("../../../kept.tsv", &file).unwrap();
+    assert_eq!(read_log(&dir).unwrap().rows.len(), 1);
+    let mut writer = LogWriter::resume(&dir).unwrap();
+    let record = |exp_num: u64| {
+        let stamp = driftworld_metrics::Timestamp::from_unix_micros(0).unwrap();
+        let record = driftworld_metrics::Record::new(0, exp_num, driftworld_metrics::BlockType::Train, "a_b", stamp);
+        record.with_worker("w").with_metric("reward", 1.0)
+    };
+    let again = writer.write(&record(0)).unwrap_err();
+    assert_eq!(again.code(), "metrics/record", "experience 0 is known to be complete");
+    writer.write(&record(1)).unwrap();
+    writer.finish().unwrap();
+    assert_eq!(fs::read_to_string(&target).unwrap().lines().count(), 3);
+    assert_eq!(read_log(&dir).unwrap().rows.len(), 2);
+}
+
+#[test]
+fn lines_that_end_otherwise_are_not_cut_off_as_torn() {
+    let base = tempfile::tempdir().unwrap();
+    let text = [HEADER, ROW].concat().replace('\n', "\r");
+    write_log(base.path(), &text);
+    assert_eq!(
+        LogWriter::resume(base.path()).unwrap_err().code(),
+        "metrics/carriage-returns"
+    );
+    assert_eq!(
+        fs::read_to_string(base.path().join("w/0-train/data-log.tsv")).unwrap(),
+        text
+    );
 }

@@ -61,6 +61,14 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
             "run/logger_info.json: found no such file, expected a JSON object",
         ),
         (
+            E::NotAFile {
+                path: path(),
+                found: "a named pipe",
+            },
+            "metrics/not-a-file",
+            "run/w/0-train/data-log.tsv: found a named pipe, expected a file; put the file in its place, or remove it",
+        ),
+        (
             E::Json {
                 path: "i.json".into(),
                 line: 1,
@@ -166,7 +174,14 @@ fn of_rows() -> Vec<(MetricsError, &'static str, &'static str)> {
             E::TornLastLine { path: path(), line: 3 },
             "metrics/torn-last-line",
             "run/w/0-train/data-log.tsv:3: found a last line without a line end, expected whole rows; its writer was \
-             stopped in the middle of it: delete that line, or continue the log with LogWriter::resume, which does",
+             stopped in the middle of it: delete that line, or continue the log, which does so: `driftworld run … --resume`, \
+             LogWriter::resume",
+        ),
+        (
+            E::CarriageReturns { path: path(), line: 1 },
+            "metrics/carriage-returns",
+            "run/w/0-train/data-log.tsv:1: found lines that end with a carriage return alone, expected a line feed at the end of each, \
+             alone or behind it; save the file with such line ends",
         ),
         (
             E::OpenQuote { path: path(), line: 7 },

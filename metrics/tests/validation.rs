@@ -98,7 +98,7 @@ fn every_fault_of_every_row_is_listed_and_the_other_rows_are_read() {
             "LOG/w/0-train/data-log.tsv:4: found 3 cells, expected 10 as in the header; is a tab or a quote missing?",
             "LOG/w/0-train/data-log.tsv:5, column exp_status: found \"done\", expected one of complete, incomplete",
             "LOG/w/0-train/data-log.tsv:6: found a last line without a line end, expected whole rows; its writer was stopped in \
-             the middle of it: delete that line, or continue the log with LogWriter::resume, which does",
+             the middle of it: delete that line, or continue the log, which does so: `driftworld run … --resume`, LogWriter::resume",
             "LOG/w/1-train/data-log.tsv:1: found an empty file, expected a header line that begins with block_num",
         ]
     );
@@ -138,7 +138,7 @@ fn numbers_that_fall_are_faults_and_time_that_does_is_odd() {
             "LOG/w/0-train/data-log.tsv:3, column block_num: found 0, expected at least 1: \
              read in order of exp_num, block numbers never fall",
         ],
-        &[],
+        &["LOG/w/0-train/data-log.tsv:2: found a row of another folder, expected it in w/1-train; read all the same"],
     );
 }
 
@@ -163,7 +163,12 @@ fn an_experience_has_one_complete_row_and_it_is_the_last() {
         ],
     );
     let two_workers = row(0, 0, "complete").replace("\tw\t", "\tv\t");
-    check([HEADER, &row(0, 0, "complete"), &two_workers].concat(), &[], &[]);
+    let text = [HEADER, &row(0, 0, "complete")].concat();
+    let (problems, warnings, _) = validate(
+        &[("w/0-train", text), ("v/0-train", HEADER.to_owned() + &two_workers)],
+        "1.1",
+    );
+    assert!(problems.is_empty() && warnings.is_empty(), "{problems:?} {warnings:?}");
 }
 
 #[test]
@@ -250,7 +255,7 @@ fn a_quote_that_is_never_closed_is_told_from_a_torn_row() {
         &[],
     );
     let torn = "LOG/w/0-train/data-log.tsv:3: found a last line without a line end, expected whole rows; its writer was stopped \
-                in the middle of it: delete that line, or continue the log with LogWriter::resume, which does";
+                in the middle of it: delete that line, or continue the log, which does so: `driftworld run … --resume`, LogWriter::resume";
     check(
         [HEADER, &row(0, 0, "complete"), "0\t1\tw\ttrain\twake\t\"a\n"].concat(),
         &[torn],
@@ -270,5 +275,25 @@ fn columns_that_nobody_declared_may_be_empty() {
         [header, row(0, 0, "complete").replace("\t1\n", "\t1\t\n")].concat(),
         &[],
         &[],
+    );
+}
+
+#[test]
+fn rows_in_the_folder_of_another_worker_or_block_are_odd() {
+    let text = |rows: &[String]| [HEADER, &rows.concat()].concat();
+    let other_worker = row(1, 3, "complete").replace("\tw\t", "\tv\t");
+    let files = [
+        ("w/0-train", text(&[row(0, 0, "complete")])),
+        ("w/7-test", text(&[row(0, 1, "complete")])),
+        ("w/1-train", text(&[row(1, 2, "complete"), other_worker])),
+    ];
+    let (problems, warnings, _) = validate(&files, "1.1");
+    assert_eq!(problems, [""; 0]);
+    assert_eq!(
+        warnings,
+        [
+            "LOG/w/1-train/data-log.tsv:3: found a row of another folder, expected it in v/1-train; read all the same",
+            "LOG/w/7-test/data-log.tsv:2: found a row of another folder, expected it in w/0-train; read all the same",
+        ]
     );
 }

@@ -1,7 +1,8 @@
 //! Where logs are: the folders named, or all below them. Reading one is `metrics`'s.
 
+use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf, absolute};
 
 use super::Failure;
 
@@ -49,6 +50,48 @@ pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         }));
     }
     Ok(each_once(arguments.to_vec()))
+}
+
+/// What each of several logs is called: its folder's name, with as many of the folders above in front as tell it from the others,
+/// such as `a/log` and `b/log`.
+pub(crate) fn names(logs: &[PathBuf]) -> Vec<String> {
+    let paths: Vec<Vec<String>> = logs.iter().map(|log| folders_to(log)).collect();
+    let end = |path: &[String], length: usize| path[path.len().saturating_sub(length)..].join("/");
+    let mut names = vec![String::new(); logs.len()];
+    let mut alike: Vec<usize> = (0..logs.len()).collect();
+    for length in 1.. {
+        let mut called: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+        for log in alike {
+            called.entry(end(&paths[log], length)).or_default().push(log);
+        }
+        alike = Vec::new();
+        for (name, logs) in called {
+            for &log in &logs {
+                names[log].clone_from(&name);
+                if logs.len() > 1 && length < paths[log].len() {
+                    alike.push(log);
+                }
+            }
+        }
+        if alike.is_empty() {
+            break;
+        }
+    }
+    names
+}
+
+/// The names on the way from the root to a log, as it was named unless that leads back up.
+fn folders_to(log: &Path) -> Vec<String> {
+    let mut path = absolute(log).unwrap_or_else(|_| log.to_owned());
+    if path.components().any(|part| part == Component::ParentDir) {
+        path = path.canonicalize().unwrap_or(path);
+    }
+    path.components()
+        .filter_map(|part| match part {
+            Component::Normal(name) => Some(name.to_string_lossy().into_owned()),
+            _ => None,
+        })
+        .collect()
 }
 
 fn is_folder(argument: &Path) -> Result<(), Failure> {
@@ -119,6 +162,30 @@ fn folders(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn logs_of_one_name_are_told_apart_by_the_folders_above() {
+        let check = |logs: &[&str], expected: &[&str]| {
+            let logs: Vec<PathBuf> = logs.iter().map(PathBuf::from).collect();
+            assert_eq!(names(&logs), expected, "{logs:?}");
+        };
+        check(&[], &[]);
+        check(&["col/x/log"], &["log"]);
+        check(&["col/x/log", "col/y/run/"], &["log", "run"]);
+        check(
+            &["col/x/log", "other", "col/y/./log", "z/y/log"],
+            &["x/log", "other", "col/y/log", "z/y/log"],
+        );
+        // One path is the end of another.
+        check(
+            &["/log", "/deep/log", "/deep/deep/log"],
+            &["log", "deep/log", "deep/deep/log"],
+        );
+        let here = std::env::current_dir().unwrap();
+        let name = here.file_name().unwrap().to_str().unwrap();
+        check(&[".", "x/log"], &[name, "log"]);
+        check(&["src/.."], &[name]);
+    }
 
     #[test]
     fn logs_are_found_even_where_they_lack_something() {

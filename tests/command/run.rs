@@ -311,27 +311,36 @@ fn a_full_disk_is_an_error_that_loses_nothing() {
     let whole = folder.path().join("whole");
     let all = ["run", text(&scenario), "--agent", "random"];
     succeed(&[&all[..], &["--logs", text(&whole)]].concat());
-    // A log whose second block meets a disk that is full.
+    // A log whose second block finds no room for all of it.
     let log = folder.path().join("log");
     let block = "worker-default/0-test/data-log.tsv";
     for file in ["scenario_info.json", "logger_info.json", block] {
         let text = fs::read_to_string(whole.join(file)).expect("the log has it");
         write(&log.join(file), &text);
     }
-    let full = log.join("worker-default/1-train/data-log.tsv");
-    fs::create_dir_all(full.parent().expect("a file lies in a folder")).expect("the scratch folder can be written");
-    std::os::unix::fs::symlink("/dev/full", &full).expect("the scratch folder can hold links");
     let arguments = [&all[..], &["--logs", text(&log), "--resume"]].concat();
-    let error = fail(1, &arguments);
+    // Half of the block's file is as large as a file may become; the signal about it is left aside.
+    let second = "worker-default/1-train/data-log.tsv";
+    let blocks = fs::metadata(whole.join(second)).expect("it was written").len() / 2 / 512;
+    let limited = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
+    let mut command = Command::new("sh");
+    command
+        .args(["-c", &limited, env!("CARGO_BIN_EXE_driftworld")])
+        .args(&arguments);
+    let ended = output(&mut command);
+    let error = String::from_utf8_lossy(&ended.stderr);
+    assert_eq!(ended.status.code(), Some(1), "{error}");
     assert!(
-        error.contains("1-train/data-log.tsv: cannot append a line to this file: No space left"),
+        error.contains("1-train/data-log.tsv: cannot append a line to this file: File too large"),
         "{error}"
     );
-    assert!(
-        error.contains("holds 8 of 36 experiences, each of them whole"),
-        "{error}"
+    assert!(error.contains("of 36 experiences, each of them whole"), "{error}");
+    let part = fs::read(log.join(second)).expect("it was begun");
+    assert_eq!(
+        part.last(),
+        Some(&b'\n'),
+        "the part of a row that found room was taken back"
     );
-    fs::remove_file(&full).expect("the link can be removed");
     succeed(&arguments);
     assert_eq!(files(&log), files(&whole));
     let error = fail(1, &["run", text(&scenario), "--logs", "/dev/full"]);

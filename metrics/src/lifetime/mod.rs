@@ -41,7 +41,7 @@ impl Lifetime {
     /// [`MetricsError::PerformanceOutOfRange`], [`MetricsError::BadOption`].
     pub fn prepare(log: &Log, experts: &[SteLog], options: &Options) -> Result<Self, MetricsError> {
         options.check()?;
-        let rows = usable_rows(log, &options.perf_measure)?;
+        let rows = usable_rows(log, &log.run_id, &options.perf_measure)?;
         let regimes = regime::form(&log.run_id, &rows, options)?;
         let tasks = tasks_by_training(&regimes);
         let experts = ste::gather(experts, &tasks, options)?;
@@ -175,14 +175,14 @@ pub(crate) struct Usable<'a> {
 }
 
 /// The rows that count: complete, with a number in the performance column, and not of the time before deployment, which prepares
-/// a lifetime and is no part of it. Rows of that time have the task parameter `phase`, `pre_deployment`.
-pub(crate) fn usable_rows<'a>(log: &'a Log, column: &str) -> Result<Usable<'a>, MetricsError> {
+/// a lifetime and is no part of it. Rows of that time have the task parameter `phase`, `pre_deployment`. Messages call the log `name`.
+pub(crate) fn usable_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<Usable<'a>, MetricsError> {
     let declared = log.logger_info.metrics_columns();
     let performance = (declared.iter().any(|name| name == column))
         .then(|| log.rows.metric(column))
         .flatten()
         .ok_or_else(|| MetricsError::UnknownColumn {
-            run_id: log.run_id.clone(),
+            run_id: name.to_owned(),
             column: column.to_owned(),
             available: declared.join(", "),
         })?;
@@ -198,7 +198,7 @@ pub(crate) fn usable_rows<'a>(log: &'a Log, column: &str) -> Result<Usable<'a>, 
     let indices: Vec<usize> = (0..rows.len()).filter(counts).collect();
     if indices.is_empty() {
         return Err(MetricsError::NoUsableRows {
-            run_id: log.run_id.clone(),
+            run_id: name.to_owned(),
             column: column.to_owned(),
         });
     }

@@ -2,6 +2,7 @@
 //!
 //! Not here: the comparison, see `score::ste_relative_performance` and `score::sample_efficiency`.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use indexmap::{IndexMap, IndexSet};
@@ -15,6 +16,8 @@ use crate::{BlockType, Log, MetricsError, Options, VariantMode};
 pub struct SteLog {
     log: Arc<Log>,
     task_name: String,
+    /// Where it was read, for messages.
+    dir: Option<PathBuf>,
 }
 
 impl SteLog {
@@ -37,6 +40,7 @@ impl SteLog {
             (1, Some(task_name)) => Ok(Self {
                 log: Arc::new(log),
                 task_name,
+                dir: None,
             }),
             (_, None) => Err(MetricsError::NotSingleTask {
                 run_id: log.run_id,
@@ -51,6 +55,17 @@ impl SteLog {
                 })
             }
         }
+    }
+
+    /// Says where the log was read.
+    pub(crate) fn read_from(mut self, dir: &Path) -> Self {
+        self.dir = Some(dir.to_owned());
+        self
+    }
+
+    /// What messages call the log: experts' logs often have one name, and lie in folders that tell them apart.
+    fn place(&self) -> String {
+        (self.dir.as_ref()).map_or_else(|| self.log.run_id.clone(), |dir| dir.display().to_string())
     }
 
     /// The trained task, lower-case, with its variant.
@@ -103,8 +118,8 @@ pub(super) fn gather(
             );
             continue;
         }
-        let rows = usable_rows(&expert.log, &options.perf_measure)?;
-        let regimes = regime::form(&expert.log.run_id, &rows, options)?;
+        let rows = usable_rows(&expert.log, &expert.place(), &options.perf_measure)?;
+        let regimes = regime::form(&expert.place(), &rows, options)?;
         runs.entry(task).or_default().push(SteRun { regimes });
     }
     Ok(runs)

@@ -21,7 +21,13 @@ pub(super) struct Cell<'a> {
 
 impl Cell<'_> {
     pub(super) fn whole_number(self) -> Result<u64, MetricsError> {
-        self.text.parse().map_err(|_| self.error("a whole number, 0 or more"))
+        self.text.parse().map_err(|_| {
+            if !self.text.is_empty() && self.text.bytes().all(|byte| byte.is_ascii_digit()) {
+                self.error(format!("a whole number of at most {}", u64::MAX))
+            } else {
+                self.error("a whole number, 0 or more")
+            }
+        })
     }
 
     /// A word of one of the format's enums.
@@ -50,6 +56,9 @@ impl Cell<'_> {
             "" => Ok(TaskParams::default()),
             text => match serde_json::from_str(text) {
                 Ok(object) => Ok(TaskParams::new(object)),
+                Err(error) if stumbles_over_no_number(&error, text) => {
+                    Err(self.error("a JSON object, which has null and no NaN or Infinity"))
+                }
                 Err(_) => Err(self.error("a JSON object")),
             },
         }
@@ -69,6 +78,17 @@ impl Cell<'_> {
             expected: expected.into(),
         }
     }
+}
+
+/// Whether a parser of JSON met what Python writes there for numbers that are none.
+fn stumbles_over_no_number(error: &serde_json::Error, text: &str) -> bool {
+    // The parser reads a `-`, and stumbles over what is behind it.
+    let line = text.split('\n').nth(error.line().saturating_sub(1)).unwrap_or_default();
+    let rest = line
+        .as_bytes()
+        .get(error.column().saturating_sub(1)..)
+        .unwrap_or_default();
+    rest.starts_with(b"NaN") || rest.starts_with(b"Infinity")
 }
 
 /// A number; an empty cell or a word that table writers use for "missing" is NaN. `None` for anything else.
@@ -131,5 +151,20 @@ mod tests {
         assert!(cell("").params().unwrap().is_empty());
         assert_eq!(cell(r#"{"a": 1}"#).params().unwrap()["a"], 1);
         assert!(cell("[1]").params().is_err());
+        let check = |text: &str, told: bool| {
+            let message = cell(text).params().unwrap_err().to_string();
+            assert_eq!(
+                message.ends_with("which has null and no NaN or Infinity"),
+                told,
+                "{message}"
+            );
+        };
+        for number in ["NaN", "Infinity", "-Infinity"] {
+            check(&format!(r#"{{"a": {number}}}"#), true);
+            check(&format!("{{\"é\": 1,\n \"b\": [0, {number}]}}"), true);
+            check(&format!(r#"{{"a": "{number}", "b": x}}"#), false);
+        }
+        check("NaN", true);
+        check("{", false);
     }
 }

@@ -2,9 +2,11 @@
 //!
 //! Not here: reading them.
 
-use std::fs;
+use std::collections::BTreeSet;
+use std::fs::{self, FileType};
 use std::path::{Path, PathBuf};
 
+use super::regular_file;
 use crate::MetricsError;
 
 /// Most entries (files and directories together) that a log directory may hold.
@@ -16,8 +18,12 @@ const MAX_DEPTH: usize = 8;
 /// Name of every data file.
 pub(super) const FILE_NAME: &str = "data-log.tsv";
 
-/// All data files under a log directory, in the order of their paths with numbers compared as numbers. Links are not
-/// followed.
+/// How deep directories that are links are followed: to those of workers and of blocks. No deeper, so that no circle has an end
+/// that is not this one.
+const MAX_LINK_DEPTH: usize = 2;
+
+/// All data files under a log directory, in the order of their paths with numbers compared as numbers. A file to which several
+/// paths lead by links is there once.
 pub(super) fn find(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
     if !dir.is_dir() {
         let found = if dir.exists() { "a file" } else { "nothing" };
@@ -26,11 +32,18 @@ pub(super) fn find(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
             found,
         });
     }
-    let (mut files, mut seen) = (Vec::new(), 0);
-    let mut to_search = vec![(dir.to_owned(), 0)];
-    while let Some((current, depth)) = to_search.pop() {
-        let list = |error| MetricsError::io(&current, "list this directory")(error);
-        for entry in fs::read_dir(&current).map_err(list)? {
+    let mut search = Search {
+        to_search: vec![Folder {
+            path: dir.to_owned(),
+            depth: 0,
+            is_linked: false,
+        }],
+        files: Vec::new(),
+    };
+    let mut seen = 0;
+    while let Some(current) = search.to_search.pop() {
+        let list = |error| MetricsError::io(&current.path, "list this directory")(error);
+        for entry in fs::read_dir(&current.path).map_err(list)? {
             let entry = entry.map_err(list)?;
             seen += 1;
             if seen > MAX_LOG_FILES {
@@ -43,15 +56,80 @@ pub(super) fn find(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
                 });
             }
             let kind = entry.file_type().map_err(list)?;
-            if kind.is_dir() && depth < MAX_DEPTH {
-                to_search.push((entry.path(), depth + 1));
-            } else if kind.is_file() && entry.file_name() == FILE_NAME {
-                files.push(entry.path());
-            }
+            search.take(&current, entry.path(), kind)?;
         }
     }
-    files.sort_by_cached_key(|path| path_key(path));
-    Ok(files)
+    search.files.sort_by_cached_key(|(path, _)| path_key(path));
+    Ok(each_once(search.files))
+}
+
+struct Search {
+    to_search: Vec<Folder>,
+    /// Each with whether a link leads to it.
+    files: Vec<(PathBuf, bool)>,
+}
+
+struct Folder {
+    path: PathBuf,
+    /// How many directories it lies below the log's.
+    depth: usize,
+    /// Whether a link leads to it.
+    is_linked: bool,
+}
+
+impl Search {
+    /// Takes what lies in a folder: a data file, or a folder that is searched later.
+    fn take(&mut self, folder: &Folder, path: PathBuf, kind: FileType) -> Result<(), MetricsError> {
+        let is_linked = folder.is_linked || kind.is_symlink();
+        let depth = folder.depth + 1;
+        if path.file_name().is_some_and(|name| name == FILE_NAME) {
+            regular_file::check(&path)?;
+            self.files.push((path, is_linked));
+        } else if is_linked && depth <= MAX_LINK_DEPTH {
+            match fs::metadata(&path) {
+                // Nothing but its data file is of interest, and it may be large.
+                Ok(found) if found.is_dir() && depth == MAX_LINK_DEPTH => {
+                    let file = path.join(FILE_NAME);
+                    regular_file::check(&file)?;
+                    if file.exists() {
+                        self.files.push((file, true));
+                    }
+                }
+                Ok(found) if found.is_dir() => self.to_search.push(Folder { path, depth, is_linked }),
+                // With an ending it led to a file of some other kind.
+                Err(_) if path.extension().is_none() && !is_hidden(&path) => {
+                    return Err(regular_file::lost_link(&path));
+                }
+                _ => {}
+            }
+        } else if kind.is_dir() && !is_linked && depth <= MAX_DEPTH {
+            self.to_search.push(Folder { path, depth, is_linked });
+        }
+        Ok(())
+    }
+}
+
+fn is_hidden(path: &Path) -> bool {
+    path.file_name()
+        .is_some_and(|name| name.to_string_lossy().starts_with('.'))
+}
+
+/// Leaves out paths of files that others lead to, those with a link first.
+fn each_once(mut files: Vec<(PathBuf, bool)>) -> Vec<PathBuf> {
+    if files.iter().any(|(_, is_linked)| *is_linked) {
+        let place = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let places: Vec<PathBuf> = files.iter().map(|(path, _)| place(path)).collect();
+        let mut taken: BTreeSet<&Path> = (files.iter().zip(&places))
+            .filter(|((_, is_linked), _)| !is_linked)
+            .map(|(_, place)| place.as_path())
+            .collect();
+        let mut places = places.iter();
+        files.retain(|(_, is_linked)| {
+            let place = places.next();
+            !is_linked || place.is_some_and(|place| taken.insert(place))
+        });
+    }
+    files.into_iter().map(|(path, _)| path).collect()
 }
 
 /// Puts `2-train` before `10-test`: each part of the path by its leading number first, then by its text.
@@ -100,5 +178,60 @@ mod tests {
         fs::write(&file, "").unwrap();
         check(&file, "a file");
         check(&dir.path().join("absent"), "nothing");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_to_files_and_folders_are_followed_and_circles_end() {
+        use std::os::unix::fs::symlink;
+        let base = tempfile::tempdir().unwrap();
+        let dir = base.path().join("log");
+        let at = |path: &str| base.path().join(path);
+        for block in ["log/w/0-test", "elsewhere/v/0-test", "elsewhere/v/1-test"] {
+            fs::create_dir_all(at(block)).unwrap();
+            fs::write(at(block).join(FILE_NAME), "").unwrap();
+        }
+        let found = || {
+            let found = find(&dir).map_err(|error| error.to_string().replace(&dir.display().to_string(), "LOG"))?;
+            let block = |path: &PathBuf| path.parent().unwrap().strip_prefix(&dir).unwrap().display().to_string();
+            Ok::<Vec<String>, String>(found.iter().map(block).collect())
+        };
+        // A data file, a block and a worker.
+        fs::create_dir_all(dir.join("w/1-train")).unwrap();
+        symlink(
+            at("elsewhere/v/1-test").join(FILE_NAME),
+            dir.join("w/1-train").join(FILE_NAME),
+        )
+        .unwrap();
+        assert_eq!(found().unwrap(), ["w/0-test", "w/1-train"]);
+        symlink("../../elsewhere/v/0-test", dir.join("w/2-test")).unwrap();
+        assert_eq!(found().unwrap(), ["w/0-test", "w/1-train", "w/2-test"]);
+        fs::remove_file(dir.join("w/2-test")).unwrap();
+        fs::remove_dir_all(dir.join("w/1-train")).unwrap();
+        symlink("../elsewhere/v", dir.join("v")).unwrap();
+        assert_eq!(found().unwrap(), ["v/0-test", "v/1-test", "w/0-test"]);
+        // What leads to files that are there already, round in circles, or to no folder.
+        symlink(".", dir.join("circle")).unwrap();
+        symlink("..", dir.join("w/circle")).unwrap();
+        symlink("v", dir.join("again")).unwrap();
+        symlink("w", dir.join("a")).unwrap();
+        symlink("nowhere", dir.join("model.bin")).unwrap();
+        assert_eq!(found().unwrap(), ["again/0-test", "again/1-test", "w/0-test"]);
+        symlink("nowhere", dir.join("u")).unwrap();
+        let message = |path: &str, found: &str| {
+            format!("LOG/{path}: found {found}, expected a file; put the file in its place, or remove it")
+        };
+        assert_eq!(found().unwrap_err(), message("u", "a link that leads nowhere"));
+        fs::remove_file(dir.join("u")).unwrap();
+        fs::remove_file(dir.join("a")).unwrap();
+        fs::create_dir_all(dir.join("w/3-test")).unwrap();
+        symlink("nowhere", dir.join("w/3-test").join(FILE_NAME)).unwrap();
+        assert_eq!(
+            found().unwrap_err(),
+            message("w/3-test/data-log.tsv", "a link that leads nowhere")
+        );
+        fs::remove_file(dir.join("w/3-test").join(FILE_NAME)).unwrap();
+        fs::create_dir_all(dir.join("w/3-test").join(FILE_NAME)).unwrap();
+        assert_eq!(found().unwrap_err(), message("w/3-test/data-log.tsv", "a directory"));
     }
 }

@@ -9,6 +9,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
+use super::regular_file;
 use crate::MetricsError;
 
 /// Largest side file that is read, in bytes.
@@ -17,8 +18,9 @@ const MAX_JSON_BYTES: u64 = 16 << 20;
 /// Reads a file that holds one JSON object.
 ///
 /// # Errors
-/// [`MetricsError::MissingFile`], [`MetricsError::TooLarge`] over 16 MiB, [`MetricsError::Json`] with line and column.
+/// [`MetricsError::MissingFile`], [`MetricsError::NotAFile`], [`MetricsError::TooLarge`] over 16 MiB, [`MetricsError::Json`] with line and column.
 pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<String, Value>, MetricsError> {
+    regular_file::check(path)?;
     let file = match fs::File::open(path) {
         Ok(file) => file,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {

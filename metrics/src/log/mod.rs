@@ -15,6 +15,7 @@ mod json_file;
 mod logger_info;
 mod reader;
 mod record;
+mod regular_file;
 mod resume;
 mod rows;
 mod scenario_info;

@@ -55,7 +55,8 @@ pub fn read_log_with_texts(dir: impl AsRef<Path>) -> Result<Log, MetricsError> {
 /// # Errors
 /// Those of [`read_log`], and [`MetricsError::NotSingleTask`] when it does not train exactly one task.
 pub fn read_ste_log(dir: impl AsRef<Path>) -> Result<SteLog, MetricsError> {
-    SteLog::new(read_log(dir)?)
+    let dir = dir.as_ref();
+    Ok(SteLog::new(read_log(dir)?)?.read_from(dir))
 }
 
 fn read(dir: &Path, texts: Texts) -> Result<Log, MetricsError> {

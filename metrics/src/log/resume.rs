@@ -88,12 +88,13 @@ fn check_header(path: &Path, header: &[String], metrics: &[String]) -> Result<()
 
 /// Cuts a file after its last whole row. Returns whether anything is left; a file without a row, not even a header, is removed.
 ///
-/// What is cut off is a part of one row: where a quote was left open and swallowed other rows, nothing is touched.
+/// What is cut off is a part of one row: where a quote was left open and swallowed other rows, or lines end otherwise than ours,
+/// nothing is touched.
 fn remove_torn_row(path: &Path) -> Result<bool, MetricsError> {
     let failed = || MetricsError::io(path, "remove a torn last line of this file");
     let file = OpenOptions::new().read(true).write(true).open(path).map_err(failed())?;
     let found = whole_rows::measure(BufReader::with_capacity(1 << 16, &file)).map_err(failed())?;
-    if found.swallowed {
+    if found.swallowed || found.returns {
         return Err(found.fault(path, 1));
     }
     if found.bytes == 0 {

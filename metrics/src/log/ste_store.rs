@@ -77,7 +77,7 @@ pub fn store_ste(
     let (data_folder, log_dir) = (data_folder.as_ref(), log_dir.as_ref());
     let files = data_files::find(log_dir)?;
     check_outside(data_folder, log_dir)?;
-    let lock = writer::lock(log_dir)?;
+    let lock = writer::lock_for_reading(log_dir)?;
     let expert = read_ste_log(log_dir)?;
     let task_name = expert.task_name().to_owned();
     let task_dir = data_folder.join(folder_name::encoded(data_folder, &task_name)?);
@@ -466,5 +466,22 @@ mod tests {
             "metrics/io"
         );
         assert_eq!(fs::read_dir(&elsewhere).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn one_log_can_be_stored_by_several_at_once() {
+        let base = tempfile::tempdir().unwrap();
+        let (log, data) = (expert(base.path(), "run", "a_1", 1.0), base.path().join("data"));
+        std::thread::scope(|scope| {
+            for _ in 0..8 {
+                scope.spawn(|| store_ste(&data, &log, SteStoreMode::Append).unwrap());
+            }
+        });
+        assert_eq!(find_ste(&data).unwrap()[0].runs.len(), 8);
+        // Who reads a log does not keep others from reading, but writers.
+        let _reader = writer::lock_for_reading(&log).unwrap();
+        store_ste(&data, &log, SteStoreMode::Append).unwrap();
+        #[cfg(unix)]
+        assert_eq!(LogWriter::resume(&log).unwrap_err().code(), "metrics/in-use");
     }
 }

@@ -61,7 +61,7 @@ pub struct LogCounts {
 /// Checks a log: all that [`read_log`](crate::read_log) checks, and what only its writer could have kept to. Numbers never fall
 /// within a file; every file has the same columns, those of the version the log says it has; each experience has exactly one
 /// complete row, its last. What is no rule but usual is warned about: task names of two words, the words of
-/// `scenario_info.json`, time stamps that do not run backwards, a last experience that was finished, metrics that hold numbers.
+/// `scenario_info.json`, time stamps that do not run backwards, folders named after the worker and the block of their rows, a last experience that was finished, metrics that hold numbers.
 ///
 /// A log without problems can be read.
 pub fn validate_log(dir: impl AsRef<Path>) -> Validation {
@@ -96,6 +96,7 @@ impl Check {
         }
         let table = self.read(dir, &files, &logger_info)?;
         self.order_in_files(&table, &files);
+        self.folders(dir, &table, &files);
         self.completions(&table, &files);
         self.metrics(&table, logger_info.metrics_columns());
         self.count(&table);
@@ -205,6 +206,38 @@ impl Check {
                     });
                 }
                 before = row;
+            }
+        }
+    }
+
+    /// Rows lie where their writer puts them, in a folder for each worker and block; those that do not are warned about, once a file.
+    fn folders(&mut self, dir: &Path, table: &Table<'_>, files: &[PathBuf]) {
+        let rows = &table.rows;
+        for (file, path) in files.iter().enumerate().take(table.num_files()) {
+            let place = |row: usize| {
+                (
+                    rows.workers().ids()[row],
+                    rows.block_nums()[row],
+                    rows.block_types()[row],
+                )
+            };
+            let expected = |row: usize| {
+                let worker = rows.workers().of(row);
+                format!("{worker}/{}-{}", rows.block_nums()[row], rows.block_types()[row])
+            };
+            let folder = path.parent().and_then(|folder| folder.strip_prefix(dir).ok());
+            let is_there = |row: usize| folder == Some(Path::new(&expected(row)));
+            let mut last = None;
+            let stray = table.rows_of_file(file).find(|&row| {
+                // Paths are compared once for many rows.
+                last.replace(place(row)) != Some(place(row)) && !is_there(row)
+            });
+            if let Some(row) = stray {
+                self.warnings.add(LogWarning::OtherFolder {
+                    path: path.clone(),
+                    line: table.place(row).1,
+                    expected: expected(row),
+                });
             }
         }
     }

@@ -43,6 +43,15 @@ pub enum LogWarning {
         /// The one above.
         before: Timestamp,
     },
+    /// A row lies in the folder of another worker or block; it is read as it says.
+    OtherFolder {
+        /// The data file.
+        path: PathBuf,
+        /// Line, from 1; the first such line of the file.
+        line: u64,
+        /// The folder it should lie in, as `WORKER/BLOCKNUM-BLOCKTYPE`.
+        expected: String,
+    },
     /// A worker's last experience has no complete row: the run was stopped, or goes on.
     Unfinished {
         /// The data file.
@@ -99,6 +108,13 @@ impl fmt::Display for LogWarning {
                     f,
                     "{path}:{line}, column timestamp: found {found}, expected not earlier than {before} in the row above; \
                      it counts all the same"
+                )
+            }
+            Self::OtherFolder { path, line, expected } => {
+                let path = path.display();
+                write!(
+                    f,
+                    "{path}:{line}: found a row of another folder, expected it in {expected}; read all the same"
                 )
             }
             Self::Unfinished { path, line, exp_num } => {

@@ -23,6 +23,8 @@ pub(super) struct WholeRows {
     /// Whether what follows holds lines that look like rows: then it is no torn row, but one in which a quote was opened and
     /// never closed, so that it swallowed the rows after it.
     pub(super) swallowed: bool,
+    /// Whether what follows holds lines that end with a carriage return alone, which is no torn row either.
+    pub(super) returns: bool,
 }
 
 impl WholeRows {
@@ -31,6 +33,8 @@ impl WholeRows {
         let (path, line) = (path.to_owned(), first_line + self.lines);
         if self.swallowed {
             MetricsError::OpenQuote { path, line }
+        } else if self.returns {
+            MetricsError::CarriageReturns { path, line }
         } else {
             MetricsError::TornLastLine { path, line }
         }
@@ -71,6 +75,8 @@ struct Scan {
     tabs: usize,
     /// Whether a line of this row ended within quotes already.
     broken: bool,
+    /// Whether the last byte was a carriage return outside quotes.
+    returned: bool,
 }
 
 impl Default for Scan {
@@ -81,6 +87,7 @@ impl Default for Scan {
             lines: 0,
             tabs: 0,
             broken: false,
+            returned: false,
         }
     }
 }
@@ -94,6 +101,8 @@ impl Scan {
             (_, b'\t' | b'\n' | b'\r') => Place::CellStart,
             _ => Place::Cell,
         };
+        found.returns |= self.returned && byte != b'\n';
+        self.returned = byte == b'\r' && self.place == Place::CellStart;
         match byte {
             b'\t' => self.tabs += 1,
             b'\n' => {
@@ -102,7 +111,8 @@ impl Scan {
                     found.swallowed |= self.broken && self.tabs >= TABS_OF_A_ROW;
                     self.broken = true;
                 } else {
-                    (found.bytes, found.lines, found.swallowed) = (self.bytes, self.lines, false);
+                    (found.bytes, found.lines) = (self.bytes, self.lines);
+                    (found.swallowed, found.returns) = (false, false);
                     self.broken = false;
                 }
                 self.tabs = 0;
@@ -149,5 +159,19 @@ mod tests {
         check(&format!("{row}0\t\"1\n{row}\"\n"), false);
         // The line in which the quote stands does not count, nor does one without an end.
         check("0\t1\t2\t3\t4\t5\t6\t7\t\"8\n0\t1", false);
+    }
+
+    #[test]
+    fn carriage_returns_as_line_ends_are_told_from_a_torn_row() {
+        let check = |text: &str, returns: bool| {
+            assert_eq!(measure(text.as_bytes()).unwrap().returns, returns, "{text:?}");
+        };
+        check("a\tb\r0\t1\r", true);
+        check("a\tb\r\n0\t1\r2\t3", true);
+        // The line feed was cut off, or will be read with the rest.
+        check("a\tb\r", false);
+        check("a\tb\r\n0\t1\r\n", false);
+        check("a\t\"b\r0\"", false);
+        check("a\tb\r0\n", false);
     }
 }

@@ -232,11 +232,20 @@ impl BlockFile {
 /// It is the directory that is locked: it is there before any file of the log, and no file is put in its place. Only where locks
 /// are advice: elsewhere they would keep readers away, too.
 pub(super) fn lock(dir: &Path) -> Result<Option<File>, MetricsError> {
+    lock_by(dir, File::try_lock)
+}
+
+/// Keeps writers away, but not others that only read.
+pub(super) fn lock_for_reading(dir: &Path) -> Result<Option<File>, MetricsError> {
+    lock_by(dir, File::try_lock_shared)
+}
+
+fn lock_by(dir: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<Option<File>, MetricsError> {
     if !cfg!(unix) {
         return Ok(None);
     }
     let file = File::open(dir).map_err(MetricsError::io(dir, "open this directory"))?;
-    match file.try_lock() {
+    match try_lock(&file) {
         Ok(()) => Ok(Some(file)),
         Err(TryLockError::WouldBlock) => Err(MetricsError::InUse { path: dir.to_owned() }),
         Err(TryLockError::Error(_)) => Ok(None),

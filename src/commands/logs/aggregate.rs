@@ -18,8 +18,9 @@ const OF_LOGS: [&str; 3] = ["data-log.tsv", "logger_info.json", "scenario_info.j
 /// Write the rows of one log or several as one table.
 ///
 /// The columns are those of l2logger's aggregate: `block_num`, `regime_num`, `exp_num`, the other standard ones, then the log's own in
-/// alphabetical order; several logs have `run_id` in front. A regime is a stretch of rows with one block, subtype and task. Task names
-/// are in lower case, as scoring takes them. Rows that do not complete an experience are left out unless --incomplete is given.
+/// alphabetical order; several logs have `run_id` in front: the name of the log's folder, with folders above where that tells logs
+/// apart. A regime is a stretch of rows with one block, subtype and task. Task names are in lower case, as scoring takes them. Rows
+/// that do not complete an experience are left out unless --incomplete is given.
 ///
 /// Parquet and Feather hold types: integers, dictionaries for words that repeat, time stamps in microseconds, floats, and null where
 /// a value is missing. Feather is the Arrow file format, which pandas, polars and pyarrow read.
@@ -72,9 +73,11 @@ impl Aggregate {
         } else {
             KeptRows::Complete
         });
-        for log in &logs {
+        for (log, name) in logs.iter().zip(log_folders::names(&logs)) {
             // Warnings are the business of `logs validate`: nothing of a row is lost for them.
-            table.add(&read_log_with_texts(log)?)?;
+            let mut log = read_log_with_texts(log)?;
+            log.run_id = name;
+            table.add(&log)?;
         }
         if self.output == Path::new("-") {
             return print(&table, format);
