@@ -96,7 +96,7 @@ impl Demo {
 
         heading("5", "What the lifetime is worth, by the metrics of lifelong learning")?;
         let options = Options::default();
-        let lived = Lived::read(&logs, &Experts::default(), &options)?;
+        let lived = Lived::read(&logs, None, &Experts::default(), &options)?;
         output::write(
             &folder.join("report.html"),
             page_of("An agent that knows the map", &lived, &options)?.as_bytes(),

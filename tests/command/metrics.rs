@@ -228,7 +228,7 @@ fn figures_are_drawn_beside_the_results() {
         &["metrics", "mine/run0", "theirs/run0", "-P", "-T", "raw", "-O", "both"],
     );
     let both = folder.path().join("both/plots");
-    assert!(both.join("run0_raw.png").is_file() && both.join("run0_2_raw.png").is_file());
+    assert!(both.join("mine_run0_raw.png").is_file() && both.join("theirs_run0_raw.png").is_file());
     let error = fail_in(folder.path(), 2, &["metrics", "mine/run0", "-P", "-T", "pie"]);
     assert_eq!(
         error,
@@ -268,6 +268,90 @@ fn two_agents_are_compared() {
         row.split_whitespace().collect::<Vec<_>>() == ["avg_eval_perf", "0.000", "0.000", "to", "0.000", "2"],
         "{row}"
     );
+}
+
+#[test]
+fn agents_of_unlike_levels_are_compared_on_one_scale() {
+    let folder = scratch();
+    for k in 0..3_u8 {
+        live(
+            &folder.path().join(format!("weak/run{k}")),
+            &TASKS,
+            1.0 + f64::from(k) / 10.0,
+        );
+        live(
+            &folder.path().join(format!("strong/run{k}")),
+            &TASKS,
+            50.0 + f64::from(k),
+        );
+    }
+    let arguments = ["metrics", "-R", "weak", "--against", "strong", "-O", "out", "--json"];
+    let json = parsed(&succeed_in(folder.path(), &arguments));
+    let improvement = &json["improvement"][0];
+    assert_eq!(improvement["name"], "avg_train_perf");
+    assert_eq!(improvement["improvement"]["probability"]["value"], 0.0);
+    let saved = parsed(&read(folder.path().join("out/ll_metrics_repeats.json")));
+    assert_eq!(
+        (&saved["improvement"], saved.get("lifetimes")),
+        (&json["improvement"], None)
+    );
+    let settings = parsed(&read(folder.path().join("out/ll_metrics_settings.json")));
+    let range = &settings["data_range"]["find_red"];
+    let width = range["max"]
+        .as_f64()
+        .zip(range["min"].as_f64())
+        .map(|(max, min)| max - min);
+    assert!(width > Some(90.0), "the range of both agents: {range}");
+    let shown = succeed_in(folder.path(), &["metrics", "-R", "weak"]);
+    assert!(shown.contains("Each lifetime is scaled by its own"), "{shown}");
+    let error = {
+        live(&folder.path().join("foreign/run"), &["a_1", "b_1"], 1.0);
+        fail_in(folder.path(), 1, &["metrics", "-R", "weak", "--against", "foreign"])
+    };
+    assert_eq!(
+        error,
+        "error: --against: found no task that both agents have, find_blue, find_red here and a_1, b_1 there, expected the same \
+         tasks\n"
+    );
+}
+
+#[test]
+fn lifetimes_of_one_name_are_told_apart() {
+    let folder = scratch();
+    for seed in ["a", "b"] {
+        live(&folder.path().join(seed).join("log"), &TASKS, 1.0);
+    }
+    succeed_in(folder.path(), &["metrics", "-R", ".", "-S", "-P", "-T", "raw"]);
+    let table = read(folder.path().join("results/ll_metrics.tsv"));
+    assert!(table.contains("\na/log\t") && table.contains("\nb/log\t"), "{table}");
+    assert!(folder.path().join("results/plots/b_log_raw.png").is_file());
+}
+
+#[test]
+fn what_is_left_aside_is_told() {
+    let folder = scratch();
+    live(&folder.path().join("life"), &TASKS, 1.0);
+    live(&folder.path().join("expert"), &["find_green"], 1.0);
+    let table = folder.path().join("life/worker-default/0-test/data-log.tsv");
+    let holed = read(&table).replacen("\t1.0\n", "\tnan\n", 1);
+    std::fs::write(&table, holed).expect("the folder can be written");
+    let output = crate::terminal::output(&mut crate::terminal::driftworld_in(
+        folder.path(),
+        &["metrics", "life", "--ste", "expert"],
+    ));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains("warning: life: 1 of 54 complete rows have no number in column reward"),
+        "{said}"
+    );
+    assert!(
+        said.contains(
+            "the expert expert of find_green is left aside: the lifetime has no such task, but find_red, find_blue"
+        ),
+        "{said}"
+    );
+    let error = fail_in(folder.path(), 2, &["metrics", "--ste", "expert", "life"]);
+    assert!(error.contains("--ste took all folders behind it"), "{error}");
 }
 
 #[test]

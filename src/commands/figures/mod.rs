@@ -75,6 +75,7 @@ pub(crate) fn drawn(
         files.push((format!("{}.png", figure.name()), figures.png(figure)?));
         files.push((format!("{}.svg", figure.name()), figures.svg(figure)?.into_bytes()));
     }
-    let run_id = lifetime.run_id().to_owned();
+    // Names of several logs may be paths.
+    let run_id = lifetime.run_id().replace(['/', '\\'], "_");
     Ok(Drawn { run_id, files })
 }

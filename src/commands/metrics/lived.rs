@@ -6,7 +6,7 @@ use driftworld::metrics::{ExpStatus, Lifetime, LifetimeMetrics, Log, Options, Sc
 use rayon::prelude::*;
 
 use crate::commands::scoring::Experts;
-use crate::commands::{Failure, output};
+use crate::commands::{Failure, log_folders, output};
 
 /// One lifetime with everything that is known of it.
 pub(crate) struct Lived {
@@ -18,9 +18,17 @@ pub(crate) struct Lived {
 }
 
 impl Lived {
-    /// Reads a log, with its warnings to standard error, and scores it.
-    pub(crate) fn read(folder: &Path, experts: &Experts, options: &Options) -> Result<Self, Failure> {
-        let log = read_log(folder)?;
+    /// Reads a log, with its warnings to standard error, and scores it; `name` tells it from others, by default its folder's.
+    pub(crate) fn read(
+        folder: &Path,
+        name: Option<&str>,
+        experts: &Experts,
+        options: &Options,
+    ) -> Result<Self, Failure> {
+        let mut log = read_log(folder)?;
+        if let Some(name) = name {
+            name.clone_into(&mut log.run_id);
+        }
         let mut warnings: Vec<String> = log.warnings.iter().map(ToString::to_string).collect();
         warnings.extend(missing_numbers(&log, &options.perf_measure));
         warnings.extend(experts.left_aside(&log, options));
@@ -62,8 +70,12 @@ pub(crate) fn each_lived<T: Send>(
     options: &Options,
     keep: impl Fn(Lived) -> Result<T, Failure> + Sync,
 ) -> Result<Vec<T>, Failure> {
-    let read = |log: &PathBuf| keep(Lived::read(log, experts, options)?);
-    let kept: Vec<_> = logs.par_iter().map(read).collect();
+    let names = log_folders::names(logs);
+    let read = |(log, name): (&PathBuf, &String)| {
+        let name = (logs.len() > 1).then_some(name.as_str());
+        keep(Lived::read(log, name, experts, options)?)
+    };
+    let kept: Vec<_> = logs.par_iter().zip(&names).map(read).collect();
     let failures: Vec<&str> = kept
         .iter()
         .filter_map(|kept| Some(kept.as_ref().err()?.text()))

@@ -77,8 +77,9 @@ impl Report {
         let mut files = self.plots.as_deref().map(Files::new);
         let mut chapters = Vec::new();
         let mut scores: Vec<LifetimeMetrics> = Vec::new();
-        for log in &logs {
-            let lived = Lived::read(log, &experts, &options)?;
+        for (log, name) in logs.iter().zip(&log_folders::names(&logs)) {
+            let name = (logs.len() > 1).then_some(name.as_str());
+            let lived = Lived::read(log, name, &experts, &options)?;
             let chapter = options_of(&lived, &mut neighbours, &figures, &shown);
             chapters.push(Chapter::write(&lived.lifetime, &lived.metrics, &chapter)?);
             if let Some(files) = &mut files {
