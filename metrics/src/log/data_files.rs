@@ -18,8 +18,8 @@ const MAX_DEPTH: usize = 8;
 /// Name of every data file.
 pub(super) const FILE_NAME: &str = "data-log.tsv";
 
-/// How deep directories that are links are followed: to those of workers and of blocks. No deeper, so that no circle has an end
-/// that is not this one.
+/// How deep links to directories are followed: those of workers and of blocks. What lies deeper behind a link is left aside, so that
+/// links that lead in a circle come to an end.
 const MAX_LINK_DEPTH: usize = 2;
 
 /// All data files under a log directory, in the order of their paths with numbers compared as numbers. A file to which several

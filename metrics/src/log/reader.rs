@@ -31,7 +31,8 @@ pub struct Log {
 
 /// Reads the log in a directory: format 1.0 or 1.1, written by us or by l2logger, by one worker or by several.
 ///
-/// Columns of words that `logger_info.json` does not declare are left out; see [`read_log_with_texts`].
+/// Columns of words that `logger_info.json` does not declare are left out; see [`read_log_with_texts`]. Data files may be links, and so
+/// may the directories of workers and blocks.
 ///
 /// # Errors
 /// One of [`MetricsError`]'s reading variants, each naming file, line and column where there are such. Never panics,
