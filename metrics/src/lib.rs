@@ -36,7 +36,7 @@ mod log;
 mod options;
 mod preprocess;
 mod repeats;
-mod report;
+mod results;
 mod score;
 mod statistics;
 
@@ -58,7 +58,7 @@ pub use repeats::{
     MAX_SCORES_DRAWN, MAX_STRATA, Resampling, ScoreTable, StratumImprovement, estimate, performance_profile,
     probability_of_improvement,
 };
-pub use report::{
+pub use results::{
     ComparedMetric, Direction, Headline, LifetimeMetrics, PairValues, RegimeMetrics, RepeatedMetric, SavedFiles,
     SavedTables, Settings, SummaryRow, Value, Values, compare_agents, over_repeats, regimes_tsv, save_all,
 };

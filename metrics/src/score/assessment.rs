@@ -5,7 +5,7 @@
 use indexmap::IndexMap;
 
 use crate::lifetime::Lifetime;
-use crate::report::{Value, Values};
+use crate::results::{Value, Values};
 use crate::statistics::{mean, median};
 use crate::{AggregationMethod, Log, Options};
 

@@ -3,7 +3,7 @@
 //! Not here: how evaluations relate to learning, see `performance_maintenance` and `transfer`.
 
 use super::{Assessment, Metric};
-use crate::report::{Direction, Headline};
+use crate::results::{Direction, Headline};
 use crate::statistics::mean;
 use crate::{BlockType, MetricsError, Options};
 

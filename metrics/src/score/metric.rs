@@ -3,7 +3,7 @@
 //! Not here: what a metric sees, see `assessment`, and in which order metrics are computed, see `scorer`.
 
 use super::Assessment;
-use crate::report::Headline;
+use crate::results::Headline;
 use crate::{MetricsError, Options};
 
 /// A measure of a lifetime. The crate's own are computed through this trait, too; a [`Scorer`](crate::Scorer) takes

@@ -1,6 +1,6 @@
 //! Judges a lifetime: one file per metric, and what they have in common.
 //!
-//! Not here: reading and preprocessing (`log`, `lifetime`, `preprocess`), and files of results (`report`).
+//! Not here: reading and preprocessing (`log`, `lifetime`, `preprocess`), and files of results (`results`).
 
 mod assessment;
 mod average_performance;
@@ -19,7 +19,7 @@ pub use assessment::Assessment;
 pub use metric::Metric;
 pub use scorer::{Scorer, score};
 
-use crate::report::Headline;
+use crate::results::Headline;
 use crate::{MaintenanceMethod, Options, TransferMethod};
 
 /// The metrics of this crate, in the order in which they are computed and shown.

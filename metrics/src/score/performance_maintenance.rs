@@ -3,7 +3,7 @@
 //! Not here: what learning one task does to another, see `transfer`.
 
 use super::{Assessment, Metric};
-use crate::report::{Direction, Headline};
+use crate::results::{Direction, Headline};
 use crate::statistics::mean;
 use crate::{BlockType, MetricsError, Options};
 

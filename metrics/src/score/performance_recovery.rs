@@ -3,7 +3,7 @@
 //! Not here: the single recovery times, see `recovery_time`.
 
 use super::{Assessment, Metric, recovery_time};
-use crate::report::{Direction, Headline};
+use crate::results::{Direction, Headline};
 use crate::statistics::theil_sen_slope;
 use crate::{Definitions, MetricsError, Options};
 

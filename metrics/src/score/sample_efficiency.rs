@@ -6,7 +6,7 @@ use super::saturation::{Peak, peak};
 use super::ste_relative_performance::average_over_time;
 use super::{Assessment, Metric};
 use crate::lifetime::{SteRun, mean_per_experience};
-use crate::report::{Direction, Headline};
+use crate::results::{Direction, Headline};
 use crate::statistics::{mean, trend_falls};
 use crate::{MetricsError, Options, SteAveragingMethod};
 

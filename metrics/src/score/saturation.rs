@@ -4,7 +4,7 @@
 
 use super::{Assessment, Metric};
 use crate::preprocess::smoothed;
-use crate::report::Headline;
+use crate::results::Headline;
 use crate::{Definitions, MetricsError, Options, SmoothingMethod};
 
 /// `saturation` and `exp_to_sat` of every regime.

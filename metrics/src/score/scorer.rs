@@ -6,7 +6,7 @@ use indexmap::{IndexMap, IndexSet};
 
 use super::{Assessment, Metric, all_asked, built_in, built_in_headlines};
 use crate::lifetime::{Lifetime, Regime, SteLog};
-use crate::report::{Headline, LifetimeMetrics, RegimeMetrics, Value, Values, is_regime_column};
+use crate::results::{Headline, LifetimeMetrics, RegimeMetrics, Value, Values, is_regime_column};
 use crate::{BlockType, Log, MetricsError, Options};
 
 /// Scores a lifetime by the metrics of this crate, compared with the single-task experts there are.

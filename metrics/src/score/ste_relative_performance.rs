@@ -5,7 +5,7 @@
 
 use super::{Assessment, Metric};
 use crate::lifetime::{Lifetime, SteRun};
-use crate::report::{Direction, Headline};
+use crate::results::{Direction, Headline};
 use crate::statistics::mean;
 use crate::{MetricsError, Options, SteAveragingMethod};
 

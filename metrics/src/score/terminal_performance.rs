@@ -3,7 +3,7 @@
 //! Not here: the best it reached, see `saturation`.
 
 use super::{Assessment, Metric};
-use crate::report::Headline;
+use crate::results::Headline;
 use crate::statistics::mean;
 use crate::{BlockType, Definitions, MetricsError, Options};
 

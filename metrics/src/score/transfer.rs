@@ -8,7 +8,7 @@ use indexmap::{IndexMap, IndexSet};
 
 use super::{Assessment, Metric};
 use crate::lifetime::Lifetime;
-use crate::report::{Direction, Headline, PairValues};
+use crate::results::{Direction, Headline, PairValues};
 use crate::{BlockType, Definitions, MetricsError, Options};
 
 /// `forward_transfer_…` and `backward_transfer_…` of every trained task, by ratio and contrast as far as they are asked
