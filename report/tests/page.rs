@@ -4,8 +4,7 @@
 
 mod lived;
 
-use driftworld_metrics::{BootstrapOptions, compare_agents, over_repeats};
-use driftworld_report::{Chapter, ChapterOptions, Comparison, Figure, FigureOptions, Figures, Report, Unit};
+use driftworld_report::{Figure, FigureOptions, Figures, Unit};
 use lived::Life;
 
 /// Every tag of a page or a drawing: its name, and whether it closes.
@@ -144,30 +143,7 @@ fn the_same_lifetime_gives_the_same_bytes() {
 
 #[test]
 fn several_lifetimes_have_an_index_a_chapter_each_and_intervals_together() {
-    let lives: Vec<_> = ["first", "second"]
-        .map(|name| {
-            Life {
-                name,
-                ..Life::default()
-            }
-            .live()
-        })
-        .into();
-    let scores: Vec<_> = lives.iter().map(|lived| lived.metrics.clone()).collect();
-    let chapter = |lived: &lived::Lived| Chapter::write(&lived.lifetime, &lived.metrics, &ChapterOptions::default());
-    let report = Report {
-        title: Some("Two <lives>".to_owned()),
-        chapters: lives.iter().map(chapter).collect::<Result<_, _>>().unwrap(),
-        overall: over_repeats(&scores, &BootstrapOptions::default()).unwrap(),
-        comparisons: vec![Comparison {
-            agent: "mine".to_owned(),
-            other: "theirs".to_owned(),
-            metrics: compare_agents(&scores, &scores, &BootstrapOptions::default()).unwrap(),
-        }],
-        date: Some("21 November 2026".to_owned()),
-        ..Report::default()
-    };
-    let page = report.to_html().unwrap();
+    let page = lived::page_of_two();
     assert_well_formed(&page);
     for part in [
         "<h1>Two &lt;lives&gt;</h1>",
