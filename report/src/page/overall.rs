@@ -70,7 +70,10 @@ fn cautions(rows: &[RepeatedMetric]) -> Vec<(&str, Vec<String>)> {
     let mut found: IndexMap<&str, Vec<String>> = IndexMap::new();
     for row in rows {
         if let Some(caution) = &row.caution {
-            found.entry(caution).or_default().push(verdict::title(&row.headline.name));
+            found
+                .entry(caution)
+                .or_default()
+                .push(verdict::title(&row.headline.name));
         }
     }
     found.into_iter().collect()

@@ -17,6 +17,7 @@ pub(crate) struct Life<'a> {
     /// Whether the first task has an expert.
     pub(crate) expert: bool,
     pub(crate) steps: bool,
+    pub(crate) evaluated: bool,
 }
 
 impl Default for Life<'_> {
@@ -28,6 +29,7 @@ impl Default for Life<'_> {
             length: 60,
             expert: true,
             steps: true,
+            evaluated: true,
         }
     }
 }
@@ -76,7 +78,8 @@ impl Life<'_> {
         for turn in 0..rounds * tasks.len() as u64 {
             let learnt = (turn % tasks.len() as u64) as usize;
             let mut rows: Vec<(BlockType, usize, u64)> = Vec::new();
-            rows.extend((0..tasks.len()).map(|task| (BlockType::Test, task, (self.length / 10).max(2))));
+            let evaluated = if self.evaluated { tasks.len() } else { 0 };
+            rows.extend((0..evaluated).map(|task| (BlockType::Test, task, (self.length / 10).max(2))));
             rows.push((BlockType::Train, learnt, self.length));
             for (kind, task, count) in rows {
                 for row in 0..count {
