@@ -91,7 +91,7 @@ fn value_row(row: &RepeatedMetric) -> Markup {
             td.number data-name="Interquartile mean" { (estimate(row.iqm)) }
             td.number data-name="Mean" { (estimate(row.mean)) }
             td {
-                @if let Some(judged) = judged { (pill(judged)) } @else { (verdict::good_from(row.headline.good)) }
+                @if let Some(judged) = judged { (pill(judged)) } @else { (verdict::good_from(name, row.headline.good)) }
             }
             td.number data-name="Lifetimes" { (count(row.num_runs)) }
         }
