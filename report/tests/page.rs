@@ -4,8 +4,7 @@
 
 mod lived;
 
-use driftworld_metrics::{BootstrapOptions, compare_agents, over_repeats};
-use driftworld_report::{Chapter, ChapterOptions, Comparison, Figure, FigureOptions, Figures, Report, Unit};
+use driftworld_report::{Figure, FigureOptions, Figures, Unit};
 use lived::Life;
 
 /// Every tag of a page or a drawing: its name, and whether it closes.
@@ -144,30 +143,7 @@ fn the_same_lifetime_gives_the_same_bytes() {
 
 #[test]
 fn several_lifetimes_have_an_index_a_chapter_each_and_intervals_together() {
-    let lives: Vec<_> = ["first", "second"]
-        .map(|name| {
-            Life {
-                name,
-                ..Life::default()
-            }
-            .live()
-        })
-        .into();
-    let scores: Vec<_> = lives.iter().map(|lived| lived.metrics.clone()).collect();
-    let chapter = |lived: &lived::Lived| Chapter::write(&lived.lifetime, &lived.metrics, &ChapterOptions::default());
-    let report = Report {
-        title: Some("Two <lives>".to_owned()),
-        chapters: lives.iter().map(chapter).collect::<Result<_, _>>().unwrap(),
-        overall: over_repeats(&scores, &BootstrapOptions::default()).unwrap(),
-        comparisons: vec![Comparison {
-            agent: "mine".to_owned(),
-            other: "theirs".to_owned(),
-            metrics: compare_agents(&scores, &scores, &BootstrapOptions::default()).unwrap(),
-        }],
-        date: Some("21 November 2026".to_owned()),
-        ..Report::default()
-    };
-    let page = report.to_html().unwrap();
+    let page = lived::page_of_two();
     assert_well_formed(&page);
     for part in [
         "<h1>Two &lt;lives&gt;</h1>",
@@ -253,23 +229,75 @@ fn few_variants_of_a_task_share_a_panel_and_many_do_not() {
     assert_eq!([1, 3, 5, 6, 8].map(panels), [1, 1, 1, 6, 8]);
 }
 
+/// How many pixels of a colour are below the line of names: in the plot itself.
+fn ink(figures: &Figures, figure: Figure, color: [u8; 3]) -> usize {
+    let bytes = figures.png(figure).unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+    let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut rgb).unwrap();
+    assert_eq!((info.width, info.color_type), (1920, png::ColorType::Rgb));
+    let white = rgb.chunks(3).filter(|pixel| *pixel == [255; 3]).count();
+    assert!(white > rgb.len() / 3 / 2, "{figure:?}: the ground is white");
+    // The title and one line of names are 61 pixels high, at two dots each.
+    let plot = &rgb[130 * 1920 * 3..];
+    plot.chunks(3).filter(|pixel| *pixel == color).count()
+}
+
 #[test]
 fn pictures_have_ink_in_the_colours_of_the_tasks() {
     let lived = Life::default().live();
     let options = FigureOptions::default();
     let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
     for figure in Figure::ALL {
-        let bytes = figures.png(figure).unwrap();
-        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
-        let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
-        let info = reader.next_frame(&mut rgb).unwrap();
-        assert_eq!((info.width, info.color_type), (1920, png::ColorType::Rgb));
-        let pixels = |color: [u8; 3]| rgb.chunks(3).filter(|pixel| *pixel == color).count();
-        assert!(
-            pixels([255, 255, 255]) > rgb.len() / 3 / 2,
-            "{figure:?}: the ground is white"
-        );
-        assert!(pixels([0, 114, 178]) > 200, "{figure:?}: the first task is blue");
+        let blue = ink(&figures, figure, [0, 114, 178]);
+        assert!(blue > 600, "{figure:?}: {blue} pixels of the first task");
+        assert_eq!(ink(&figures, figure, [1, 2, 3]), 0, "a colour that no figure has");
+    }
+}
+
+#[test]
+fn learning_blocks_of_one_experience_are_dots() {
+    let life = Life {
+        length: 1,
+        rounds: 2,
+        expert: false,
+        evaluated: false,
+        ..Life::default()
+    };
+    let (lived, options) = (life.live(), FigureOptions::default());
+    let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
+    for figure in [Figure::Learning, Figure::Raw] {
+        for color in [[0, 114, 178], [230, 159, 0], [0, 158, 115]] {
+            let found = ink(&figures, figure, color);
+            assert!(found > 60, "{figure:?}: {found} pixels of {color:?}");
+        }
+    }
+}
+
+#[test]
+fn short_evaluations_of_a_long_lifetime_have_an_area_among_the_raw_values() {
+    let life = Life {
+        length: 9,
+        rounds: 100,
+        ..Life::default()
+    };
+    let (lived, options) = (life.live(), FigureOptions::default());
+    let figures = Figures::of(&lived.lifetime, "reward", &options).unwrap();
+    let svg = figures.svg(Figure::Raw).unwrap();
+    let outlines: Vec<&str> = (svg.split("<polygon").skip(1))
+        .filter_map(|rest| rest.split("points=\"").nth(1)?.split('"').next())
+        .collect();
+    assert!(outlines.len() > 900, "{} outlines", outlines.len());
+    for outline in outlines {
+        let corners: Vec<[i32; 2]> = outline
+            .split_whitespace()
+            .map(|corner| corner.split_once(',').unwrap())
+            .map(|(x, y)| [x.parse().unwrap(), y.parse().unwrap()])
+            .collect();
+        for side in [0, 1] {
+            let ends = || corners.iter().map(|corner| corner[side]);
+            assert!(ends().max() > ends().min().map(|least| least + 1), "{outline}");
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use plotters::prelude::*;
 
 use super::palette::{FAINT, INK, Look, RIM, TASKS};
 use super::panels::{Grid, MOST_PANELS};
-use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart};
+use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, curve};
 use super::scene::{Scene, roomy};
 use super::thinning;
 
@@ -119,8 +119,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
         for run in &panel.runs {
             chart.draw_series([PathElement::new(thin(run), Paper::stroke(FAINT.light, 1.5))])?;
         }
-        let style = Paper::stroke(Look::of(panel.task).color, 2.0);
-        chart.draw_series([PathElement::new(thin(&panel.own), style)])?;
+        curve(&mut chart, thin(&panel.own), Look::of(panel.task).color)?;
     }
     Ok(())
 }

@@ -8,7 +8,7 @@ use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
 use super::palette::{FAINT, Look, SHADE};
-use super::paper::{Area, Axes, Chart, Drawn, Entry, Paper, Sample, chart, draw_mark};
+use super::paper::{Area, Axes, Chart, Drawn, Entry, Paper, Sample, chart, curve, draw_mark};
 use super::scene::{MOST_TASKS, Scene, Stretch, roomy};
 use super::thinning;
 
@@ -72,9 +72,8 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     }
     let column = scene.column(columns);
     for stretch in &learnt {
-        let style = Paper::stroke(Look::of(stretch.task).color, 2.0);
         let line = thinning::line(&stretch.performances(), &column);
-        chart.draw_series([PathElement::new(line, style)])?;
+        curve(&mut chart, line, Look::of(stretch.task).color)?;
     }
     let marked = |stretch: &&&Stretch| !stretch.learns() || scene.names.len() > super::palette::TASKS.len();
     let radius = Paper::dots(if evaluated.len() > 240 { 2 } else { 3 });

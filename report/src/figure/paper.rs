@@ -211,6 +211,16 @@ pub(super) fn chart<'a, DB: DrawingBackend + 'a>(area: &'a Area<DB>, axes: &Axes
     Ok(chart)
 }
 
+/// A curve through points; a single one is a dot, as a line through it could not be seen.
+pub(super) fn curve<DB: DrawingBackend>(chart: &mut Chart<DB>, points: Vec<(f64, f64)>, color: RGBColor) -> Drawn<DB> {
+    if let [only] = points[..] {
+        chart.draw_series([Circle::new(only, Paper::dots(2), color.filled())])?;
+    } else {
+        chart.draw_series([PathElement::new(points, Paper::stroke(color, 2.0))])?;
+    }
+    Ok(())
+}
+
 /// A number on an axis: round ones stay short.
 pub(crate) fn number(value: f64) -> String {
     let trimmed = |value: f64, digits: usize| {

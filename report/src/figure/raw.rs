@@ -6,7 +6,7 @@ use plotters::prelude::*;
 
 use super::learning::{COLUMNS, shade};
 use super::palette::{FAINT, Look, SHADE};
-use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart};
+use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, curve};
 use super::scene::{Scene, Stretch, roomy};
 use super::thinning;
 use crate::words::shown;
@@ -49,6 +49,11 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     let num_points: usize = scene.stretches.iter().map(|stretch| stretch.regime.len()).sum();
     let as_points = num_points <= MOST_POINTS[usize::from(paper.is_narrow())];
     let column = scene.column(columns);
+    // About one and a half pixels either way: what is drawn smaller cannot be seen.
+    let least = (
+        (axes.x.end - axes.x.start) / f64::from(columns) * 1.5,
+        (axes.y.end - axes.y.start) / 120.0,
+    );
     for learning in [false, true] {
         for stretch in scene.drawn(learning, columns) {
             let color = Look::of(stretch.task).color;
@@ -62,7 +67,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
                 let size = if paper.is_narrow() { 2 } else { 3 };
                 chart.draw_series(raw.iter().map(|at| Circle::new(*at, size, color.mix(0.35).filled())))?;
             } else {
-                let outline = thinning::outline(&raw, &column);
+                let outline = thinning::outline(&raw, &column, least);
                 chart.draw_series([Polygon::new(outline, color.mix(0.3).filled())])?;
             }
         }
@@ -74,8 +79,11 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
             .copied()
             .zip(smoothed(scene.lifetime, stretch))
             .collect();
-        let style = Paper::stroke(Look::of(stretch.task).color, 2.0);
-        chart.draw_series([PathElement::new(thinning::line(&points, &column), style)])?;
+        curve(
+            &mut chart,
+            thinning::line(&points, &column),
+            Look::of(stretch.task).color,
+        )?;
     }
     Ok(())
 }

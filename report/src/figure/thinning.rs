@@ -18,14 +18,31 @@ pub(super) fn line(points: &[(f64, f64)], column: impl Fn(f64) -> i64) -> Vec<(f
     thin
 }
 
-/// The outline of a cloud of points: along the highest of each column, and back along the lowest.
-pub(super) fn outline(points: &[(f64, f64)], column: impl Fn(f64) -> i64) -> Vec<(f64, f64)> {
+/// The outline of a cloud of points: along the highest of each column, and back along the lowest. It is nowhere lower than
+/// the least height, and never narrower than the least width: one column is an upright stroke.
+pub(super) fn outline(
+    points: &[(f64, f64)],
+    column: impl Fn(f64) -> i64,
+    (least_width, least_height): (f64, f64),
+) -> Vec<(f64, f64)> {
     let mut upper = Vec::new();
     let mut lower = Vec::new();
     for group in points.chunk_by(|a, b| column(a.0) == column(b.0)) {
         let heights = || group.iter().map(|point| point.1);
-        upper.push((group[0].0, heights().fold(f64::NEG_INFINITY, f64::max)));
-        lower.push((group[0].0, heights().fold(f64::INFINITY, f64::min)));
+        let (high, low) = (
+            heights().fold(f64::NEG_INFINITY, f64::max),
+            heights().fold(f64::INFINITY, f64::min),
+        );
+        let more = ((least_height - (high - low)) / 2.0).max(0.0);
+        upper.push((group[0].0, high + more));
+        lower.push((group[0].0, low - more));
+    }
+    if let ([(first, _), ..], [.., (last, high)], [.., (_, low)]) = (points, &upper[..], &lower[..])
+        && last - first < least_width
+    {
+        let (end, high, low) = (first + least_width, *high, *low);
+        upper.push((end, high));
+        lower.push((end, low));
     }
     upper.extend(lower.into_iter().rev());
     upper
@@ -49,6 +66,23 @@ mod tests {
     }
 
     #[test]
+    fn an_outline_has_an_area_however_short_or_flat_it_is() {
+        let check = |points: &[(f64, f64)], expected: &[(f64, f64)]| {
+            assert_eq!(outline(points, |x| x as i64, (1.5, 2.0)), expected);
+        };
+        check(&[], &[]);
+        check(&[(3.0, 5.0)], &[(3.0, 6.0), (4.5, 6.0), (4.5, 4.0), (3.0, 4.0)]);
+        check(
+            &[(3.0, 5.0), (3.5, 9.0)],
+            &[(3.0, 9.0), (4.5, 9.0), (4.5, 5.0), (3.0, 5.0)],
+        );
+        check(
+            &[(0.0, 1.0), (4.0, 1.0)],
+            &[(0.0, 2.0), (4.0, 2.0), (4.0, 0.0), (0.0, 0.0)],
+        );
+    }
+
+    #[test]
     fn a_million_points_become_four_in_each_column() {
         let points: Vec<(f64, f64)> = (0..1_000_000)
             .map(|x| (f64::from(x), f64::from(x % 1009 * 7 % 1000)))
@@ -56,6 +90,6 @@ mod tests {
         let thin = line(&points, |x| (x / 10_000.0) as i64);
         assert!(thin.len() <= 400, "{}", thin.len());
         assert!(thin.windows(2).all(|pair| pair[0].0 < pair[1].0), "their order is kept");
-        assert_eq!(outline(&points, |x| (x / 10_000.0) as i64).len(), 200);
+        assert_eq!(outline(&points, |x| (x / 10_000.0) as i64, (1.0, 1.0)).len(), 200);
     }
 }

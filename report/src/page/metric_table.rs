@@ -9,6 +9,7 @@ use crate::figure::strip;
 use crate::words::shown;
 
 pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Markup, ReportError> {
+    let scaled = lifetime.normalization_data_range().is_some();
     let mut rows = Vec::new();
     let mut absent = Vec::new();
     for row in metrics.summary() {
@@ -28,8 +29,8 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
                 }
                 td.number { span.value { (number(value)) } }
                 td {
-                    (judged(name, value, &marks, row.good))
-                    span.from { (verdict::good_from(row.good)) }
+                    (judged(name, value, &marks, row.good, scaled))
+                    span.from { (verdict::good_from(name, row.good)) }
                 }
                 td.marks { @if !marks.is_empty() { (drawing_of(&drawing, &verdict::title(name))) } }
             }
@@ -50,6 +51,10 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
             }
         }
         p.note {
+            strong { "One lifetime cannot tell effect from chance; several can, by intervals over all of them. " }
+            (verdict::rule(scaled))
+        }
+        p.note {
             "Each task: coloured marks, for transfer one per pair in the colour of the task that was learnt; upright stroke: the lifetime's value; dashes: no effect."
             @if !absent.is_empty() { " Not computed: " (absent.join("; ")) "." }
         }
@@ -66,10 +71,10 @@ fn sentence(words: &str) -> String {
     first + letters.as_str()
 }
 
-fn judged(name: &str, value: f64, marks: &[(usize, f64)], direction: Direction) -> Markup {
+fn judged(name: &str, value: f64, marks: &[(usize, f64)], direction: Direction, scaled: bool) -> Markup {
     let tasks: Vec<f64> = marks.iter().map(|mark| mark.1).collect();
     html! {
-        @if let Some(found) = verdict::of_lifetime(name, value, &tasks, direction) {
+        @if let Some(found) = verdict::of_lifetime(name, value, &tasks, direction, scaled) {
             span class={ "verdict " (found.class) } { span aria-hidden="true" { (found.sign) " " } (found.word) }
         }
     }

@@ -160,11 +160,6 @@ fn how(options: &Value) -> Markup {
                 "smoothed, performances are scaled, and each metric is computed per task and then brought together over tasks. "
                 "A value that cannot be computed is left out, never guessed."
             }
-            p.note {
-                "Words like “helps” compare a value with the one that means no effect, to the digits shown; “mixed” means that fewer "
-                "than three in four tasks, or pairs of tasks, agree with it. One lifetime cannot tell effect from chance; several can, by intervals over "
-                "all of them."
-            }
             div.card {
                 table.options {
                     caption { span { "Options used" } }

@@ -1,6 +1,7 @@
 //! Values over all lifetimes with their intervals, and comparisons of two agents. They are estimated elsewhere, by `driftworld_metrics`.
 
 use driftworld_metrics::{BootstrapOptions, ComparedMetric, Estimate, Interval, RepeatedMetric};
+use indexmap::IndexMap;
 use maud::{Markup, html};
 
 use super::verdict::{self, Verdict};
@@ -41,7 +42,7 @@ fn values(rows: &[RepeatedMetric], percent: &str) -> Markup {
                 (percent) " bootstrap interval: what other repeats of the same experiment may well have shown."
             }
             div.scroll role="region" aria-label="Metrics over all lifetimes" tabindex="0" {
-                table {
+                table.stacked {
                     thead {
                         tr {
                             th scope="col" { "Metric" }
@@ -54,13 +55,28 @@ fn values(rows: &[RepeatedMetric], percent: &str) -> Markup {
                     tbody { @for row in rows { (value_row(row)) } }
                 }
             }
-            @for row in rows {
-                @if let Some(caution) = &row.caution {
-                    p.note { (verdict::title(&row.headline.name)) ": " (calm(caution)) "." }
+            @for (caution, names) in cautions(rows) {
+                p.note {
+                    @if names.len() < rows.len() { (names.join(", ")) ": " }
+                    (calm(caution)) "."
                 }
             }
         }
     }
+}
+
+/// Each caution once, with the metrics it is about, in the order of the table.
+fn cautions(rows: &[RepeatedMetric]) -> Vec<(&str, Vec<String>)> {
+    let mut found: IndexMap<&str, Vec<String>> = IndexMap::new();
+    for row in rows {
+        if let Some(caution) = &row.caution {
+            found
+                .entry(caution)
+                .or_default()
+                .push(verdict::title(&row.headline.name));
+        }
+    }
+    found.into_iter().collect()
 }
 
 fn value_row(row: &RepeatedMetric) -> Markup {
@@ -72,12 +88,12 @@ fn value_row(row: &RepeatedMetric) -> Markup {
     html! {
         tr {
             th scope="row" { (verdict::title(name)) }
-            td.number { (estimate(row.iqm)) }
-            td.number { (estimate(row.mean)) }
+            td.number data-name="Interquartile mean" { (estimate(row.iqm)) }
+            td.number data-name="Mean" { (estimate(row.mean)) }
             td {
-                @if let Some(judged) = judged { (pill(judged)) } @else { (verdict::good_from(row.headline.good)) }
+                @if let Some(judged) = judged { (pill(judged)) } @else { (verdict::good_from(name, row.headline.good)) }
             }
-            td.number { (count(row.num_runs)) }
+            td.number data-name="Lifetimes" { (count(row.num_runs)) }
         }
     }
 }
@@ -85,7 +101,7 @@ fn value_row(row: &RepeatedMetric) -> Markup {
 fn estimate(found: Estimate) -> Markup {
     html! {
         b { (number(found.value)) }
-        @if let Some(Interval { low, high }) = found.interval { br; "[" (number(low)) ", " (number(high)) "]" }
+        @if let Some(Interval { low, high }) = found.interval { br; " [" (number(low)) ", " (number(high)) "]" }
     }
 }
 
@@ -98,7 +114,7 @@ fn improvement(comparison: &Comparison, percent: &str) -> Markup {
             "neither is better. In brackets, its " (percent) " bootstrap interval."
         }
         div.scroll role="region" aria-label=(title) tabindex="0" {
-            table {
+            table.stacked {
                 thead {
                     tr {
                         th scope="col" { "Metric" }
@@ -110,7 +126,7 @@ fn improvement(comparison: &Comparison, percent: &str) -> Markup {
                     @for row in &comparison.metrics {
                         tr {
                             th scope="row" { (verdict::title(&row.headline.name)) }
-                            td.number { (estimate(row.improvement.probability)) }
+                            td.number data-name="Probability of improvement" { (estimate(row.improvement.probability)) }
                             td { @if let Some(interval) = row.improvement.probability.interval { (pill(better(interval))) } }
                         }
                     }

@@ -25,7 +25,7 @@ pub(super) fn tables(metrics: &LifetimeMetrics) -> Markup {
         @if !found.is_empty() {
             h3 { "Transfer between tasks" }
             p.note {
-                "Row: the task that was learnt. Column: the task that was evaluated before and after. The first time each pair occurs; ▲ helps, ▼ interferes."
+                "Row: the task that was learnt. Column: the task that was evaluated before and after. The first time each pair occurs; ▲ better, ▼ worse after the row's task was learnt, ● no clear difference."
             }
         }
         @for row in &found {
@@ -59,13 +59,10 @@ fn cell(row: &SummaryRow, value: Option<f64>) -> Markup {
     let Some(value) = value else {
         return html! { td.even { span aria-hidden="true" { "·" } } };
     };
-    // A change of less than a twentieth has a sign and no colour.
-    let faint = |neutral: f64| (value - neutral).abs() < 0.05;
-    let faint = verdict::neutral(row.good).is_some_and(faint);
-    let Some(found) = verdict::of(&row.name, value, row.good) else {
+    let Some(found) = verdict::of(&row.name, value, row.good, true) else {
         return html! { td { (number(value)) } };
     };
     html! {
-        td.(if faint { "faint" } else { found.class }) { (number(value)) " " span aria-hidden="true" { (found.sign) } }
+        td.(found.class) { (number(value)) " " span aria-hidden="true" { (found.sign) } }
     }
 }

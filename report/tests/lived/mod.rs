@@ -1,10 +1,10 @@
 //! Lifetimes made up for tests. What is tested of them is in the files beside this folder.
 
 use driftworld_metrics::{
-    BlockType, Lifetime, LifetimeMetrics, LogWriter, LoggerInfo, Options, Record, ScenarioInfo, Scorer, SteLog,
-    Timestamp, read_log, read_ste_log,
+    BlockType, BootstrapOptions, Lifetime, LifetimeMetrics, LogWriter, LoggerInfo, Options, Record, ScenarioInfo,
+    Scorer, SteLog, Timestamp, compare_agents, over_repeats, read_log, read_ste_log,
 };
-use driftworld_report::{Chapter, ChapterOptions, Report, neighbours};
+use driftworld_report::{Chapter, ChapterOptions, Comparison, Report, neighbours};
 
 /// A lifetime in which tasks take turns, each evaluated before and after every learning block.
 pub(crate) struct Life<'a> {
@@ -17,6 +17,7 @@ pub(crate) struct Life<'a> {
     /// Whether the first task has an expert.
     pub(crate) expert: bool,
     pub(crate) steps: bool,
+    pub(crate) evaluated: bool,
 }
 
 impl Default for Life<'_> {
@@ -28,6 +29,7 @@ impl Default for Life<'_> {
             length: 60,
             expert: true,
             steps: true,
+            evaluated: true,
         }
     }
 }
@@ -76,7 +78,8 @@ impl Life<'_> {
         for turn in 0..rounds * tasks.len() as u64 {
             let learnt = (turn % tasks.len() as u64) as usize;
             let mut rows: Vec<(BlockType, usize, u64)> = Vec::new();
-            rows.extend((0..tasks.len()).map(|task| (BlockType::Test, task, (self.length / 10).max(2))));
+            let evaluated = if self.evaluated { tasks.len() } else { 0 };
+            rows.extend((0..evaluated).map(|task| (BlockType::Test, task, (self.length / 10).max(2))));
             rows.push((BlockType::Train, learnt, self.length));
             for (kind, task, count) in rows {
                 for row in 0..count {
@@ -129,4 +132,31 @@ impl Lived {
         };
         report.to_html().expect("it is one lifetime")
     }
+}
+
+/// A page with two lifetimes, with intervals over both and a comparison.
+pub(crate) fn page_of_two() -> String {
+    let lives = ["first", "second"].map(|name| {
+        let life = Life {
+            name,
+            ..Life::default()
+        };
+        life.live()
+    });
+    let scores: Vec<LifetimeMetrics> = lives.iter().map(|lived| lived.metrics.clone()).collect();
+    let chapter = |lived: &Lived| Chapter::write(&lived.lifetime, &lived.metrics, &ChapterOptions::default());
+    let options = BootstrapOptions::default();
+    let report = Report {
+        title: Some("Two <lives>".to_owned()),
+        chapters: (lives.iter().map(chapter).collect::<Result<_, _>>()).expect("they can be drawn"),
+        overall: over_repeats(&scores, &options).expect("both were scored alike"),
+        comparisons: vec![Comparison {
+            agent: "mine".to_owned(),
+            other: "theirs".to_owned(),
+            metrics: compare_agents(&scores, &scores, &options).expect("both were scored alike"),
+        }],
+        date: Some("21 November 2026".to_owned()),
+        ..Report::default()
+    };
+    report.to_html().expect("they are two")
 }
