@@ -85,6 +85,55 @@ fn distances_of_a_matrix_win_and_those_of_other_variants_are_said_to_be() {
 }
 
 #[test]
+fn tasks_without_their_variants_have_no_distances() {
+    let folder = scratch();
+    live(folder.path());
+    succeed_in(folder.path(), &["report", "log", "-r", "agnostic"]);
+    let page = read(folder.path().join("report.html"));
+    assert!(page.contains("scored by tasks without their variants, and distances are between variants"));
+    assert!(!page.contains("0.00\n</text>"), "no distance is made up");
+}
+
+#[test]
+fn a_drift_is_measured_where_it_begins_and_where_it_ends() {
+    let folder = scratch();
+    let regime = |keys: &str| {
+        let keys = format!(r#"{{ "task": "find_objects", "count": 6, "max_steps": 20, {keys} }}"#);
+        format!(r#"{{ "type": "learning", "regimes": [{keys}] }}"#)
+    };
+    let blocks = [
+        regime(r#""variant": "blue""#),
+        regime(r#""variant": "blue", "drift": { "to": "red" }"#),
+        regime(r#""variant": "blue""#),
+    ];
+    let scenario = format!(r#"{{ "name": "drifting", "blocks": [{}] }}"#, blocks.join(", "));
+    write(&folder.path().join("scenario.json"), &scenario);
+    succeed_in(
+        folder.path(),
+        &["run", "scenario.json", "--agent", "random", "--logs", "log"],
+    );
+    succeed_in(folder.path(), &["report", "log"]);
+    let page = read(folder.path().join("report.html"));
+    let apart = succeed_in(
+        folder.path(),
+        &["distance", "find_objects#red", "find_objects#blue", "--json"],
+    );
+    let apart: serde_json::Value = serde_json::from_str(&apart).expect("it prints JSON");
+    let told = format!("{:.2}\n</text>", apart["total"].as_f64().expect("a total"));
+    assert_eq!(
+        page.matches("0.00\n</text>").count(),
+        2,
+        "it begins where the block before was"
+    );
+    assert_eq!(
+        page.matches(&told).count(),
+        2,
+        "the block after it is {told} from its end"
+    );
+    assert!(page.contains("Of a block that drifts"));
+}
+
+#[test]
 fn several_lifetimes_have_intervals_and_steps_are_counted_where_asked_for() {
     let folder = scratch();
     live(folder.path());

@@ -73,7 +73,7 @@ impl Report {
         if !others.is_empty() {
             options = with_common_ranges(&[&logs[..], &others].concat(), &experts, options);
         }
-        let mut neighbours = Neighbours::new(self.distances.as_deref())?;
+        let mut neighbours = Neighbours::new(self.distances.as_deref(), options.variant_mode)?;
         let mut files = self.plots.as_deref().map(Files::new);
         let mut chapters = Vec::new();
         let mut scores: Vec<LifetimeMetrics> = Vec::new();
@@ -142,7 +142,7 @@ fn options_of(lived: &Lived, neighbours: &mut Neighbours, figures: &FigureOption
 
 /// The page of one lifetime, with all figures.
 pub(crate) fn page_of(title: &str, lived: &Lived, options: &Options) -> Result<String, Failure> {
-    let mut neighbours = Neighbours::new(None)?;
+    let mut neighbours = Neighbours::new(None, options.variant_mode)?;
     let chapter = options_of(lived, &mut neighbours, &FigureOptions::default(), &Figure::ALL);
     let report = driftworld::report::Report {
         title: Some(title.to_owned()),

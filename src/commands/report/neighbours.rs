@@ -5,7 +5,7 @@ use std::path::Path;
 
 use driftworld::curriculum::{log_name, log_name_of_label};
 use driftworld::distances::variant_matrix;
-use driftworld::metrics::{Lifetime, Log};
+use driftworld::metrics::{Lifetime, Log, VariantMode};
 use driftworld::report::neighbours;
 use driftworld::similarity::DistanceMatrix;
 use driftworld::spec::{BlockKind, Scenario, Variant};
@@ -19,6 +19,7 @@ const MOST_MEASURED: usize = 32;
 /// Where distances come from.
 pub(super) struct Neighbours {
     given: Option<Named>,
+    mode: VariantMode,
     /// By the scenario's text: repeats live the same one.
     measured: BTreeMap<String, Result<Named, String>>,
 }
@@ -26,9 +27,16 @@ pub(super) struct Neighbours {
 /// A matrix, and its variants by the names that logs give them.
 struct Named {
     matrix: DistanceMatrix,
-    index: BTreeMap<String, usize>,
+    index: BTreeMap<String, Ends>,
     /// Where it comes from, as the end of a sentence.
     origin: String,
+}
+
+/// The variants that a block of a name begins and ends with: two only where it drifts.
+#[derive(Clone, Copy)]
+struct Ends {
+    first: usize,
+    last: usize,
 }
 
 /// Distances of neighbours, and a sentence about them.
@@ -36,20 +44,31 @@ type Told = (Option<Vec<Option<f64>>>, String);
 
 impl Neighbours {
     /// Of the matrix in a file, or else to be measured.
-    pub(super) fn new(file: Option<&Path>) -> Result<Self, Failure> {
+    pub(super) fn new(file: Option<&Path>, mode: VariantMode) -> Result<Self, Failure> {
         let read = |path: &Path| {
             let matrix = matrix_file::read("--distances", path)?;
             let origin = format!("from {}", path.file_name().unwrap_or_default().to_string_lossy());
-            Ok::<_, Failure>(Named::new(matrix, origin))
+            let labels = matrix.labels().iter().enumerate();
+            let index = labels.map(|(at, label)| (log_name_of_label(label), Ends { first: at, last: at }));
+            Ok::<_, Failure>(Named {
+                index: index.collect(),
+                matrix,
+                origin,
+            })
         };
         Ok(Self {
             given: file.map(read).transpose()?,
+            mode,
             measured: BTreeMap::new(),
         })
     }
 
     /// The distances between neighbouring learning blocks of a lifetime.
     pub(super) fn of(&mut self, log: &Log, lifetime: &Lifetime) -> Told {
+        if self.mode == VariantMode::Agnostic {
+            let why = "No distances between blocks: the lifetime was scored by tasks without their variants, and distances are between variants.";
+            return (None, why.to_owned());
+        }
         if let Some(named) = &self.given {
             return named.told(lifetime);
         }
@@ -70,23 +89,10 @@ impl Neighbours {
 }
 
 impl Named {
-    fn new(matrix: DistanceMatrix, origin: String) -> Self {
-        let labels = matrix.labels().iter().enumerate();
-        Self {
-            index: labels.map(|(index, label)| (log_name_of_label(label), index)).collect(),
-            matrix,
-            origin,
-        }
-    }
-
     fn told(&self, lifetime: &Lifetime) -> Told {
         let apart = |[a, b]: [&str; 2]| {
             let of = |name: &str| self.index.get(name).copied();
-            if a == b {
-                Some(0.0)
-            } else {
-                Some(self.matrix.get(of(a)?, of(b)?))
-            }
+            Some(self.matrix.get(of(a)?.last, of(b)?.first))
         };
         let distances: Vec<Option<f64>> = neighbours(lifetime).into_iter().map(apart).collect();
         if distances.is_empty() {
@@ -99,11 +105,21 @@ impl Named {
             );
             return (None, why);
         }
+        let drifts = if self.drifts() > 0 {
+            " Of a block that drifts, its beginning is held against the block before, and its end against the one after."
+        } else {
+            ""
+        };
         let words = format!(
-            "Stems: how far apart the variants of neighbouring learning blocks are, {}.",
+            "Stems: how far apart the variants of neighbouring learning blocks are, {}.{drifts}",
             self.origin
         );
         (Some(distances), words)
+    }
+
+    /// How many names are those of drifts.
+    fn drifts(&self) -> usize {
+        self.index.values().filter(|ends| ends.first != ends.last).count()
     }
 
     fn origin_as_subject(&self) -> &str {
@@ -116,24 +132,33 @@ fn measure(scenario: &str) -> Result<Named, String> {
     let scenario = Scenario::from_json_with("scenario_info.json", scenario, |task| tasks::task(task).ok())
         .map_err(|_| "the scenario in the log is not one of this version's".to_owned())?;
     let mut variants: Vec<(String, Variant)> = Vec::new();
+    let mut place = |variant: Variant| {
+        let name = log_name(variant.task().name(), variant.name());
+        let known = variants.iter().position(|(known, _)| *known == name);
+        known.unwrap_or_else(|| {
+            variants.push((name, variant));
+            variants.len() - 1
+        })
+    };
+    let mut index = BTreeMap::new();
     let learnt = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
     for regime in learnt
         .flat_map(|block| &block.regimes)
         .filter(|regime| regime.world.is_none())
     {
         let task = tasks::task(&regime.task).map_err(|_| format!("the task {} is not found from here", regime.task))?;
-        let variant = regime.resolve(&task).map_err(|_| {
-            format!(
-                "the task {} has no variant {} as it was lived",
-                regime.task,
-                regime.variant_name()
-            )
-        })?;
-        let name = log_name(variant.task().name(), variant.name());
-        if variants.iter().all(|(known, _)| *known != name) {
-            variants.push((name, variant));
-        }
-        if variants.len() > MOST_MEASURED {
+        let lost = |name: &str| format!("the task {} has no variant {name} as it was lived", regime.task);
+        let begins = regime.resolve(&task).map_err(|_| lost(regime.variant_name()))?;
+        let ends = regime.resolve_end(&task).map_err(|_| lost("its drift leads to"))?;
+        // As `driftworld run` names a block in its log.
+        let name = match &ends {
+            None => log_name(task.name(), begins.name()),
+            Some(ends) => log_name(task.name(), &format!("{}to{}", begins.name(), ends.name())),
+        };
+        let first = place(begins);
+        let last = ends.map_or(first, &mut place);
+        index.insert(name, Ends { first, last });
+        if first.max(last) >= MOST_MEASURED {
             return Err(format!(
                 "more than {MOST_MEASURED} variants were learnt; measure them with driftworld order --matrix FILE and give --distances FILE"
             ));
@@ -143,8 +168,9 @@ fn measure(scenario: &str) -> Result<Named, String> {
         return Err("the scenario was lived in world files, not in variants of tasks".to_owned());
     }
     let matrix = variant_matrix(&variants, Ok).map_err(|error| error.to_string())?;
-    Ok(Named::new(
+    Ok(Named {
         matrix,
-        "as measured from the scenario in the log".to_owned(),
-    ))
+        index,
+        origin: "as measured from the scenario in the log".to_owned(),
+    })
 }
