@@ -196,3 +196,21 @@ fn warnings_of_the_log_are_told_and_stand_on_the_page() {
     let page = read(folder.path().join("report.html"));
     assert!(page.contains("⚠ Warning: ") && page.contains("the log does not say which scenario was lived"));
 }
+
+#[test]
+fn every_log_that_cannot_be_shown_is_named_and_the_page_may_go_to_standard_output() {
+    let folder = scratch();
+    live(folder.path());
+    for name in ["bad", "worse"] {
+        write(&folder.path().join(name).join("logger_info.json"), "{");
+        write(&folder.path().join(name).join("w/0-train/data-log.tsv"), "");
+    }
+    let error = fail_in(folder.path(), 1, &["report", "bad", "log", "worse"]);
+    let lines: Vec<&str> = error.lines().collect();
+    assert_eq!(lines.len(), 2, "{error}");
+    assert!(lines[0].contains("bad/logger_info.json:1:") && lines[1].contains("worse/logger_info.json:1:"));
+    assert!(!folder.path().join("report.html").exists());
+    let page = succeed_in(folder.path(), &["report", "log", "-o", "-", "--title", " "]);
+    assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>\n") || page.ends_with("</html>"));
+    assert!(page.contains("<h1>log</h1>"), "an empty title is none");
+}

@@ -2,7 +2,7 @@
 
 mod neighbours;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use driftworld::metrics::{LifetimeMetrics, Options, compare_agents, over_repeats};
@@ -33,7 +33,7 @@ pub(crate) struct Report {
     /// Folders of another agent's logs: how probably is a lifetime of the first better?
     #[arg(long, value_name = "DIR", num_args = 1..)]
     against: Vec<PathBuf>,
-    /// The page to write.
+    /// The page to write; - for standard output.
     #[arg(short, long, value_name = "FILE", default_value = "report.html")]
     output: PathBuf,
     /// What stands on top of the page [default: the lifetime's name].
@@ -75,11 +75,18 @@ impl Report {
         }
         let mut neighbours = Neighbours::new(self.distances.as_deref(), options.variant_mode)?;
         let mut files = self.plots.as_deref().map(Files::new);
+        let mut failures: Vec<String> = Vec::new();
         let mut chapters = Vec::new();
         let mut scores: Vec<LifetimeMetrics> = Vec::new();
         for (log, name) in logs.iter().zip(&log_folders::names(&logs)) {
             let name = (logs.len() > 1).then_some(name.as_str());
-            let lived = Lived::read(log, name, &experts, &options)?;
+            let lived = match Lived::read(log, name, &experts, &options) {
+                Ok(lived) => lived,
+                Err(failure) => {
+                    failures.push(failure.text().to_owned());
+                    continue;
+                }
+            };
             let chapter = options_of(&lived, &mut neighbours, &figures, &shown);
             chapters.push(Chapter::write(&lived.lifetime, &lived.metrics, &chapter)?);
             if let Some(files) = &mut files {
@@ -91,6 +98,9 @@ impl Report {
                 )?)?;
             }
             scores.push(lived.metrics);
+        }
+        if !failures.is_empty() {
+            return Err(Failure::input(failures.join("\n")));
         }
         let intervals = self.intervals.options();
         let mut comparisons = Vec::new();
@@ -108,7 +118,7 @@ impl Report {
             Vec::new()
         };
         let report = driftworld::report::Report {
-            title: self.title,
+            title: self.title.filter(|title| !title.trim().is_empty()),
             chapters,
             overall,
             intervals,
@@ -118,6 +128,9 @@ impl Report {
             date: self.date,
         };
         let html = report.to_html()?;
+        if self.output == Path::new("-") {
+            return output::print(&html);
+        }
         output::write(&self.output, html.as_bytes())?;
         let many = if logs.len() == 1 { "lifetime" } else { "lifetimes" };
         let (path, kilobytes) = (self.output.display(), html.len().div_ceil(1000));
