@@ -15,7 +15,7 @@ use super::plan::Planned;
 /// - `time_to_completion`: the seconds of the world's time that it took, which is steps times time step.
 /// - `truncated`: 1 if a limit of steps cut it off, 0 if what happened in it ended it.
 /// - `world_index`: the number of its world among those of its variant and seed; `nan` for a world from a file.
-/// - `progress`: how far on its way a drift is, 0..=1; `nan` where nothing drifts.
+/// - `progress`: how far on its way a drift is, 0..=1; 0 where nothing drifts.
 /// - `distance`: how far its variant is from the variant that the agent learned last before this regime began, 0..=1: for an
 ///   experience of a learning block the step that the curriculum takes, for one of an evaluation block the way that what was
 ///   learned has to carry. 0 if both are the same; `nan`, the format's word for no value, before anything was learned.

@@ -107,7 +107,7 @@ fn take(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> Result
     let value = |name: &str| row.metric(name).unwrap_or(f64::NAN);
     let told = |block: u64, experience: u64, kind, name: &str, params: &TaskParams, [index, progress]: [f64; 2]| {
         let params = Value::Object(Map::clone(params));
-        let drift = if progress.is_nan() {
+        let drift = if progress == 0.0 {
             String::new()
         } else {
             format!(", {progress} of its way")

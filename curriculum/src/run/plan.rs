@@ -381,11 +381,11 @@ impl Planned {
         }
     }
 
-    /// How far on its way a drift is in an experience, 0..=1; NaN where nothing drifts.
+    /// How far on its way a drift is in an experience, 0..=1; 0 where nothing drifts.
     pub(super) fn progress(&self, number: u64) -> f64 {
         match &self.source {
             Source::Drift { drift, .. } => drift.progress((number - self.first) as u32, self.count),
-            Source::Variant(_) | Source::World { .. } => f64::NAN,
+            Source::Variant(_) | Source::World { .. } => 0.0,
         }
     }
 
