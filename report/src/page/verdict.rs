@@ -46,13 +46,7 @@ const LEAST_OF_EXPERIENCES: f64 = 1.0;
 fn least_effect(name: &str, scaled: bool) -> f64 {
     match name {
         _ if name.starts_with("perf_recovery") => LEAST_OF_EXPERIENCES,
-        _ if name.starts_with("perf_maintenance") => {
-            if scaled {
-                LEAST_OF_POINTS
-            } else {
-                0.0
-            }
-        }
+        _ if name.starts_with("perf_maintenance") && scaled => LEAST_OF_POINTS,
         _ if is_of_pairs(name) || is_against_expert(name) => LEAST_OF_RATIOS,
         _ => 0.0,
     }
