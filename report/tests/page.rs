@@ -278,6 +278,21 @@ fn captions_say_what_was_done_to_the_values() {
 }
 
 #[test]
+fn sleep_is_counted_alike_everywhere_and_said() {
+    let life = Life {
+        sleeps: true,
+        ..Life::default()
+    };
+    let page = life.live().page();
+    assert!(page.contains("<dd>18 (9 asleep)</dd>"), "the facts");
+    let blocks = "<td class=\"number\">6</td><td class=\"number\">180</td>";
+    assert_eq!(count(&page, blocks), 3, "the table of tasks");
+    assert!(page.contains("Blocks asleep are drawn as those awake: 9 of learning, 0 of evaluation."));
+    assert!(page.contains("This lifetime sleeps: its evaluations awake are drawn, and left out of"));
+    assert!(!Life::default().live().page().contains("sleep"));
+}
+
+#[test]
 fn learning_blocks_of_one_experience_are_dots() {
     let life = Life {
         length: 1,
