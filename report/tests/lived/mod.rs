@@ -7,6 +7,10 @@ use driftworld_metrics::{
 use driftworld_report::{Chapter, ChapterOptions, Comparison, Report, neighbours};
 
 /// A lifetime in which tasks take turns, each evaluated before and after every learning block.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each turns one thing on that a test is about"
+)]
 pub(crate) struct Life<'a> {
     pub(crate) name: &'a str,
     pub(crate) tasks: Vec<String>,
