@@ -4,7 +4,7 @@
 
 mod lived;
 
-use driftworld_report::{Figure, FigureOptions, Figures, Unit};
+use driftworld_report::{Chapter, ChapterOptions, Figure, FigureOptions, Figures, Report, Unit};
 use lived::Life;
 
 /// Every tag of a page or a drawing: its name, and whether it closes.
@@ -253,6 +253,43 @@ fn pictures_have_ink_in_the_colours_of_the_tasks() {
         assert!(blue > 600, "{figure:?}: {blue} pixels of the first task");
         assert_eq!(ink(&figures, figure, [1, 2, 3]), 0, "a colour that no figure has");
     }
+}
+
+#[test]
+fn captions_say_what_was_done_to_the_values() {
+    let lived = Life::default().live();
+    let page = |smoothed: bool| {
+        let options = ChapterOptions {
+            smoothed,
+            ..ChapterOptions::default()
+        };
+        let chapters = vec![Chapter::write(&lived.lifetime, &lived.metrics, &options).unwrap()];
+        let report = Report {
+            chapters,
+            options: serde_json::json!({ "smoothing_method": if smoothed { "flat" } else { "none" } }),
+            ..Report::default()
+        };
+        report.to_html().unwrap()
+    };
+    assert!(page(true).contains("after smoothing, scaled to 1…101") && page(true).contains("Learning is smoothed"));
+    assert!(!page(false).contains("smoothed") && !page(false).contains("after smoothing"));
+    assert!(page(false).contains("Performance scaled to 1…101"));
+    assert!(page(true).contains("One lifetime cannot tell effect from chance"));
+}
+
+#[test]
+fn sleep_is_counted_alike_everywhere_and_said() {
+    let life = Life {
+        sleeps: true,
+        ..Life::default()
+    };
+    let page = life.live().page();
+    assert!(page.contains("<dd>18 (9 asleep)</dd>"), "the facts");
+    let blocks = "<td class=\"number\">6</td><td class=\"number\">180</td>";
+    assert_eq!(count(&page, blocks), 3, "the table of tasks");
+    assert!(page.contains("Blocks asleep are drawn as those awake: 9 of learning, 0 of evaluation."));
+    assert!(page.contains("This lifetime sleeps: its evaluations awake are drawn, and left out of"));
+    assert!(!Life::default().live().page().contains("sleep"));
 }
 
 #[test]

@@ -6,6 +6,17 @@ const STUDENT: [f64; 30] = [
     2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042,
 ];
 
+/// Student's quantile at 0.975: of the table, and beyond it by the normal one's expansion (Cornish and Fisher), right to four digits.
+fn student(freedom: usize) -> f64 {
+    const Z: f64 = 1.959_964;
+    let of_table = freedom.checked_sub(1).and_then(|index| STUDENT.get(index));
+    of_table.copied().unwrap_or_else(|| {
+        let n = freedom as f64;
+        let (third, fifth) = (Z.powi(3), Z.powi(5));
+        Z + (third + Z) / (4.0 * n) + (5.0 * fifth + 16.0 * third + 3.0 * Z) / (96.0 * n * n)
+    })
+}
+
 /// Mean, and how far the 95 % interval of Student's t reaches to either side: 0 for a single sample, of which nothing is known.
 pub(super) fn mean_and_reach(samples: &[f64]) -> (f64, f64) {
     let n = samples.len() as f64;
@@ -14,13 +25,28 @@ pub(super) fn mean_and_reach(samples: &[f64]) -> (f64, f64) {
         return (mean, 0.0);
     }
     let squares: f64 = samples.iter().map(|sample| (sample - mean).powi(2)).sum();
-    let quantile = STUDENT.get(samples.len() - 2).copied().unwrap_or(1.96);
-    (mean, quantile * (squares / (n - 1.0) / n).sqrt())
+    (mean, student(samples.len() - 1) * (squares / (n - 1.0) / n).sqrt())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn quantiles_go_on_where_the_table_ends() {
+        // scipy.stats.t.ppf(0.975, freedom).
+        let check = |freedom: usize, expected: f64| {
+            let found = student(freedom);
+            assert!((found - expected).abs() < 6e-4, "{freedom}: {found}");
+        };
+        check(1, 12.7062);
+        check(30, 2.0423);
+        check(31, 2.0395);
+        check(40, 2.0211);
+        check(60, 2.0003);
+        check(120, 1.9799);
+        check(1_000_000, 1.95997);
+    }
 
     #[test]
     fn intervals_are_those_of_student() {

@@ -21,7 +21,7 @@ use driftworld_metrics::Lifetime;
 use plotters::prelude::*;
 
 pub(crate) use palette::dark_rules;
-pub(crate) use strip::strip;
+pub(crate) use strip::{strip, told};
 
 use crate::ReportError;
 use crate::words::shown;

@@ -185,12 +185,16 @@ pub(super) fn chart<'a, DB: DrawingBackend + 'a>(area: &'a Area<DB>, axes: &Axes
     let d = Paper::dots;
     let name = Paper::words(12, axes.y_name.1, HPos::Left, VPos::Center);
     area.draw_text(axes.y_name.0, &name, (d(8), d(10)))?;
+    let widest = [axes.y.start, axes.y.end]
+        .map(|end| text_width(&label(end, &axes.y), 11) + 12)
+        .into_iter()
+        .fold(0, i32::max);
     let mut chart = ChartBuilder::on(area)
         .margin_top(d(24))
         .margin_right(d(16))
         .margin_left(d(4))
         .x_label_area_size(d(if axes.x_name.is_empty() { 22 } else { 40 }))
-        .y_label_area_size(d(42))
+        .y_label_area_size(d(widest.max(42)))
         .build_cartesian_2d(axes.x.clone(), axes.y.clone())?;
     let labels = ("sans-serif", font_size(11)).into_font().color(&FAINT.light);
     chart
@@ -204,8 +208,8 @@ pub(super) fn chart<'a, DB: DrawingBackend + 'a>(area: &'a Area<DB>, axes: &Axes
         .axis_desc_style(("sans-serif", font_size(12)).into_font().color(&FAINT.light))
         .x_labels(axes.labels[0])
         .y_labels(axes.labels[1])
-        .x_label_formatter(&|value| number(*value))
-        .y_label_formatter(&|value| number(*value))
+        .x_label_formatter(&|value| label(*value, &axes.x))
+        .y_label_formatter(&|value| label(*value, &axes.y))
         .x_desc(axes.x_name)
         .draw()?;
     Ok(chart)
@@ -221,7 +225,32 @@ pub(super) fn curve<DB: DrawingBackend>(chart: &mut Chart<DB>, points: Vec<(f64,
     Ok(())
 }
 
-/// A number on an axis: round ones stay short.
+/// A number on an axis of this range: with the digits that tell it from its neighbours.
+pub(super) fn label(value: f64, range: &Range<f64>) -> String {
+    let (largest, span) = (range.start.abs().max(range.end.abs()), range.end - range.start);
+    // Short words as they are, as long as a twentieth of the axis is seen in them.
+    let seen = match largest {
+        size if size >= 1e9 => 1e7,
+        size if size >= 1e6 => 1e4,
+        size if size >= 1e4 => 100.0,
+        _ => 1e-4,
+    };
+    if span / 20.0 >= seen || span.is_nan() || span <= 0.0 {
+        return number(value);
+    }
+    let digits = (-(span / 10.0).log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = if largest >= 1e15 {
+        let digits = (largest / (span / 10.0)).log10().ceil().clamp(1.0, 15.0) as usize;
+        format!("{value:.digits$e}")
+    } else if span < 1e-8 {
+        format!("{value:.1e}")
+    } else {
+        format!("{value:.digits$}")
+    };
+    text.replace('-', "−")
+}
+
+/// A number that stands alone: round ones stay short.
 pub(crate) fn number(value: f64) -> String {
     let trimmed = |value: f64, digits: usize| {
         let text = format!("{value:.digits$}");
@@ -284,6 +313,20 @@ mod tests {
         check(12_500.0, "12.5k");
         check(1_000_000.0, "1M");
         check(3.1e9, "3.1G");
+    }
+
+    #[test]
+    fn numbers_far_from_zero_and_near_one_another_are_told_apart() {
+        let check = |range: Range<f64>, values: [f64; 2], expected: [&str; 2]| {
+            assert_eq!(values.map(|value| label(value, &range)), expected);
+        };
+        check(1e9..1e9 + 10.0, [1e9 + 2.0, 1e9 + 4.0], ["1000000002", "1000000004"]);
+        check(1e9..1e9 + 1000.0, [1e9, 1e9 + 200.0], ["1000000000", "1000000200"]);
+        check(0.0..1e9, [2e8, 4e8], ["200M", "400M"]);
+        check(0.0..2e-4, [1e-4, 1.2e-4], ["0.00010", "0.00012"]);
+        check(0.0..101.0, [0.0, 20.0], ["0", "20"]);
+        check(-0.5..0.5, [-0.2, 0.2], ["−0.2", "0.2"]);
+        check(20_000.0..20_100.0, [20_020.0, 20_040.0], ["20020", "20040"]);
     }
 
     #[test]

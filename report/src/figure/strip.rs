@@ -10,8 +10,19 @@ use super::vectors;
 use crate::ReportError;
 
 const SIZE: (i32, i32) = (220, 30);
-/// Tasks beyond these are left out.
+/// More marks than these are thinned out evenly.
 const MOST_MARKS: usize = 60;
+
+/// Which of so many marks are drawn: all, or some from everywhere, the first and the last among them.
+fn drawn(marks: usize) -> impl Iterator<Item = usize> {
+    let kept = marks.min(MOST_MARKS);
+    (0..kept).map(move |index| index * marks.saturating_sub(1) / kept.saturating_sub(1).max(1))
+}
+
+/// How many marks are drawn, where not all are.
+pub(crate) fn told(marks: usize) -> Option<String> {
+    (marks > MOST_MARKS).then(|| format!("{MOST_MARKS} of {marks}"))
+}
 
 /// Marks for `tasks` (place in the lifetime's list, value), a stroke for the lifetime's value, a dashed one for no effect.
 pub(crate) fn strip(tasks: &[(usize, f64)], value: Option<f64>, neutral: Option<f64>) -> Result<String, ReportError> {
@@ -39,7 +50,7 @@ pub(crate) fn strip(tasks: &[(usize, f64)], value: Option<f64>, neutral: Option<
             }
         }
         let mut placed: Vec<(i32, i32)> = Vec::new();
-        for (task, value) in tasks.iter().take(MOST_MARKS) {
+        for (task, value) in drawn(tasks.len()).map(|index| &tasks[index]) {
             let at = (x(*value), middle);
             let free = |place: &(i32, i32)| {
                 placed
@@ -63,4 +74,31 @@ pub(crate) fn strip(tasks: &[(usize, f64)], value: Option<f64>, neutral: Option<
         }
         Ok(())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_are_thinned_out_evenly_and_that_is_told() {
+        let check = |marks: usize, told_as: Option<&str>| {
+            let places: Vec<usize> = drawn(marks).collect();
+            assert_eq!(places.len(), marks.min(MOST_MARKS));
+            assert_eq!(places.first().copied(), (marks > 0).then_some(0));
+            assert_eq!(places.last().copied(), marks.checked_sub(1));
+            let steps: Vec<usize> = places.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            let (most, least) = (steps.iter().max(), steps.iter().min());
+            assert!(
+                most.zip(least).is_none_or(|(most, least)| most - least <= 1),
+                "{steps:?}"
+            );
+            assert_eq!(told(marks).as_deref(), told_as);
+        };
+        check(0, None);
+        check(1, None);
+        check(60, None);
+        check(61, Some("60 of 61"));
+        check(1770, Some("60 of 1770"));
+    }
 }

@@ -2,10 +2,10 @@
 //!
 //! Not here: what stands around the lifetimes, see the folder's `mod.rs`.
 
-use driftworld_metrics::{Lifetime, LifetimeMetrics};
-use maud::{Markup, PreEscaped, html};
+use driftworld_metrics::{BlockSubtype, BlockType, Lifetime, LifetimeMetrics};
+use maud::{Markup, html};
 
-use super::{facts, metric_table, pair_table, task_table, warnings};
+use super::{count, described, facts, metric_table, pair_table, task_table, warnings};
 use crate::ReportError;
 use crate::figure::{Figure, FigureOptions, Figures, Layout};
 use crate::words::shown;
@@ -24,6 +24,8 @@ pub struct ChapterOptions {
     pub figures: FigureOptions,
     /// Which figures are on the page; default all.
     pub shown: Vec<Figure>,
+    /// Whether learning was smoothed before it was judged; default yes.
+    pub smoothed: bool,
     /// Warnings of the log's reader, and the like.
     pub warnings: Vec<String>,
     /// A sentence under the timeline: where its distances come from, or why there are none.
@@ -35,6 +37,7 @@ impl Default for ChapterOptions {
         Self {
             figures: FigureOptions::default(),
             shown: Figure::ALL.to_vec(),
+            smoothed: true,
             warnings: Vec::new(),
             distance_note: String::new(),
         }
@@ -65,21 +68,38 @@ impl Chapter {
                 shown(lifetime.run_id()),
                 alternative(lifetime, which)
             );
-            let wide = described(&figures.inline(which, Layout::Wide)?, "wide", &alt);
-            let narrow = described(&figures.inline(which, Layout::Narrow)?, "narrow", &alt);
+            let wide = described(&figures.inline(which, Layout::Wide)?, Some("wide"), &alt);
+            let narrow = described(&figures.inline(which, Layout::Narrow)?, Some("narrow"), &alt);
             Ok(html! {
                 h3 { (title) }
                 figure { (wide) (narrow) figcaption { (says) } }
             })
         };
         let blocks = format!(
-            "Each block of the lifetime from left to right. {}",
+            "Each block of the lifetime from left to right.{} {}",
+            asleep_blocks(lifetime),
             super::calm(&options.distance_note)
         );
         let lines = if options.figures.show_eval_lines {
             ", joined by lines"
         } else {
             ""
+        };
+        let lines_are = if options.smoothed {
+            "after smoothing"
+        } else {
+            "as logged, joined"
+        };
+        let asleep = if sleeps(lifetime) {
+            " This lifetime sleeps: its evaluations awake are drawn, and left out of maintenance, transfer and performance in evaluations."
+        } else {
+            ""
+        };
+        let preprocessing = match (options.smoothed, lifetime.normalization_data_range().is_some()) {
+            (true, true) => "after smoothing, scaled to 1…101",
+            (true, false) => "after smoothing, in the unit of the log",
+            (false, true) => "scaled to 1…101",
+            (false, false) => "in the unit of the log",
         };
         let body = html! {
             (facts::facts(lifetime, metrics))
@@ -88,14 +108,14 @@ impl Chapter {
             (table)
             (figure(Figure::Timeline, "Curriculum", &blocks)?)
             (figure(Figure::Learning, "Learning curves", &format!(
-                "Performance after smoothing and scaling. Grey: evaluations, with learning switched off. Marks: each task's mean in an evaluation{lines}."
+                "Performance {preprocessing}. Grey: evaluations, with learning switched off. Marks: each task's mean in an evaluation{lines}."
             ))?)
-            (figure(Figure::Evaluation, "Evaluations",
-                "Mean of each evaluation with its 95 % interval by Student's t over the evaluation's experiences; no bar where all were equal or there was one only. The tint says when the task was learnt.")?)
+            (figure(Figure::Evaluation, "Evaluations", &format!(
+                "Mean of each evaluation with its 95 % interval by Student's t over the evaluation's experiences; no bar where all were equal or there was one only. The tint says when the task was learnt.{asleep}"))?)
             (figure(Figure::Experts, "Against the single-task expert",
-                "The learning blocks of each task end to end, borders between them as upright lines, against agents that learnt nothing but this task. A curve above the expert's learns faster.")?)
+                "The learning blocks of each task end to end, borders between them as upright lines, against agents that learnt nothing but this task. Where a curve is above the expert's, this agent performs better after as much learning of the task.")?)
             (figure(Figure::Raw, "Raw values",
-                "As logged: points where there is room, the area they fill where there is none. Lines: learning after smoothing.")?)
+                &format!("As logged: points where there is room, the area they fill where there is none. Lines: learning {lines_are}."))?)
             h3 { "Tasks" }
             (task_table::table(lifetime, metrics))
             (pair_table::tables(metrics))
@@ -105,6 +125,33 @@ impl Chapter {
             body,
         })
     }
+}
+
+fn sleeps(lifetime: &Lifetime) -> bool {
+    lifetime
+        .regimes()
+        .iter()
+        .any(|regime| regime.block_subtype == BlockSubtype::Sleep)
+}
+
+/// How much of what is drawn is sleep, where there is any.
+fn asleep_blocks(lifetime: &Lifetime) -> String {
+    if !sleeps(lifetime) {
+        return String::new();
+    }
+    let asleep = |kind: BlockType| {
+        let regimes = lifetime.regimes().iter();
+        count(
+            regimes
+                .filter(|regime| regime.block_type == kind && regime.block_subtype == BlockSubtype::Sleep)
+                .count(),
+        )
+    };
+    format!(
+        " Blocks asleep are drawn as those awake: {} of learning, {} of evaluation.",
+        asleep(BlockType::Train),
+        asleep(BlockType::Test)
+    )
 }
 
 /// Why a figure is not there.
@@ -127,16 +174,6 @@ fn alternative(lifetime: &Lifetime, figure: Figure) -> String {
         Figure::Learning => format!("a curve for each learning block of {tasks} tasks, and means of evaluations"),
         Figure::Evaluation => format!("means with intervals over the lifetime, a panel for each of {tasks} tasks"),
         Figure::Experts => "for each task, a curve of this agent and one for each run of its expert".to_owned(),
-        Figure::Raw => format!("points for each experience of {tasks} tasks, with smoothed curves"),
+        Figure::Raw => format!("points for each experience of {tasks} tasks, with curves of learning"),
     }
-}
-
-/// A drawing as part of the page: with its words, and shown on pages of its width.
-fn described(svg: &str, class: &str, alt: &str) -> Markup {
-    let head = html! { title { (alt) } }.into_string();
-    let svg = svg.replacen("<svg ", &format!("<svg class=\"{class}\" role=\"img\" "), 1);
-    PreEscaped(match svg.find('>') {
-        Some(end) => format!("{}{head}{}", &svg[..=end], &svg[end + 1..]),
-        None => svg,
-    })
 }

@@ -1,6 +1,6 @@
 //! What a lifetime was, in a handful of numbers.
 
-use driftworld_metrics::{Lifetime, LifetimeMetrics};
+use driftworld_metrics::{BlockType, Lifetime, LifetimeMetrics};
 use maud::{Markup, html};
 
 use super::count;
@@ -8,16 +8,20 @@ use crate::words::shown;
 
 /// How much was lived, and by what it is judged.
 pub(super) fn facts(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Markup {
-    let learnt = lifetime
-        .regimes()
-        .iter()
-        .filter(|regime| regime.is_wake_training())
-        .count();
+    let learnt = || {
+        let regimes = lifetime.regimes().iter();
+        regimes.filter(|regime| regime.block_type == BlockType::Train)
+    };
+    let asleep = learnt().filter(|regime| !regime.is_wake_training()).count();
+    let blocks = match asleep {
+        0 => count(learnt().count()),
+        _ => format!("{} ({} asleep)", count(learnt().count()), count(asleep)),
+    };
     let facts = [
         ("learning experiences", count(metrics.num_lx)),
         ("evaluation experiences", count(metrics.num_ex)),
         ("tasks", count(lifetime.tasks().len())),
-        ("learning blocks", count(learnt)),
+        ("learning blocks", blocks),
         ("scored by", shown(&metrics.metrics_column)),
     ];
     html! {

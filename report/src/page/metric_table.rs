@@ -1,11 +1,11 @@
 //! The table of metrics: each value, what it says, whether that is good, and how the tasks differ in it.
 
 use driftworld_metrics::{Direction, Lifetime, LifetimeMetrics};
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
-use super::{number, verdict};
+use super::{described, number, verdict};
 use crate::ReportError;
-use crate::figure::strip;
+use crate::figure::{strip, told};
 use crate::words::shown;
 
 pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Markup, ReportError> {
@@ -32,7 +32,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
                     (judged(name, value, &marks, row.good, scaled))
                     span.from { (verdict::good_from(name, row.good)) }
                 }
-                td.marks { @if !marks.is_empty() { (drawing_of(&drawing, &verdict::title(name))) } }
+                td.marks { @if !marks.is_empty() { (described(&drawing, None, &format!("{} of each task", verdict::title(name)))) @if let Some(told) = told(marks.len()) { span.from { (told) } } } }
             }
         });
     }
@@ -91,13 +91,4 @@ fn per_task(lifetime: &Lifetime, metrics: &LifetimeMetrics, name: &str) -> Vec<(
         firsts.chain(values.number(name)).map(|value| (place, value)).collect()
     };
     places.flat_map(of_task).collect()
-}
-
-fn drawing_of(svg: &str, title: &str) -> Markup {
-    let alt = html! { title { (title) " of each task" } }.into_string();
-    let svg = svg.replacen("<svg ", "<svg role=\"img\" ", 1);
-    PreEscaped(match svg.find('>') {
-        Some(end) => format!("{}{alt}{}", &svg[..=end], &svg[end + 1..]),
-        None => svg,
-    })
 }

@@ -149,15 +149,33 @@ fn warnings(warnings: &[String]) -> Markup {
     }
 }
 
+/// A drawing as part of the page: with its words, and shown on pages of one width if a class says so.
+fn described(svg: &str, class: Option<&str>, alt: &str) -> Markup {
+    let head = html! { title { (alt) } }.into_string();
+    let class = class.map_or(String::new(), |class| format!("class=\"{class}\" "));
+    let svg = svg.replacen("<svg ", &format!("<svg {class}role=\"img\" "), 1);
+    PreEscaped(match svg.find('>') {
+        Some(end) => format!("{}{head}{}", &svg[..=end], &svg[end + 1..]),
+        None => svg,
+    })
+}
+
 /// The options, and what is worth knowing of the calculation.
 fn how(options: &Value) -> Markup {
     let rows = options.as_object().into_iter().flatten();
+    let does = |name: &str| options.get(name).is_none_or(|method| method != "none");
+    let prepared = match (does("smoothing_method"), does("normalization_method")) {
+        (true, true) => "Learning is smoothed, performances are scaled to 1…101, and each",
+        (true, false) => "Learning is smoothed, performances stay in the unit of the log, and each",
+        (false, true) => "Performances are scaled to 1…101, and each",
+        (false, false) => "Performances are judged as they were logged: each",
+    };
     html! {
         section.part id="how" aria-labelledby="how-name" {
             h2 id="how-name" { "How it was computed" }
             p {
-                "Complete rows with a number in the scored column form " i { "regimes" } ", one task learnt or evaluated without a break. Learning is "
-                "smoothed, performances are scaled, and each metric is computed per task and then brought together over tasks. "
+                "Complete rows with a number in the scored column form " i { "regimes" } ", one task learnt or evaluated without a break. "
+                (prepared) " metric is computed per task and then brought together over tasks. "
                 "A value that cannot be computed is left out, never guessed."
             }
             div.card {

@@ -1,12 +1,16 @@
 //! Lifetimes made up for tests. What is tested of them is in the files beside this folder.
 
 use driftworld_metrics::{
-    BlockType, BootstrapOptions, Lifetime, LifetimeMetrics, LogWriter, LoggerInfo, Options, Record, ScenarioInfo,
-    Scorer, SteLog, Timestamp, compare_agents, over_repeats, read_log, read_ste_log,
+    BlockSubtype, BlockType, BootstrapOptions, Lifetime, LifetimeMetrics, LogWriter, LoggerInfo, Options, Record,
+    ScenarioInfo, Scorer, SteLog, Timestamp, compare_agents, over_repeats, read_log, read_ste_log,
 };
 use driftworld_report::{Chapter, ChapterOptions, Comparison, Report, neighbours};
 
 /// A lifetime in which tasks take turns, each evaluated before and after every learning block.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each turns one thing on that a test is about"
+)]
 pub(crate) struct Life<'a> {
     pub(crate) name: &'a str,
     pub(crate) tasks: Vec<String>,
@@ -18,6 +22,8 @@ pub(crate) struct Life<'a> {
     pub(crate) expert: bool,
     pub(crate) steps: bool,
     pub(crate) evaluated: bool,
+    /// Whether the second half of each learning block is sleep.
+    pub(crate) sleeps: bool,
 }
 
 impl Default for Life<'_> {
@@ -30,6 +36,7 @@ impl Default for Life<'_> {
             expert: true,
             steps: true,
             evaluated: true,
+            sleeps: false,
         }
     }
 }
@@ -95,6 +102,9 @@ impl Life<'_> {
                         .expect("the time is a possible one");
                     let mut record =
                         Record::new(block, experience, kind, &tasks[task], when).with_metric("reward", reward);
+                    if self.sleeps && kind == BlockType::Train && row >= count / 2 {
+                        record.block_subtype = BlockSubtype::Sleep;
+                    }
                     if self.steps {
                         record = record.with_metric("episode_step_count", 50.0 + noise.round());
                     }

@@ -5,7 +5,7 @@ mod neighbours;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use driftworld::metrics::{LifetimeMetrics, Options, compare_agents, over_repeats};
+use driftworld::metrics::{LifetimeMetrics, Options, SmoothingMethod, compare_agents, over_repeats};
 use driftworld::report::{Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, ReportError};
 
 use super::figures::{FigureChoice, Files, drawn};
@@ -87,7 +87,7 @@ impl Report {
                     continue;
                 }
             };
-            let chapter = options_of(&lived, &mut neighbours, &figures, &shown);
+            let chapter = options_of(&lived, &mut neighbours, &figures, &shown, &options);
             chapters.push(Chapter::write(&lived.lifetime, &lived.metrics, &chapter)?);
             if let Some(files) = &mut files {
                 files.write(&drawn(
@@ -140,7 +140,13 @@ impl Report {
 }
 
 /// How the chapter of a lifetime is written.
-fn options_of(lived: &Lived, neighbours: &mut Neighbours, figures: &FigureOptions, shown: &[Figure]) -> ChapterOptions {
+fn options_of(
+    lived: &Lived,
+    neighbours: &mut Neighbours,
+    figures: &FigureOptions,
+    shown: &[Figure],
+    options: &Options,
+) -> ChapterOptions {
     let (distances, distance_note) = neighbours.of(&lived.log, &lived.lifetime);
     ChapterOptions {
         figures: FigureOptions {
@@ -148,6 +154,7 @@ fn options_of(lived: &Lived, neighbours: &mut Neighbours, figures: &FigureOption
             ..figures.clone()
         },
         shown: shown.to_vec(),
+        smoothed: options.smoothing_method != SmoothingMethod::Off,
         warnings: lived.warnings.clone(),
         distance_note,
     }
@@ -156,7 +163,7 @@ fn options_of(lived: &Lived, neighbours: &mut Neighbours, figures: &FigureOption
 /// The page of one lifetime, with all figures.
 pub(crate) fn page_of(title: &str, lived: &Lived, options: &Options) -> Result<String, Failure> {
     let mut neighbours = Neighbours::new(None, options.variant_mode)?;
-    let chapter = options_of(lived, &mut neighbours, &FigureOptions::default(), &Figure::ALL);
+    let chapter = options_of(lived, &mut neighbours, &FigureOptions::default(), &Figure::ALL, options);
     let report = driftworld::report::Report {
         title: Some(title.to_owned()),
         chapters: vec![Chapter::write(&lived.lifetime, &lived.metrics, &chapter)?],
