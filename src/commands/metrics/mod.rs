@@ -14,7 +14,7 @@ use driftworld::metrics::{BootstrapOptions, LifetimeMetrics, Options, Settings, 
 
 pub(crate) use common_ranges::with_common_ranges;
 pub(crate) use lived::{Lived, score_logs};
-pub(crate) use tables::summary;
+pub(crate) use tables::{own_scale, summary};
 
 use lived::each_lived;
 
@@ -52,9 +52,6 @@ pub(crate) struct Metrics {
     /// Folders of another agent's logs: how probably is a lifetime of the first better?
     #[arg(long, value_name = "DIR", num_args = 1..)]
     against: Vec<PathBuf>,
-    /// Scale each task by its range over all lifetimes, not each lifetime by its own; so it is with --against anyway.
-    #[arg(long)]
-    common_ranges: bool,
     /// Keep the logs as experts in the folder --ste-data, in place of those of their tasks (w) or beside them (a), and score nothing.
     #[arg(short = 's', long, value_name = "w|a", requires = "ste_data")]
     ste_store_mode: Option<SteStoreMode>,
@@ -88,10 +85,13 @@ pub(crate) struct Metrics {
     figures: FigureChoice,
 }
 
-/// How sure numbers over several lifetimes are.
+/// How several lifetimes are put together, and how sure their numbers are.
 #[derive(Args)]
-#[command(next_help_heading = "Intervals")]
+#[command(next_help_heading = "Several lifetimes")]
 pub(crate) struct Intervals {
+    /// Scale each task by its range over all lifetimes, not each lifetime by its own; so it is with --against anyway.
+    #[arg(long)]
+    pub(crate) common_ranges: bool,
     /// How much of the bootstrap's distribution an interval holds.
     #[arg(long, value_name = "SHARE", default_value_t = BootstrapOptions::default().confidence)]
     confidence: f64,
@@ -130,7 +130,7 @@ impl Metrics {
         } else {
             log_folders::below(&self.against)?
         };
-        if self.common_ranges || !others.is_empty() {
+        if self.intervals.common_ranges || !others.is_empty() {
             options = with_common_ranges(&[&logs[..], &others].concat(), &experts, options);
         }
         let lifetimes = self.scored(&logs, &experts, &options)?;

@@ -43,7 +43,11 @@ pub(super) fn many(
         ),
         repeats(&together.repeats, &share),
     ];
-    parts.extend(scale(options).map(str::to_owned));
+    if let Some(own) = own_scale(options) {
+        parts.push(own.to_owned());
+    } else if options.data_range.is_some() {
+        parts.push("Performances of all lifetimes are scaled by the same ranges.".to_owned());
+    }
     if !others.is_empty() {
         parts.push(format!(
             "against {} of another agent",
@@ -58,16 +62,13 @@ pub(super) fn many(
     parts.join("\n\n")
 }
 
-/// What must be known of the scale before levels of different lifetimes are compared.
-fn scale(options: &Options) -> Option<&'static str> {
-    match (options.normalization_method, &options.data_range) {
-        (NormalizationMethod::Off, _) => None,
-        (_, Some(_)) => Some("Performances of all lifetimes are scaled by the same ranges."),
-        (_, None) => Some(
-            "Each lifetime is scaled by its own smallest and largest performance: levels (avg_train_perf, avg_eval_perf) of one say\n\
-             nothing beside another's. --common-ranges, -d and -n none give one scale.",
-        ),
-    }
+/// What must be known before levels of different lifetimes are compared, where each has a scale of its own.
+pub(crate) fn own_scale(options: &Options) -> Option<&'static str> {
+    let is_own = options.normalization_method != NormalizationMethod::Off && options.data_range.is_none();
+    is_own.then_some(
+        "Each lifetime is scaled by its own smallest and largest performance: levels (avg_train_perf, avg_eval_perf) of one say \
+         nothing beside another's. --common-ranges, -d and -n none give one scale.",
+    )
 }
 
 fn improvements(together: &Together<'_>, share: &str) -> String {

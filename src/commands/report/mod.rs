@@ -9,7 +9,7 @@ use driftworld::metrics::{LifetimeMetrics, Options, SmoothingMethod, compare_age
 use driftworld::report::{Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, ReportError};
 
 use super::figures::{FigureChoice, Files, drawn};
-use super::metrics::{Intervals, Lived, score_logs, with_common_ranges};
+use super::metrics::{Intervals, Lived, own_scale, score_logs, with_common_ranges};
 use super::scoring::Scoring;
 use super::{Failure, log_folders, output};
 use neighbours::Neighbours;
@@ -70,7 +70,7 @@ impl Report {
         } else {
             log_folders::below(&self.against)?
         };
-        if !others.is_empty() {
+        if self.intervals.common_ranges || !others.is_empty() {
             options = with_common_ranges(&[&logs[..], &others].concat(), &experts, options);
         }
         let mut neighbours = Neighbours::new(self.distances.as_deref(), options.variant_mode)?;
@@ -123,7 +123,12 @@ impl Report {
             overall,
             intervals,
             comparisons,
-            warnings: Vec::new(),
+            // One lifetime has one scale.
+            warnings: own_scale(&options)
+                .filter(|_| logs.len() > 1)
+                .map(str::to_owned)
+                .into_iter()
+                .collect(),
             options: serde_json::to_value(&options)?,
             date: self.date,
         };
