@@ -67,6 +67,7 @@ impl Desk {
             .args([
                 "--headless=new",
                 "--no-sandbox",
+                "--disable-dev-shm-usage",
                 "--disable-gpu",
                 "--hide-scrollbars",
                 "--enable-logging=stderr",
