@@ -26,7 +26,7 @@
 //! word QUIRK, and [`Definitions::Published`] does not follow. Repeated lifetimes are summed up by [`over_repeats`] and
 //! compared by [`compare_agents`]; a [`Metric`] of one's own is computed by a [`Scorer`].
 //!
-//! What is not here: running agents (that is the curriculum's), plots and printing (the command's), and the clock:
+//! What is not here: running agents (that is the curriculum's), figures and pages (the report's), printing (the command's), and the clock:
 //! time stamps are handed in.
 
 mod choice;

@@ -8,7 +8,7 @@ use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
 use super::palette::{FAINT, Look, SHADE};
-use super::paper::{Area, Axes, Chart, Drawn, Entry, Paper, Sample, chart, curve, draw_mark};
+use super::paper::{Area, Axes, Chart, Drawn, Paper, chart, curve, draw_mark};
 use super::scene::{MOST_TASKS, Scene, Stretch, roomy};
 use super::thinning;
 
@@ -18,18 +18,7 @@ pub(super) const COLUMNS: [i32; 2] = [900, 300];
 const MOST_DOTTED: usize = 90;
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
-    paper.head_height(&entries(scene)) + if paper.is_narrow() { 260 } else { 340 }
-}
-
-fn entries(scene: &Scene) -> Vec<Entry> {
-    let mut entries = scene.entries();
-    if scene.stretches.iter().any(|stretch| !stretch.learns()) {
-        entries.push(Entry {
-            name: "evaluation".to_owned(),
-            sample: Sample::Area(SHADE.light),
-        });
-    }
-    entries
+    paper.head_height(&scene.entries_and_evaluation()) + if paper.is_narrow() { 260 } else { 340 }
 }
 
 /// Greys the parts of the lifetime in which the agent is evaluated.
@@ -46,7 +35,7 @@ pub(super) fn shade<DB: DrawingBackend>(
 }
 
 pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &Paper) -> Drawn<DB> {
-    let below = paper.head(area, &entries(scene))?;
+    let below = paper.head(area, &scene.entries_and_evaluation())?;
     let columns = COLUMNS[usize::from(paper.is_narrow())];
     let learnt = scene.drawn(true, columns);
     let evaluated = scene.drawn(false, columns);

@@ -5,8 +5,8 @@ use driftworld_metrics::Lifetime;
 use plotters::prelude::*;
 
 use super::learning::{COLUMNS, shade};
-use super::palette::{FAINT, Look, SHADE};
-use super::paper::{Area, Axes, Drawn, Entry, Paper, Sample, chart, curve};
+use super::palette::{FAINT, Look};
+use super::paper::{Area, Axes, Drawn, Paper, chart, curve};
 use super::scene::{Scene, Stretch, roomy};
 use super::thinning;
 use crate::words::shown;
@@ -15,22 +15,11 @@ use crate::words::shown;
 const MOST_POINTS: [usize; 2] = [2400, 700];
 
 pub(super) fn height(scene: &Scene, paper: &Paper) -> i32 {
-    paper.head_height(&entries(scene)) + if paper.is_narrow() { 240 } else { 320 }
-}
-
-fn entries(scene: &Scene) -> Vec<Entry> {
-    let mut entries = scene.entries();
-    if scene.stretches.iter().any(|stretch| !stretch.learns()) {
-        entries.push(Entry {
-            name: "evaluation".to_owned(),
-            sample: Sample::Area(SHADE.light),
-        });
-    }
-    entries
+    paper.head_height(&scene.entries_and_evaluation()) + if paper.is_narrow() { 240 } else { 320 }
 }
 
 pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &Paper) -> Drawn<DB> {
-    let below = paper.head(area, &entries(scene))?;
+    let below = paper.head(area, &scene.entries_and_evaluation())?;
     let values = scene
         .stretches
         .iter()

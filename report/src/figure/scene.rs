@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use driftworld_metrics::{BlockType, Lifetime, Regime};
 
-use super::palette::Look;
+use super::palette::{Look, SHADE};
 use super::paper::{Entry, Sample};
 use super::{FigureOptions, Unit};
 use crate::ReportError;
@@ -123,6 +123,18 @@ impl<'a> Scene<'a> {
         } else {
             shown(self.column)
         }
+    }
+
+    /// The entries of the tasks, and the shade of evaluations where there are some.
+    pub(super) fn entries_and_evaluation(&self) -> Vec<Entry> {
+        let mut entries = self.entries();
+        if self.stretches.iter().any(|stretch| !stretch.learns()) {
+            entries.push(Entry {
+                name: "evaluation".to_owned(),
+                sample: Sample::Area(SHADE.light),
+            });
+        }
+        entries
     }
 
     /// The names of the tasks that are drawn, and how many are not.

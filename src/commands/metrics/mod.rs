@@ -1,10 +1,10 @@
 //! `driftworld metrics`: what agents kept and transferred, from the logs of their lifetimes. The metrics are the library's.
 
-mod common_ranges;
 mod lived;
 mod many;
 mod store;
 mod tables;
+mod yardstick;
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -12,9 +12,9 @@ use std::sync::{Mutex, PoisonError};
 use clap::Args;
 use driftworld::metrics::{BootstrapOptions, LifetimeMetrics, Options, Settings, SteStoreMode, save_all};
 
-pub(crate) use common_ranges::with_common_ranges;
 pub(crate) use lived::{Lived, score_logs};
 pub(crate) use tables::{own_scale, summary};
+pub(crate) use yardstick::Yardstick;
 
 use lived::each_lived;
 
@@ -123,16 +123,11 @@ impl Metrics {
         if let (Some(mode), Some(data)) = (self.ste_store_mode, self.scoring.ste_data()) {
             return store::store(&logs, mode, data);
         }
-        let mut options = self.scoring.options()?;
-        let experts = self.scoring.experts()?;
-        let others = if self.against.is_empty() {
-            Vec::new()
-        } else {
-            log_folders::below(&self.against)?
-        };
-        if self.intervals.common_ranges || !others.is_empty() {
-            options = with_common_ranges(&[&logs[..], &others].concat(), &experts, options);
-        }
+        let Yardstick {
+            options,
+            experts,
+            others,
+        } = Yardstick::new(&logs, &self.against, &self.scoring, &self.intervals)?;
         let lifetimes = self.scored(&logs, &experts, &options)?;
         let mut repeats = None;
         match lifetimes.as_slice() {

@@ -9,7 +9,7 @@ use driftworld::metrics::{LifetimeMetrics, Options, SmoothingMethod, compare_age
 use driftworld::report::{Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, ReportError};
 
 use super::figures::{FigureChoice, Files, drawn};
-use super::metrics::{Intervals, Lived, own_scale, score_logs, with_common_ranges};
+use super::metrics::{Intervals, Lived, Yardstick, own_scale, score_logs};
 use super::scoring::Scoring;
 use super::{Failure, log_folders, output};
 use neighbours::Neighbours;
@@ -64,15 +64,11 @@ impl Report {
             let (found, limit) = (logs.len(), MAX_LIFETIMES);
             return Err(ReportError::TooManyLifetimes { found, limit }.into());
         }
-        let (mut options, experts) = (self.scoring.options()?, self.scoring.experts()?);
-        let others = if self.against.is_empty() {
-            Vec::new()
-        } else {
-            log_folders::below(&self.against)?
-        };
-        if self.intervals.common_ranges || !others.is_empty() {
-            options = with_common_ranges(&[&logs[..], &others].concat(), &experts, options);
-        }
+        let Yardstick {
+            options,
+            experts,
+            others,
+        } = Yardstick::new(&logs, &self.against, &self.scoring, &self.intervals)?;
         let mut neighbours = Neighbours::new(self.distances.as_deref(), options.variant_mode)?;
         let mut files = self.plots.as_deref().map(Files::new);
         let mut failures: Vec<String> = Vec::new();
