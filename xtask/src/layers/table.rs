@@ -77,8 +77,8 @@ pub(super) const ROOMS: &[Room] = &[
     },
     Room {
         package: PYTHON,
-        floor: 4,
-        may_import: &[SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM, REPORT],
+        floor: 5,
+        may_import: &[SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM, REPORT, FACADE],
     },
     Room {
         package: UNITY,

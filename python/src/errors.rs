@@ -1,0 +1,124 @@
+//! Rust's errors as Python's: one `match` for each crate's. The classes themselves are in `driftworld/errors.py`.
+
+use driftworld::distances::DistancesError;
+use driftworld::tasks::TaskError;
+use driftworld_curriculum::CurriculumError;
+use driftworld_env::EnvError;
+use driftworld_generator::GeneratorError;
+use driftworld_metrics::MetricsError;
+use driftworld_similarity::SimilarityError;
+use driftworld_spec::{Problem, SpecError};
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::{IntoPyDict, PyDict, PyList};
+
+/// An error of one of the crates, on its way to Python.
+#[derive(Debug)]
+pub(crate) enum Error {
+    Spec(SpecError),
+    Task(TaskError),
+    Generator(GeneratorError),
+    Similarity(SimilarityError),
+    Env(EnvError),
+    Metrics(MetricsError),
+    Curriculum(CurriculumError),
+    /// Already one of Python's.
+    Python(PyErr),
+}
+
+/// What a function for Python hands back.
+pub(crate) type Result<T> = std::result::Result<T, Error>;
+
+macro_rules! from {
+    ($($variant:ident($source:ty)),* $(,)?) => {
+        $(impl From<$source> for Error {
+            fn from(source: $source) -> Self {
+                Self::$variant(source)
+            }
+        })*
+    };
+}
+
+from!(
+    Spec(SpecError),
+    Generator(GeneratorError),
+    Similarity(SimilarityError),
+    Env(EnvError),
+    Metrics(MetricsError),
+    Curriculum(CurriculumError),
+    Python(PyErr),
+);
+
+impl From<TaskError> for Error {
+    fn from(source: TaskError) -> Self {
+        match source {
+            TaskError::Spec(source) => Self::Spec(source),
+            source => Self::Task(source),
+        }
+    }
+}
+
+impl From<DistancesError> for Error {
+    fn from(source: DistancesError) -> Self {
+        match source {
+            DistancesError::Generator(source) => Self::Generator(source),
+            DistancesError::Similarity(source) => Self::Similarity(source),
+            // The enum may grow; its message says all there is to say.
+            source => Self::Python(PyRuntimeError::new_err(source.to_string())),
+        }
+    }
+}
+
+impl From<Error> for PyErr {
+    fn from(error: Error) -> Self {
+        Python::attach(|py| error.raise(py).unwrap_or_else(|failure| failure))
+    }
+}
+
+impl Error {
+    /// The exception for this error.
+    fn raise(self, py: Python<'_>) -> PyResult<PyErr> {
+        let (class, text) = match &self {
+            Self::Spec(source) => ("SpecError", source.to_string()),
+            Self::Task(source) => ("TaskError", source.to_string()),
+            Self::Generator(source) => ("GeneratorError", source.to_string()),
+            Self::Similarity(source) => ("SimilarityError", source.to_string()),
+            Self::Env(source) => ("EnvError", source.to_string()),
+            Self::Metrics(source) => ("MetricsError", source.to_string()),
+            Self::Curriculum(source) => ("CurriculumError", source.to_string()),
+            Self::Python(source) => return Ok(source.clone_ref(py)),
+        };
+        let class = py.import("driftworld.errors")?.getattr(class)?;
+        let details = self.details(py)?;
+        Ok(PyErr::from_value(class.call((text,), Some(&details))?))
+    }
+
+    /// What the exception knows beside its text.
+    fn details<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let Self::Spec(source) = self else {
+            return Ok(PyDict::new(py));
+        };
+        let details = [("code", source.code())].into_py_dict(py)?;
+        let problems = source.problems().iter().map(|problem| described(py, problem));
+        details.set_item("problems", PyList::new(py, problems.collect::<PyResult<Vec<_>>>()?)?)?;
+        if let SpecError::Syntax { line, column, .. } = source {
+            details.set_item("line", line)?;
+            details.set_item("column", column)?;
+        }
+        Ok(details)
+    }
+}
+
+/// A problem of a document as a dictionary.
+pub(crate) fn described<'py>(py: Python<'py>, problem: &Problem) -> PyResult<Bound<'py, PyDict>> {
+    let described = PyDict::new(py);
+    described.set_item("code", problem.code)?;
+    described.set_item("pointer", &problem.pointer)?;
+    // 0 says that the place is not known.
+    described.set_item("line", (problem.line > 0).then_some(problem.line))?;
+    described.set_item("column", (problem.column > 0).then_some(problem.column))?;
+    described.set_item("found", &problem.found)?;
+    described.set_item("expected", &problem.expected)?;
+    described.set_item("advice", problem.advice.as_deref())?;
+    Ok(described)
+}
