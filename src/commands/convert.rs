@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use crate::spec::Scenario;
 use clap::{Args, ValueEnum};
-use driftworld::spec::Scenario;
 
 use super::draw_maps::draw_maps;
 use super::input::WorldChoice;

@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::curriculum::{Design, Summary, design};
+use crate::env::Catalogue;
+use crate::generator::Sampler;
+use crate::metrics::{Options, Settings};
+use crate::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
+use crate::spec::{BlockKind, Scenario, Variant, World};
+use crate::tasks;
 use clap::Args;
-use driftworld::curriculum::{Design, Summary, design};
-use driftworld::env::Catalogue;
-use driftworld::generator::Sampler;
-use driftworld::metrics::{Options, Settings};
-use driftworld::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
-use driftworld::spec::{BlockKind, Scenario, Variant, World};
-use driftworld::tasks;
 
 use super::curriculum::{blocks, choices};
 use super::metrics::{Lived, summary};

@@ -2,13 +2,11 @@
 
 mod pictures;
 
+use crate::generator::Sampler;
+use crate::similarity::{Distance as Measured, Part, VariantMeasure, Weights, world_distance, world_sets_distance};
+use crate::spec::{Element, Variant, World};
+use crate::tasks;
 use clap::Args;
-use driftworld::generator::Sampler;
-use driftworld::similarity::{
-    Distance as Measured, Part, VariantMeasure, Weights, world_distance, world_sets_distance,
-};
-use driftworld::spec::{Element, Variant, World};
-use driftworld::tasks;
 
 use serde_json::json;
 

@@ -5,11 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::generator::Sampler;
+use crate::spec::maps::MapLibrary;
+use crate::spec::{Variant, Warning, World};
+use crate::tasks;
 use clap::Args;
-use driftworld::generator::Sampler;
-use driftworld::spec::maps::MapLibrary;
-use driftworld::spec::{Variant, Warning, World};
-use driftworld::tasks;
 use sha2::{Digest, Sha256};
 
 use super::{Failure, output};

@@ -4,11 +4,11 @@ use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use crate::curriculum::{CurriculumError, Journal, Plan, Progress, Summary, Surroundings, run};
+use crate::env::Catalogue;
+use crate::metrics::{MetricsError, Timestamp};
+use crate::spec::BlockKind;
 use clap::Args;
-use driftworld::curriculum::{CurriculumError, Journal, Plan, Progress, Summary, Surroundings, run};
-use driftworld::env::Catalogue;
-use driftworld::metrics::{MetricsError, Timestamp};
-use driftworld::spec::BlockKind;
 
 use super::assets::LibraryChoice;
 use super::interrupt::Interrupt;

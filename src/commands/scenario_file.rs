@@ -4,9 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use driftworld::curriculum::{FoundWorld, Plan, Sources};
-use driftworld::spec::{Scenario, TaskSpec, World, nearest};
-use driftworld::tasks::{self, TaskError};
+use crate::curriculum::{FoundWorld, Plan, Sources};
+use crate::spec::{Scenario, TaskSpec, World, nearest};
+use crate::tasks::{self, TaskError};
 use serde_json::Value;
 
 use super::{Failure, input, output};

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::generator::Sampler;
+use crate::spec::{BlockKind, Regime, Scenario, Value, Variant};
+use crate::tasks;
 use clap::Args;
-use driftworld::generator::Sampler;
-use driftworld::spec::{BlockKind, Regime, Scenario, Value, Variant};
-use driftworld::tasks;
 
 use super::pictures::{SheetRow, sheet};
 use super::render::Views;

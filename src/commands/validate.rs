@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::spec::maps::MapLibrary;
+use crate::spec::{Problem, Scenario, SpecError, TaskSpec, World};
 use clap::Args;
-use driftworld::spec::maps::MapLibrary;
-use driftworld::spec::{Problem, Scenario, SpecError, TaskSpec, World};
 use serde_json::{Value, json};
 
 use super::scenario_file::task_from;
