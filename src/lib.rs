@@ -23,8 +23,10 @@ pub use driftworld_spec as spec;
 pub mod columns;
 pub mod commands;
 pub mod distances;
+pub mod documents;
 pub mod log_columns;
 pub mod picture_distance;
+pub mod scenarios;
 pub mod tasks;
 
 /// The README's Rust example is compiled with the documentation's tests.

@@ -29,7 +29,6 @@ mod render;
 mod report;
 mod run;
 mod sample;
-mod scenario_file;
 mod schema;
 mod scoring;
 mod sheet;

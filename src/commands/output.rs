@@ -85,6 +85,11 @@ pub(crate) fn note(text: impl AsRef<str>) {
     eprintln!("{}", text.as_ref());
 }
 
+/// Says on standard error what is odd.
+pub(crate) fn warning(text: impl AsRef<str>) {
+    note(format!("warning: {}", text.as_ref()));
+}
+
 /// Writes a file under a temporary name beside its own and renames it: it is there whole or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let failed = |error: std::io::Error| unwritable(path, &error);

@@ -9,8 +9,8 @@ use clap::Args;
 
 use super::pictures::{SheetRow, sheet};
 use super::render::Views;
-use super::scenario_file::is_original;
 use super::{Failure, input, output};
+use crate::scenarios::is_original;
 
 /// The most variants that one picture shows.
 const MOST_VARIANTS: usize = 60;

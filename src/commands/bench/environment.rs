@@ -97,6 +97,7 @@ fn batch_drawn_by(
         autoreset: Autoreset::NextStep,
         num_threads,
         renderer,
+        ..BatchOptions::default()
     };
     Ok(Batch::new(num_envs, Arc::new(move |_| Ok(world.clone())), options)?)
 }
