@@ -3,8 +3,15 @@
 //! Values cross the border as JSON text, as arrays, or as handles; nothing here is an idea of its own.
 
 mod batch;
+mod command;
+mod curriculum;
+mod distances;
+mod document;
 mod dress;
+mod drift;
 mod errors;
+mod logs;
+mod patience;
 mod supply;
 mod task;
 
@@ -17,9 +24,21 @@ mod native {
     #[pymodule_export]
     use super::batch::PyBatch;
     #[pymodule_export]
+    use super::command::{ask, main};
+    #[pymodule_export]
+    use super::curriculum::{PyJournal, PyPlan};
+    #[pymodule_export]
+    use super::distances::{PyMatrix, distance, order_methods};
+    #[pymodule_export]
+    use super::document::check;
+    #[pymodule_export]
+    use super::drift::PyDrift;
+    #[pymodule_export]
+    use super::logs::{PyLogFile, read as read_log, validate as validate_log};
+    #[pymodule_export]
     use super::supply::PyStream;
     #[pymodule_export]
-    use super::task::{PyTask, PyVariant};
+    use super::task::{PyTask, PyVariant, built_in_names, load_variant, load_variants, variant_again};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
