@@ -249,7 +249,11 @@ impl PyBatch {
     fn step<'py>(&mut self, py: Python<'py>) -> Result<Stepped<'py>> {
         self.expect_own_process()?;
         let (batch, actions) = (&mut self.batch, &self.actions);
-        py.detach(|| batch.step(actions))?;
+        py.detach(|| batch.step(actions)).map_err(|error| match error {
+            // Alone, it needs no number.
+            EnvError::BatchAction { error, .. } if actions.len() == 1 => *error,
+            error => error,
+        })?;
         let outputs = self.batch.outputs();
         let eventful = |env: &usize| self.batch.events(*env).is_some_and(|events| !events.is_empty());
         Ok((

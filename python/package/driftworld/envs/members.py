@@ -5,7 +5,6 @@ Single and vector environments are both made of it; what Gymnasium wants of each
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from math import gcd
 from typing import Any
@@ -102,8 +101,8 @@ class Members:
         return _native.Stream.variants(variants)
 
     def _check(self, stream: _native.Stream) -> None:
-        for layout in stream.layouts(self._options.dress):
-            expect_same_spaces(self.layout, json.loads(layout))
+        for layout in self._options.layouts(stream):
+            expect_same_spaces(self.layout, layout)
 
     def take_options(self, options: Mapping[str, Any], chosen: Callable[[int], bool], *, many: bool) -> None:
         """Does what the options of a reset ask for; nothing is changed if one of them is wrong.
