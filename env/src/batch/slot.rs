@@ -168,6 +168,8 @@ impl Slot {
         if target.is_empty() {
             return Ok(());
         }
-        renderer.draw(self.environment.scene(), &camera, &mut target)
+        renderer.draw(self.environment.scene(), &camera, &mut target)?;
+        outputs.images.form_depth(index);
+        Ok(())
     }
 }
