@@ -26,7 +26,9 @@ pub use assets::{
     ColliderKind, ImportOptions, ImportSize, ImportWarning, Imported, MAX_IMPORT_BYTES, MAX_IMPORT_DEPTH,
     MAX_IMPORT_NODES, MAX_TEXTURE_SIDE, ReadBeside,
 };
-pub use batch::{Autoreset, Batch, BatchOptions, Episode, ImageLayout, Images, MAX_ENVS, Outputs, WorldSource};
+pub use batch::{
+    Autoreset, Batch, BatchOptions, DepthForm, Episode, ImageLayout, Images, MAX_ENVS, Outputs, WorldSource,
+};
 pub use camera::Camera;
 pub use channel::{Category, Channel, Channels, Level, MAX_MESSAGE_BYTES, Outgoing, Received, Screenshot};
 pub use error::EnvError;

@@ -2,7 +2,10 @@
 //!
 //! Values cross the border as JSON text, as arrays, or as handles; nothing here is an idea of its own.
 
+mod batch;
+mod dress;
 mod errors;
+mod supply;
 mod task;
 
 use pyo3::prelude::*;
@@ -11,6 +14,10 @@ use pyo3::prelude::*;
 mod native {
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use super::batch::PyBatch;
+    #[pymodule_export]
+    use super::supply::PyStream;
     #[pymodule_export]
     use super::task::{PyTask, PyVariant};
 

@@ -46,6 +46,11 @@ impl PyTask {
         self.0.variant_names()
     }
 
+    /// Every variant that it declares.
+    fn all_variants(&self) -> Vec<PyVariant> {
+        self.0.all_variants().into_iter().map(PyVariant).collect()
+    }
+
     /// One variant; without a name the one in which every parameter has its default.
     #[pyo3(signature = (name=None))]
     fn variant(&self, name: Option<&str>) -> Result<PyVariant> {
@@ -66,9 +71,16 @@ impl PyVariant {
         self.0.name()
     }
 
+    /// A hash of all that its worlds are made from.
     #[getter]
-    fn task_id(&self) -> &str {
-        self.0.task().name()
+    fn hash(&self) -> String {
+        self.0.hash()
+    }
+
+    /// The task that it is a variant of.
+    #[getter]
+    fn task(&self) -> PyTask {
+        PyTask(Arc::clone(self.0.task()))
     }
 
     /// The JSON of world number `index` under a seed.

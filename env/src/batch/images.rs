@@ -5,6 +5,8 @@ use driftworld_spec::{Modality, StateFeature, World};
 use crate::EnvError;
 use crate::render::{FAR_DEPTH, Target};
 
+use super::depth::{self, DepthForm};
+
 /// What images the environments of a batch make: all alike.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ImageLayout {
@@ -89,6 +91,10 @@ pub struct Images {
     pub rgb: Vec<u8>,
     /// Distance along the view axis in metres, `(num_envs, height, width)`.
     pub depth: Vec<f32>,
+    /// The same in millimetres, `(num_envs, height, width)`; only in [`DepthForm::Millimetres`].
+    pub depth_millimetres: Vec<u16>,
+    /// The same as grey, `(num_envs, height, width)`; only in [`DepthForm::Gray`].
+    pub depth_gray: Vec<u8>,
     /// Reward category, `(num_envs, height, width)`.
     pub category: Vec<u8>,
     /// Object class, `(num_envs, height, width)`.
@@ -98,7 +104,7 @@ pub struct Images {
 }
 
 impl Images {
-    pub(super) fn new(layout: ImageLayout, num_envs: usize) -> Self {
+    pub(super) fn new(layout: ImageLayout, num_envs: usize, form: DepthForm) -> Self {
         let pixels = |modality: Modality| {
             let wanted = usize::from(layout.modalities.contains(&modality));
             wanted * num_envs * layout.num_pixels()
@@ -106,6 +112,8 @@ impl Images {
         Self {
             rgb: vec![0; 3 * pixels(Modality::Rgb)],
             depth: vec![FAR_DEPTH; pixels(Modality::Depth)],
+            depth_millimetres: vec![u16::MAX; usize::from(form == DepthForm::Millimetres) * pixels(Modality::Depth)],
+            depth_gray: vec![u8::MAX; usize::from(form == DepthForm::Gray) * pixels(Modality::Depth)],
             category: vec![0; pixels(Modality::Segmentation)],
             class: vec![0; pixels(Modality::Class)],
             instance: vec![0; pixels(Modality::Instance)],
@@ -120,6 +128,8 @@ impl Images {
             supersampling: self.layout.supersampling,
             rgb: &mut self.rgb,
             depth: &mut self.depth,
+            depth_millimetres: &mut self.depth_millimetres,
+            depth_gray: &mut self.depth_gray,
             category: &mut self.category,
             class: &mut self.class,
             instance: &mut self.instance,
@@ -133,6 +143,8 @@ pub(super) struct ImagesMut<'a> {
     supersampling: u32,
     rgb: &'a mut [u8],
     depth: &'a mut [f32],
+    depth_millimetres: &'a mut [u16],
+    depth_gray: &'a mut [u8],
     category: &'a mut [u8],
     class: &'a mut [u16],
     instance: &'a mut [u32],
@@ -167,6 +179,8 @@ impl<'a> ImagesMut<'a> {
         let pixels = num_envs * self.size[0] as usize * self.size[1] as usize;
         let (rgb, more_rgb) = halves(self.rgb, 3 * pixels);
         let (depth, more_depth) = halves(self.depth, pixels);
+        let (depth_millimetres, more_millimetres) = halves(self.depth_millimetres, pixels);
+        let (depth_gray, more_gray) = halves(self.depth_gray, pixels);
         let (category, more_category) = halves(self.category, pixels);
         let (class, more_class) = halves(self.class, pixels);
         let (instance, more_instance) = halves(self.instance, pixels);
@@ -177,6 +191,8 @@ impl<'a> ImagesMut<'a> {
                 supersampling,
                 rgb,
                 depth,
+                depth_millimetres,
+                depth_gray,
                 category,
                 class,
                 instance,
@@ -186,11 +202,25 @@ impl<'a> ImagesMut<'a> {
                 supersampling,
                 rgb: more_rgb,
                 depth: more_depth,
+                depth_millimetres: more_millimetres,
+                depth_gray: more_gray,
                 category: more_category,
                 class: more_class,
                 instance: more_instance,
             },
         )
+    }
+
+    /// Makes the depth that was drawn into the form that is handed out, for the environment of this number among these.
+    pub(super) fn form_depth(&mut self, env: usize) {
+        let pixels = self.size[0] as usize * self.size[1] as usize;
+        let drawn = env * pixels..(env + 1) * pixels;
+        if !self.depth_millimetres.is_empty() {
+            depth::millimetres(&self.depth[drawn.clone()], &mut self.depth_millimetres[drawn.clone()]);
+        }
+        if !self.depth_gray.is_empty() {
+            depth::gray(&self.depth[drawn.clone()], &mut self.depth_gray[drawn]);
+        }
     }
 
     /// The images of the environment of this number among these.

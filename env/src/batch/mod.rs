@@ -1,6 +1,7 @@
 //! [`Batch`]: many environments that step together, in one contiguous buffer per output. One environment's part of it is in
 //! `slot.rs`, the buffers of images in `images.rs`; what happens inside an environment is in `sim`.
 
+mod depth;
 mod graphics;
 mod images;
 mod outputs;
@@ -10,6 +11,7 @@ use std::sync::Arc;
 
 use driftworld_spec::World;
 
+pub use depth::DepthForm;
 pub use images::{ImageLayout, Images};
 pub use outputs::Outputs;
 
@@ -59,6 +61,8 @@ pub struct BatchOptions {
     pub num_threads: usize,
     /// What draws: the processor, each environment by itself; or a graphics card, all environments at once.
     pub renderer: RendererKind,
+    /// The numbers of depth images.
+    pub depth: DepthForm,
 }
 
 /// `num_envs` environments that step together.
@@ -176,7 +180,7 @@ impl Batch {
         }
         let layout = ImageLayout::clone(&slots[0].layout);
         let state = slots[0].environment.world().agent_params.state_len();
-        let outputs = Outputs::new(layout, state, num_envs);
+        let outputs = Outputs::new(layout, options.depth, state, num_envs);
         // Several parts for each thread: environments that are near many things take longer.
         let parts = if threads == 1 { 1 } else { (4 * threads).min(num_envs) };
         let mut batch = Self {
@@ -348,14 +352,21 @@ fn draw_together(
     pool: Option<&rayon::ThreadPool>,
     slots: &[Slot],
     outputs: &mut Outputs,
-    is_chosen: impl Fn(usize, &Slot) -> bool + Send,
+    is_chosen: impl Fn(usize, &Slot) -> bool + Send + Sync,
 ) -> Result<(), EnvError> {
     let Some(renderer) = graphics else { return Ok(()) };
     let images = outputs.images.view();
     match pool {
-        Some(pool) => pool.install(|| graphics::draw(renderer, slots, images, is_chosen)),
-        None => graphics::draw(renderer, slots, images, is_chosen),
+        Some(pool) => pool.install(|| graphics::draw(renderer, slots, images, &is_chosen)),
+        None => graphics::draw(renderer, slots, images, &is_chosen),
+    }?;
+    let mut images = outputs.images.view();
+    for (env, slot) in slots.iter().enumerate() {
+        if is_chosen(env, slot) {
+            images.form_depth(env);
+        }
     }
+    Ok(())
 }
 
 impl Part<'_> {

@@ -1,5 +1,6 @@
 //! What comes out of a batch: observations, rewards and flags, one buffer each. Images are in `images.rs`.
 
+use super::depth::DepthForm;
 use super::images::{ImageLayout, Images, ImagesMut, halves};
 
 /// Observations, rewards and flags of all environments, environment after environment.
@@ -33,9 +34,9 @@ pub(super) struct OutputsMut<'a> {
 }
 
 impl Outputs {
-    pub(super) fn new(layout: ImageLayout, state_len: usize, num_envs: usize) -> Self {
+    pub(super) fn new(layout: ImageLayout, form: DepthForm, state_len: usize, num_envs: usize) -> Self {
         Self {
-            images: Images::new(layout, num_envs),
+            images: Images::new(layout, num_envs, form),
             states: vec![0.0; num_envs * state_len],
             state_len,
             rewards: vec![0.0; num_envs],

@@ -65,8 +65,11 @@ pub fn category_color(category: u8) -> [u8; 3] {
 
 /// Depth as L2Explorer shows it: black at the camera, white at 100 m and beyond.
 pub fn depth_to_gray(depth: &[f32]) -> Vec<u8> {
-    depth
-        .iter()
-        .map(|metres| (metres * 2.55 + 0.5).clamp(0.0, 255.0) as u8)
-        .collect()
+    depth.iter().map(|metres| gray_of_metres(*metres)).collect()
+}
+
+/// The grey of one distance in metres.
+#[inline]
+pub(crate) fn gray_of_metres(metres: f32) -> u8 {
+    (metres * 2.55 + 0.5).clamp(0.0, 255.0) as u8
 }

@@ -1,0 +1,361 @@
+//! [`PyBatch`]: environments that step together, with their buffers as arrays. Single environments are batches of one.
+//!
+//! Spaces, infos and Gymnasium's rules are in `package/driftworld/envs/`.
+#![expect(unsafe_code, reason = "arrays are views on the buffers of the batch that keeps them")]
+
+use std::str::FromStr;
+use std::sync::Arc;
+
+use driftworld_env::{
+    Action, Autoreset, Batch, BatchOptions, Catalogue, DepthForm, EnvError, Event, Library, Outputs, RendererKind,
+    WorldSource, top_down,
+};
+use driftworld_spec::{Modality, World};
+use numpy::ndarray::{ArrayView, Ix4};
+use numpy::{Element, PyArray1, PyArray4, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+
+use crate::errors::{Error, Result};
+use crate::supply::{PyStream, Supply, dress_of};
+
+/// Environments that step together.
+#[pyclass(name = "Batch", module = "driftworld._native")]
+pub(crate) struct PyBatch {
+    batch: Batch,
+    supplies: Vec<Arc<Supply>>,
+    /// The actions of a step; the memory is used again.
+    actions: Vec<Action>,
+    /// The process that the batch was made in: its threads live nowhere else.
+    process: u32,
+}
+
+/// What a step says beside the observations: rewards, terminated, truncated, success, and the numbers of the environments in
+/// which something happened.
+type Stepped<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray1<bool>>,
+    Bound<'py, PyArray1<bool>>,
+    Vec<usize>,
+);
+
+#[pymethods]
+impl PyBatch {
+    /// One environment for each stream, at the start of world 0 under seed 0.
+    #[new]
+    #[pyo3(signature = (streams, dress, autoreset, num_threads, renderer, depth, libraries))]
+    #[expect(clippy::too_many_arguments, reason = "called from one place, by name")]
+    fn new(
+        py: Python<'_>,
+        streams: Vec<Bound<'_, PyStream>>,
+        dress: &str,
+        autoreset: &str,
+        num_threads: usize,
+        renderer: &str,
+        depth: &str,
+        libraries: Vec<Vec<u8>>,
+    ) -> Result<Self> {
+        let dress = Arc::new(dress_of(dress)?);
+        let supply = |stream: &Bound<'_, PyStream>| Arc::new(Supply::new(stream.get().0.clone(), Arc::clone(&dress)));
+        let supplies: Vec<Arc<Supply>> = streams.iter().map(supply).collect();
+        let options = BatchOptions {
+            autoreset: autoreset_of(autoreset)?,
+            num_threads,
+            renderer: RendererKind::from_str(renderer)?,
+            depth: depth_of(depth)?,
+        };
+        let batch = py.detach(|| {
+            let mut catalogue = Catalogue::default();
+            for bytes in &libraries {
+                catalogue = catalogue.with_library(&Library::from_bytes(bytes)?);
+            }
+            let worlds = supplies.clone();
+            let source: WorldSource = Arc::new(move |episode| worlds[episode.env].world());
+            Batch::with_catalogue(supplies.len(), source, options, &catalogue)
+        })?;
+        Ok(Self {
+            actions: Vec::with_capacity(supplies.len()),
+            batch,
+            supplies,
+            process: std::process::id(),
+        })
+    }
+
+    /// What draws: `cpu` or `gpu`.
+    #[getter]
+    fn renderer(&self) -> &'static str {
+        self.batch.renderer().name()
+    }
+
+    /// Lets an environment draw worlds under another seed, from this index on.
+    fn seed(&self, env: usize, seed: u64, index: u64) -> Result<()> {
+        self.supply(env)?.seed(seed, index);
+        Ok(())
+    }
+
+    /// Lets an environment go on with the world of this index.
+    fn index(&self, env: usize, index: u64) -> Result<()> {
+        self.supply(env)?.index(index);
+        Ok(())
+    }
+
+    /// Lets an environment take its worlds from another stream from its next episode on.
+    fn stream(&self, env: usize, stream: &Bound<'_, PyStream>) -> Result<()> {
+        self.supply(env)?.stream(stream.get().0.clone());
+        Ok(())
+    }
+
+    /// Gives an environment a world (JSON) for its next episode.
+    fn give(&self, env: usize, name: &str, text: &str) -> Result<()> {
+        let world = World::from_json(name, text)?;
+        self.supply(env)?.give(world);
+        Ok(())
+    }
+
+    /// Seed, next index and turn of an environment's supply.
+    fn place(&self, env: usize) -> Result<(u64, u64, u64)> {
+        Ok(self.supply(env)?.place())
+    }
+
+    /// Takes up the supply of an environment where another stands.
+    fn set_place(&self, env: usize, place: (u64, u64, u64)) -> Result<()> {
+        self.supply(env)?.set_place(place);
+        Ok(())
+    }
+
+    /// Begins the next episode in all environments, or in those that `mask` says true for.
+    #[pyo3(signature = (mask=None))]
+    fn reset(&mut self, py: Python<'_>, mask: Option<PyReadonlyArray1<'_, bool>>) -> Result<()> {
+        self.expect_own_process()?;
+        let mask = mask.map(|mask| mask.as_array().to_vec());
+        let batch = &mut self.batch;
+        py.detach(|| match &mask {
+            Some(mask) => batch.reset_where(mask),
+            None => batch.reset(),
+        })?;
+        Ok(())
+    }
+
+    /// One step with actions of numbers, `(num_envs, 3)` or without interaction `(num_envs, 2)`.
+    fn step_numbers<'py>(&mut self, py: Python<'py>, actions: PyReadonlyArray2<'py, f64>) -> Result<Stepped<'py>> {
+        let actions = actions.as_array();
+        self.actions.clear();
+        self.actions.extend(actions.rows().into_iter().map(|row| {
+            let number = |column: usize| row.get(column).copied().unwrap_or(0.0);
+            Action::Continuous([number(0), number(1), number(2)])
+        }));
+        self.step(py)
+    }
+
+    /// One step with actions that are rows of the table, `(num_envs,)`.
+    fn step_rows<'py>(&mut self, py: Python<'py>, actions: PyReadonlyArray1<'py, i64>) -> Result<Stepped<'py>> {
+        self.actions.clear();
+        for action in actions.as_array() {
+            let row = usize::try_from(*action).map_err(|_| {
+                PyValueError::new_err(format!(
+                    "action: found {action}, expected the number of a row, from 0; nothing was changed"
+                ))
+            })?;
+            self.actions.push(Action::Discrete(row));
+        }
+        self.step(py)
+    }
+
+    /// Repeats the last step's actions so often without coming back to Python: what the batch can do by itself.
+    fn repeat(&mut self, py: Python<'_>, steps: u64) -> Result<()> {
+        let mut left = steps;
+        while left > 0 {
+            let (batch, actions, now) = (&mut self.batch, &self.actions, left.min(256));
+            py.detach(|| (0..now).try_for_each(|_| batch.step(actions)))?;
+            left -= now;
+            py.check_signals()?;
+        }
+        Ok(())
+    }
+
+    /// The observations' buffers as arrays that share their memory, by modality: `(num_envs, height, width, channels)`, and
+    /// `state` `(num_envs, 1, 1, n)`.
+    fn buffers(slf: Bound<'_, Self>) -> Result<Bound<'_, PyDict>> {
+        let this = slf.borrow();
+        views(&slf, this.batch.outputs())
+    }
+
+    /// The same of the last observations of episodes that ended in the last step; none unless autoreset is in the same step.
+    fn final_buffers(slf: Bound<'_, Self>) -> Result<Option<Bound<'_, PyDict>>> {
+        let this = slf.borrow();
+        this.batch
+            .final_outputs()
+            .map(|outputs| views(&slf, outputs))
+            .transpose()
+    }
+
+    /// Task, variant, seed, index and hash of the world that an environment is in.
+    fn origin(&self, env: usize) -> Result<(String, String, u64, u64, String)> {
+        let origin = self.supply(env)?.origin();
+        Ok((origin.task, origin.variant, origin.seed, origin.index, origin.hash))
+    }
+
+    /// What happened in an environment in the last step.
+    fn events<'py>(&self, py: Python<'py>, env: usize) -> Result<Bound<'py, PyTuple>> {
+        let events = self.batch.events(env).unwrap_or_default();
+        let events: PyResult<Vec<_>> = events.iter().map(|event| told(py, event)).collect();
+        Ok(PyTuple::new(py, events?)?)
+    }
+
+    /// The JSON of an environment's world as it is now.
+    fn state(&self, env: usize) -> Result<String> {
+        Ok(self.environment(env)?.state().to_json())
+    }
+
+    /// What an environment's world asks for that is not as its author may think.
+    fn warnings(&self, env: usize) -> Result<Vec<String>> {
+        let warnings = self.environment(env)?.warnings();
+        Ok(warnings.iter().map(ToString::to_string).collect())
+    }
+
+    /// A picture of an environment, `(height, width, 3)` bytes: what its agent sees, or the world from above.
+    fn picture<'py>(
+        &self,
+        py: Python<'py>,
+        env: usize,
+        height: u32,
+        width: u32,
+        from_above: bool,
+    ) -> Result<Bound<'py, PyAny>> {
+        let environment = self.environment(env)?;
+        let sides = 1..=4096;
+        if !sides.contains(&height) || !sides.contains(&width) {
+            return Err(EnvError::PictureSize { width, height }.into());
+        }
+        let scene = environment.scene();
+        let pixels = py.detach(|| {
+            if from_above {
+                let agent = environment.agent();
+                top_down(scene, width, height, Some((agent.position, agent.heading_deg))).rgb
+            } else {
+                let mut frame = driftworld_env::Frame::new(width, height);
+                driftworld_env::CpuRenderer::new().render(scene, &environment.camera(), &mut frame);
+                frame.rgb
+            }
+        });
+        let picture = PyArray1::from_vec(py, pixels);
+        Ok(picture.reshape([height as usize, width as usize, 3])?.into_any())
+    }
+}
+
+impl PyBatch {
+    fn step<'py>(&mut self, py: Python<'py>) -> Result<Stepped<'py>> {
+        self.expect_own_process()?;
+        let (batch, actions) = (&mut self.batch, &self.actions);
+        py.detach(|| batch.step(actions))?;
+        let outputs = self.batch.outputs();
+        let eventful = |env: &usize| self.batch.events(*env).is_some_and(|events| !events.is_empty());
+        Ok((
+            PyArray1::from_slice(py, &outputs.rewards),
+            PyArray1::from_slice(py, &outputs.terminated),
+            PyArray1::from_slice(py, &outputs.truncated),
+            PyArray1::from_slice(py, &outputs.success),
+            (0..self.batch.num_envs()).filter(eventful).collect(),
+        ))
+    }
+
+    fn supply(&self, env: usize) -> Result<&Supply> {
+        let num_envs = self.supplies.len();
+        let supply = self.supplies.get(env).map(AsRef::as_ref);
+        supply.ok_or_else(|| EnvError::NoSuchEnv { found: env, num_envs }.into())
+    }
+
+    fn environment(&self, env: usize) -> Result<&driftworld_env::Environment> {
+        let num_envs = self.supplies.len();
+        let environment = self.batch.environment(env);
+        environment.ok_or_else(|| EnvError::NoSuchEnv { found: env, num_envs }.into())
+    }
+
+    /// Threads do not survive a fork: stepping there would wait for ever.
+    fn expect_own_process(&self) -> Result<()> {
+        let here = std::process::id();
+        if here == self.process {
+            return Ok(());
+        }
+        Err(Error::Python(PyRuntimeError::new_err(format!(
+            "found an environment of process {} in process {here}, expected one made here; make environments after the fork, or \
+             send a pickled one",
+            self.process
+        ))))
+    }
+}
+
+/// Arrays over the buffers of observations that a batch keeps.
+fn views<'py>(batch: &Bound<'py, PyBatch>, outputs: &Outputs) -> Result<Bound<'py, PyDict>> {
+    let images = &outputs.images;
+    let num_envs = outputs.rewards.len();
+    let (height, width) = (images.layout.height as usize, images.layout.width as usize);
+    let views = PyDict::new(batch.py());
+    for modality in &images.layout.modalities {
+        let shape = [num_envs, height, width, if *modality == Modality::Rgb { 3 } else { 1 }];
+        match modality {
+            Modality::Rgb => views.set_item("rgb", view(batch, &images.rgb, shape)?)?,
+            Modality::Segmentation => views.set_item("segmentation", view(batch, &images.category, shape)?)?,
+            Modality::Class => views.set_item("class", view(batch, &images.class, shape)?)?,
+            Modality::Instance => views.set_item("instance", view(batch, &images.instance, shape)?)?,
+            Modality::Depth if !images.depth_gray.is_empty() => {
+                views.set_item("depth", view(batch, &images.depth_gray, shape)?)?;
+            }
+            Modality::Depth if !images.depth_millimetres.is_empty() => {
+                views.set_item("depth", view(batch, &images.depth_millimetres, shape)?)?;
+            }
+            Modality::Depth => views.set_item("depth", view(batch, &images.depth, shape)?)?,
+        }
+    }
+    let shape = [num_envs, 1, 1, outputs.state_len];
+    views.set_item("state", view(batch, &outputs.states, shape)?)?;
+    Ok(views)
+}
+
+fn view<'py, T: Element>(
+    batch: &Bound<'py, PyBatch>,
+    buffer: &[T],
+    shape: [usize; 4],
+) -> Result<Bound<'py, PyArray4<T>>> {
+    let array: ArrayView<'_, T, Ix4> = ArrayView::from_shape(shape, buffer)
+        .map_err(|error| PyRuntimeError::new_err(format!("a buffer is not as its layout says: {error}")))?;
+    // SAFETY: the buffer belongs to the batch, which the array keeps alive as its base, and is made once: a batch writes into its
+    // buffers and never replaces them.
+    Ok(unsafe { PyArray4::borrow_from_array(&array, batch.clone().into_any()) })
+}
+
+/// An event as a dictionary.
+fn told<'py>(py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyDict>> {
+    let told = PyDict::new(py);
+    told.set_item("object", event.object)?;
+    told.set_item("tag", event.tag.as_deref())?;
+    let stimulus = serde_json::to_value(event.stimulus).unwrap_or_default();
+    told.set_item("stimulus", stimulus.as_str())?;
+    told.set_item("reward", event.reward)?;
+    told.set_item("destroyed", event.destroyed)?;
+    Ok(told)
+}
+
+fn autoreset_of(name: &str) -> Result<Autoreset> {
+    match name {
+        "next_step" => Ok(Autoreset::NextStep),
+        "same_step" => Ok(Autoreset::SameStep),
+        "disabled" => Ok(Autoreset::Disabled),
+        _ => Err(unknown("autoreset_mode", name, "next_step, same_step or disabled")),
+    }
+}
+
+fn depth_of(name: &str) -> Result<DepthForm> {
+    match name {
+        "float32" => Ok(DepthForm::Metres),
+        "uint16" => Ok(DepthForm::Millimetres),
+        "uint8" => Ok(DepthForm::Gray),
+        _ => Err(unknown("depth", name, "uint8, uint16 or float32")),
+    }
+}
+
+fn unknown(option: &str, found: &str, expected: &str) -> Error {
+    PyValueError::new_err(format!("{option}: found {found:?}, expected {expected}")).into()
+}

@@ -1,0 +1,101 @@
+//! [`Dress`]: what an environment's options lay over each of its worlds. Where the worlds come from is in `supply.rs`.
+
+use driftworld_spec::{ActionModel, ActionSpace, AgentParams, Modality, SpecError, World};
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+/// Options that stand in place of what worlds say; what is `None` stays as it is.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(crate) struct Dress {
+    modalities: Option<Vec<Modality>>,
+    /// Height and width in pixels.
+    size: Option<[u32; 2]>,
+    actions: Option<ActionSpace>,
+    interact: Option<bool>,
+    frame_skip: Option<u32>,
+    max_steps: Option<u32>,
+    /// A limit beside that of the world: the smaller one holds.
+    most_steps: Option<u32>,
+    supersampling: Option<u32>,
+}
+
+impl Dress {
+    /// Lays the options over a world, unchecked.
+    pub(crate) fn put_on(&self, world: &mut World) {
+        let agent = &mut world.agent_params;
+        if let Some(modalities) = &self.modalities {
+            agent.modalities.clone_from(modalities);
+        }
+        if let Some([height, width]) = self.size {
+            agent.observation_size = height;
+            agent.observation_width = (width != height).then_some(width);
+        }
+        if let Some(actions) = &self.actions {
+            agent.actions.clone_from(actions);
+        }
+        lay(&mut agent.interact, self.interact);
+        lay(&mut agent.frame_skip, self.frame_skip);
+        lay(&mut agent.supersampling, self.supersampling);
+        lay(&mut world.max_steps, self.max_steps);
+        if let Some(most) = self.most_steps
+            && (world.max_steps == 0 || most < world.max_steps)
+        {
+            world.max_steps = most;
+        }
+    }
+
+    /// Whether a world is sound with these options, and what an environment of it looks like from outside.
+    ///
+    /// # Errors
+    /// [`SpecError`] with every value out of its range.
+    pub(crate) fn checked_layout(&self, mut world: World) -> Result<Value, SpecError> {
+        self.put_on(&mut world);
+        let world = World::from_json("options", &world.to_json())?;
+        Ok(layout(&world))
+    }
+}
+
+fn lay<T: Copy>(place: &mut T, value: Option<T>) {
+    if let Some(value) = value {
+        *place = value;
+    }
+}
+
+/// What the spaces of an environment are made from.
+fn layout(world: &World) -> Value {
+    let agent = &world.agent_params;
+    let [width, height] = agent.picture_size();
+    json!({
+        "height": height,
+        "width": width,
+        "modalities": agent.modalities,
+        "state_features": agent.state_features,
+        "state_len": agent.state_len(),
+        "max_steps": world.max_steps,
+        "seconds_per_step": agent.time_step * f64::from(agent.frame_skip.max(1)),
+        "action": action(agent, world.environment_params.arena_size()),
+    })
+}
+
+/// The number of rows, or the bounds of the numbers that are looked at.
+fn action(agent: &AgentParams, [x, y]: [f64; 2]) -> Value {
+    if let Some(rows) = agent.num_actions() {
+        return json!({ "n": rows });
+    }
+    let (speed, turn) = (agent.max_linear_speed, agent.max_angular_speed);
+    let mut low_high = match agent.action_model {
+        ActionModel::ByWaypoint => vec![[-x / 2.0, x / 2.0], [-y / 2.0, y / 2.0], [-turn, turn]],
+        ActionModel::ByVelocity | ActionModel::OnRails | ActionModel::None => {
+            let mut numbers = vec![[-speed, speed], [-turn, turn]];
+            if agent.interact {
+                numbers.push([0.0, 1.0]);
+            }
+            numbers
+        }
+    };
+    if agent.actions == ActionSpace::Normalized {
+        low_high.fill([-1.0, 1.0]);
+    }
+    json!({ "bounds": low_high })
+}

@@ -1,0 +1,272 @@
+//! [`Supply`]: where one environment's worlds come from, episode after episode. What is laid over them is in `dress.rs`.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use driftworld_generator::{Drift, GeneratorError, Sampler, Schedule, Switch};
+use driftworld_spec::{DriftSchedule, DriftSwitch, RegimeDrift, Variant, World};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::dress::Dress;
+use crate::errors::Result;
+use crate::task::PyVariant;
+
+/// Worlds without end: number *i* under a seed.
+#[derive(Clone)]
+pub(crate) enum Stream {
+    /// Of these variants, one in each episode in turn, over and over.
+    Variants(Vec<Variant>),
+    /// On the way from one variant to another, which ends with episode number `episodes` − 1.
+    Drift { drift: Arc<Drift>, episodes: u64 },
+    /// The same world again and again, and what it is called.
+    World { world: Arc<World>, name: String },
+}
+
+/// A [`Stream`] in Python's hands.
+#[pyclass(name = "Stream", module = "driftworld._native", frozen)]
+pub(crate) struct PyStream(pub(crate) Stream);
+
+#[pymethods]
+impl PyStream {
+    /// The worlds of variants, one variant in each episode in turn, over and over.
+    #[staticmethod]
+    fn variants(variants: Vec<Bound<'_, PyVariant>>) -> Result<Self> {
+        if variants.is_empty() {
+            return Err(PyValueError::new_err("variants: found none, expected at least one").into());
+        }
+        let variants = variants.iter().map(|variant| variant.get().0.clone()).collect();
+        Ok(Self(Stream::Variants(variants)))
+    }
+
+    /// The worlds on the way from one variant to another. `schedule` and `switch` are JSON, as in a scenario.
+    #[staticmethod]
+    fn drift(
+        from: &Bound<'_, PyVariant>,
+        to: &Bound<'_, PyVariant>,
+        schedule: &str,
+        switch: &str,
+        episodes: u64,
+    ) -> Result<Self> {
+        let wrong = |name: &str, found: &str, expected: &str| {
+            PyValueError::new_err(format!("drift: found {name} {found}, expected {expected}"))
+        };
+        let schedule: DriftSchedule = serde_json::from_str(schedule).map_err(|_| {
+            let expected = "\"linear\", \"cosine\", {\"steps\": n} or {\"sawtooth\": n}";
+            wrong("schedule", schedule, expected)
+        })?;
+        let switch: DriftSwitch =
+            serde_json::from_str(switch).map_err(|_| wrong("switch", switch, "\"at_point\" or \"mixture\""))?;
+        if episodes == 0 {
+            return Err(wrong("episodes", "0", "at least 1").into());
+        }
+        let switch = match switch {
+            DriftSwitch::AtPoint => Switch::AtPoint,
+            // Under one seed, so that every environment meets a new value in the same episode.
+            DriftSwitch::Mixture => Switch::Mixture { seed: 0 },
+        };
+        let drift = Drift::new(from.get().0.clone(), to.get().0.clone())?
+            .with_schedule(Schedule::from(schedule))
+            .with_switch(switch);
+        let drift = Arc::new(drift);
+        Ok(Self(Stream::Drift { drift, episodes }))
+    }
+
+    /// One world, in every episode from its start. `name` is what messages and infos call it.
+    #[staticmethod]
+    fn world(name: String, text: &str) -> Result<Self> {
+        let world = Arc::new(World::from_json(&name, text)?);
+        Ok(Self(Stream::World { world, name }))
+    }
+
+    /// What environments of its worlds look like with these options (JSON), for each variant that it names, as JSON.
+    fn layouts(&self, dress: &str) -> Result<Vec<String>> {
+        let dress = dress_of(dress)?;
+        let worlds = match &self.0 {
+            Stream::Variants(variants) => variants
+                .iter()
+                .map(first_world)
+                .collect::<std::result::Result<_, _>>()?,
+            Stream::Drift { drift, .. } => {
+                let ends = [drift.at(0.0, 0)?, drift.at(1.0, 0)?];
+                ends.iter().map(first_world).collect::<std::result::Result<_, _>>()?
+            }
+            Stream::World { world, .. } => vec![World::clone(world)],
+        };
+        let layouts = worlds
+            .into_iter()
+            .map(|world| Ok(dress.checked_layout(world)?.to_string()));
+        layouts.collect()
+    }
+}
+
+fn first_world(variant: &Variant) -> std::result::Result<World, GeneratorError> {
+    driftworld_generator::sample(variant, 0, 0)
+}
+
+/// Options from the JSON that the package makes of them.
+pub(crate) fn dress_of(text: &str) -> Result<Dress> {
+    Ok(serde_json::from_str(text).map_err(|error| PyValueError::new_err(format!("options: {error}")))?)
+}
+
+/// Where a world came from.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Origin {
+    pub(crate) task: String,
+    pub(crate) variant: String,
+    pub(crate) seed: u64,
+    pub(crate) index: u64,
+    /// The hash of the world as it was drawn, before options were laid over it.
+    pub(crate) hash: String,
+}
+
+/// Hands one environment its worlds.
+pub(crate) struct Supply {
+    dress: Arc<Dress>,
+    state: Mutex<State>,
+}
+
+struct State {
+    stream: Stream,
+    /// A sampler for each variant of the stream, made when it is first needed.
+    samplers: Vec<Option<Sampler>>,
+    seed: u64,
+    /// Index of the next world.
+    next: u64,
+    /// How many episodes the stream has been asked for.
+    turn: u64,
+    /// A world for the next episode alone.
+    given: Option<World>,
+    origin: Origin,
+}
+
+impl Supply {
+    pub(crate) fn new(stream: Stream, dress: Arc<Dress>) -> Self {
+        Self {
+            dress,
+            state: Mutex::new(State {
+                samplers: no_samplers(&stream),
+                stream,
+                seed: 0,
+                next: 0,
+                turn: 0,
+                given: None,
+                origin: Origin::default(),
+            }),
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        // A panic elsewhere leaves nothing half done here.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The next world, dressed. After an error the same world is asked for again.
+    pub(crate) fn world(&self) -> std::result::Result<World, String> {
+        let mut state = self.lock();
+        let (mut world, origin) = state.draw().map_err(|error| error.to_string())?;
+        if state.given.take().is_none() {
+            state.next = state.next.saturating_add(1);
+            state.turn = state.turn.saturating_add(1);
+        }
+        state.origin = origin;
+        drop(state);
+        self.dress.put_on(&mut world);
+        Ok(world)
+    }
+
+    /// Where the last world came from.
+    pub(crate) fn origin(&self) -> Origin {
+        self.lock().origin.clone()
+    }
+
+    /// Draws under another seed from now on, from this index on.
+    pub(crate) fn seed(&self, seed: u64, index: u64) {
+        let mut state = self.lock();
+        if state.seed != seed {
+            state.samplers.fill_with(|| None);
+        }
+        (state.seed, state.next, state.turn) = (seed, index, 0);
+    }
+
+    /// Goes on with the world of this index.
+    pub(crate) fn index(&self, index: u64) {
+        self.lock().next = index;
+    }
+
+    /// Takes worlds from another stream from now on.
+    pub(crate) fn stream(&self, stream: Stream) {
+        let mut state = self.lock();
+        state.samplers = no_samplers(&stream);
+        (state.stream, state.turn) = (stream, 0);
+    }
+
+    /// Hands out this world once.
+    pub(crate) fn give(&self, world: World) {
+        self.lock().given = Some(world);
+    }
+
+    /// Seed, next index and turn: what a copy has to be told.
+    pub(crate) fn place(&self) -> (u64, u64, u64) {
+        let state = self.lock();
+        (state.seed, state.next, state.turn)
+    }
+
+    /// Goes on where another supply stands.
+    pub(crate) fn set_place(&self, (seed, next, turn): (u64, u64, u64)) {
+        self.seed(seed, next);
+        self.lock().turn = turn;
+    }
+}
+
+fn no_samplers(stream: &Stream) -> Vec<Option<Sampler>> {
+    let length = if let Stream::Variants(variants) = stream {
+        variants.len()
+    } else {
+        0
+    };
+    (0..length).map(|_| None).collect()
+}
+
+impl State {
+    fn draw(&mut self) -> std::result::Result<(World, Origin), GeneratorError> {
+        let (seed, index) = (self.seed, self.next);
+        let origin = |world: &World, task: &str, variant: String| Origin {
+            task: task.to_owned(),
+            variant,
+            seed,
+            index,
+            hash: world.hash(),
+        };
+        if let Some(world) = &self.given {
+            return Ok((world.clone(), origin(world, "given", "given".to_owned())));
+        }
+        let drawn = match &self.stream {
+            Stream::Variants(variants) => {
+                let turn = (self.turn % variants.len() as u64) as usize;
+                let variant = &variants[turn];
+                let sampler = self.samplers[turn].get_or_insert_with(|| Sampler::new(variant, seed));
+                let world = sampler.world(index)?;
+                let origin = origin(&world, variant.task().name(), variant.id());
+                (world, origin)
+            }
+            Stream::Drift { drift, episodes } => {
+                let progress = RegimeDrift::to("").progress(clamped(index), clamped(*episodes));
+                let progress = if *episodes == 1 { 1.0 } else { progress };
+                let variant = drift.at(progress, index)?;
+                let world = driftworld_generator::sample(&variant, seed, index)?;
+                let origin = origin(&world, variant.task().name(), variant.id());
+                (world, origin)
+            }
+            Stream::World { world, name } => {
+                let world = World::clone(world);
+                let origin = origin(&world, name, name.clone());
+                (world, origin)
+            }
+        };
+        Ok(drawn)
+    }
+}
+
+fn clamped(count: u64) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}
