@@ -247,8 +247,8 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         members = self._members
         if self._mode == AutoresetMode.SAME_STEP:
             members.note_finals(env)
-            final = {key: infos[key][env] for key in infos if not key.startswith("_")}
-            final = {key: value.item() if isinstance(value, np.generic) else value for key, value in final.items() if key in _STEP_KEYS}
+            final = {key: infos[key][env] for key in _STEP_KEYS if key in infos}
+            final = {key: value.item() if isinstance(value, np.generic) else value for key, value in final.items()}
             for key in ("final_obs", "_final_obs", "final_info", "_final_info"):
                 if key not in infos:
                     infos[key] = self._empty(key)
