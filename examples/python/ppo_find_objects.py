@@ -19,7 +19,7 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import torch
-from record import Record, folder_of
+from record import Record, Watch, folder_of
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
@@ -34,7 +34,7 @@ ID = "driftworld/FindObjects-v0"
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
 # Each action is held for half a second of simulated time, so that 60 of them make the task's 300 time steps.
 OPTIONS: dict[str, Any] = {
-    "modalities": "rgb", "size": 64, "actions": ACTIONS, "interact": False, "frame_skip": 5, "max_episode_steps": 60,
+    "modalities": "rgb", "size": 64, "actions": ACTIONS, "interact": False, "frame_skip": 5, "max_steps": 60,
 }  # fmt: skip
 # The worlds that nobody learns from.
 EVALUATION_SEED = 1_000_000
@@ -174,7 +174,7 @@ def main() -> None:
     """Learns with every seed, compares, and writes down what came of it if asked to."""
     arguments = parse_arguments()
     torch.set_num_threads(arguments.threads)
-    began = time.perf_counter()
+    watch = Watch()
     lines = {
         "scripted expert": expert(arguments)["reward"],
         "random": evaluate(arguments, None)["reward"],
@@ -206,7 +206,7 @@ def main() -> None:
             settings={"id": ID, **vars(arguments), **OPTIONS, "evaluation_seed": EVALUATION_SEED},
             variants=[f"find_objects#{arguments.variant}"],
             seeds=[*arguments.seeds, EVALUATION_SEED],
-            curve=curve, lines=lines, table=table, seconds=time.perf_counter() - began,
+            curve=curve, lines=lines, table=table, watch=watch,
             labels=("steps of learning, each held for five time steps", "reward of an episode, mean of the last 100"),
         ).write(arguments.results)  # fmt: skip
 

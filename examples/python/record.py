@@ -14,6 +14,7 @@ import json
 import os
 import platform
 import sys
+import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -28,6 +29,19 @@ def folder_of(program: str) -> str:
     return str(FOLDER / Path(program).stem)
 
 
+class Watch:
+    """When a run began, and how busy the machine was then."""
+
+    def __init__(self) -> None:
+        self._began = time.perf_counter()
+        self.load = round(os.getloadavg()[0], 2)
+
+    @property
+    def seconds(self) -> float:
+        """Seconds since."""
+        return time.perf_counter() - self._began
+
+
 @dataclass
 class Record:
     """What is to be written down of one run of an example.
@@ -37,8 +51,9 @@ class Record:
         text: What was done, in a few sentences.
         settings: Everything that was set: the environment's options, the learner's, the seeds.
         variants: The variants that were lived in, `task#variant`.
-        seeds: The seeds of the worlds that were learned from.
+        seeds: The seeds whose first worlds are named by their hashes.
         curve: Rows of numbers; those with the same `seed` (or `run`) make one line of the figure.
+        watch: Started when the run began.
         lines: Levels to compare with, by name, drawn across the figure.
         table: Rows of the page's table.
         axes: Which columns of the curve are drawn: across and up.
@@ -50,12 +65,11 @@ class Record:
     variants: Sequence[str]
     seeds: Sequence[int]
     curve: Sequence[Mapping[str, Any]]
-    seconds: float
+    watch: Watch
     lines: Mapping[str, float] = field(default_factory=dict)
     table: Sequence[Mapping[str, Any]] = ()
     axes: tuple[str, str] = ("steps", "reward")
     labels: tuple[str, str] = ("steps of learning", "reward of an episode, mean of the last 100")
-    load_before: float = field(default_factory=lambda: round(os.getloadavg()[0], 2))
 
     def write(self, folder: str | Path) -> None:
         """Writes the folder; what stood there under the same names is written over."""
@@ -76,8 +90,8 @@ class Record:
         return {
             "command": " ".join(["python", f"examples/python/{Path(sys.argv[0]).name}", *_spoken(sys.argv[1:])]),
             "date": datetime.date.today().isoformat(),
-            "seconds": round(self.seconds, 1),
-            "machine": {"processor": _processor(), "cores": os.cpu_count(), "load_before": self.load_before},
+            "seconds": round(self.watch.seconds, 1),
+            "machine": {"processor": _processor(), "cores": os.cpu_count(), "load_before": self.watch.load},
             "versions": {"python": platform.python_version(), **_versions()},
             "settings": dict(self.settings),
             "worlds": {variant: _hashes(variant, self.seeds) for variant in self.variants},
