@@ -65,7 +65,7 @@ class Members:
         self.batch = _native.Batch(
             streams, options.dress, autoreset, num_threads, options.renderer, options.depth, list(options.libraries)
         )
-        self._step = self.batch.step_rows if isinstance(self.action_space, spaces.Discrete) else self.batch.step_numbers
+        self._is_discrete = isinstance(self.action_space, spaces.Discrete)
         self._views = self._arranged(self.batch.buffers())
         last = self.batch.final_buffers()
         self._final_views = None if last is None else self._arranged(last)
@@ -215,14 +215,14 @@ class Members:
             return view.copy() if copy else view
         return {kind: view.copy() if copy else view for kind, view in self._views.items()}
 
-    def step_one(self, action: Any) -> Stepped:
-        """A step of the only environment."""
-        if isinstance(self.action_space, spaces.Discrete):
-            return self.batch.step_rows(np.array([self._row(action)], dtype=np.int64))
+    def step_one(self, action: Any) -> tuple[float, bool, bool, bool, bool]:
+        """A step of the only environment: reward, terminated, truncated, success, whether anything happened."""
+        if self._is_discrete:
+            return self.batch.step_one_by_row(self._row(action))
         numbers = np.asarray(action, dtype=np.float64)
         if numbers.shape != self.action_space.shape:
             raise ValueError(f"action: found shape {numbers.shape}, expected {self.action_space.shape}; nothing was changed")
-        return self.batch.step_numbers(numbers.reshape(1, -1))
+        return self.batch.step_one_by_numbers(numbers.tolist())
 
     @staticmethod
     def _row(action: Any) -> int:
@@ -235,12 +235,11 @@ class Members:
 
     def step(self, actions: Any) -> Stepped:
         """A step of all: actions of shape ``(num_envs,)`` or ``(num_envs, numbers)``."""
-        discrete = isinstance(self.action_space, spaces.Discrete)
         given = np.asarray(actions)
         wanted = (self.num_envs, *(self.action_space.shape or ()))
         if given.shape != wanted:
             raise ValueError(f"actions: found shape {given.shape}, expected {wanted}; nothing was changed")
-        if discrete:
+        if self._is_discrete:
             if not np.issubdtype(given.dtype, np.integer):
                 raise ValueError(f"actions: found {given.dtype}, expected whole numbers; nothing was changed")
             return self.batch.step_rows(np.ascontiguousarray(given, dtype=np.int64))
