@@ -101,6 +101,11 @@ impl PyTask {
         self.0.variant_names()
     }
 
+    /// The same as `variants`.
+    fn all_variants(&self) -> Vec<PyVariant> {
+        self.variants()
+    }
+
     /// All variants that it declares, in the order of the document.
     #[getter]
     fn variants(&self) -> Vec<PyVariant> {

@@ -149,7 +149,8 @@ impl Slot {
         self.environment.reset(world)?;
         self.current = self.next;
         self.next = self.next.saturating_add(1);
-        self.is_over = false;
+        // A world that was written down after its end has nothing left to live.
+        self.is_over = self.environment.ended();
         Ok(())
     }
 

@@ -1,0 +1,12 @@
+"""Gymnasium environments: one world at a time, or many at once.
+
+What a world does in a step is decided in Rust; here are the spaces, the infos and Gymnasium's rules around it.
+"""
+
+from __future__ import annotations
+
+from driftworld.envs.registration import ENV_IDS, register_envs
+from driftworld.envs.single import DriftworldEnv
+from driftworld.envs.vector import DriftworldVectorEnv
+
+__all__ = ["ENV_IDS", "DriftworldEnv", "DriftworldVectorEnv", "register_envs"]

@@ -1,0 +1,221 @@
+"""The options of environments: read once, handed to the native batch as what it lays over each world."""
+
+from __future__ import annotations
+
+import json
+import numbers
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from driftworld import _native
+from driftworld.envs.origin import Home
+from driftworld.errors import SpecError
+
+#: What an observation may hold.
+MODALITIES = ("rgb", "depth", "segmentation", "class", "instance", "state")
+DEFAULT_MODALITIES = ("rgb", "depth", "segmentation", "state")
+DEPTHS = ("uint8", "uint16", "float32")
+RENDERERS = ("cpu", "gpu", "auto")
+LABELS = ("none", "info", "obs")
+ACTIONS = {"normalized": "normalized", "continuous": "continuous", "discrete": "default_discrete"}
+
+
+@dataclass(frozen=True)
+class Options:
+    """Checked options of an environment; single and vector environments share them.
+
+    Attributes:
+        modalities: What an observation holds, in this order.
+        is_dict: Whether an observation is a dictionary, or its one modality alone.
+        depth: The numbers of depth images.
+        renderer: What draws.
+        task_label: Where the agent is told which variant it is in.
+        libraries: The bytes of asset libraries, the last one first in search.
+        dress: What is laid over each world, as JSON.
+    """
+
+    modalities: tuple[str, ...]
+    is_dict: bool
+    depth: str
+    renderer: str
+    task_label: str
+    libraries: tuple[bytes, ...]
+    dress: str
+
+    @classmethod
+    def read(
+        cls,
+        *,
+        modalities: str | Sequence[str] = DEFAULT_MODALITIES,
+        size: int | tuple[int, int] | None = None,
+        depth: str = "uint8",
+        actions: str | Sequence[Sequence[float]] | None = "normalized",
+        interact: bool | None = None,
+        frame_skip: int | None = None,
+        max_steps: int | None = None,
+        most_steps: int | None = None,
+        supersampling: int | None = None,
+        renderer: str = "cpu",
+        task_label: str = "none",
+        assets: str | PathLike[str] | Iterable[str | PathLike[str]] = (),
+    ) -> Options:
+        """Reads them.
+
+        Raises:
+            ValueError: For a value that is not among those that an option knows; it says which there are.
+        """
+        is_dict = not isinstance(modalities, str)
+        kinds = tuple(modalities) if is_dict else (modalities,)
+        for kind in kinds:
+            _one_of("modalities", kind, MODALITIES)
+        if not kinds or len(set(kinds)) < len(kinds):
+            raise ValueError(f"modalities: found {modalities!r}, expected some of {', '.join(MODALITIES)}, each once")
+        _one_of("depth", depth, DEPTHS)
+        _one_of("renderer", renderer, RENDERERS)
+        _one_of("task_label", task_label, LABELS)
+        if task_label == "obs" and not is_dict:
+            raise ValueError('task_label: found "obs", expected modalities to be a list: a single image has no room for it')
+        dress = {
+            "modalities": [kind for kind in kinds if kind != "state"],
+            "size": _size(size),
+            "actions": _actions(actions),
+            "interact": interact,
+            "frame_skip": _whole("frame_skip", frame_skip),
+            "max_steps": _whole("max_steps", max_steps),
+            "most_steps": _whole("max_episode_steps", most_steps),
+            "supersampling": _whole("supersampling", supersampling),
+        }
+        return cls(
+            modalities=kinds,
+            is_dict=is_dict,
+            depth=depth,
+            renderer=renderer,
+            task_label=task_label,
+            libraries=_libraries(assets),
+            dress=json.dumps({name: value for name, value in dress.items() if value is not None}),
+        )
+
+    def layouts(self, stream: _native.Stream) -> list[dict[str, Any]]:
+        """What environments of each variant of a stream look like.
+
+        Raises:
+            SpecError: If an option is out of range, or does not go with the worlds.
+        """
+        try:
+            return [json.loads(text) for text in stream.layouts(self.dress)]
+        except SpecError as error:
+            raise _as_options(error) from None
+
+    def layout(self, home: Home, stream: Any = None) -> dict[str, Any]:
+        """What environments of these worlds look like: picture size, state features, actions.
+
+        Raises:
+            SpecError: If an option is out of range, or does not go with the worlds.
+            ValueError: If variants of the stream differ in their actions.
+        """
+        layouts = self.layouts(stream or home.stream())
+        for other in layouts[1:]:
+            expect_same_spaces(layouts[0], other)
+        layout: dict[str, Any] = layouts[0]
+        return layout
+
+
+#: The option behind each value that options lay over a world.
+_OPTIONS = {
+    "/agent_params/modalities": "modalities",
+    "/agent_params/observation_size": "size",
+    "/agent_params/observation_width": "size",
+    "/agent_params/actions": "actions",
+    "/agent_params/interact": "interact",
+    "/agent_params/frame_skip": "frame_skip",
+    "/agent_params/supersampling": "supersampling",
+    "/max_steps": "max_steps",
+}
+
+
+def _as_options(error: SpecError) -> SpecError:
+    """The same mistake, told of the option instead of the world that it was laid over."""
+    lines = []
+    for problem in error.problems:
+        option = next((name for pointer, name in _OPTIONS.items() if problem["pointer"].startswith(pointer)), None)
+        if option is None:
+            return error
+        expected = problem["expected"].replace('{"discrete": [[3, 4, 0], [-3, 4, 0]]}', "actions=[[3, 4, 0], [-3, 4, 0]]")
+        advice = f"; {problem['advice']}" if problem["advice"] else ""
+        lines.append(f"{option}: found {problem['found']}, expected {expected}{advice}")
+    if not lines:
+        return error
+    problems = [{**problem, "line": None, "column": None} for problem in error.problems]
+    return SpecError("\n".join(lines), code=error.code, problems=problems)
+
+
+def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any]) -> None:
+    """Checks that worlds of another variant fit into the spaces of an environment.
+
+    Raises:
+        ValueError: That says what differs.
+    """
+    for key in ("height", "width", "state_features"):
+        if ours[key] != theirs[key]:
+            raise ValueError(
+                f"variant: found {key} {theirs[key]}, expected {ours[key]} as the environment was made with; give option size, "
+                "or make an environment of its own"
+            )
+    shapes = [("n", layout["action"]["n"]) if "n" in layout["action"] else ("numbers", len(layout["action"]["bounds"])) for layout in (ours, theirs)]
+    if shapes[0] != shapes[1]:
+        raise ValueError(
+            f"variant: found actions of {shapes[1][1]} {_words(shapes[1][0])}, expected {shapes[0][1]} {_words(shapes[0][0])} as the "
+            "environment was made with; give options actions and interact, or make an environment of its own"
+        )
+
+
+def _words(kind: str) -> str:
+    return "rows" if kind == "n" else "numbers"
+
+
+def _one_of(option: str, found: Any, known: Sequence[str]) -> None:
+    if found not in known:
+        raise ValueError(f"{option}: found {found!r}, expected one of {', '.join(known)}")
+
+
+def _whole(option: str, found: Any) -> int | None:
+    if found is None:
+        return None
+    if isinstance(found, bool) or not isinstance(found, numbers.Integral) or not 0 <= found < 2**32:
+        raise ValueError(f"{option}: found {found!r}, expected a whole number")
+    return int(found)
+
+
+def _size(size: Any) -> list[int] | None:
+    if size is None:
+        return None
+    sides = [size, size] if isinstance(size, numbers.Integral) else list(size)
+    if len(sides) != 2:
+        raise ValueError(f"size: found {size!r}, expected pixels, or (height, width)")
+    return [_whole("size", side) or 0 for side in sides]
+
+
+def _actions(actions: Any) -> Any:
+    if actions is None:
+        return None
+    if isinstance(actions, str):
+        _one_of("actions", actions, tuple(ACTIONS))
+        return ACTIONS[actions]
+    try:
+        table = [[float(number) for number in row] for row in actions]
+    except TypeError:
+        table = []
+    if not table or any(len(row) != 3 for row in table):
+        raise ValueError(
+            f"actions: found {actions!r}, expected one of {', '.join(ACTIONS)}, or a table of rows of three numbers, as in "
+            "[[10, 0, 0], [0, 90, 0]]"
+        )
+    return {"discrete": table}
+
+
+def _libraries(assets: Any) -> tuple[bytes, ...]:
+    paths = [assets] if isinstance(assets, (str, PathLike)) else list(assets)
+    return tuple(Path(path).read_bytes() for path in paths)

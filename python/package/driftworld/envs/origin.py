@@ -1,0 +1,143 @@
+"""Where worlds come from: names, handles and documents turned into what the native batch draws from.
+
+Which options stand over the worlds is in ``options.py``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from driftworld import _native
+
+#: The largest seed: what fits into the arrays of vector environments' infos.
+MAX_SEED = 2**63 - 1
+
+
+class Home:
+    """The task, or the one world, that an environment is made for.
+
+    Args:
+        task: A built-in name or a path, with or without ``#variant``; a task spec or a variant.
+        world: The path of a world, its JSON, or a dictionary, in place of a task.
+        variant: The name of the variant to begin with, in place of the one behind ``#``.
+    """
+
+    def __init__(self, task: Any, world: Any, variant: str | None) -> None:
+        if (task is None) == (world is None):
+            found = "neither" if task is None else "both"
+            raise ValueError(f'environment: found {found} of task and world, expected one, as in task="my_task.json#variant"')
+        self.task: _native.TaskSpec | None = None
+        self.world: tuple[str, str] | None = None
+        self.first: _native.Variant | None = None
+        if world is not None:
+            if variant is not None:
+                raise ValueError("variant: found one beside world, expected none: a world has no variants")
+            self.world = world_text(world)
+            return
+        self.task, named = _task(task)
+        if variant is None and named is not None:
+            self.first = named
+        else:
+            self.first = self.task.variant(variant)
+
+    def stream(self) -> _native.Stream:
+        """The worlds that the environment begins with."""
+        if self.world is not None:
+            return _native.Stream.world(*self.world)
+        assert self.first is not None, "a home is of a task or of a world"
+        return _native.Stream.variants([self.first])
+
+    def variant(self, name: Any, option: str) -> _native.Variant:
+        """A variant by what a user calls it: a name, ``task#variant`` of this or another task, or a handle."""
+        handle = _handle(name)
+        if handle is not None:
+            return handle
+        if not isinstance(name, str):
+            raise TypeError(f"{option}: found {name!r}, expected the name of a variant")
+        if "#" in name:
+            task, _, variant = name.rpartition("#")
+            if self.task is not None and task == self.task.name:
+                return self.task.variant(variant)
+            return _native.TaskSpec.load(task).variant(variant)
+        if self.task is None:
+            raise ValueError(f"{option}: found {name!r} in an environment of one world, expected none or task#variant")
+        return self.task.variant(name)
+
+    def drift(self, drift: Mapping[str, Any]) -> _native.Stream:
+        """The worlds on the way from the first variant to another."""
+        known = {"to", "episodes", "schedule", "switch"}
+        unknown = sorted(set(drift) - known)
+        if unknown or "to" not in drift or "episodes" not in drift:
+            raise ValueError(
+                f'drift: found {dict(drift)!r}, expected "to" and "episodes", and "schedule" and "switch" if wanted, as in '
+                '{"to": "dusk", "episodes": 500, "schedule": "cosine"}'
+            )
+        if self.first is None:
+            raise ValueError("drift: found one in an environment of one world, expected none: a world has no variants")
+        to = self.variant(drift["to"], "drift.to")
+        schedule = json.dumps(drift.get("schedule", "linear"))
+        return _native.Stream.drift(
+            self.first, to, schedule, json.dumps(drift.get("switch", "at_point")), _episodes(drift["episodes"])
+        )
+
+
+def _episodes(found: Any) -> int:
+    if isinstance(found, bool) or not isinstance(found, int) or found < 1:
+        raise ValueError(f"drift.episodes: found {found!r}, expected a whole number from 1 on")
+    return found
+
+
+def _handle(value: Any) -> _native.Variant | None:
+    """The native variant in a variant of the toolkit's, or itself."""
+    value = getattr(value, "_native", value)
+    return value if isinstance(value, _native.Variant) else None
+
+
+def _task(task: Any) -> tuple[_native.TaskSpec, _native.Variant | None]:
+    """The task, and the variant that its name has behind ``#``."""
+    variant = _handle(task)
+    if variant is not None:
+        return variant.task, variant
+    task = getattr(task, "_native", task)
+    if isinstance(task, _native.TaskSpec):
+        return task, None
+    if isinstance(task, Mapping):
+        return _native.TaskSpec.from_json("task", json.dumps(task)), None
+    if isinstance(task, (str, os.PathLike)):
+        name = os.fspath(task)
+        spec = _native.TaskSpec.load(name)
+        _, hash_sign, own = name.rpartition("#")
+        return spec, spec.variant(own) if hash_sign else None
+    raise TypeError(f"task: found {task!r}, expected a name, a path, a TaskSpec, a Variant, or a dictionary")
+
+
+def world_text(world: Any) -> tuple[str, str]:
+    """The name and the JSON of a world: a path, JSON text, or a dictionary."""
+    if isinstance(world, Mapping):
+        return "world", json.dumps(world)
+    if isinstance(world, str) and world.lstrip().startswith("{"):
+        return "world", world
+    if isinstance(world, (str, os.PathLike)):
+        path = Path(world)
+        try:
+            return str(path), path.read_text(encoding="utf-8")
+        except FileNotFoundError as error:
+            raise FileNotFoundError(
+                f"world: found no file {str(path)!r}, expected the path of a world, its JSON, or a dictionary"
+            ) from error
+    raise TypeError(f"world: found {type(world).__name__}, expected a path, JSON text or a dictionary")
+
+
+def seed_in_range(seed: Any, option: str = "seed") -> int:
+    """A seed or index as a whole number that worlds can be drawn under."""
+    try:
+        number = int(seed.__index__())
+    except AttributeError:
+        raise TypeError(f"{option}: found {seed!r}, expected a whole number") from None
+    if not 0 <= number <= MAX_SEED:
+        raise ValueError(f"{option}: found {number}, expected a whole number in 0..{MAX_SEED}")
+    return number

@@ -1,0 +1,44 @@
+"""Pictures for people: what an agent sees, the world from above, or both. Observations are not made here."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from driftworld import _native
+
+CAMERAS = ("agent", "above", "both")
+
+
+class Camera:
+    """Where pictures are taken from, and how large they are.
+
+    Args:
+        name: ``"agent"``, ``"above"`` or ``"both"``, side by side.
+        size: Height and width in pixels, each 1 to 4096.
+    """
+
+    def __init__(self, name: str, size: Any) -> None:
+        if name not in CAMERAS:
+            raise ValueError(f"camera: found {name!r}, expected one of {', '.join(CAMERAS)}")
+        try:
+            height, width = (int(side) for side in size)
+        except (TypeError, ValueError):
+            height, width = 0, 0
+        if not (1 <= height <= 4096 and 1 <= width <= 4096):
+            raise ValueError(f"render_size: found {size!r}, expected (height, width), each 1 to 4096 pixels")
+        self._name = name
+        self._size = (height, width)
+
+    def picture(self, batch: _native.Batch, env: int) -> NDArray[np.uint8]:
+        """One environment, uint8 (height, width, 3)."""
+        height, width = self._size
+        if self._name != "both":
+            return batch.picture(env, height, width, self._name == "above")
+        left = max(1, width - height) if width > height else max(1, width // 2)
+        seen = batch.picture(env, height, left, False)
+        if left == width:
+            return seen
+        return np.concatenate([seen, batch.picture(env, height, width - left, True)], axis=1)

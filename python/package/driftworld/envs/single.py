@@ -1,0 +1,216 @@
+"""``DriftworldEnv``: one environment. It is a native batch of one; the many are in ``vector.py``."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from os import PathLike
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
+from driftworld.envs.members import Members
+from driftworld.envs.options import DEFAULT_MODALITIES, Options
+from driftworld.envs.picture import Camera
+from driftworld.envs.window import Window
+
+
+class DriftworldEnv(gymnasium.Env[Any, Any]):
+    """A first-person world of a task.
+
+    Args:
+        task: A built-in name or a path, with or without ``#variant``; a task spec or a variant.
+        world: The path of a world, its JSON, or a dictionary, in place of a task.
+        variant: The variant to begin with; without one, the one behind ``#``, else that of all defaults.
+        modalities: What an observation holds: ``"rgb"`` alone is a ``Box``, a list such as ``["rgb", "depth"]`` a ``Dict``.
+            There are ``rgb`` uint8 (h, w, 3); ``depth`` (h, w, 1); ``segmentation`` uint8 (h, w, 1), reward categories; ``class``
+            uint16 and ``instance`` uint32 (h, w, 1); ``state`` float32 (n,).
+        size: Pixels along each side, or (height, width); as the task says if not given.
+        depth: ``"uint8"``, grey from 0 at the camera to 255 at 100 m; ``"uint16"``, millimetres; ``"float32"``, metres.
+        actions: ``"normalized"``, −1..1; ``"continuous"``, in m/s and °/s; ``"discrete"``, rows of the built-in table; or a table
+            of rows (speed in m/s, turn rate in °/s, interact if above 0.5); ``None`` for what the task says.
+        interact: Whether the agent can interact; as the task says if not given.
+        frame_skip: Time steps for which each action is held; as the task says if not given.
+        max_steps: Steps after which an episode is truncated, 0 for never; as the task says if not given.
+        supersampling: Points per pixel along each side, 1 to 4; more is smoother and slower.
+        renderer: ``"cpu"``, ``"gpu"``, or ``"auto"`` for a graphics card if there is one.
+        drift: The way to another variant, such as ``{"to": "dusk", "episodes": 500, "schedule": "cosine"}``.
+        task_label: Whether the agent is told its variant: ``"none"``, in ``"info"``, or as a part of ``"obs"``, one-hot.
+        assets: Paths of asset libraries (``driftworld assets pack``).
+        render_mode: ``"rgb_array"``, ``"human"`` or ``None``.
+        render_size: Height and width of rendered pictures.
+        camera: What is rendered: what the ``"agent"`` sees, the world from ``"above"``, or ``"both"``.
+
+    Raises:
+        SpecError: If the task or an option is wrong, with pointer, line and column.
+        TaskError: If there is no such task.
+        ValueError: For an option that is not known.
+        EnvError: If a graphics card is asked for and none works.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 10}
+
+    def __init__(
+        self,
+        task: Any = None,
+        *,
+        world: Any = None,
+        variant: str | None = None,
+        modalities: str | Sequence[str] = DEFAULT_MODALITIES,
+        size: int | tuple[int, int] | None = None,
+        depth: str = "uint8",
+        actions: str | Sequence[Sequence[float]] | None = "normalized",
+        interact: bool | None = None,
+        frame_skip: int | None = None,
+        max_steps: int | None = None,
+        supersampling: int | None = None,
+        renderer: str = "cpu",
+        drift: Mapping[str, Any] | None = None,
+        task_label: str = "none",
+        assets: str | PathLike[str] | Iterable[str | PathLike[str]] = (),
+        render_mode: str | None = None,
+        render_size: tuple[int, int] = (480, 640),
+        camera: str = "agent",
+    ) -> None:
+        self._made_with = {name: value for name, value in locals().items() if name not in ("self", "__class__")}
+        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
+            raise ValueError(f"render_mode: found {render_mode!r}, expected None, human or rgb_array")
+        self.render_mode = render_mode
+        self._camera = Camera(camera, render_size)
+        options = Options.read(
+            modalities=modalities,
+            size=size,
+            depth=depth,
+            actions=actions,
+            interact=interact,
+            frame_skip=frame_skip,
+            max_steps=max_steps,
+            supersampling=supersampling,
+            renderer=renderer,
+            task_label=task_label,
+            assets=assets,
+        )
+        self._members = Members(1, task, world, [variant], drift, options, "disabled", num_threads=1)
+        self.observation_space = self._members.observation_space
+        self.action_space = self._members.action_space
+        fps = 1.0 / self._members.layout["seconds_per_step"]
+        self.metadata = {**type(self).metadata, "render_fps": max(1, round(fps))}
+        self._window: Window | None = None
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begins an episode.
+
+        Args:
+            seed: World 0 under this seed; without one the next world under the seed there was. An environment that never had a
+                seed draws one from ``np_random``.
+            options: ``"variant"``, a name; ``"queue"``, a list of variants, one in each episode in turn, over and over; both hold
+                until another is given. ``"index"``, the number of the world. ``"world"``, a world (path, JSON, dictionary) for
+                this episode alone, such as what :meth:`state` said.
+
+        Returns:
+            The first observation, and the info: ``task_id``, ``variant_id``, ``seed``, ``index``, ``world_hash`` (of the world as it
+            was drawn, before options were laid over it), ``events`` and ``is_success``.
+        """
+        super().reset(seed=seed)
+        members = self._members
+        members.take_options(options or {}, lambda env: True, many=False)
+        if seed is not None:
+            members.seed(0, seed, options)
+        elif not members.has_seed[0]:
+            members.seed(0, int(self.np_random.integers(2**32)), options)
+        members.batch.reset()
+        info = members.reset_info(0)
+        if self.render_mode == "human":
+            self.render()
+        return members.observation(0), info
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
+        """Lets the agent act once.
+
+        Args:
+            action: An element of the action space. Numbers beyond it are cut off.
+
+        Returns:
+            Observation, reward, terminated, truncated, and the info: ``events``, a tuple of dictionaries with ``object``, ``tag``,
+            ``stimulus``, ``reward`` and ``destroyed``; ``is_success``, whether the episode has ended well.
+
+        Raises:
+            EnvError: After the end of an episode, or for an action that is none.
+        """
+        members = self._members
+        reward, terminated, truncated, success, eventful = members.step_one(action)
+        info: dict[str, Any] = {
+            "events": members.batch.events(0) if eventful else (),
+            "is_success": success,
+        }
+        if members.label_in_info:
+            info["task_label"] = members.label_number(0)
+        observation = members.observation(0)
+        if self.render_mode == "human":
+            self.render()
+        return observation, reward, terminated, truncated, info
+
+    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+        """The picture, uint8 (height, width, 3), or with ``"human"`` a window that shows it."""
+        if self.render_mode is None:
+            gymnasium.logger.warn('render: found no render_mode, expected gym.make(…, render_mode="rgb_array")')
+            return None
+        picture = self._camera.picture(self._members.batch, 0)
+        if self.render_mode == "rgb_array":
+            return picture
+        if self._window is None:
+            self._window = Window("Driftworld", self.metadata["render_fps"])
+        self._window.show(picture)
+        return None
+
+    def state(self) -> dict[str, Any]:
+        """The world as it is now, as a document: a reset to it (``options={"world": …}``) goes on to the last bit."""
+        state: dict[str, Any] = json.loads(self._members.batch.state(0))
+        return state
+
+    def warnings(self) -> list[str]:
+        """What the world asks for that is not as its author may think, such as a class that nobody knows."""
+        return self._members.batch.warnings(0)
+
+    def get_keys_to_action(self) -> dict[tuple[str, ...], Any]:
+        """Keys for :func:`gymnasium.utils.play.play`: W and S go, A and D turn, the space bar interacts.
+
+        Raises:
+            ValueError: Unless actions are ``"normalized"`` or ``"continuous"``: a table has no row for doing nothing.
+        """
+        space = self.action_space
+        if not isinstance(space, gymnasium.spaces.Box):
+            raise ValueError('get_keys_to_action: found discrete actions, expected actions="normalized"')
+        moves = {"w": (0, 1.0), "s": (0, -0.5), "a": (1, -1.0), "d": (1, 1.0), " ": (2, 1.0)}
+        keys: dict[tuple[str, ...], Any] = {}
+        for along in ((), ("w",), ("s",)):
+            for turn in ((), ("a",), ("d",)):
+                for act in ((), (" ",)):
+                    pressed = along + turn + act
+                    action = np.zeros(space.shape, dtype=np.float32)
+                    for key in pressed:
+                        axis, share = moves[key]
+                        if axis < len(action):
+                            action[axis] = share * space.high[axis]
+                    if pressed:
+                        keys[pressed] = action
+        return keys
+
+    def close(self) -> None:
+        """Closes the window, if there is one. The environment itself goes when nothing refers to it any more."""
+        if self._window is not None:
+            self._window.close()
+            self._window = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        left_out = ("_members", "_window")
+        kept = {name: value for name, value in self.__dict__.items() if name not in left_out}
+        return {"kept": kept, "members": self._members.written()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        kept = state["kept"]
+        type(self).__init__(self, **kept["_made_with"])  # type: ignore[misc]
+        self.__dict__.update(kept)
+        self._members.take_up(state["members"])

@@ -1,0 +1,66 @@
+"""Observation and action spaces from the layout of an environment. Batching them is Gymnasium's."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from driftworld.envs.options import Options
+
+#: Depth of the sky in metres; nothing is farther.
+FAR_DEPTH = 1000.0
+#: Rewards and velocities have no bound of their own; a space wants one.
+_LARGE = 1e6
+#: Least and greatest value of each number of a state feature.
+_FEATURES: dict[str, list[tuple[float, float]]] = {
+    "position": [(-300.0, 300.0)] * 2,
+    "heading": [(0.0, 360.0)],
+    "velocity": [(-_LARGE, _LARGE)] * 2,
+    "direction": [(-1.0, 1.0)] * 2,
+    "own_velocity": [(-_LARGE, _LARGE)] * 2,
+    "goal": [(-1000.0, 1000.0)] * 2 + [(0.0, 1.0)],
+    "nearest_target": [(-1000.0, 1000.0)] * 2 + [(0.0, 1.0)],
+    "counts": [(0.0, _LARGE)] * 2,
+    "last_reward": [(-_LARGE, _LARGE)],
+    "last_event": [(0.0, 3.0), (-_LARGE, _LARGE), (0.0, 1.0)],
+    "steps_left": [(0.0, 1.0)],
+}
+
+
+def observation_space(options: Options, layout: dict[str, Any], num_labels: int) -> spaces.Space[Any]:
+    """The space of one observation: a ``Dict``, or the ``Box`` of its one modality."""
+    boxes: dict[str, spaces.Space[Any]] = {
+        kind: _box(kind, options, layout) for kind in options.modalities
+    }
+    if options.task_label == "obs":
+        boxes["task"] = spaces.Box(0.0, 1.0, (num_labels,), np.float32)
+    return spaces.Dict(boxes) if options.is_dict else boxes[options.modalities[0]]
+
+
+def _box(kind: str, options: Options, layout: dict[str, Any]) -> spaces.Box:
+    shape = (layout["height"], layout["width"], 3 if kind == "rgb" else 1)
+    if kind == "state":
+        bounds = np.array([pair for name in layout["state_features"] for pair in _FEATURES[name]], dtype=np.float32)
+        bounds = bounds.reshape(-1, 2)
+        return spaces.Box(bounds[:, 0], bounds[:, 1], dtype=np.float32)
+    if kind == "depth" and options.depth == "float32":
+        return spaces.Box(0.0, FAR_DEPTH, shape, np.float32)
+    dtype = {"depth": options.depth, "class": "uint16", "instance": "uint32"}.get(kind, "uint8")
+    return spaces.Box(0, np.iinfo(dtype).max, shape, np.dtype(dtype).type)
+
+
+def action_space(layout: dict[str, Any]) -> spaces.Space[Any]:
+    """The space of one action: a ``Discrete`` of rows, or a ``Box`` of numbers."""
+    action = layout["action"]
+    if "n" in action:
+        return spaces.Discrete(action["n"])
+    bounds = np.array(action["bounds"], dtype=np.float32)
+    return spaces.Box(bounds[:, 0], bounds[:, 1], dtype=np.float32)
+
+
+def label(names: list[str], variant_id: str) -> NDArray[np.float32]:
+    """A variant as a one-hot vector among the names; all 0 for one that is not among them."""
+    return np.array([float(name == variant_id) for name in names], dtype=np.float32)

@@ -1,0 +1,304 @@
+"""``DriftworldVectorEnv``: many environments that step together in one call into Rust. One alone is in ``single.py``."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from gymnasium.utils import seeding
+from gymnasium.vector import VectorEnv
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from driftworld.envs.autoreset import AutoresetMode, autoreset_mode_of
+from driftworld.envs.members import Members
+from driftworld.envs.options import DEFAULT_MODALITIES, Options
+from driftworld.envs.picture import Camera
+
+
+class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
+    """Environments that step together, without the interpreter's lock, into buffers that are kept.
+
+    Each behaves as a :class:`DriftworldEnv` of the same options and seed does, bit for bit.
+
+    **Observations are views** on the batch's buffers: the next step or reset writes new numbers into the arrays that the last one
+    handed out. Who keeps observations copies them, or asks for ``copy=True``. Rewards, flags and infos are new arrays each time.
+
+    Args:
+        task: A task, as for :class:`DriftworldEnv`; so are all options that are not named here.
+        num_envs: How many environments there are, 1 to 65,536.
+        variants: The variant that each begins with, in place of ``variant``.
+        autoreset_mode: When an episode that has ended is followed by the next: ``"next_step"``, ``"same_step"``, ``"disabled"``, or
+            one of Gymnasium's ``AutoresetMode``.
+        copy: Whether observations are the caller's own.
+        num_threads: Threads that step and draw; 0 is one for each processor.
+        max_episode_steps: A limit of steps beside that of the worlds; Gymnasium's ``make_vec`` hands it over.
+    """
+
+    metadata: dict[str, Any] = {
+        "render_modes": ["rgb_array"],
+        "render_fps": 10,
+        "autoreset_mode": AutoresetMode.NEXT_STEP,
+    }
+
+    def __init__(
+        self,
+        task: Any = None,
+        num_envs: int = 1,
+        *,
+        world: Any = None,
+        variant: str | None = None,
+        variants: Sequence[Any] | None = None,
+        modalities: str | Sequence[str] = DEFAULT_MODALITIES,
+        size: int | tuple[int, int] | None = None,
+        depth: str = "uint8",
+        actions: str | Sequence[Sequence[float]] | None = "normalized",
+        interact: bool | None = None,
+        frame_skip: int | None = None,
+        max_steps: int | None = None,
+        max_episode_steps: int | None = None,
+        supersampling: int | None = None,
+        renderer: str = "cpu",
+        drift: Mapping[str, Any] | None = None,
+        task_label: str = "none",
+        assets: str | PathLike[str] | Iterable[str | PathLike[str]] = (),
+        render_mode: str | None = None,
+        render_size: tuple[int, int] = (480, 640),
+        camera: str = "agent",
+        autoreset_mode: str | AutoresetMode = "next_step",
+        copy: bool = False,
+        num_threads: int = 0,
+    ) -> None:
+        self._made_with = {name: value for name, value in locals().items() if name not in ("self", "__class__")}
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode: found {render_mode!r}, expected None or rgb_array")
+        if variants is not None and variant is not None:
+            raise ValueError("variants: found variant beside it, expected one of them")
+        if variants is not None and drift is not None:
+            raise ValueError("variants: found drift beside it, expected one of them")
+        each = [variant] * num_envs if variants is None else list(variants)
+        if len(each) != num_envs:
+            raise ValueError(f"variants: found {len(each)}, expected {num_envs}, one for each environment")
+        mode = autoreset_mode_of(autoreset_mode)
+        options = Options.read(
+            modalities=modalities,
+            size=size,
+            depth=depth,
+            actions=actions,
+            interact=interact,
+            frame_skip=frame_skip,
+            max_steps=max_steps,
+            most_steps=max_episode_steps,
+            supersampling=supersampling,
+            renderer=renderer,
+            task_label=task_label,
+            assets=assets,
+        )
+        name = {
+            AutoresetMode.NEXT_STEP: "next_step",
+            AutoresetMode.SAME_STEP: "same_step",
+            AutoresetMode.DISABLED: "disabled",
+        }[mode]
+        self._members = Members(num_envs, task, world, each, drift, options, name, num_threads)
+        self._mode = mode
+        self._copy = copy
+        self._camera = Camera(camera, render_size)
+        self.num_envs = num_envs
+        self.render_mode = render_mode
+        fps = 1.0 / self._members.layout["seconds_per_step"]
+        self.metadata = {**type(self).metadata, "render_fps": max(1, round(fps)), "autoreset_mode": mode}
+        self.single_observation_space = self._members.observation_space
+        self.single_action_space = self._members.action_space
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._generators: list[np.random.Generator | None] = [None] * num_envs
+        self._generator_seeds: list[int | None] = [None] * num_envs
+        self._ended = np.zeros(num_envs, dtype=np.bool_)
+        self._everyone = np.ones(num_envs, dtype=np.bool_)
+        self._nothing = np.empty(num_envs, dtype=object)
+        self._nothing.fill(())
+
+    @property
+    def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
+        """The random generator of each environment; it is only asked where an environment never had a seed."""
+        return tuple(self._generator(env) for env in range(self.num_envs))
+
+    @property
+    def np_random_seed(self) -> tuple[int, ...]:  # type: ignore[override]
+        """The seed of each environment's generator."""
+        return tuple(self._generator_seed(env) for env in range(self.num_envs))
+
+    def _generator(self, env: int) -> np.random.Generator:
+        generator = self._generators[env]
+        if generator is None:
+            generator, self._generator_seeds[env] = seeding.np_random()
+            self._generators[env] = generator
+        return generator
+
+    def _generator_seed(self, env: int) -> int:
+        self._generator(env)
+        seed = self._generator_seeds[env]
+        return -1 if seed is None else seed
+
+    def reset(  # type: ignore[override]
+        self,
+        *,
+        seed: int | Sequence[int | None] | None = None,
+        options: dict[str, Any] | None = None,
+    ) -> tuple[Any, dict[str, Any]]:
+        """Begins an episode in every environment, or in some.
+
+        Args:
+            seed: Environment *i* draws under ``seed`` + *i*, or under the seed of its own from a list; ``None`` goes on.
+            options: As for :meth:`DriftworldEnv.reset`, for all environments; and ``"variants"``, a variant for each; ``"index"`` may
+                be a list; a ``"queue"`` is dealt out like cards, episode after episode; ``"reset_mask"``, bool (num_envs,), says
+                which environments begin, the others go on.
+
+        Returns:
+            Observations and infos, as :class:`gymnasium.vector.SyncVectorEnv` has them.
+        """
+        options = dict(options or {})
+        mask = self._mask(options.pop("reset_mask", None))
+        seeds = self._seeds(seed)
+        members = self._members
+        members.take_options(options, lambda env: mask is None or bool(mask[env]), many=True)
+        chosen = range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist()
+        for env in chosen:
+            own = seeds[env]
+            if own is not None:
+                self._generators[env], self._generator_seeds[env] = seeding.np_random(own)
+                members.seed(env, own, options)
+            elif not members.has_seed[env]:
+                members.seed(env, int(self._generator(env).integers(2**32)), options)
+        members.batch.reset(mask)
+        self._ended[chosen] = False
+        infos: dict[str, Any] = {}
+        for env in chosen:
+            infos = self._add_info(infos, members.reset_info(env), env)
+        return members.observations(self._copy), infos
+
+    def _mask(self, mask: Any) -> NDArray[np.bool_] | None:
+        if mask is None:
+            return None
+        if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_ or mask.shape != (self.num_envs,) or not mask.any():
+            raise ValueError(
+                f"options['reset_mask']: found {mask!r}, expected a bool array of shape ({self.num_envs},) with at least one True"
+            )
+        return mask
+
+    def _seeds(self, seed: Any) -> list[int | None]:
+        if seed is None:
+            return [None] * self.num_envs
+        if isinstance(seed, (int, np.integer)):
+            return [int(seed) + env for env in range(self.num_envs)]
+        seeds = list(seed)
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"seed: found {len(seeds)} seeds, expected {self.num_envs}, one for each environment")
+        return [None if one is None else int(one) for one in seeds]
+
+    def step(self, actions: Any) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+        """Lets every agent act once.
+
+        With ``"next_step"``, an environment whose episode has ended begins the next one: its action is ignored, it pays 0, and its
+        observation is the first. With ``"same_step"`` it does so at once: ``info["final_obs"]`` and ``info["final_info"]`` hold what
+        the old episode ended with.
+
+        Args:
+            actions: ``(num_envs,)`` rows, or ``(num_envs, numbers)``.
+
+        Returns:
+            Observations; rewards float64, terminated and truncated bool, each ``(num_envs,)``; infos.
+
+        Raises:
+            EnvError: For an action that is none, or with ``"disabled"`` after the end of an episode; nothing is changed then.
+        """
+        members = self._members
+        rewards, terminated, truncated, success, eventful = members.step(actions)
+        ended = terminated | truncated
+        begun = self._ended if self._mode == AutoresetMode.NEXT_STEP else ended
+        infos = self._infos(success, eventful)
+        if self._mode != AutoresetMode.DISABLED and begun.any():
+            for env in np.flatnonzero(begun).tolist():
+                self._add_beginning(infos, env)
+        self._ended = ended
+        return members.observations(self._copy), rewards, terminated, truncated, infos
+
+    def _infos(self, success: NDArray[np.bool_], eventful: list[int]) -> dict[str, Any]:
+        """What every step says of every environment."""
+        events = self._nothing.copy()
+        for env in eventful:
+            events[env] = self._members.batch.events(env)
+        infos = {
+            "events": events,
+            "_events": self._everyone.copy(),
+            "is_success": success,
+            "_is_success": self._everyone.copy(),
+        }
+        if self._members.label_in_info:
+            infos["task_label"] = np.array([self._members.label_number(env) for env in range(self.num_envs)])
+            infos["_task_label"] = self._everyone.copy()
+        return infos
+
+    def _add_beginning(self, infos: dict[str, Any], env: int) -> None:
+        """Adds what an episode that began in this step says, and what the one before it ended with."""
+        members = self._members
+        if self._mode == AutoresetMode.SAME_STEP:
+            members.note_finals(env)
+            final = {key: infos[key][env] for key in _STEP_KEYS if key in infos}
+            final = {key: value.item() if isinstance(value, np.generic) else value for key, value in final.items()}
+            for key in ("final_obs", "_final_obs", "final_info", "_final_info"):
+                if key not in infos:
+                    infos[key] = self._empty(key)
+            infos["final_obs"][env] = members.final_observation(env)
+            infos["_final_obs"][env] = True
+            infos["final_info"] = self._add_info(infos["final_info"], final, env)
+            infos["_final_info"][env] = True
+        self._add_info(infos, members.reset_info(env), env)
+
+    def _empty(self, key: str) -> Any:
+        if key == "final_info":
+            return {}
+        return np.full(self.num_envs, None, dtype=object) if key == "final_obs" else np.zeros(self.num_envs, dtype=np.bool_)
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:  # type: ignore[override]
+        """A picture of each environment, uint8 (height, width, 3); ``None`` without a render mode."""
+        if self.render_mode is None:
+            return None
+        return tuple(self._camera.picture(self._members.batch, env) for env in range(self.num_envs))
+
+    def state(self, env: int) -> dict[str, Any]:
+        """The world of an environment as it is now, as a document."""
+        state: dict[str, Any] = json.loads(self._members.batch.state(env))
+        return state
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
+        """What each environment answers: ``state`` and ``warnings`` one by one, anything else is the same for all."""
+        if name == "state":
+            return tuple(self.state(env) for env in range(self.num_envs))
+        if name == "warnings":
+            return tuple(self._members.batch.warnings(env) for env in range(self.num_envs))
+        if name == "render":
+            return self.render() or (None,) * self.num_envs
+        value = getattr(self, name)
+        return (value(*args, **kwargs) if callable(value) else value,) * self.num_envs
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """An attribute, for each environment."""
+        return self.call(name)
+
+    def __getstate__(self) -> dict[str, Any]:
+        kept = {name: value for name, value in self.__dict__.items() if name != "_members"}
+        return {"kept": kept, "members": self._members.written()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        kept = state["kept"]
+        type(self).__init__(self, **kept["_made_with"])  # type: ignore[misc]
+        self.__dict__.update(kept)
+        self._members.take_up(state["members"])
+
+
+#: What a step says, and so what the last step of an episode ends with.
+_STEP_KEYS = ("events", "is_success", "task_label")
