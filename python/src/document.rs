@@ -48,15 +48,13 @@ pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     serde_json::from_str(&text).map_err(|error| PyValueError::new_err(format!("found {text}: {error}")))
 }
 
+/// What a document was taken for, its problems, its warnings, and the error to raise.
+type Verdict<'py> = (&'static str, Bound<'py, PyList>, Vec<String>, Option<Py<PyAny>>);
+
 /// What a document was taken for, its problems and its warnings. `name` is what messages call it: a path where it has one, from
 /// whose folder a scenario's tasks are looked for.
 #[pyfunction]
-pub(crate) fn check<'py>(
-    py: Python<'py>,
-    name: &str,
-    text: &str,
-    kind: Option<&str>,
-) -> Result<(&'static str, Bound<'py, PyList>, Vec<String>, Option<Py<PyAny>>)> {
+pub(crate) fn check<'py>(py: Python<'py>, name: &str, text: &str, kind: Option<&str>) -> Result<Verdict<'py>> {
     let kind = match kind {
         Some(word) => word.parse::<Kind>().map_err(PyValueError::new_err)?,
         None => Kind::of(text),

@@ -1,6 +1,7 @@
 //! The native module `driftworld._native`: what Python calls. How it is shown to users is in `package/driftworld/`.
 //!
 //! Values cross the border as JSON text, as arrays, or as handles; nothing here is an idea of its own.
+#![expect(clippy::needless_pass_by_value, reason = "PyO3 hands arguments over by value")]
 
 mod batch;
 mod command;
@@ -34,7 +35,7 @@ mod native {
     #[pymodule_export]
     use super::drift::PyDrift;
     #[pymodule_export]
-    use super::logs::{PyLogFile, read as read_log, validate as validate_log};
+    use super::logs::{PyLogFile, read_log, validate_log};
     #[pymodule_export]
     use super::supply::PyStream;
     #[pymodule_export]

@@ -6,8 +6,7 @@ use std::sync::Arc;
 use std::time::SystemTime;
 
 use driftworld_metrics::{
-    BlockType, LogWriter, LoggerInfo, Record, Rows, ScenarioInfo, SharedColumn, TaskParams, Timestamp, read_log,
-    read_log_with_texts, validate_log,
+    BlockType, LogWriter, LoggerInfo, Record, Rows, ScenarioInfo, SharedColumn, TaskParams, Timestamp,
 };
 use numpy::{PyArray1, ToPyArray};
 use pyo3::exceptions::PyValueError;
@@ -85,24 +84,23 @@ impl PyLogFile {
     }
 }
 
-/// What a log holds: its name, its columns by name, its two info files, its warnings.
-#[pyfunction]
-pub(crate) fn read<'py>(
-    py: Python<'py>,
-    folder: PathBuf,
-    texts: bool,
-) -> Result<(
+/// Name, columns, the two info files, warnings.
+type ReadLog<'py> = (
     String,
     Bound<'py, PyDict>,
     Bound<'py, PyAny>,
     Bound<'py, PyAny>,
     Vec<String>,
-)> {
+);
+
+/// What a log holds: its name, its columns by name, its two info files, its warnings.
+#[pyfunction]
+pub(crate) fn read_log(py: Python<'_>, folder: PathBuf, texts: bool) -> Result<ReadLog<'_>> {
     let log = py.detach(|| {
         if texts {
-            read_log_with_texts(&folder)
+            driftworld_metrics::read_log_with_texts(&folder)
         } else {
-            read_log(&folder)
+            driftworld_metrics::read_log(&folder)
         }
     })?;
     let columns = columns(py, &log.rows)?;
@@ -121,8 +119,8 @@ pub(crate) fn read<'py>(
 
 /// Every problem of a log: whether it is valid, problems as pairs of code and message, how many more, warnings, how many more, counts.
 #[pyfunction]
-pub(crate) fn validate<'py>(py: Python<'py>, folder: PathBuf) -> Result<Bound<'py, PyAny>> {
-    let found = py.detach(|| validate_log(&folder));
+pub(crate) fn validate_log(py: Python<'_>, folder: PathBuf) -> Result<Bound<'_, PyAny>> {
+    let found = py.detach(|| driftworld_metrics::validate_log(&folder));
     let problems = found.problems.iter();
     let problems: Vec<Value> = problems
         .map(|problem| json!({ "code": problem.code(), "message": problem.to_string() }))
