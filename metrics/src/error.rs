@@ -492,7 +492,7 @@ impl MetricsError {
             | Self::TornLastLine { line, .. }
             | Self::CarriageReturns { line, .. }
             | Self::OpenQuote { line, .. }
-            | Self::NotText { line, .. }
+            | Self::NotUtf8 { line, .. }
             | Self::BlockOrder { line, .. }
             | Self::NumberFalls { line, .. }
             | Self::NotCompleted { line, .. }
