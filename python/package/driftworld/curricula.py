@@ -68,33 +68,36 @@ class Experience:
 
 
 @dataclass(frozen=True)
-class Block(Sequence[Experience]):
-    """Experiences in which the agent learns, or does not. A sequence of them.
+class Block:
+    """Experiences in which the agent learns, or does not. Iterating it gives them; ``len(block)``, ``block[0]``, ``block[-2:]``.
 
     Attributes:
         number: Its number in the curriculum, from 0.
         kind: ``"learning"`` or ``"evaluation"``.
         phase: ``"deployment"`` or ``"pre_deployment"``.
         first: The number of its first experience.
-        count: How many it has.
+        num_experiences: How many it has.
     """
 
     number: int
     kind: str
     phase: str
     first: int
-    count: int
+    num_experiences: int
     _plan: _native.Plan = field(repr=False, compare=False)
 
     def __len__(self) -> int:
-        return self.count
+        return self.num_experiences
 
     def __getitem__(self, place: Any) -> Any:
         if isinstance(place, slice):
-            return [self[index] for index in range(*place.indices(self.count))]
-        if not -self.count <= place < self.count:
-            raise IndexError(f"block {self.number}: found experience {place}, expected one of {self.count}")
-        return _experience(self._plan, self.first + place % self.count)
+            return [self[index] for index in range(*place.indices(len(self)))]
+        if not -len(self) <= place < len(self):
+            raise IndexError(f"block {self.number}: found experience {place}, expected one of {len(self)}")
+        return _experience(self._plan, self.first + place % len(self))
+
+    def __iter__(self) -> Iterator[Experience]:
+        return (self[place] for place in range(len(self)))
 
 
 def _experience(plan: _native.Plan, number: int) -> Experience:
