@@ -1,7 +1,7 @@
 """Curricula: learning and evaluation blocks of variants, designed, read, iterated and lived.
 
 A curriculum is a scenario, the document that ``driftworld curriculum`` writes and ``driftworld run`` lives. Living one is in
-``lifetimes.py``, scoring what was lived in ``metrics.py``.
+``lifetimes.py``, scoring what was lived in ``scores.py``.
 """
 
 from __future__ import annotations

@@ -262,7 +262,8 @@ class Labelled(gymnasium.Wrapper[Any, Any, Any, Any]):
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
         """Lets the agent act once."""
         observation, reward, terminated, truncated, info = self.env.step(action)
-        return *self._told(observation, info)[:1], reward, terminated, truncated, self._told(observation, info)[1]
+        observation, info = self._told(observation, info)
+        return observation, reward, terminated, truncated, info
 
     def _told(self, observation: Any, info: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         if self._label is None:

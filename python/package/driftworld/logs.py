@@ -1,4 +1,4 @@
-"""Experience logs in the l2logger format: written, read, checked. What they score is in ``metrics.py``."""
+"""Experience logs in the l2logger format: written, read, checked. What they score is in ``scores.py``."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from driftworld import _native
 
 if TYPE_CHECKING:
     import pandas
+    from typing_extensions import Self
 
 #: Columns that hold whole numbers or numbers as they are; all others of a log but its metrics hold words.
 _WORDS = ("worker_id", "block_type", "block_subtype", "task_name", "task_params", "exp_status")
@@ -95,7 +96,7 @@ class LogWriter:
         """Ends the log: asks the disk to have all of it."""
         self._file.close()
 
-    def __enter__(self) -> LogWriter:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(

@@ -110,10 +110,9 @@ class Metrics:
         Raises:
             ImportError: If pandas is not installed.
         """
-        pandas = _pandas()
         with tempfile.TemporaryDirectory() as folder:
             self.save(folder, name="all")
-            frame: pandas.DataFrame = pandas.read_csv(Path(folder) / "all_regime.tsv", sep="\t")
+            frame: pandas.DataFrame = _pandas().read_csv(Path(folder) / "all_regime.tsv", sep="\t")
         return frame
 
     def save(self, folder: PathLike, *, name: str | None = None) -> None:
