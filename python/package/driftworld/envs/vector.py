@@ -18,6 +18,9 @@ from driftworld.envs.members import Members
 from driftworld.envs.options import DEFAULT_MODALITIES, Options
 from driftworld.envs.picture import Camera
 
+#: As many as a native batch holds.
+MOST_ENVS = 65_536
+
 
 class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
     """Environments that step together, without the interpreter's lock, into buffers that are kept.
@@ -75,6 +78,8 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         self._made_with = {name: value for name, value in locals().items() if name not in ("self", "__class__")}
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode: found {render_mode!r}, expected None or rgb_array")
+        if isinstance(num_envs, bool) or not isinstance(num_envs, (int, np.integer)) or not 1 <= num_envs <= MOST_ENVS:
+            raise ValueError(f"num_envs: found {num_envs!r}, expected a whole number in 1..{MOST_ENVS}")
         if variants is not None and variant is not None:
             raise ValueError("variants: found variant beside it, expected one of them")
         if variants is not None and drift is not None:
