@@ -1,0 +1,215 @@
+"""Stable-Baselines3's PPO learns to find objects from 64 × 64 colour pictures, in minutes on two cores.
+
+The learner sees what the agent sees and nothing else; beside it stand an agent that acts at random and the scripted expert,
+which knows the map and walks from cube to cube, both in the same environment with the same actions held as long.
+
+    python examples/python/ppo_find_objects.py                         # one seed
+    python examples/python/ppo_find_objects.py --seeds 1 2 3 --results # what is written down in results/ppo_find_objects
+    python examples/python/ppo_find_objects.py --quick                 # does it run?
+
+Needs `pip install "driftworld[sb3]"`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import torch
+from record import Record, Watch, folder_of
+from stable_baselines3 import PPO
+from stable_baselines3.common.callbacks import BaseCallback
+from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
+from stable_baselines3.common.vec_env import VecEnv, VecMonitor, VecNormalize
+from torch import nn
+
+import driftworld
+from driftworld.adapters.sb3 import make_vec_env
+
+ID = "driftworld/FindObjects-v0"
+# Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.
+ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
+# Each action is held for half a second of simulated time, so that 60 of them make the task's 300 time steps.
+OPTIONS: dict[str, Any] = {
+    "modalities": "rgb", "size": 64, "actions": ACTIONS, "interact": False, "frame_skip": 5, "max_steps": 60,
+}  # fmt: skip
+# The worlds that nobody learns from.
+EVALUATION_SEED = 1_000_000
+
+
+class SmallCnn(BaseFeaturesExtractor):
+    """Two convolutions and a layer of 128: enough for coloured cubes, and quick without a graphics card."""
+
+    def __init__(self, observation_space: gym.spaces.Box) -> None:
+        super().__init__(observation_space, features_dim=128)
+        self.layers = nn.Sequential(
+            nn.Conv2d(3, 16, 8, stride=4), nn.ReLU(),
+            nn.Conv2d(16, 32, 4, stride=2), nn.ReLU(),
+            nn.Flatten(),
+            nn.Linear(32 * 6 * 6, 128), nn.ReLU(),
+        )  # fmt: skip
+
+    def forward(self, images: torch.Tensor) -> torch.Tensor:
+        """Features of pictures in 0 to 1, `(n, 3, 64, 64)`."""
+        return self.layers(images)  # type: ignore[no-any-return]
+
+
+class Curve(BaseCallback):
+    """Notes the mean reward of the last 100 episodes after each rollout."""
+
+    def __init__(self, seed: int) -> None:
+        super().__init__()
+        self.seed, self.rows, self.began = seed, [], time.perf_counter()  # type: ignore[var-annotated]
+
+    def _on_step(self) -> bool:
+        return True
+
+    def _on_rollout_end(self) -> None:
+        episodes = self.model.ep_info_buffer
+        if not episodes:
+            return
+        seconds = time.perf_counter() - self.began
+        row = {
+            "seed": self.seed,
+            "steps": self.num_timesteps,
+            "seconds": round(seconds, 1),
+            "reward": round(float(np.mean([episode["r"] for episode in episodes])), 2),
+            "success": round(float(np.mean([episode["is_success"] for episode in episodes])), 3),
+        }
+        self.rows.append(row)
+        if len(self.rows) % 10 == 1:
+            print(
+                f"seed {self.seed} {row['steps']:>9,} steps {seconds:6.0f} s  reward {row['reward']:6.1f}  "
+                f"found all {row['success']:4.0%}",
+                flush=True,
+            )
+
+
+def learn(seed: int, arguments: argparse.Namespace) -> tuple[PPO, list[dict[str, Any]]]:
+    """Learns from nothing; the learner and its curve."""
+    envs = make_vec_env(ID, arguments.num_envs, seed=seed, variant=arguments.variant, **OPTIONS)
+    # The monitor notes rewards as the task pays them; the learner gets them on a scale of about 1.
+    envs = VecNormalize(VecMonitor(envs, info_keywords=("is_success",)), norm_obs=False, gamma=0.98)
+    model = PPO(
+        "CnnPolicy", envs, seed=seed, device="cpu",
+        n_steps=arguments.rollout, batch_size=512, n_epochs=3, gamma=0.98, gae_lambda=0.95, ent_coef=0.01,
+        learning_rate=lambda left: 5e-4 * left,
+        policy_kwargs={"features_extractor_class": SmallCnn, "net_arch": []},
+    )  # fmt: skip
+    curve = Curve(seed)
+    model.learn(arguments.steps, callback=curve)
+    envs.close()
+    return model, curve.rows
+
+
+def evaluate(arguments: argparse.Namespace, model: PPO | None) -> dict[str, float]:
+    """Reward and success on worlds that were never learned from; without a model an agent that acts at random."""
+    envs: VecEnv = make_vec_env(ID, arguments.num_envs, seed=EVALUATION_SEED, variant=arguments.variant, **OPTIONS)
+    envs = VecMonitor(envs, info_keywords=("is_success",))
+    envs.action_space.seed(EVALUATION_SEED)
+    observation = envs.reset()
+    # As many of each environment, else short episodes would count more often than long ones.
+    wanted = -(-arguments.episodes // arguments.num_envs)
+    episodes: list[list[dict[str, Any]]] = [[] for _ in range(arguments.num_envs)]
+    while min(map(len, episodes)) < wanted:
+        if model is None:
+            actions = np.array([envs.action_space.sample() for _ in range(arguments.num_envs)])
+        else:
+            actions, _ = model.predict(observation, deterministic=False)  # type: ignore[arg-type]
+        observation, _, ended, infos = envs.step(actions)
+        for env in np.flatnonzero(ended):
+            episodes[env].append(infos[env]["episode"])
+    envs.close()
+    counted = [episode for row in episodes for episode in row[:wanted]][: arguments.episodes]
+    rewards = np.array([episode["r"] for episode in counted])
+    return {
+        "reward": round(float(rewards.mean()), 1),
+        "deviation": round(float(rewards.std()), 1),
+        "success": round(float(np.mean([episode["is_success"] for episode in counted])), 3),
+        "episodes": len(counted),
+    }
+
+
+def expert(arguments: argparse.Namespace, **changes: Any) -> dict[str, float]:
+    """What the agent on rails earns, which knows the map; its actions are held as long as the learner's."""
+    env = gym.make(ID, variant=arguments.variant, **(OPTIONS | changes))
+    variant = driftworld.TaskSpec.load("find_objects").variant(arguments.variant)
+    rewards, successes = [], []
+    for index in range(arguments.episodes):
+        world = variant.sample(EVALUATION_SEED, index)
+        world["agent_params"]["action_model"] = "onrails"
+        env.reset(options={"world": world})
+        reward, over = 0.0, False
+        while not over:
+            _, pay, terminated, truncated, info = env.step(0)  # it goes its own way, whatever it is told
+            reward, over = reward + float(pay), terminated or truncated
+        rewards.append(reward)
+        successes.append(info["is_success"])
+    env.close()
+    return {"reward": round(float(np.mean(rewards)), 1), "success": round(float(np.mean(successes)), 3)}
+
+
+def parse_arguments() -> argparse.Namespace:
+    """What may be said on the command line."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--variant", default="blue", help="variant of find_objects (default: blue)")
+    parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="one run each (default: 1)")
+    parser.add_argument("--steps", type=int, default=400_000, help="steps of learning, over all environments")
+    parser.add_argument("--num-envs", type=int, default=32)
+    parser.add_argument("--rollout", type=int, default=64, help="steps of each environment between updates")
+    parser.add_argument("--episodes", type=int, default=200, help="of each evaluation")
+    parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
+    parser.add_argument("--results", nargs="?", const=folder_of(__file__), metavar="FOLDER", help="write the result down")
+    parser.add_argument("--quick", action="store_true", help="a few updates, to see that it runs")
+    arguments = parser.parse_args()
+    if arguments.quick:
+        arguments.steps, arguments.num_envs, arguments.rollout, arguments.episodes = 1024, 8, 64, 8
+    return arguments
+
+
+def main() -> None:
+    """Learns with every seed, compares, and writes down what came of it if asked to."""
+    arguments = parse_arguments()
+    torch.set_num_threads(arguments.threads)
+    watch = Watch()
+    lines = {
+        "scripted expert": expert(arguments)["reward"],
+        "random": evaluate(arguments, None)["reward"],
+    }
+    for name, level in lines.items():
+        print(f"{name}: reward {level}")
+    curve: list[dict[str, Any]] = []
+    table = []
+    for seed in arguments.seeds:
+        model, rows = learn(seed, arguments)
+        scored = evaluate(arguments, model)
+        print(f"seed {seed}: on worlds never learned from, reward {scored['reward']}, found all {scored['success']:.0%}")
+        curve += rows
+        table.append({
+            "seed": seed,
+            "steps": rows[-1]["steps"],
+            "minutes": round(rows[-1]["seconds"] / 60, 1),
+            "reward of the last 100 episodes": rows[-1]["reward"],
+            f"reward in {scored['episodes']} worlds never learned from": scored["reward"],
+            "standard deviation": scored["deviation"],
+            "of them with all cubes found": scored["success"],
+        })  # fmt: skip
+    if arguments.results:
+        Record(
+            title="PPO finds objects",
+            text="Stable-Baselines3's PPO on `driftworld/FindObjects-v0` from 64 × 64 colour pictures. Five cubes pay 100 each, each "
+            "action costs 0.1 and is held for five time steps; 60 actions make an episode. The expert knows the map, and holds its "
+            "actions as long.",
+            settings={"id": ID, **vars(arguments), **OPTIONS, "evaluation_seed": EVALUATION_SEED},
+            variants=[f"find_objects#{arguments.variant}"],
+            seeds=[*arguments.seeds, EVALUATION_SEED],
+            curve=curve, lines=lines, table=table, watch=watch,
+            labels=("steps of learning, each held for five time steps", "reward of an episode, mean of the last 100"),
+        ).write(arguments.results)  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

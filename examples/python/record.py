@@ -1,0 +1,201 @@
+"""Not an example: how the examples write a result down, so that it can be had again.
+
+A result is a folder: `config.json` (command, seeds, options, versions, machine, and the hashes of variants and first worlds),
+`curve.csv`, `curve.png`, and a `README.md` made from them, in which no number was typed by hand. Running and scoring is the
+examples' own work.
+"""
+
+from __future__ import annotations
+
+import csv
+import datetime
+import importlib.metadata
+import json
+import os
+import platform
+import sys
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+FOLDER = Path(__file__).parent / "results"
+PACKAGES = ("driftworld", "gymnasium", "numpy", "torch", "stable-baselines3", "ray")
+
+
+def folder_of(program: str) -> str:
+    """Where the result of an example is kept."""
+    return str(FOLDER / Path(program).stem)
+
+
+class Watch:
+    """When a run began, and how busy the machine was then."""
+
+    def __init__(self) -> None:
+        self._began = time.perf_counter()
+        self.load = round(os.getloadavg()[0], 2)
+
+    @property
+    def seconds(self) -> float:
+        """Seconds since."""
+        return time.perf_counter() - self._began
+
+
+@dataclass
+class Record:
+    """What is to be written down of one run of an example.
+
+    Attributes:
+        title: The heading of its page.
+        text: What was done, in a few sentences.
+        settings: Everything that was set: the environment's options, the learner's, the seeds.
+        variants: The variants that were lived in, `task#variant`.
+        seeds: The seeds whose first worlds are named by their hashes.
+        curve: Rows of numbers; those with the same `seed` (or `run`) make one line of the figure.
+        watch: Started when the run began.
+        lines: Levels to compare with, by name, drawn across the figure.
+        table: Rows of the page's table.
+        axes: Which columns of the curve are drawn: across and up.
+    """
+
+    title: str
+    text: str
+    settings: Mapping[str, Any]
+    variants: Sequence[str]
+    seeds: Sequence[int]
+    curve: Sequence[Mapping[str, Any]]
+    watch: Watch
+    lines: Mapping[str, float] = field(default_factory=dict)
+    table: Sequence[Mapping[str, Any]] = ()
+    axes: tuple[str, str] = ("steps", "reward")
+    labels: tuple[str, str] = ("steps of learning", "reward of an episode, mean of the last 100")
+
+    def write(self, folder: str | Path) -> None:
+        """Writes the folder; what stood there under the same names is written over."""
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        config = self._config()
+        (folder / "config.json").write_text(json.dumps(config, indent=2) + "\n", encoding="utf-8")
+        if self.curve:
+            with (folder / "curve.csv").open("w", newline="", encoding="utf-8") as file:
+                writer = csv.DictWriter(file, list(self.curve[0]), lineterminator="\n")
+                writer.writeheader()
+                writer.writerows(self.curve)
+            self._draw(folder / "curve.png")
+        (folder / "README.md").write_text(self._page(config), encoding="utf-8")
+        print(f"written down in {folder}")
+
+    def _config(self) -> dict[str, Any]:
+        return {
+            "command": " ".join(["python", f"examples/python/{Path(sys.argv[0]).name}", *_spoken(sys.argv[1:])]),
+            "date": datetime.date.today().isoformat(),
+            "seconds": round(self.watch.seconds, 1),
+            "machine": {"processor": _processor(), "cores": os.cpu_count(), "load_before": self.watch.load},
+            "versions": {"python": platform.python_version(), **_versions()},
+            "settings": dict(self.settings),
+            "worlds": {variant: _hashes(variant, self.seeds) for variant in self.variants},
+        }
+
+    def _page(self, config: Mapping[str, Any]) -> str:
+        machine, versions = config["machine"], config["versions"]
+        written = ", ".join(f"{name} {version}" for name, version in versions.items())
+        parts = [f"# {self.title}", "", self.text, "", "```sh", config["command"], "```", ""]
+        if self.curve:
+            parts += ["![The curve: " + self.labels[1] + ", by " + self.labels[0] + "](curve.png)", ""]
+        parts += [*_table(self.table), ""]
+        if self.lines:
+            parts += [*_table([{"to compare with": name, "reward": level} for name, level in self.lines.items()]), ""]
+        parts += [
+            f"Made on {config['date']} in {config['seconds'] / 60:.1f} minutes on {machine['cores']} cores ({machine['processor']}; "
+            f"load of the machine before it began {machine['load_before']}), with {written}.",
+            "",
+            "Everything that was set, and the hashes of the variants and of the first worlds, is in [config.json](config.json); "
+            "the curve is in [curve.csv](curve.csv)."
+            if self.curve
+            else "Everything that was set, and the hashes of the variants and of the first worlds, is in [config.json](config.json).",
+            "",
+        ]
+        return "\n".join(parts)
+
+    def _draw(self, path: Path) -> None:
+        import matplotlib
+
+        matplotlib.use("Agg")
+        from matplotlib import pyplot
+
+        across, up = self.axes
+        key = next((name for name in ("run", "seed") if name in self.curve[0]), None)
+        figure, axes = pyplot.subplots(figsize=(7.2, 4.2), dpi=120, layout="constrained")
+        names = dict.fromkeys(row[key] for row in self.curve) if key else {None: None}
+        for name in names:
+            rows = [row for row in self.curve if key is None or row[key] == name]
+            label = None if key is None else f"{key} {name}" if key == "seed" else str(name)
+            axes.plot([row[across] for row in rows], [row[up] for row in rows], label=label, linewidth=1.6)
+        for (name, level), style in zip(self.lines.items(), ("--", ":", "-."), strict=False):
+            axes.axhline(level, color="0.35", linestyle=style, linewidth=1.1, label=f"{name} ({level:g})")
+        axes.set_xlabel(self.labels[0])
+        axes.set_ylabel(self.labels[1])
+        axes.xaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:,.0f}"))
+        axes.set_xlim(left=0)
+        axes.grid(alpha=0.25)
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.legend(frameon=False, loc="best")
+        figure.savefig(path, metadata={"Software": None})
+        pyplot.close(figure)
+
+
+def _spoken(arguments: Iterable[str]) -> list[str]:
+    """The arguments without the folder of the result, which is each reader's own."""
+    words = list(arguments)
+    if "--results" in words:
+        place = words.index("--results")
+        follows = place + 1 < len(words) and not words[place + 1].startswith("--")
+        words[place : place + 2 if follows else place + 1] = ["--results"]
+    return words
+
+
+def _table(rows: Sequence[Mapping[str, Any]]) -> list[str]:
+    if not rows:
+        return []
+    heads = list(rows[0])
+    lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
+    return [*lines, *("| " + " | ".join(_cell(row[head]) for head in heads) + " |" for row in rows)]
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.3g}" if abs(value) < 10 else f"{value:.1f}"
+    return f"{value:,}" if isinstance(value, int) and abs(value) >= 10_000 else str(value)
+
+
+def _versions() -> dict[str, str]:
+    versions = {}
+    for package in PACKAGES:
+        if package.replace("-", "_") in sys.modules or package == "numpy":
+            try:
+                versions[package] = importlib.metadata.version(package)
+            except importlib.metadata.PackageNotFoundError:  # run from its source
+                versions[package] = str(getattr(sys.modules[package], "__version__", "unknown"))
+    return versions
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.machine()
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()
+
+
+def _hashes(variant: str, seeds: Sequence[int]) -> dict[str, Any]:
+    """The hash of a variant, and of its first world under each seed."""
+    import driftworld
+
+    task, _, name = variant.partition("#")
+    held = driftworld.TaskSpec.load(task).variant(name)
+    return {
+        "variant": held.hash,
+        "first_worlds": {str(seed): held.sample(seed, 0).hash for seed in seeds},
+    }
