@@ -140,7 +140,8 @@ class Record:
         axes.set_xlim(left=0)
         axes.grid(alpha=0.25)
         axes.spines[["top", "right"]].set_visible(False)
-        axes.legend(frameon=False, loc="best")
+        if key or self.lines:
+            axes.legend(frameon=False, loc="best")
         figure.savefig(path, metadata={"Software": None})
         pyplot.close(figure)
 

@@ -1,0 +1,291 @@
+"""Single-task experts, and one PPO that meets their tasks one after the other: what does it keep, what carries over?
+
+The curriculum is the L2Explorer paper's example: blue objects pay (a), red ones are added and cost (b), green ones pay (c).
+Before and after each learning block the learner is frozen and evaluated in all three. It is never told where it is.
+
+    python examples/python/experts_and_sequential_ppo.py               # experts, lifetime, scores and the report
+    python examples/python/experts_and_sequential_ppo.py --results     # what is written down in results/
+    python examples/python/experts_and_sequential_ppo.py --quick       # does it run?
+
+What `replay_ppo.py` changes is `Learner.learn` alone. Needs PyTorch (`pip install torch`).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import torch
+from record import Record, Watch, folder_of
+from torch import nn
+
+import driftworld
+
+TASK = "blue_red_green"
+VARIANTS = ("a", "b", "c")
+# Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.
+ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
+OPTIONS: dict[str, Any] = {
+    "modalities": "rgb", "size": 64, "actions": ACTIONS, "interact": False, "frame_skip": 5, "max_steps": 60,
+}  # fmt: skip
+DISCOUNT = 0.98
+
+
+class Network(nn.Module):
+    """Two convolutions, a layer of 128, and two heads: logits of the actions, and the value."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.trunk = nn.Sequential(
+            nn.Conv2d(3, 16, 8, stride=4), nn.ReLU(),
+            nn.Conv2d(16, 32, 4, stride=2), nn.ReLU(),
+            nn.Flatten(),
+            nn.Linear(32 * 6 * 6, 128), nn.ReLU(),
+        )  # fmt: skip
+        self.policy, self.value = nn.Linear(128, len(ACTIONS)), nn.Linear(128, 1)
+        for module in self.modules():
+            if isinstance(module, (nn.Conv2d, nn.Linear)):
+                nn.init.orthogonal_(module.weight, 0.01 if module is self.policy else 2**0.5)
+                nn.init.zeros_(module.bias)
+
+    def forward(self, images: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        """Log-probabilities of the actions and values of images, `(n, 64, 64, 3)` bytes."""
+        features = self.trunk(images.permute(0, 3, 1, 2).float() / 255.0)
+        return torch.log_softmax(self.policy(features), dim=-1), self.value(features).squeeze(-1)
+
+
+class Rollout:
+    """What the environments lived through in `length` steps, `(length, num_envs, …)`; images and values one more."""
+
+    def __init__(self, length: int, num_envs: int) -> None:
+        self.images = torch.zeros((length + 1, num_envs, 64, 64, 3), dtype=torch.uint8)
+        self.values = torch.zeros((length + 1, num_envs))
+        self.log_policy = torch.zeros((length, num_envs, len(ACTIONS)))
+        self.actions = torch.zeros((length, num_envs), dtype=torch.long)
+        self.rewards = torch.zeros((length, num_envs))
+        self.terminated = torch.zeros((length, num_envs), dtype=torch.bool)
+        self.ended = torch.zeros((length, num_envs), dtype=torch.bool)
+        # False for the step after an end, which ignores its action, and for environments whose share is done.
+        self.counts = torch.zeros((length, num_envs), dtype=torch.bool)
+
+    def advantages(self, trace: float = 0.95) -> torch.Tensor:
+        """Generalised advantages; `values[t + 1]` is, under NEXT_STEP, of an episode's true last observation."""
+        advantages = torch.zeros_like(self.rewards)
+        later = torch.zeros_like(self.rewards[0])
+        for t in reversed(range(len(self.rewards))):
+            surprise = self.rewards[t] + DISCOUNT * self.values[t + 1] * ~self.terminated[t] - self.values[t]
+            later = surprise + DISCOUNT * trace * later * ~self.ended[t]
+            advantages[t] = later
+        return advantages
+
+
+class Learner:
+    """PPO that goes on from block to block with the same network and optimiser."""
+
+    def __init__(self, seed: int) -> None:
+        torch.manual_seed(seed)
+        self.network = Network()
+        self.optimizer = torch.optim.Adam(self.network.parameters(), lr=3e-4, eps=1e-5)
+
+    @torch.no_grad()
+    def policy(self, images: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+        """Actions drawn from the policy, its log-probabilities, and the values."""
+        log_policy, value = self.network(images)
+        return torch.distributions.Categorical(logits=log_policy).sample(), log_policy, value
+
+    def learn(self, rollout: Rollout) -> None:
+        """Three passes of PPO over a rollout."""
+        for _ in range(3):
+            for part in minibatches(rollout.counts):
+                self.step(self.loss(rollout, part))
+
+    def loss(self, rollout: Rollout, part: torch.Tensor, clip: float = 0.2) -> torch.Tensor:
+        """PPO's loss over some steps of a rollout."""
+        advantages = rollout.advantages()
+        target = (advantages + rollout.values[:-1]).flatten()[part]
+        advantage = advantages.flatten()[part]
+        advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
+        action = rollout.actions.flatten()[part, None]
+        before = rollout.log_policy.flatten(0, 1)[part].gather(1, action).squeeze(1)
+        log_policy, value = self.network(rollout.images[:-1].flatten(0, 1)[part])
+        ratio = (log_policy.gather(1, action).squeeze(1) - before).exp()
+        gain = torch.min(ratio * advantage, ratio.clamp(1 - clip, 1 + clip) * advantage).mean()
+        entropy = -(log_policy.exp() * log_policy).sum(-1).mean()
+        return 0.5 * (value - target).square().mean() - gain - 0.01 * entropy
+
+    def step(self, loss: torch.Tensor) -> None:
+        """One step of the optimiser."""
+        self.optimizer.zero_grad()
+        loss.backward()  # type: ignore[no-untyped-call]
+        nn.utils.clip_grad_norm_(self.network.parameters(), 0.5)
+        self.optimizer.step()
+
+
+def minibatches(counts: torch.Tensor, size: int = 512) -> Iterator[torch.Tensor]:
+    """The steps that count, by their place in the flattened rollout, shuffled and dealt out."""
+    places = counts.flatten().nonzero().squeeze(-1)
+    yield from places[torch.randperm(len(places))].split(size)
+
+
+class Lives:
+    """A vector environment in which the experiences of a block are lived: each world of its range, once."""
+
+    def __init__(self, num_envs: int, length: int = 64) -> None:
+        self.envs = gym.make_vec(
+            "driftworld/Task-v0", num_envs, vectorization_mode="vector_entry_point", task=TASK, **OPTIONS
+        )
+        self.num_envs, self.length = num_envs, length
+
+    def live(self, learner: Learner, regime: dict[str, Any], learning: bool, note: Callable[[dict[str, Any]], None]) -> None:
+        """Lives a regime's experiences: each environment a share of them, all at the same time."""
+        count, first = regime["count"], regime["first_index"]
+        if count % self.num_envs:
+            raise ValueError(f"count: found {count}, expected a multiple of the {self.num_envs} environments")
+        share = count // self.num_envs
+        observation, info = self.envs.reset(
+            seed=[regime["seed"]] * self.num_envs,
+            options={"variant": regime["variant"], "index": [first + env * share for env in range(self.num_envs)]},
+        )
+        world, left = info["index"].copy(), np.full(self.num_envs, share)
+        reward, steps = np.zeros(self.num_envs), np.zeros(self.num_envs, dtype=np.int64)
+        just_ended = np.zeros(self.num_envs, dtype=bool)
+        image = torch.tensor(observation)
+        while left.any():
+            rollout = Rollout(self.length, self.num_envs)
+            for t in range(self.length):
+                counts = ~just_ended & (left > 0)
+                action, rollout.log_policy[t], rollout.values[t] = learner.policy(image)
+                rollout.images[t], rollout.actions[t], rollout.counts[t] = image, action, torch.tensor(counts)
+                observation, pay, terminated, truncated, info = self.envs.step(action.numpy())
+                image = torch.tensor(observation)
+                rollout.rewards[t] = torch.tensor(pay / 100.0)  # an object pays 100, or costs as much
+                rollout.terminated[t] = torch.tensor(terminated)
+                just_ended = terminated | truncated
+                rollout.ended[t] = torch.tensor(just_ended)
+                reward, steps = reward + pay * counts, steps + counts
+                for env in np.flatnonzero(just_ended & counts):
+                    note({
+                        "reward": reward[env], "success": float(info["is_success"][env]),
+                        "episode_step_count": int(steps[env]), "truncated": float(truncated[env]), "world_index": int(world[env]),
+                    })  # fmt: skip
+                    reward[env], steps[env] = 0.0, 0
+                    left[env], world[env] = left[env] - 1, world[env] + 1
+                if not left.any():
+                    break
+            if learning:
+                rollout.images[t + 1], rollout.values[t + 1] = image, learner.policy(image)[2]
+                learner.learn(rollout)
+
+
+def scenario(variants: tuple[str, ...], arguments: argparse.Namespace, evaluate: bool = True) -> dict[str, Any]:
+    """Learning blocks for variants in turn; evaluations of all of them around each, on worlds that are not learned from."""
+
+    def regime(variant: str, count: int, seed: int) -> dict[str, Any]:
+        return {"task": TASK, "variant": variant, "count": count, "seed": seed, "first_index": 0}
+
+    evaluation = {
+        "type": "evaluation",
+        "regimes": [regime(variant, arguments.evaluate, arguments.seed + 1000) for variant in variants],
+    }
+    blocks: list[dict[str, Any]] = [evaluation] if evaluate else []
+    for variant in variants:
+        blocks.append({"type": "learning", "regimes": [regime(variant, arguments.learn, arguments.seed)]})
+        blocks += [evaluation] if evaluate else []
+    name = "_".join(["brg", *variants]) if evaluate else f"brg_expert_{variants[0]}"
+    return {"version": 1, "name": name, "blocks": blocks}
+
+
+COLUMNS = ["reward", "success", "episode_step_count", "truncated", "world_index"]
+
+
+def lifetime(learner: Learner, scenario: dict[str, Any], folder: Path, num_envs: int, agent: str) -> list[dict[str, Any]]:
+    """Lives a scenario and logs every experience; what each evaluation and each learning block came to."""
+    shutil.rmtree(folder, ignore_errors=True)
+    lives = Lives(num_envs)
+    told, learned, experience = [], 0, 0
+    with driftworld.LogWriter(folder, COLUMNS, scenario=scenario, agent=agent) as log:
+        for number, block in enumerate(scenario["blocks"]):
+            learning = block["type"] == "learning"
+            for regime in block["regimes"]:
+                rewards: list[float] = []
+
+                def note(told: dict[str, Any], regime: dict[str, Any] = regime, rewards: list[float] = rewards) -> None:
+                    nonlocal experience
+                    log.write(
+                        block_num=number, exp_num=experience, block_type="train" if learning else "test",
+                        task_name=f"{TASK.replace('_', '')}_{regime['variant']}",
+                        task_params={key: regime[key] for key in ("task", "variant", "seed")}, **told,
+                    )  # fmt: skip
+                    experience += 1
+                    rewards.append(told["reward"])
+
+                lives.live(learner, regime, learning, note)
+                learned += len(rewards) * learning
+                told.append({
+                    "block": number, "learning": learning, "variant": regime["variant"], "experiences learned": learned,
+                    "reward": round(float(np.mean(rewards[-200:])), 1),
+                })  # fmt: skip
+                print(f"{agent}: block {number} {block['type']:10} {regime['variant']}: reward {told[-1]['reward']:6.1f}", flush=True)
+    return told
+
+
+def add_arguments(parser: argparse.ArgumentParser, program: str) -> None:
+    """What both examples may be told."""
+    parser.add_argument("--seed", type=int, default=1, help="of the network, the actions and the worlds (default: 1)")
+    parser.add_argument("--learn", type=int, default=2048, help="experiences of a learning block (default: 2048)")
+    parser.add_argument("--evaluate", type=int, default=128, help="of each variant in an evaluation block (default: 128)")
+    parser.add_argument("--num-envs", type=int, default=32)
+    parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
+    parser.add_argument("--logs", type=Path, default=Path("logs/blue_red_green"), help="where the lifetimes are logged")
+    parser.add_argument("--results", nargs="?", const=folder_of(program), metavar="FOLDER", help="write the result down")
+    parser.add_argument("--quick", action="store_true", help="a few experiences, to see that it runs")
+
+
+def take_arguments(parser: argparse.ArgumentParser) -> argparse.Namespace:
+    """Reads them."""
+    arguments = parser.parse_args()
+    if arguments.quick:
+        arguments.learn, arguments.evaluate, arguments.num_envs = 32, 8, 8
+    torch.set_num_threads(arguments.threads)
+    return arguments
+
+
+def curve_of(told: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The evaluations as rows of a curve, a line for each variant."""
+    return [
+        {"run": row["variant"], "experiences": row["experiences learned"], "reward": row["reward"]}
+        for row in sorted(told, key=lambda row: row["variant"])
+        if not row["learning"]
+    ]
+
+
+def scores_of(*names: str, scores: driftworld.Metrics) -> dict[str, float]:
+    """Some metrics of a lifetime, rounded."""
+    return {name: round(scores.lifetime[name], 3) for name in names}
+
+
+def main() -> None:
+    """Experts first, then the lifetime, then the scores."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    add_arguments(parser, __file__)
+    arguments = take_arguments(parser)
+    watch = Watch()
+    experts = []
+    for variant in VARIANTS:
+        plan = scenario((variant,), arguments, evaluate=False)
+        lifetime(Learner(arguments.seed), plan, arguments.logs / "experts" / variant, arguments.num_envs, f"expert_{variant}")
+        experts.append(arguments.logs / "experts" / variant)
+    plan = scenario(VARIANTS, arguments)
+    told = lifetime(Learner(arguments.seed), plan, arguments.logs / "sequential", arguments.num_envs, "sequential_ppo")
+    scores = driftworld.metrics(arguments.logs / "sequential", ste=experts)
+    print(json.dumps(scores.lifetime, indent=2))
+
+
+if __name__ == "__main__":
+    main()
