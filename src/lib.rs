@@ -1,7 +1,8 @@
 //! Driftworld: typed task specs to worlds, distances between them, curricula, and a first-person environment to live them in.
 //!
 //! This crate re-exports the rooms of the house under one roof and adds what joins them: the built-in tasks, the names
-//! by which tasks are called, worlds as tables, distances among variants of any tasks, and how different worlds look. Algorithms are in the rooms.
+//! by which tasks are called, worlds as tables, distances among variants of any tasks, how different worlds look, and the
+//! `driftworld` command. Algorithms are in the rooms; nothing but the command prints.
 //!
 //! ```
 //! use driftworld::{generator, tasks};
@@ -20,9 +21,12 @@ pub use driftworld_similarity as similarity;
 pub use driftworld_spec as spec;
 
 pub mod columns;
+pub mod commands;
 pub mod distances;
+pub mod documents;
 pub mod log_columns;
 pub mod picture_distance;
+pub mod scenarios;
 pub mod tasks;
 
 /// The README's Rust example is compiled with the documentation's tests.

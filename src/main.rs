@@ -1,16 +1,7 @@
-//! The `driftworld` command: reads arguments, runs one subcommand, turns its result into an exit code. The work is in `commands/`.
-
-mod commands;
+//! The `driftworld` command as a program of its own. The work is in `commands/`, which the Python package calls as well.
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
 fn main() -> ExitCode {
-    commands::quiet_on_closed_pipe();
-    let command = commands::Command::parse();
-    match command.run() {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => error.report(),
-    }
+    ExitCode::from(driftworld::commands::run(std::env::args_os()))
 }

@@ -163,6 +163,17 @@ impl PyBatch {
         self.step(py)
     }
 
+    /// One step of the only environment, by numbers: reward, terminated, truncated, success, and whether anything happened.
+    fn step_one_by_numbers(&mut self, py: Python<'_>, numbers: Vec<f64>) -> Result<(f64, bool, bool, bool, bool)> {
+        let number = |column: usize| numbers.get(column).copied().unwrap_or(0.0);
+        self.step_one(py, Action::Continuous([number(0), number(1), number(2)]))
+    }
+
+    /// The same by a row of the table.
+    fn step_one_by_row(&mut self, py: Python<'_>, row: i64) -> Result<(f64, bool, bool, bool, bool)> {
+        self.step_one(py, row_of(row)?)
+    }
+
     /// Repeats the last step's actions so often without coming back to Python: what the batch can do by itself.
     fn repeat(&mut self, py: Python<'_>, steps: u64) -> Result<()> {
         let mut left = steps;
@@ -246,10 +257,38 @@ impl PyBatch {
 }
 
 impl PyBatch {
-    fn step<'py>(&mut self, py: Python<'py>) -> Result<Stepped<'py>> {
+    fn step_one(&mut self, py: Python<'_>, action: Action) -> Result<(f64, bool, bool, bool, bool)> {
+        self.actions.clear();
+        self.actions.push(action);
+        self.go(py)?;
+        let outputs = self.batch.outputs();
+        let eventful = self.batch.events(0).is_some_and(|events| !events.is_empty());
+        let [reward] = outputs.rewards[..] else {
+            return Err(PyRuntimeError::new_err("found a batch of several environments, expected one").into());
+        };
+        Ok((
+            reward,
+            outputs.terminated[0],
+            outputs.truncated[0],
+            outputs.success[0],
+            eventful,
+        ))
+    }
+
+    /// One step with the actions that were set.
+    fn go(&mut self, py: Python<'_>) -> Result<()> {
         self.expect_own_process()?;
         let (batch, actions) = (&mut self.batch, &self.actions);
-        py.detach(|| batch.step(actions))?;
+        py.detach(|| batch.step(actions)).map_err(|error| match error {
+            // Alone, it needs no number.
+            EnvError::BatchAction { error, .. } if actions.len() == 1 => *error,
+            error => error,
+        })?;
+        Ok(())
+    }
+
+    fn step<'py>(&mut self, py: Python<'py>) -> Result<Stepped<'py>> {
+        self.go(py)?;
         let outputs = self.batch.outputs();
         let eventful = |env: &usize| self.batch.events(*env).is_some_and(|events| !events.is_empty());
         Ok((
@@ -285,6 +324,15 @@ impl PyBatch {
             self.process
         ))))
     }
+}
+
+fn row_of(row: i64) -> Result<Action> {
+    let number = usize::try_from(row).map_err(|_| {
+        PyValueError::new_err(format!(
+            "action: found {row}, expected the number of a row, from 0; nothing was changed"
+        ))
+    })?;
+    Ok(Action::Discrete(number))
 }
 
 /// Arrays over the buffers of observations that a batch keeps.

@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use crate::spec::Scenario;
 use clap::{Args, ValueEnum};
-use driftworld::spec::Scenario;
 
 use super::draw_maps::draw_maps;
 use super::input::WorldChoice;
-use super::scenario_file::{Missing, ScenarioFile};
 use super::{Failure, output};
+use crate::scenarios::{Missing, ScenarioFile};
 
 /// Write a world or a scenario in L2Explorer's form, or one of L2Explorer's in ours.
 ///
@@ -46,7 +46,7 @@ impl Convert {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let path = Path::new(self.choice.name());
         if ScenarioFile::is_one(path) {
-            return self.scenario(&ScenarioFile::read(path)?);
+            return self.scenario(&ScenarioFile::read(path, &mut output::warning)?);
         }
         let world = self.choice.world()?;
         if self.to == Form::World {
@@ -86,7 +86,11 @@ impl Convert {
             regimes.any(|regime| regime.world.is_none())
         };
         if draws(&scenario) {
-            draw_maps(&mut scenario, &file.plan(Missing::Refused)?, &self.output)?;
+            draw_maps(
+                &mut scenario,
+                &file.plan(Missing::Refused, &mut output::warning)?,
+                &self.output,
+            )?;
         }
         let (text, warnings) = scenario.to_l2explorer()?;
         for warning in warnings {

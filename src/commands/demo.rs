@@ -2,14 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::curriculum::{Design, Summary, design};
+use crate::env::Catalogue;
+use crate::generator::Sampler;
+use crate::metrics::{Options, Settings};
+use crate::scenarios;
+use crate::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
+use crate::spec::{BlockKind, Scenario, Variant, World};
+use crate::tasks;
 use clap::Args;
-use driftworld::curriculum::{Design, Summary, design};
-use driftworld::env::Catalogue;
-use driftworld::generator::Sampler;
-use driftworld::metrics::{Options, Settings};
-use driftworld::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
-use driftworld::spec::{BlockKind, Scenario, Variant, World};
-use driftworld::tasks;
 
 use super::curriculum::{blocks, choices};
 use super::metrics::{Lived, summary};
@@ -18,7 +19,6 @@ use super::pictures::{SheetRow, heat_map, sheet};
 use super::render::Views;
 use super::report::page_of;
 use super::run::{Life, Start, processors};
-use super::scenario_file;
 use super::scoring::Experts;
 use super::table::wide_table;
 use super::weights::WeightArgs;
@@ -84,7 +84,7 @@ impl Demo {
         let logs = folder.join("log");
         remove_old_log(&logs)?;
         let life = Life {
-            plan: &scenario_file::plan(&scenario, &mut |_| Err("the demo has no world files".to_owned()))?,
+            plan: &scenarios::plan(&scenario, &mut |_| Err("the demo has no world files".to_owned()))?,
             who: Who::Onrails.agent()?,
             logs: &logs,
             start: Start::New,

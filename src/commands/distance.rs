@@ -2,13 +2,11 @@
 
 mod pictures;
 
+use crate::distances::{Sample, Side, between};
+use crate::similarity::{Distance as Measured, Part};
+use crate::spec::Element;
+use crate::tasks;
 use clap::Args;
-use driftworld::generator::Sampler;
-use driftworld::similarity::{
-    Distance as Measured, Part, VariantMeasure, Weights, world_distance, world_sets_distance,
-};
-use driftworld::spec::{Element, Variant, World};
-use driftworld::tasks;
 
 use serde_json::json;
 
@@ -54,15 +52,6 @@ pub(crate) struct Distance {
     json: bool,
 }
 
-/// How many worlds of each variant are compared where nothing is said.
-const WORLDS: u64 = 16;
-
-/// What is compared.
-enum Side {
-    World(Box<World>),
-    Variant(Variant),
-}
-
 impl Distance {
     pub(crate) fn run(self) -> Result<(), Failure> {
         if self.pictures {
@@ -86,26 +75,13 @@ impl Distance {
     }
 
     fn measure(&self) -> Result<(Measured, String), Failure> {
-        let (a, b) = (self.side(&self.a)?, self.side(&self.b)?);
-        let task = match (&a, &b) {
-            (Side::Variant(a), Side::Variant(b)) if a.task().is_same_as(b.task()) => Some((a, b)),
-            _ => None,
+        let sample = Sample {
+            worlds: self.worlds,
+            seed: self.seed,
+            index: self.index,
         };
-        let declared = task.map_or_else(Weights::default, |(a, _)| Weights::of_task(a.task()));
-        let weights = self.weights.over(declared)?;
-        if let (Some((a, b)), None) = (task, self.worlds) {
-            let distance = VariantMeasure::new(a.task(), weights).between(a, b)?;
-            return Ok((distance, "parameter by parameter".to_owned()));
-        }
-        if let (Side::World(a), Side::World(b)) = (&a, &b) {
-            return Ok((world_distance(a, b, &weights), "world to world".to_owned()));
-        }
-        let count = self.worlds.unwrap_or(WORLDS);
-        let (a, b) = (self.draw(a, count)?, self.draw(b, count)?);
-        let distance = world_sets_distance(&a, &b, &weights)?;
-        let plural = if count == 1 { "" } else { "s" };
-        let drawn = format!("mean of {count} world{plural} of each, drawn under seed {}", self.seed);
-        Ok((distance, drawn))
+        let (a, b) = (self.side(&self.a)?, self.side(&self.b)?);
+        Ok(between(&a, &b, &sample, |declared| self.weights.over(declared))?)
     }
 
     fn side(&self, name: &str) -> Result<Side, Failure> {
@@ -114,21 +90,6 @@ impl Distance {
             Ok(Side::World(Box::new(world)))
         } else {
             Ok(Side::Variant(tasks::variant(name)?))
-        }
-    }
-
-    /// Worlds of a variant; a world as often as there are of the other.
-    fn draw(&self, side: Side, count: u64) -> Result<Vec<World>, Failure> {
-        match side {
-            Side::World(world) => Ok((0..count).map(|_| (*world).clone()).collect()),
-            Side::Variant(variant) => {
-                let sampler = Sampler::new(&variant, self.seed);
-                let end = self.index.checked_add(count).ok_or_else(|| {
-                    Failure::usage(format!("--index: found {}, expected room for {count} more", self.index))
-                })?;
-                let worlds = (self.index..end).map(|index| sampler.world(index));
-                Ok(worlds.collect::<Result<_, _>>()?)
-            }
         }
     }
 }

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
+use crate::env::{AdapterReport, RendererKind, RendererReport};
 use clap::Args;
-use driftworld::env::{AdapterReport, RendererKind, RendererReport};
 use serde_json::{Value, json};
 
 use super::{Failure, output};

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use driftworld::curriculum::{Plan, log_name};
-use driftworld::spec::{Regime, Scenario};
+use crate::curriculum::{Plan, log_name};
+use crate::spec::{Regime, Scenario};
 
 use super::{Failure, output};
 

@@ -5,26 +5,19 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::documents;
+use crate::generator::Sampler;
+use crate::spec::maps::MapLibrary;
+use crate::spec::{Variant, Warning, World};
+use crate::tasks;
 use clap::Args;
-use driftworld::generator::Sampler;
-use driftworld::spec::maps::MapLibrary;
-use driftworld::spec::{Variant, Warning, World};
-use driftworld::tasks;
 use sha2::{Digest, Sha256};
 
 use super::{Failure, output};
 
 /// The text of a file.
 pub(crate) fn text(path: &Path) -> Result<String, Failure> {
-    let bytes =
-        fs::read(path).map_err(|error| Failure::input(format!("{}: cannot be read: {error}", path.display())))?;
-    String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        Failure::input(format!(
-            "{}: byte {at} is not UTF-8; JSON documents are UTF-8 text",
-            path.display()
-        ))
-    })
+    Ok(documents::text(path)?)
 }
 
 /// The SHA-256 of a file's bytes, in hexadecimal.

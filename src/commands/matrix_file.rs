@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use driftworld::similarity::{DistanceMatrix, SimilarityError};
+use crate::similarity::{DistanceMatrix, SimilarityError};
 
 use super::{Failure, input, output};
 

@@ -1,5 +1,9 @@
-//! The subcommands, one file each, and what they share: how they fail. What is written and shown is in `output.rs`.
+//! The `driftworld` command: its subcommands, one file each, and how they fail. What is written and shown is in `output.rs`.
+//!
+//! [`run`] is the whole command: it prints. [`ask`] hands back what it would have printed, for programs that call it. The rest of
+//! the library never prints.
 
+mod ask;
 mod assets;
 mod bench;
 mod console;
@@ -25,7 +29,6 @@ mod render;
 mod report;
 mod run;
 mod sample;
-mod scenario_file;
 mod schema;
 mod scoring;
 mod sheet;
@@ -37,14 +40,32 @@ mod vary;
 mod weights;
 mod who;
 
-use std::process::ExitCode;
+use std::ffi::OsString;
 
 use clap::Parser;
+
+pub use ask::{Answer, Refusal, ask};
+
+/// Runs the command as a program of its own does, and prints what it has to say; `args` begins with the program's name.
+///
+/// Returns the exit code: 0 when all went well, 1 when the input or the place for the output is wrong, 2 when the arguments are.
+/// When the reader of the output goes away, as with `| head`, the process ends.
+pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
+    quiet_on_closed_pipe();
+    match Command::try_parse_from(args) {
+        Ok(command) => command.run().map_or_else(|failure| failure.report(), |()| 0),
+        Err(help) => {
+            // Where nobody reads, there is nobody to tell of it.
+            let _ = help.print();
+            u8::try_from(help.exit_code()).unwrap_or(2)
+        }
+    }
+}
 
 /// Typed task specs to worlds, distances, curricula, and a first-person environment for lifelong reinforcement learning.
 #[derive(Parser)]
 #[command(name = "driftworld", version, arg_required_else_help = true)]
-pub(crate) enum Command {
+enum Command {
     Demo(demo::Demo),
     Tasks(tasks::Tasks),
     Validate(validate::Validate),
@@ -72,7 +93,7 @@ pub(crate) enum Command {
 
 impl Command {
     /// Runs the subcommand.
-    pub(crate) fn run(self) -> Result<(), Failure> {
+    fn run(self) -> Result<(), Failure> {
         match self {
             Self::Demo(command) => command.run(),
             Self::Tasks(command) => command.run(),
@@ -115,13 +136,13 @@ impl Failure {
         clippy::print_stderr,
         reason = "this is the one place where the command reports its failure"
     )]
-    pub(crate) fn report(&self) -> ExitCode {
+    fn report(&self) -> u8 {
         let (text, code) = match self {
             Self::Input(text) => (text, 1),
             Self::Usage(text) => (text, 2),
         };
         eprintln!("error: {text}");
-        ExitCode::from(code)
+        code
     }
 
     /// What it says.
@@ -147,7 +168,7 @@ impl<E: std::error::Error> From<E> for Failure {
 }
 
 /// Ends the command without a word when the reader of its output goes away, as with `| head`.
-pub(crate) fn quiet_on_closed_pipe() {
+fn quiet_on_closed_pipe() {
     let default = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
         let text = info.payload_as_str().unwrap_or_default();

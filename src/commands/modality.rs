@@ -1,8 +1,8 @@
 //! The kinds of images there are, and how each is kept in a PNG file. What a pixel means is decided in `env`.
 
+use crate::env::{Frame, Target, category_color};
+use crate::spec::Modality;
 use clap::ValueEnum;
-use driftworld::env::{Frame, Target, category_color};
-use driftworld::spec::Modality;
 use serde::Serialize;
 
 use super::Failure;

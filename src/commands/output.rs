@@ -3,13 +3,44 @@
 use std::fs;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use tempfile::NamedTempFile;
 
-use super::Failure;
+use super::{Answer, Failure};
+
+/// What is said while somebody wants it handed back. Not a thing of one thread: subcommands work with many.
+static KEPT: Mutex<Option<Answer>> = Mutex::new(None);
+
+/// Does something, and hands back what was said meanwhile instead of showing it.
+pub(super) fn kept<T>(work: impl FnOnce() -> T) -> (T, Answer) {
+    /// Shows again what is said, also after a panic.
+    struct Showing;
+    impl Drop for Showing {
+        fn drop(&mut self) {
+            answer().take();
+        }
+    }
+    let showing = Showing;
+    *answer() = Some(Answer::default());
+    let done = work();
+    let said = answer().take().unwrap_or_default();
+    drop(showing);
+    (done, said)
+}
+
+fn answer() -> MutexGuard<'static, Option<Answer>> {
+    // Whoever panics with the lock has changed nothing by halves.
+    KEPT.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Adds to what is handed back; false if nobody wants it.
+fn keep(add: impl FnOnce(&mut Answer)) -> bool {
+    answer().as_mut().map(add).is_some()
+}
 
 /// Prints a line, or ends quietly if the reader has gone.
 pub(crate) fn line(text: impl AsRef<str>) -> Result<(), Failure> {
@@ -18,6 +49,9 @@ pub(crate) fn line(text: impl AsRef<str>) -> Result<(), Failure> {
 
 /// Prints text as it is.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    if keep(|answer| answer.output.push_str(text)) {
+        return Ok(());
+    }
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
@@ -45,7 +79,15 @@ pub(crate) fn json(value: &impl Serialize) -> Result<(), Failure> {
     reason = "warnings belong on standard error, beside the results"
 )]
 pub(crate) fn note(text: impl AsRef<str>) {
+    if keep(|answer| answer.notes.push(text.as_ref().to_owned())) {
+        return;
+    }
     eprintln!("{}", text.as_ref());
+}
+
+/// Says on standard error what is odd.
+pub(crate) fn warning(text: impl AsRef<str>) {
+    note(format!("warning: {}", text.as_ref()));
 }
 
 /// Writes a file under a temporary name beside its own and renames it: it is there whole or not at all.
@@ -122,7 +164,7 @@ pub(crate) fn write_or_print(path: &Path, text: &str) -> Result<(), Failure> {
 
 /// A bar on a terminal, nothing elsewhere.
 pub(crate) fn progress(steps: u64, what: &'static str) -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
+    if !std::io::stderr().is_terminal() || keep(|_| ()) {
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("{prefix:<12} {bar:40} {pos}/{len} {eta} {msg}")

@@ -4,12 +4,12 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use clap::Args;
-use driftworld::env::{
+use crate::env::{
     CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, Environment,
     Frame, Photograph as View, Studio, Warning, category_color,
 };
-use driftworld::spec::{Object, World};
+use crate::spec::{Object, World};
+use clap::Args;
 use serde::Serialize;
 
 use super::input::WorldChoice;
@@ -258,7 +258,7 @@ mod tests {
     #[test]
     fn no_two_views_have_one_name() {
         let world = World {
-            image_params: Some(driftworld::spec::ImageParams {
+            image_params: Some(crate::spec::ImageParams {
                 zoom: 1.0,
                 yaw_subdivisions: 7,
                 vertical_subdivisions: 360,

@@ -4,11 +4,11 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-use clap::{Args, ValueEnum};
-use driftworld::env::{
+use crate::env::{
     Camera, Catalogue, Environment, Frame, Renderer, RendererKind, Scene, category_color, depth_to_gray, top_down,
 };
-use driftworld::spec::World;
+use crate::spec::World;
+use clap::{Args, ValueEnum};
 
 use super::assets::LibraryChoice;
 use super::input::WorldChoice;

@@ -4,15 +4,15 @@ use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use crate::curriculum::{CurriculumError, Journal, Plan, Progress, Summary, Surroundings, run};
+use crate::env::Catalogue;
+use crate::metrics::{MetricsError, Timestamp};
+use crate::scenarios::{Missing, ScenarioFile};
+use crate::spec::BlockKind;
 use clap::Args;
-use driftworld::curriculum::{CurriculumError, Journal, Plan, Progress, Summary, Surroundings, run};
-use driftworld::env::Catalogue;
-use driftworld::metrics::{MetricsError, Timestamp};
-use driftworld::spec::BlockKind;
 
 use super::assets::LibraryChoice;
 use super::interrupt::Interrupt;
-use super::scenario_file::{Missing, ScenarioFile};
 use super::table::table;
 use super::who::{Hired, Who};
 use super::{Failure, output};
@@ -72,14 +72,14 @@ fn jobs(text: &str) -> Result<NonZeroUsize, String> {
 
 impl Run {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let file = ScenarioFile::read(&self.scenario)?;
+        let file = ScenarioFile::read(&self.scenario, &mut output::warning)?;
         // The original's own scenario names a map that it does not come with, and has to run as it stands.
         let missing = if self.missing.stand_in || (file.original && !self.missing.no_stand_in) {
             Missing::StandIn
         } else {
             Missing::Refused
         };
-        let mut plan = file.plan(missing)?;
+        let mut plan = file.plan(missing, &mut output::warning)?;
         let hired = self.agent.agent()?;
         if let Some(script) = &hired.script {
             plan.made_from("script", script.as_str());

@@ -4,11 +4,11 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::columns::{Format, Row, WorldTable};
+use crate::generator::{Coverage, Drift, GeneratorError, Sampler, Schedule, Switch};
+use crate::spec::{Variant, World, maps::MapLibrary};
+use crate::tasks;
 use clap::{Args, ValueEnum};
-use driftworld::columns::{Format, Row, WorldTable};
-use driftworld::generator::{Coverage, Drift, GeneratorError, Sampler, Schedule, Switch};
-use driftworld::spec::{Variant, World, maps::MapLibrary};
-use driftworld::tasks;
 use rayon::prelude::*;
 use tempfile::NamedTempFile;
 

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::spec::schema;
 use clap::Args;
-use driftworld::spec::schema;
 
 use super::{Failure, input, output};
 

@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::generator::Sampler;
+use crate::spec::{BlockKind, Regime, Scenario, Value, Variant};
+use crate::tasks;
 use clap::Args;
-use driftworld::generator::Sampler;
-use driftworld::spec::{BlockKind, Regime, Scenario, Value, Variant};
-use driftworld::tasks;
 
 use super::pictures::{SheetRow, sheet};
 use super::render::Views;
-use super::scenario_file::is_original;
 use super::{Failure, input, output};
+use crate::scenarios::is_original;
 
 /// The most variants that one picture shows.
 const MOST_VARIANTS: usize = 60;

@@ -1,8 +1,8 @@
 //! `driftworld tasks`: which tasks are built in, and what varies in one.
 
+use crate::spec::{Domain, Parameter, ParameterType, Role, TaskSpec, Value, Variant};
+use crate::tasks;
 use clap::{Args, Subcommand};
-use driftworld::spec::{Domain, Parameter, ParameterType, Role, TaskSpec, Value, Variant};
-use driftworld::tasks;
 use serde_json::json;
 
 use super::table::wide_table;

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
+use crate::documents::{self, Checked, Kind};
+use crate::scenarios::task_from;
+use crate::spec::Problem;
 use clap::Args;
-use driftworld::spec::maps::MapLibrary;
-use driftworld::spec::{Problem, Scenario, SpecError, TaskSpec, World};
 use serde_json::{Value, json};
 
-use super::scenario_file::task_from;
 use super::{Failure, input, output};
 
 /// Check task specs, worlds, scenarios and maps files, and name every problem with its place.
@@ -31,9 +31,7 @@ pub(crate) struct Validate {
 /// What was found in one file.
 struct Verdict {
     path: PathBuf,
-    kind: &'static str,
-    warnings: Vec<String>,
-    error: Option<SpecError>,
+    checked: Checked,
 }
 
 impl Validate {
@@ -48,7 +46,10 @@ impl Validate {
         } else {
             verdicts.iter().try_for_each(Verdict::print)?;
         }
-        let wrong = verdicts.iter().filter(|verdict| verdict.error.is_some()).count();
+        let wrong = verdicts
+            .iter()
+            .filter(|verdict| verdict.checked.error.is_some())
+            .count();
         if wrong == 0 {
             return Ok(());
         }
@@ -59,56 +60,12 @@ impl Validate {
     fn check(&self, path: PathBuf) -> Result<Verdict, Failure> {
         let text = input::text(&path)?;
         let name = path.display().to_string();
-        let mut warnings = Vec::new();
-        let (kind, error) = match kind_of(&text) {
-            "task spec" => ("task spec", TaskSpec::from_json(&name, &text).err()),
-            "L2Explorer scenario" => match Scenario::from_l2explorer(&name, &text) {
-                Ok((_, found)) => {
-                    warnings = found.iter().map(ToString::to_string).collect();
-                    ("L2Explorer scenario", None)
-                }
-                Err(error) => ("L2Explorer scenario", Some(error)),
-            },
-            "scenario" => {
-                let read = Scenario::from_json_with(&name, &text, |called| {
-                    let unchecked = |error| format!("{name}: the variants of {called} are not checked: {error}");
-                    task_from(&path, called)
-                        .map_err(|error| warnings.push(unchecked(error)))
-                        .ok()
-                });
-                ("scenario", read.err())
-            }
-            "maps file" => ("maps file", MapLibrary::from_json(&name, &text).err()),
-            _ if self.l2explorer => match World::from_l2explorer(&name, &text) {
-                Ok((_, found)) => {
-                    warnings = found.iter().map(ToString::to_string).collect();
-                    ("L2Explorer world", None)
-                }
-                Err(error) => ("L2Explorer world", Some(error)),
-            },
-            _ => ("world", World::from_json(&name, &text).err()),
+        let kind = match Kind::of(&text) {
+            Kind::World if self.l2explorer => Kind::L2ExplorerWorld,
+            kind => kind,
         };
-        Ok(Verdict {
-            path,
-            kind,
-            warnings,
-            error,
-        })
-    }
-}
-
-fn kind_of(text: &str) -> &'static str {
-    let json: Value = serde_json::from_str(text).unwrap_or_default();
-    if json.get("blocks").is_some() {
-        "scenario"
-    } else if Scenario::is_l2explorer(&json) {
-        "L2Explorer scenario"
-    } else if json.get("maps").is_some() {
-        "maps file"
-    } else if json.get("name").is_some() || json.get("parameters").is_some() || json.get("groups").is_some() {
-        "task spec"
-    } else {
-        "world"
+        let checked = documents::check(&name, &text, kind, &mut |task| task_from(&path, task));
+        Ok(Verdict { path, checked })
     }
 }
 
@@ -123,11 +80,12 @@ fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
 
 impl Verdict {
     fn print(&self) -> Result<(), Failure> {
-        self.warnings
+        self.checked
+            .warnings
             .iter()
             .for_each(|warning| output::note(format!("warning: {warning}")));
-        match &self.error {
-            None => output::line(format!("{}: a valid {}", self.path.display(), self.kind)),
+        match &self.checked.error {
+            None => output::line(format!("{}: a valid {}", self.path.display(), self.checked.kind.name())),
             Some(error) => {
                 output::note(error.to_string());
                 Ok(())
@@ -136,7 +94,7 @@ impl Verdict {
     }
 
     fn to_json(&self) -> Value {
-        let problems = self.error.as_ref().map(|error| {
+        let problems = self.checked.error.as_ref().map(|error| {
             let listed: Vec<Value> = error.problems().iter().map(problem_json).collect();
             if listed.is_empty() {
                 vec![json!({ "code": error.code(), "message": error.to_string() })]
@@ -145,8 +103,8 @@ impl Verdict {
             }
         });
         json!({
-            "file": self.path, "kind": self.kind, "valid": self.error.is_none(),
-            "problems": problems.unwrap_or_default(), "warnings": self.warnings,
+            "file": self.path, "kind": self.checked.kind.name(), "valid": self.checked.error.is_none(),
+            "problems": problems.unwrap_or_default(), "warnings": self.checked.warnings,
         })
     }
 }

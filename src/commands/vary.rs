@@ -1,10 +1,10 @@
 //! `driftworld vary`: a variant at a wanted distance from another. The search is the generator's, the distance `similarity`'s.
 
+use crate::generator::{Subject, at_distance};
+use crate::similarity::{VariantMeasure, Weights};
+use crate::spec::{Element, Variant};
+use crate::tasks;
 use clap::Args;
-use driftworld::generator::{Subject, at_distance};
-use driftworld::similarity::{VariantMeasure, Weights};
-use driftworld::spec::{Element, Variant};
-use driftworld::tasks;
 use serde_json::{Map, json};
 
 use super::{Failure, output};

@@ -1,8 +1,8 @@
 //! `--weight R=2`: what the elements of the decision process weigh in a distance. Distances are `similarity`'s.
 
+use crate::similarity::{MAX_WEIGHT, SimilarityError, Weights};
+use crate::spec::Element;
 use clap::Args;
-use driftworld::similarity::{MAX_WEIGHT, SimilarityError, Weights};
-use driftworld::spec::Element;
 
 /// What elements weigh; shared by the commands that measure.
 #[derive(Args, Clone, Default)]

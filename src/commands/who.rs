@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use driftworld::env::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent};
-use driftworld::spec::nearest;
+use crate::env::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent};
+use crate::spec::nearest;
 
 use super::{Failure, input};
 

@@ -16,11 +16,13 @@ mod finding;
 mod layers;
 mod peers;
 mod process;
+mod python;
 mod runner;
 mod schemas;
 mod side_by_side;
 mod stage;
 mod tidy;
+mod virtual_environment;
 mod workspace;
 
 use std::path::PathBuf;

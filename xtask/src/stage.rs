@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::error::XtaskError;
 use crate::process::{cargo, run};
 use crate::workspace::Workspace;
-use crate::{bench, deny, documents, examples, layers, runner, schemas, tidy};
+use crate::{bench, deny, documents, examples, layers, python, runner, schemas, tidy};
 
 /// One step of `cargo xtask test`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,6 +23,8 @@ pub(crate) enum Stage {
     Benches,
     Schemas,
     Documents,
+    Python,
+    Learners,
     Deny,
 }
 
@@ -35,7 +37,7 @@ pub(crate) enum Outcome {
 
 impl Stage {
     /// In the order in which they run: the quick ones first, so that most mistakes show within seconds.
-    pub(crate) const ALL: [Self; 13] = [
+    pub(crate) const ALL: [Self; 15] = [
         Self::Fmt,
         Self::Layers,
         Self::Tidy,
@@ -48,6 +50,8 @@ impl Stage {
         Self::Benches,
         Self::Schemas,
         Self::Documents,
+        Self::Python,
+        Self::Learners,
         Self::Deny,
     ];
 
@@ -66,6 +70,8 @@ impl Stage {
             Self::Benches => "benches",
             Self::Schemas => "schemas",
             Self::Documents => "documents",
+            Self::Python => "python",
+            Self::Learners => "learners",
             Self::Deny => "deny",
         }
     }
@@ -87,6 +93,8 @@ impl Stage {
             Self::Benches => "every bench runs once",
             Self::Schemas => "schemas/*.json equal what the Rust types generate",
             Self::Documents => "a second validator, in Python, judges tests/documents by the schemas as ours does",
+            Self::Python => "`pip install ./python` does what the README says, and its tests pass",
+            Self::Learners => "the Python tests that need PyTorch, Stable-Baselines3, Minari and Ray pass",
             Self::Deny => "licences, advisories and sources of dependencies are as deny.toml allows",
         }
     }
@@ -124,6 +132,8 @@ impl Stage {
             Self::Benches => bench::stage(workspace).map(|()| Outcome::Passed),
             Self::Schemas => schemas::check(workspace).map(|()| Outcome::Passed),
             Self::Documents => documents::stage(workspace),
+            Self::Python => python::stage(workspace),
+            Self::Learners => python::learners(workspace),
             Self::Deny => deny::stage(workspace),
         }
     }

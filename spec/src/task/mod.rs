@@ -233,6 +233,17 @@ impl TaskSpec {
         is_family.then(|| members.map(|(member, _)| member.as_str()).collect())
     }
 
+    /// The names of its families, in the order of the document.
+    pub fn family_names(&self) -> Vec<&str> {
+        let names = self.document.variants.keys().map(String::as_str);
+        names.filter(|name| self.family(name).is_some()).collect()
+    }
+
+    /// The document as text: [`TaskSpec::from_json`] reads the same task from it.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(&self.document).expect("a document that was read serialises")
+    }
+
     /// What a variant's author says of it.
     pub fn variant_description(&self, name: &str) -> Option<&str> {
         self.variants.get(name)?.description.as_deref()

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
+use crate::env::{Asset, Catalogue, ColliderShape, LibraryModel, classes};
+use crate::spec::Model;
 use clap::Args;
-use driftworld::env::{Asset, Catalogue, ColliderShape, LibraryModel, classes};
-use driftworld::spec::Model;
 
 use super::super::table::table;
 use super::super::{Failure, output};

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::env::{ColliderKind, ImportOptions, ImportSize, Library, LibraryModel};
 use clap::{Args, ValueEnum};
-use driftworld::env::{ColliderKind, ImportOptions, ImportSize, Library, LibraryModel};
 
 use super::super::{Failure, output};
 use super::{list, source};
@@ -82,7 +82,7 @@ impl Pack {
     }
 
     fn pack(&self, path: &Path, library: &mut Library) -> Result<(), Failure> {
-        let in_file = |error: driftworld::env::EnvError| Failure::input(format!("{}: {error}", path.display()));
+        let in_file = |error: crate::env::EnvError| Failure::input(format!("{}: {error}", path.display()));
         let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let class = self.class.clone().or(stem).unwrap_or_default().trim().to_lowercase();
         let options = ImportOptions {

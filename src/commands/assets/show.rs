@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use crate::env::{Asset, Camera, CpuRenderer, Frame, Library, LibraryModel, Scene, classes};
+use crate::spec::{Model, Object, World};
 use clap::Args;
-use driftworld::env::{Asset, Camera, CpuRenderer, Frame, Library, LibraryModel, Scene, classes};
-use driftworld::spec::{Model, Object, World};
 
 use super::super::pictures::{Picture, SheetRow, sheet};
 use super::super::{Failure, output};

@@ -4,8 +4,8 @@ use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use crate::env::{Catalogue, Library, MAX_IMPORT_BYTES};
 use clap::Args;
-use driftworld::env::{Catalogue, Library, MAX_IMPORT_BYTES};
 use serde_json::{Value, json};
 
 use super::super::{Failure, input};

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use driftworld::env::{Action, Autoreset, Batch, BatchOptions, Environment, Renderer, RendererKind};
-use driftworld::spec::{Modality, World};
+use crate::env::{Action, Autoreset, Batch, BatchOptions, Environment, Renderer, RendererKind};
+use crate::spec::{Modality, World};
 use serde_json::json;
 
 use super::super::Failure;
@@ -97,6 +97,7 @@ fn batch_drawn_by(
         autoreset: Autoreset::NextStep,
         num_threads,
         renderer,
+        ..BatchOptions::default()
     };
     Ok(Batch::new(num_envs, Arc::new(move |_| Ok(world.clone())), options)?)
 }

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use driftworld::generator::Sampler;
-use driftworld::spec::{TaskSpec, World};
-use driftworld::tasks;
+use crate::generator::Sampler;
+use crate::spec::{TaskSpec, World};
+use crate::tasks;
 
 use super::super::Failure;
 use super::{Figures, rate, rates};

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use driftworld::metrics::{
+use crate::metrics::{
     BlockType, LogWriter, LoggerInfo, MetricsError, Options, Record, ScenarioInfo, TaskParams, Timestamp, read_log,
     score,
 };

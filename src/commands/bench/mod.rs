@@ -8,8 +8,8 @@ mod similarity;
 
 use std::time::{Duration, Instant};
 
+use crate::env::RendererKind;
 use clap::{Args, Subcommand};
-use driftworld::env::RendererKind;
 use serde_json::{Map, Value, json};
 
 use super::{Failure, output};

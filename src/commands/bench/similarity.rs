@@ -3,14 +3,14 @@
 
 use std::time::Duration;
 
-use driftworld::generator::Sampler;
-use driftworld::similarity::distribution::SortedSamples;
-use driftworld::similarity::{
+use crate::generator::Sampler;
+use crate::similarity::distribution::SortedSamples;
+use crate::similarity::{
     BitGrid, DistanceMatrix, Grid, GridShape, Lab, LabTable, Method, Nature, OrderOptions, SimilarityError, Weights,
     Worlds, ciede2000_to_each, earth_movers_distance, grid_earth_movers_distance, grid_jaccard_distance, order,
 };
-use driftworld::spec::World;
-use driftworld::tasks;
+use crate::spec::World;
+use crate::tasks;
 use serde_json::json;
 
 use super::super::Failure;

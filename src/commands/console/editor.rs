@@ -1,6 +1,6 @@
 //! Editing lines on a terminal: history and completion. What a line says is in `line.rs`.
 
-use driftworld::env::Category;
+use crate::env::Category;
 use rustyline::completion::Completer;
 use rustyline::error::ReadlineError;
 use rustyline::highlight::Highlighter;
@@ -64,7 +64,7 @@ impl Words {
             ["action"] => owned(&["-c", "-a"]),
             ["destroy"] => self.0.objects.clone(),
             ["restore" | "snapshot"] => self.0.snapshots.clone(),
-            ["spawn"] => driftworld::env::classes().map(|(class, _)| class.to_owned()).collect(),
+            ["spawn"] => crate::env::classes().map(|(class, _)| class.to_owned()).collect(),
             ["spawn", _, _, _, ..] => owned(&[
                 "color=",
                 "destroy_stimulus=",

@@ -1,7 +1,7 @@
 //! What a line of the console says: a command and its arguments, checked as far as that goes without a world.
 
-use driftworld::env::{Action, Category};
-use driftworld::spec::nearest;
+use crate::env::{Action, Category};
+use crate::spec::nearest;
 use serde_json::{Map, Value, json};
 
 use super::super::modality::Kind;

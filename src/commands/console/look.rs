@@ -1,7 +1,7 @@
 //! Pictures of a running world: shown in the terminal, or kept in files. How letters and colours are chosen is in
 //! `screen.rs` and `map.rs`.
 
-use driftworld::env::{Frame, Image, top_down};
+use crate::env::{Frame, Image, top_down};
 
 use super::super::modality::Kind;
 use super::super::modality::target;

@@ -1,7 +1,7 @@
 //! The map in letters: walls `#`, objects by the first letter of their class, the agent an arrow. The map in colours is
 //! drawn by `env`.
 
-use driftworld::env::Environment;
+use crate::env::Environment;
 
 /// The world from above, north on top: capital letters are objects that pay.
 pub(super) fn letters(environment: &Environment, columns: u32) -> String {
@@ -59,7 +59,7 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use driftworld::spec::{Object, Stimulus, World};
+    use crate::spec::{Object, Stimulus, World};
 
     #[test]
     fn what_pays_is_a_capital_and_the_agent_looks_its_way() {

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use driftworld::env::{Channel, Outgoing};
-use driftworld::spec::nearest;
+use crate::env::{Channel, Outgoing};
+use crate::spec::nearest;
 use serde_json::Value;
 
 use super::super::input;

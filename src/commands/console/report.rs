@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use driftworld::spec::nearest;
+use crate::spec::nearest;
 
 use super::super::modality::Kind;
 use super::super::table::table;

@@ -4,8 +4,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use driftworld::env::{Action, Category, Channels, CpuRenderer, Environment, Event, Level, Snapshot, Step};
-use driftworld::spec::{Object, World, nearest};
+use crate::env::{Action, Category, Channels, CpuRenderer, Environment, Event, Level, Snapshot, Step};
+use crate::spec::{Object, World, nearest};
 
 use super::super::Failure;
 use super::super::input::WorldChoice;

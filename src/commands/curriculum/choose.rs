@@ -1,8 +1,8 @@
 //! The variants of a curriculum and their order: all that are named, those of a probe, or a sequence of steps.
 
-use driftworld::curriculum::{Choice, Hypothesis, Picked, Steps, arrange, distances, probe, steps};
-use driftworld::similarity::DistanceMatrix;
-use driftworld::spec::{DEFAULT_VARIANT, Element, Variant};
+use crate::curriculum::{Choice, Hypothesis, Picked, Steps, arrange, distances, probe, steps};
+use crate::similarity::DistanceMatrix;
+use crate::spec::{DEFAULT_VARIANT, Element, Variant};
 
 use super::{Curriculum, tables};
 use crate::commands::order::matrix;

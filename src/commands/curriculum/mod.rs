@@ -8,11 +8,9 @@ mod words;
 
 use std::path::{Path, PathBuf};
 
+use crate::curriculum::{Control, Design, Drifting, Evaluate, Hypothesis, control, design, design_control, experts};
+use crate::spec::{DriftSchedule, DriftSwitch, Element, Scenario, ScenarioForm, TaskLabel};
 use clap::{Args, ValueEnum};
-use driftworld::curriculum::{
-    Control, Design, Drifting, Evaluate, Hypothesis, control, design, design_control, experts,
-};
-use driftworld::spec::{DriftSchedule, DriftSwitch, Element, Scenario, ScenarioForm, TaskLabel};
 
 use super::order::OrderArgs;
 use super::{Failure, output};

@@ -1,8 +1,8 @@
 //! What is shown of a curriculum: the proof of its variants, its blocks. The picture is `timeline.rs`'s.
 
-use driftworld::curriculum::{Choice, Picked, Steps};
-use driftworld::similarity::{Distance, DistanceMatrix};
-use driftworld::spec::{Block, BlockKind, Element, Phase, Regime, Scenario, Variant};
+use crate::curriculum::{Choice, Picked, Steps};
+use crate::similarity::{Distance, DistanceMatrix};
+use crate::spec::{Block, BlockKind, Element, Phase, Regime, Scenario, Variant};
 
 use crate::commands::Failure;
 use crate::commands::table::{table, wide_table};
@@ -217,7 +217,7 @@ mod tests {
         let at = [0.0_f64, 1.0, 3.0];
         let names = ["t#a", "t#b", "t#c"].map(str::to_owned).to_vec();
         let matrix = DistanceMatrix::measure(names, |a, b| {
-            Ok::<_, driftworld::curriculum::CurriculumError>((at[a] - at[b]).abs() / 4.0)
+            Ok::<_, crate::curriculum::CurriculumError>((at[a] - at[b]).abs() / 4.0)
         });
         let matrix = matrix.unwrap();
         let block =

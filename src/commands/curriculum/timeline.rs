@@ -1,6 +1,6 @@
 //! The picture of a curriculum: a row for each variant, a bar for each stretch of experiences. What it says in words is `tables.rs`'s.
 
-use driftworld::spec::{BlockKind, Phase, Regime, Scenario};
+use crate::spec::{BlockKind, Phase, Regime, Scenario};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 

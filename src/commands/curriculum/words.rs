@@ -1,6 +1,6 @@
 //! Words of the command line that stand for elements and schedules.
 
-use driftworld::spec::{DriftSchedule, Element};
+use crate::spec::{DriftSchedule, Element};
 
 /// An element by its letter or name.
 pub(super) fn element(text: &str) -> Result<Element, String> {

@@ -1,8 +1,8 @@
 //! `driftworld distance --pictures`: how different two worlds look. What is measured is the library's `picture_distance`.
 
-use driftworld::picture_distance::{PictureOptions, Views, poses};
-use driftworld::similarity::picture::PictureMeasure;
-use driftworld::spec::World;
+use crate::picture_distance::{PictureOptions, Views, poses};
+use crate::similarity::picture::PictureMeasure;
+use crate::spec::World;
 use serde_json::json;
 
 use super::super::table::table;

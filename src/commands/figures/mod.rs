@@ -2,9 +2,9 @@
 
 mod files;
 
+use crate::metrics::Lifetime;
+use crate::report::{Figure, FigureOptions, Figures, ReportError, Unit};
 use clap::Args;
-use driftworld::metrics::Lifetime;
-use driftworld::report::{Figure, FigureOptions, Figures, ReportError, Unit};
 
 pub(crate) use files::Files;
 

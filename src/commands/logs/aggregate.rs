@@ -3,10 +3,10 @@
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use crate::columns;
+use crate::log_columns::write_log_table;
+use crate::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
 use clap::{Args, ValueEnum};
-use driftworld::columns;
-use driftworld::log_columns::write_log_table;
-use driftworld::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
 use tempfile::NamedTempFile;
 
 use super::super::{Failure, log_folders, output};

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::metrics::{Validation, begun_log, validate_log};
 use clap::Args;
-use driftworld::metrics::{Validation, begun_log, validate_log};
 use serde_json::{Value, json};
 
 use super::super::{Failure, log_folders, output};
@@ -132,7 +132,7 @@ impl Verdict {
 
     fn to_json(&self) -> Value {
         let found = &self.found;
-        let problem = |problem: &driftworld::metrics::MetricsError| json!({ "code": problem.code(), "message": placed(&self.log, &problem.to_string()) });
+        let problem = |problem: &crate::metrics::MetricsError| json!({ "code": problem.code(), "message": placed(&self.log, &problem.to_string()) });
         json!({
             "log": self.log,
             "valid": found.is_valid(),

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use driftworld::metrics::{ExpStatus, Lifetime, LifetimeMetrics, Log, Options, Scorer, read_log};
+use crate::metrics::{ExpStatus, Lifetime, LifetimeMetrics, Log, Options, Scorer, read_log};
 use rayon::prelude::*;
 
 use crate::commands::scoring::Experts;

@@ -2,9 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use driftworld::metrics::{
-    BootstrapOptions, ComparedMetric, LifetimeMetrics, RepeatedMetric, compare_agents, over_repeats,
-};
+use crate::metrics::{BootstrapOptions, ComparedMetric, LifetimeMetrics, RepeatedMetric, compare_agents, over_repeats};
 use serde::Serialize;
 use serde_json::Value;
 

@@ -9,8 +9,8 @@ mod yardstick;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
+use crate::metrics::{BootstrapOptions, LifetimeMetrics, Options, Settings, SteStoreMode, save_all};
 use clap::Args;
-use driftworld::metrics::{BootstrapOptions, LifetimeMetrics, Options, Settings, SteStoreMode, save_all};
 
 pub(crate) use lived::{Lived, score_logs};
 pub(crate) use tables::{own_scale, summary};
@@ -100,7 +100,7 @@ pub(crate) struct Intervals {
     resamples: u32,
     /// What is drawn again: strata (within each task, as rliable) or runs (whole lifetimes).
     #[arg(long, value_name = "WHAT", default_value_t = BootstrapOptions::default().resampling)]
-    resampling: driftworld::metrics::Resampling,
+    resampling: crate::metrics::Resampling,
     /// What the draws come from.
     #[arg(long, value_name = "N", default_value_t = 0)]
     bootstrap_seed: u64,

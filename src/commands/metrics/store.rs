@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use driftworld::metrics::{SteStoreMode, store_ste};
+use crate::metrics::{SteStoreMode, store_ste};
 
 use crate::commands::{Failure, output};
 
@@ -12,7 +12,7 @@ use crate::commands::{Failure, output};
 pub(super) fn store(logs: &[PathBuf], mode: SteStoreMode, data: &Path) -> Result<(), Failure> {
     let mut replaced: Vec<String> = Vec::new();
     for log in logs {
-        let task = driftworld::metrics::read_ste_log(log)?.task_name().to_owned();
+        let task = crate::metrics::read_ste_log(log)?.task_name().to_owned();
         let mode = if replaced.contains(&task) {
             SteStoreMode::Append
         } else {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use driftworld::metrics::{Direction, Estimate, LifetimeMetrics, NormalizationMethod, Options, RepeatedMetric};
+use crate::metrics::{Direction, Estimate, LifetimeMetrics, NormalizationMethod, Options, RepeatedMetric};
 
 use super::many::Together;
 use crate::commands::table::table;

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use driftworld::metrics::{DataRanges, Lifetime, NormalizationMethod, Options, read_log};
+use crate::metrics::{DataRanges, Lifetime, NormalizationMethod, Options, read_log};
 use rayon::prelude::*;
 
 use super::Intervals;

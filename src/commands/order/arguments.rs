@@ -1,7 +1,7 @@
 //! [`OrderArgs`]: the options by which an order is found, for every command that orders. What is done with it is theirs.
 
+use crate::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, SimilarityError, order};
 use clap::Args;
-use driftworld::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, SimilarityError, order};
 
 use super::Failure;
 

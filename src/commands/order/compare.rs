@@ -1,6 +1,6 @@
 //! Every method on one matrix, side by side. What the columns mean is `similarity`'s.
 
-use driftworld::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
+use crate::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
 use serde_json::{Value, json};
 
 use super::table;

@@ -6,10 +6,10 @@ mod plot;
 
 use std::path::PathBuf;
 
+use crate::distances::variant_matrix;
+use crate::similarity::{DistanceMatrix, Method, Ordering};
+use crate::spec::Variant;
 use clap::Args;
-use driftworld::distances::variant_matrix;
-use driftworld::similarity::{DistanceMatrix, Method, Ordering};
-use driftworld::spec::Variant;
 use serde_json::{Value, json};
 
 pub(crate) use arguments::OrderArgs;

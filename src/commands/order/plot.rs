@@ -1,6 +1,6 @@
 //! A picture of a path: the items on a map of their distances, joined in their order. Where they stand is `similarity`'s.
 
-use driftworld::similarity::{DistanceMatrix, Method, Ordering, classical_map};
+use crate::similarity::{DistanceMatrix, Method, Ordering, classical_map};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 

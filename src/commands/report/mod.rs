@@ -4,9 +4,9 @@ mod neighbours;
 
 use std::path::{Path, PathBuf};
 
+use crate::metrics::{LifetimeMetrics, Options, SmoothingMethod, compare_agents, over_repeats};
+use crate::report::{Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, ReportError};
 use clap::Args;
-use driftworld::metrics::{LifetimeMetrics, Options, SmoothingMethod, compare_agents, over_repeats};
-use driftworld::report::{Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, ReportError};
 
 use super::figures::{FigureChoice, Files, drawn};
 use super::metrics::{Intervals, Lived, Yardstick, own_scale, score_logs};
@@ -113,7 +113,7 @@ impl Report {
         } else {
             Vec::new()
         };
-        let report = driftworld::report::Report {
+        let report = crate::report::Report {
             title: self.title.filter(|title| !title.trim().is_empty()),
             chapters,
             overall,
@@ -165,11 +165,11 @@ fn options_of(
 pub(crate) fn page_of(title: &str, lived: &Lived, options: &Options) -> Result<String, Failure> {
     let mut neighbours = Neighbours::new(None, options.variant_mode)?;
     let chapter = options_of(lived, &mut neighbours, &FigureOptions::default(), &Figure::ALL, options);
-    let report = driftworld::report::Report {
+    let report = crate::report::Report {
         title: Some(title.to_owned()),
         chapters: vec![Chapter::write(&lived.lifetime, &lived.metrics, &chapter)?],
         options: serde_json::to_value(options)?,
-        ..driftworld::report::Report::default()
+        ..crate::report::Report::default()
     };
     Ok(report.to_html()?)
 }

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use driftworld::curriculum::{log_name, log_name_of_label};
-use driftworld::distances::variant_matrix;
-use driftworld::metrics::{Lifetime, Log, VariantMode};
-use driftworld::report::neighbours;
-use driftworld::similarity::DistanceMatrix;
-use driftworld::spec::{BlockKind, Scenario, Variant};
-use driftworld::tasks;
+use crate::curriculum::{log_name, log_name_of_label};
+use crate::distances::variant_matrix;
+use crate::metrics::{Lifetime, Log, VariantMode};
+use crate::report::neighbours;
+use crate::similarity::DistanceMatrix;
+use crate::spec::{BlockKind, Scenario, Variant};
+use crate::tasks;
 
 use crate::commands::{Failure, matrix_file};
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use driftworld::metrics::{Log, MetricsError, Options, SteLog, StoredTask, VariantMode, find_ste, read_ste_log};
+use crate::metrics::{Log, MetricsError, Options, SteLog, StoredTask, VariantMode, find_ste, read_ste_log};
 
 use crate::commands::{Failure, log_folders};
 

@@ -5,11 +5,11 @@ mod settings;
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use driftworld::metrics::{
+use crate::metrics::{
     AggregationMethod, Definitions, MaintenanceMethod, Noise, NormalizationMethod, Options, SmoothingMethod,
     SteAveragingMethod, TransferMethod, VariantMode,
 };
+use clap::Args;
 
 pub(crate) use experts::Experts;
 

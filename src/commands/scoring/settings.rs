@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use driftworld::metrics::{DataRange, Options};
-use driftworld::spec::nearest;
+use crate::metrics::{DataRange, Options};
+use crate::spec::nearest;
 use serde_json::{Map, Value, json};
 
 use crate::commands::{Failure, input};
@@ -49,12 +49,12 @@ pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
         .and_then(|file| Some(PathBuf::from(file.as_str()?)));
     settings.retain(|key, _| !NOT_SCORING.contains(&key.as_str()));
     let known = json!(Options {
-        noise: Some(driftworld::metrics::Noise {
+        noise: Some(crate::metrics::Noise {
             mean: 0.0,
             std: 0.0,
             seed: 0
         }),
-        definitions: driftworld::metrics::Definitions::Published,
+        definitions: crate::metrics::Definitions::Published,
         ..Options::default()
     });
     let known = || known.as_object().into_iter().flat_map(|known| known.keys());

@@ -5,10 +5,10 @@ mod words;
 
 use std::path::PathBuf;
 
+use crate::curriculum::{TransferOptions, transfer_report};
+use crate::metrics::{NormalizationMethod, Options, SmoothingMethod, TransferMethod};
+use crate::similarity::MAX_RELABELLINGS;
 use clap::{Args, ValueEnum};
-use driftworld::curriculum::{TransferOptions, transfer_report};
-use driftworld::metrics::{NormalizationMethod, Options, SmoothingMethod, TransferMethod};
-use driftworld::similarity::MAX_RELABELLINGS;
 
 use super::metrics::score_logs;
 use super::pictures::scatter;

@@ -1,8 +1,8 @@
 //! The report as text, and the words of its picture. What is drawn where is in `pictures/scatter.rs`.
 
-use driftworld::curriculum::{DirectionReport, TransferReport};
-use driftworld::metrics::TransferMethod;
-use driftworld::similarity::MantelTest;
+use crate::curriculum::{DirectionReport, TransferReport};
+use crate::metrics::TransferMethod;
+use crate::similarity::MantelTest;
 
 use super::super::pictures::{Panel, Point};
 use super::super::table::table;
@@ -219,7 +219,7 @@ fn points(direction: &DirectionReport) -> Vec<Point> {
         Some((_, variant)) if one_task => variant.to_owned(),
         _ => name.to_owned(),
     };
-    let point = |pair: &driftworld::curriculum::PairTransfer| Point {
+    let point = |pair: &crate::curriculum::PairTransfer| Point {
         x: pair.distance,
         y: pair.transfer,
         label: format!("{} › {}", short(&pair.from), short(&pair.to)),

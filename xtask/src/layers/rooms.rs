@@ -65,6 +65,7 @@ mod tests {
         check_import("driftworld-curriculum", "driftworld-metrics", Kind::Normal, None);
         check_import("driftworld", "driftworld-curriculum", Kind::Normal, None);
         check_import("driftworld-unity", "driftworld-env", Kind::Normal, None);
+        check_import("driftworld-python", "driftworld", Kind::Normal, None);
     }
 
     #[test]
@@ -79,8 +80,8 @@ mod tests {
     fn higher_floors_and_the_facade_are_never_imported() {
         let found = "driftworld-spec → driftworld-env (normal dependency)";
         check_import("driftworld-spec", "driftworld-env", Kind::Normal, Some(found));
-        let found = "driftworld-python → driftworld (normal dependency)";
-        check_import("driftworld-python", "driftworld", Kind::Normal, Some(found));
+        let found = "driftworld-unity → driftworld (normal dependency)";
+        check_import("driftworld-unity", "driftworld", Kind::Normal, Some(found));
         let found = "xtask → driftworld-spec (normal dependency)";
         check_import("xtask", "driftworld-spec", Kind::Normal, Some(found));
     }

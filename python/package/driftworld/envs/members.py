@@ -5,7 +5,6 @@ Single and vector environments are both made of it; what Gymnasium wants of each
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from math import gcd
 from typing import Any
@@ -66,7 +65,7 @@ class Members:
         self.batch = _native.Batch(
             streams, options.dress, autoreset, num_threads, options.renderer, options.depth, list(options.libraries)
         )
-        self._step = self.batch.step_rows if isinstance(self.action_space, spaces.Discrete) else self.batch.step_numbers
+        self._is_discrete = isinstance(self.action_space, spaces.Discrete)
         self._views = self._arranged(self.batch.buffers())
         last = self.batch.final_buffers()
         self._final_views = None if last is None else self._arranged(last)
@@ -102,8 +101,8 @@ class Members:
         return _native.Stream.variants(variants)
 
     def _check(self, stream: _native.Stream) -> None:
-        for layout in stream.layouts(self._options.dress):
-            expect_same_spaces(self.layout, json.loads(layout))
+        for layout in self._options.layouts(stream):
+            expect_same_spaces(self.layout, layout)
 
     def take_options(self, options: Mapping[str, Any], chosen: Callable[[int], bool], *, many: bool) -> None:
         """Does what the options of a reset ask for; nothing is changed if one of them is wrong.
@@ -216,14 +215,14 @@ class Members:
             return view.copy() if copy else view
         return {kind: view.copy() if copy else view for kind, view in self._views.items()}
 
-    def step_one(self, action: Any) -> Stepped:
-        """A step of the only environment."""
-        if isinstance(self.action_space, spaces.Discrete):
-            return self.batch.step_rows(np.array([self._row(action)], dtype=np.int64))
+    def step_one(self, action: Any) -> tuple[float, bool, bool, bool, bool]:
+        """A step of the only environment: reward, terminated, truncated, success, whether anything happened."""
+        if self._is_discrete:
+            return self.batch.step_one_by_row(self._row(action))
         numbers = np.asarray(action, dtype=np.float64)
         if numbers.shape != self.action_space.shape:
             raise ValueError(f"action: found shape {numbers.shape}, expected {self.action_space.shape}; nothing was changed")
-        return self.batch.step_numbers(numbers.reshape(1, -1))
+        return self.batch.step_one_by_numbers(numbers.tolist())
 
     @staticmethod
     def _row(action: Any) -> int:
@@ -236,12 +235,11 @@ class Members:
 
     def step(self, actions: Any) -> Stepped:
         """A step of all: actions of shape ``(num_envs,)`` or ``(num_envs, numbers)``."""
-        discrete = isinstance(self.action_space, spaces.Discrete)
         given = np.asarray(actions)
         wanted = (self.num_envs, *(self.action_space.shape or ()))
         if given.shape != wanted:
             raise ValueError(f"actions: found shape {given.shape}, expected {wanted}; nothing was changed")
-        if discrete:
+        if self._is_discrete:
             if not np.issubdtype(given.dtype, np.integer):
                 raise ValueError(f"actions: found {given.dtype}, expected whole numbers; nothing was changed")
             return self.batch.step_rows(np.ascontiguousarray(given, dtype=np.int64))

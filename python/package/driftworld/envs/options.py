@@ -10,7 +10,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from driftworld import _native
 from driftworld.envs.origin import Home
+from driftworld.errors import SpecError
 
 #: What an observation may hold.
 MODALITIES = ("rgb", "depth", "segmentation", "class", "instance", "state")
@@ -96,6 +98,17 @@ class Options:
             dress=json.dumps({name: value for name, value in dress.items() if value is not None}),
         )
 
+    def layouts(self, stream: _native.Stream) -> list[dict[str, Any]]:
+        """What environments of each variant of a stream look like.
+
+        Raises:
+            SpecError: If an option is out of range, or does not go with the worlds.
+        """
+        try:
+            return [json.loads(text) for text in stream.layouts(self.dress)]
+        except SpecError as error:
+            raise _as_options(error) from None
+
     def layout(self, home: Home, stream: Any = None) -> dict[str, Any]:
         """What environments of these worlds look like: picture size, state features, actions.
 
@@ -103,11 +116,40 @@ class Options:
             SpecError: If an option is out of range, or does not go with the worlds.
             ValueError: If variants of the stream differ in their actions.
         """
-        layouts = [json.loads(text) for text in (stream or home.stream()).layouts(self.dress)]
+        layouts = self.layouts(stream or home.stream())
         for other in layouts[1:]:
             expect_same_spaces(layouts[0], other)
         layout: dict[str, Any] = layouts[0]
         return layout
+
+
+#: The option behind each value that options lay over a world.
+_OPTIONS = {
+    "/agent_params/modalities": "modalities",
+    "/agent_params/observation_size": "size",
+    "/agent_params/observation_width": "size",
+    "/agent_params/actions": "actions",
+    "/agent_params/interact": "interact",
+    "/agent_params/frame_skip": "frame_skip",
+    "/agent_params/supersampling": "supersampling",
+    "/max_steps": "max_steps",
+}
+
+
+def _as_options(error: SpecError) -> SpecError:
+    """The same mistake, told of the option instead of the world that it was laid over."""
+    lines = []
+    for problem in error.problems:
+        option = next((name for pointer, name in _OPTIONS.items() if problem["pointer"].startswith(pointer)), None)
+        if option is None:
+            return error
+        expected = problem["expected"].replace('{"discrete": [[3, 4, 0], [-3, 4, 0]]}', "actions=[[3, 4, 0], [-3, 4, 0]]")
+        advice = f"; {problem['advice']}" if problem["advice"] else ""
+        lines.append(f"{option}: found {problem['found']}, expected {expected}{advice}")
+    if not lines:
+        return error
+    problems = [{**problem, "line": None, "column": None} for problem in error.problems]
+    return SpecError("\n".join(lines), code=error.code, problems=problems)
 
 
 def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any]) -> None:

@@ -105,12 +105,14 @@ def _task(task: Any) -> tuple[_native.TaskSpec, _native.Variant | None]:
     task = getattr(task, "_native", task)
     if isinstance(task, _native.TaskSpec):
         return task, None
+    if isinstance(task, Mapping):
+        return _native.TaskSpec.from_json("task", json.dumps(task)), None
     if isinstance(task, (str, os.PathLike)):
         name = os.fspath(task)
         spec = _native.TaskSpec.load(name)
         _, hash_sign, own = name.rpartition("#")
         return spec, spec.variant(own) if hash_sign else None
-    raise TypeError(f"task: found {task!r}, expected a name, a path, a TaskSpec or a Variant")
+    raise TypeError(f"task: found {task!r}, expected a name, a path, a TaskSpec, a Variant, or a dictionary")
 
 
 def world_text(world: Any) -> tuple[str, str]:

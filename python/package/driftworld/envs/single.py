@@ -140,17 +140,17 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
             EnvError: After the end of an episode, or for an action that is none.
         """
         members = self._members
-        rewards, terminated, truncated, success, eventful = members.step_one(action)
+        reward, terminated, truncated, success, eventful = members.step_one(action)
         info: dict[str, Any] = {
             "events": members.batch.events(0) if eventful else (),
-            "is_success": bool(success[0]),
+            "is_success": success,
         }
         if members.label_in_info:
             info["task_label"] = members.label_number(0)
         observation = members.observation(0)
         if self.render_mode == "human":
             self.render()
-        return observation, float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
+        return observation, reward, terminated, truncated, info
 
     def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
         """The picture, uint8 (height, width, 3), or with ``"human"`` a window that shows it."""

@@ -1,39 +1,55 @@
-//! Scenario files, ours and the original's, and the world files that they name. What a scenario means is `spec`'s, living it `curriculum`'s.
+//! Scenario files, ours and the original's, and the tasks and world files that they name. What a scenario means is `spec`'s, living it
+//! `curriculum`'s.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use driftworld::curriculum::{FoundWorld, Plan, Sources};
-use driftworld::spec::{Scenario, TaskSpec, World, nearest};
-use driftworld::tasks::{self, TaskError};
+use driftworld_curriculum::{CurriculumError, FoundWorld, Plan, Sources};
+use driftworld_spec::{Scenario, SpecError, TaskSpec, World, nearest};
 use serde_json::Value;
 
-use super::{Failure, input, output};
+use crate::documents::{self, DocumentError};
+use crate::tasks::{self, TaskError};
+
+/// Told of what is odd.
+pub type Warn<'a> = &'a mut dyn FnMut(String);
 
 /// A scenario that was read, and where its world files are looked for.
-pub(crate) struct ScenarioFile {
-    pub(crate) scenario: Scenario,
+#[derive(Clone, Debug)]
+pub struct ScenarioFile {
+    /// The scenario.
+    pub scenario: Scenario,
     path: PathBuf,
     /// Whether the file is the original's; then its maps are, too.
-    pub(crate) original: bool,
+    pub original: bool,
 }
 
 impl ScenarioFile {
-    /// Reads a scenario in our form or in the original's, with warnings on standard error.
-    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
-        let text = input::text(path)?;
+    /// Reads a scenario file in our form or in the original's.
+    ///
+    /// # Errors
+    /// [`DocumentError`] if it cannot be read or is wrong.
+    pub fn read(path: &Path, warn: Warn) -> Result<Self, DocumentError> {
+        Ok(Self::from_text(path, &documents::text(path)?, warn)?)
+    }
+
+    /// Reads a scenario from its text; what it names by paths is looked for as if it stood at `path`.
+    ///
+    /// # Errors
+    /// [`SpecError`] with all that is wrong.
+    pub fn from_text(path: &Path, text: &str, warn: Warn) -> Result<Self, SpecError> {
         let name = path.display().to_string();
-        let original = is_original(&text);
+        let original = is_original(text);
         let scenario = if original {
-            let (scenario, warnings) = Scenario::from_l2explorer(&name, &text)?;
-            for warning in warnings {
-                output::note(format!("warning: {warning}"));
+            let (scenario, warnings) = Scenario::from_l2explorer(&name, text)?;
+            for warning in &warnings {
+                warn(warning.to_string());
             }
             scenario
         } else {
             // With the tasks that can be found, so that every variant that they lack is named at once.
-            Scenario::from_json_with(&name, &text, |task| task_from(path, task).ok())?
+            Scenario::from_json_with(&name, text, |task| task_from(path, task).ok())?
         };
         Ok(Self {
             scenario,
@@ -43,23 +59,26 @@ impl ScenarioFile {
     }
 
     /// Whether a file is a scenario, in whichever form.
-    pub(crate) fn is_one(path: &Path) -> bool {
+    pub fn is_one(path: &Path) -> bool {
         let text = fs::read_to_string(path).unwrap_or_default();
         let json: Value = serde_json::from_str(&text).unwrap_or_default();
         json.get("blocks").is_some() || Scenario::is_l2explorer(&json)
     }
 
     /// The scenario with everything that it names.
-    pub(crate) fn plan(&self, missing: Missing) -> Result<Plan, Failure> {
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn plan(&self, missing: Missing, warn: Warn) -> Result<Plan, CurriculumError> {
         let mut sources = Sources {
             task: &mut |name| task_from(&self.path, name).map_err(|error| error.to_string()),
-            world: &mut |path| self.world(path, missing),
+            world: &mut |path| self.world(path, missing, warn),
         };
-        Ok(Plan::new(&self.scenario, &mut sources)?)
+        Plan::new(&self.scenario, &mut sources)
     }
 
     /// The world file that a regime names, from the scenario's folder; beside the scenario if it is not there.
-    fn world(&self, named: &str, missing: Missing) -> Result<FoundWorld, String> {
+    fn world(&self, named: &str, missing: Missing, warn: Warn) -> Result<FoundWorld, String> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let named = Path::new(named);
         let beside = named.file_name().map_or_else(PathBuf::new, |name| folder.join(name));
@@ -71,8 +90,8 @@ impl ScenarioFile {
             });
         }
         if beside.is_file() {
-            output::note(format!(
-                "warning: {}: there is no such file; {} is lived, which lies beside the scenario",
+            warn(format!(
+                "{}: there is no such file; {} is lived, which lies beside the scenario",
                 meant.display(),
                 beside.display()
             ));
@@ -91,7 +110,7 @@ impl ScenarioFile {
             (Some(file), Missing::StandIn) => {
                 let lived = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 let note = format!("not there; {lived} stood in for it");
-                output::note(format!("warning: {}: {note}", named.display()));
+                warn(format!("{}: {note}", named.display()));
                 Ok(FoundWorld {
                     world: self.read_world(&file)?,
                     note: Some(note),
@@ -118,7 +137,7 @@ impl ScenarioFile {
     fn nearest(&self, wanted: &[&PathBuf]) -> Option<PathBuf> {
         wanted.iter().find_map(|wanted| {
             let name = wanted.file_name()?.to_string_lossy().into_owned();
-            let files = input::json_files(wanted.parent()?).ok()?;
+            let files = json_files(wanted.parent()?);
             let worlds: Vec<&PathBuf> = files.iter().filter(|file| self.read_world(file).is_ok()).collect();
             let names: Vec<String> = worlds
                 .iter()
@@ -131,7 +150,7 @@ impl ScenarioFile {
 
     fn read_world(&self, path: &Path) -> Result<World, String> {
         let name = path.display().to_string();
-        let text = input::text(path).map_err(|failure| failure.text().to_owned())?;
+        let text = documents::text(path).map_err(|error| error.to_string())?;
         let ours = World::from_json(&name, &text);
         match (self.original, ours) {
             (false, Ok(world)) => Ok(world),
@@ -145,8 +164,28 @@ impl ScenarioFile {
     }
 }
 
+/// The `.json` files of a folder, sorted; none where it cannot be read.
+fn json_files(folder: &Path) -> Vec<PathBuf> {
+    // The folder of a bare file name is the working folder.
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    let entries = fs::read_dir(folder).into_iter().flatten();
+    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    let mut files: Vec<PathBuf> = paths
+        .filter(|path| path.extension().is_some_and(|ending| ending == "json"))
+        .collect();
+    files.sort();
+    files
+}
+
 /// The task that a scenario names: a built-in one, a file from the scenario's folder, else one from the working folder.
-pub(crate) fn task_from(scenario: &Path, name: &str) -> Result<Arc<TaskSpec>, TaskError> {
+///
+/// # Errors
+/// [`TaskError`] if there is none, or the document is wrong.
+pub fn task_from(scenario: &Path, name: &str) -> Result<Arc<TaskSpec>, TaskError> {
     let there = scenario.parent().unwrap_or(Path::new("")).join(name);
     if !tasks::built_in_names().contains(&name)
         && there.is_file()
@@ -159,25 +198,29 @@ pub(crate) fn task_from(scenario: &Path, name: &str) -> Result<Arc<TaskSpec>, Ta
 
 /// What becomes of a world file that is nowhere.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Missing {
+pub enum Missing {
     /// It is an error.
     Refused,
     /// The one with the nearest name is lived instead.
     StandIn,
 }
 
-/// A scenario with everything that it names; its world files come from `world`.
-pub(crate) fn plan(
+/// A scenario with everything that it names, tasks from the working folder; its world files come from `world`.
+///
+/// # Errors
+/// As [`Plan::new`].
+pub fn plan(
     scenario: &Scenario,
     world: &mut dyn FnMut(&str) -> Result<FoundWorld, String>,
-) -> Result<Plan, Failure> {
+) -> Result<Plan, CurriculumError> {
     let mut sources = Sources {
         task: &mut |name| tasks::task(name).map_err(|error| error.to_string()),
         world,
     };
-    Ok(Plan::new(scenario, &mut sources)?)
+    Plan::new(scenario, &mut sources)
 }
 
-pub(crate) fn is_original(text: &str) -> bool {
+/// Whether a text is a scenario of the original's.
+pub fn is_original(text: &str) -> bool {
     serde_json::from_str(text).is_ok_and(|json: Value| Scenario::is_l2explorer(&json))
 }

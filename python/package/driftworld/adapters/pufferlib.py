@@ -1,0 +1,116 @@
+"""The native vector environment as PufferLib's ``PufferEnv`` (3.0): one object that is many agents. Training is PufferLib's.
+
+    import pufferlib.vector
+    from driftworld.adapters.pufferlib import DriftworldPuffer
+
+    environments = pufferlib.vector.make(DriftworldPuffer, env_kwargs={"num_envs": 64, "actions": "discrete"})
+
+Observations are one Box here, so ``modalities`` is a single one, ``"rgb"`` if nothing is said. PufferLib brings the buffers, in
+shared memory if it likes; what our batch wrote is copied into them once a step.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+import numpy.typing as npt
+
+import driftworld  # noqa: F401 - registers the environments
+
+try:
+    from pufferlib import PufferEnv
+except ImportError as error:
+    raise ImportError("driftworld.adapters.pufferlib: found no pufferlib, expected version 3; pip install pufferlib") from error
+
+__all__ = ["DriftworldPuffer"]
+
+
+class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any where it is not installed.
+    """Environments that step together and begin anew by themselves, as PufferLib's native ones.
+
+    Infos come when episodes end, one each: ``episode_return``, ``episode_length``, ``is_success`` (0.0 or 1.0), to be averaged as
+    PufferLib does; what they were episodes of is in ``variant_id``.
+
+    Args:
+        env_id: Such as ``"driftworld/FindObjects-v0"``.
+        num_envs: How many agents, from 1.
+        buf: PufferLib's buffers; ``None`` makes some.
+        seed: PufferLib's first seed, for a reset that is given none.
+        **options: Options of the environment, such as ``variant`` or ``size``; a ``Dict`` of modalities is refused.
+
+    Raises:
+        ValueError: The observations are not one array.
+    """
+
+    def __init__(
+        self,
+        env_id: str = "driftworld/FindObjects-v0",
+        num_envs: int = 1,
+        buf: Any = None,
+        seed: int | None = None,
+        **options: Any,
+    ) -> None:
+        self.envs: Any = gymnasium.make_vec(
+            env_id,
+            num_envs=num_envs,
+            vectorization_mode="vector_entry_point",
+            **{"modalities": "rgb", **options, "autoreset_mode": "same_step", "copy": False},
+        )
+        self.single_observation_space = self.envs.single_observation_space
+        self.single_action_space = self.envs.single_action_space
+        self.num_agents = num_envs
+        self._seed = seed
+        self._returns = np.zeros(num_envs)
+        self._lengths = np.zeros(num_envs, dtype=np.int64)
+        if not isinstance(self.single_observation_space, gymnasium.spaces.Box):
+            raise ValueError(
+                f'modalities: found {self.single_observation_space}, expected one for PufferLib, such as modalities="rgb"'
+            )
+        super().__init__(buf)
+
+    def reset(self, seed: int | None = None) -> tuple[npt.NDArray[Any], list[dict[str, Any]]]:
+        """Begins new episodes everywhere, environment ``i`` under ``seed + i``."""
+        seed = self._seed if seed is None else seed
+        self.observations[:], _ = self.envs.reset(seed=seed)
+        self.rewards[:] = 0
+        self.terminals[:] = False
+        self.truncations[:] = False
+        self.masks[:] = True
+        self._returns[:] = 0
+        self._lengths[:] = 0
+        return self.observations, []
+
+    def step(
+        self, actions: npt.NDArray[Any]
+    ) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], list[dict[str, Any]]]:
+        """One step of all; the arrays are PufferLib's buffers."""
+        observations, rewards, terminated, truncated, told = self.envs.step(np.asarray(actions))
+        self.observations[:] = observations
+        self.rewards[:] = rewards
+        self.terminals[:] = terminated
+        self.truncations[:] = truncated
+        self._returns += rewards
+        self._lengths += 1
+        infos = [self._closed(int(index), told["final_info"]) for index in np.flatnonzero(terminated | truncated)]
+        return self.observations, self.rewards, self.terminals, self.truncations, infos
+
+    def _closed(self, index: int, last: Any) -> dict[str, Any]:
+        info = {
+            "episode_return": float(self._returns[index]),
+            "episode_length": int(self._lengths[index]),
+            "is_success": float(last["is_success"][index]),
+        }
+        self._returns[index] = 0
+        self._lengths[index] = 0
+        return info
+
+    def render(self) -> Any:
+        """A picture of the first environment, with ``render_mode="rgb_array"``."""
+        pictures = self.envs.render()
+        return None if pictures is None else pictures[0]
+
+    def close(self) -> None:
+        """Frees the environments."""
+        self.envs.close()

@@ -1,0 +1,210 @@
+"""The native vector environment as Stable-Baselines3's ``VecEnv``. Training is Stable-Baselines3's.
+
+    from driftworld.adapters.sb3 import make_vec_env
+    from stable_baselines3 import PPO
+
+    PPO("CnnPolicy", make_vec_env("driftworld/FindObjects-v0", num_envs=16, seed=0, modalities="rgb", actions="discrete")).learn(100_000)
+
+Observations are copied at every step, for Stable-Baselines3 keeps the last one while the next is made. Without this adapter,
+``DummyVecEnv`` works as well, one environment at a time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import gymnasium
+import numpy as np
+import numpy.typing as npt
+
+import driftworld  # noqa: F401 - registers the environments
+
+try:
+    from stable_baselines3.common.vec_env import VecEnv, VecMonitor
+except ImportError as error:
+    raise ImportError(
+        'driftworld.adapters.sb3: found no stable_baselines3, expected version 2.4 or later; pip install "driftworld[sb3]"'
+    ) from error
+
+__all__ = ["DriftworldVecEnv", "make_vec_env"]
+
+
+def make_vec_env(
+    env_id: str,
+    num_envs: int = 1,
+    seed: int | None = None,
+    *,
+    monitor_dir: str | None = None,
+    **options: Any,
+) -> VecEnv:
+    """Environments that step together, as Stable-Baselines3 wants them.
+
+    Args:
+        env_id: Such as ``"driftworld/FindObjects-v0"``.
+        num_envs: How many, from 1.
+        seed: Environment ``i`` draws its worlds under ``seed + i``; ``None`` draws seeds.
+        monitor_dir: A folder for ``monitor.csv``, the returns of all episodes; ``None`` writes no file. Returns and lengths are in
+            ``info["episode"]`` either way, so that Stable-Baselines3 prints ``ep_rew_mean``.
+        **options: Options of the environment, such as ``variant``, ``modalities`` or ``num_threads``; ``autoreset_mode`` and ``copy``
+            are set here.
+
+    Returns:
+        A :class:`DriftworldVecEnv` within ``VecMonitor``.
+    """
+    environments = DriftworldVecEnv(env_id, num_envs, **options)
+    environments.seed(seed)
+    return VecMonitor(environments, monitor_dir)
+
+
+class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where it is not installed.
+    """The native vector environment behind Stable-Baselines3's interface.
+
+    An episode's end is followed by the next episode's first observation, as Stable-Baselines3 expects; ``info`` then says
+    ``"terminal_observation"`` and ``"TimeLimit.truncated"``, and the rest of it is what the step itself told. ``set_options`` takes what
+    ``reset(options=…)`` of a single environment takes, for all or one by one, such as ``[{"variant": "red"}, {"variant": "blue"}]``.
+
+    Args:
+        env_id: Such as ``"driftworld/FindObjects-v0"``.
+        num_envs: How many, from 1.
+        **options: Options of the environment.
+
+    Attributes:
+        envs: Gymnasium's view of the same environments; stepping it by hand would leave Stable-Baselines3 behind.
+    """
+
+    def __init__(self, env_id: str, num_envs: int = 1, **options: Any) -> None:
+        refused = sorted({"autoreset_mode", "copy"} & options.keys())
+        if refused:
+            raise ValueError(f"{refused[0]}: Stable-Baselines3 needs same_step and copies; found it set, expected it left out")
+        self.envs: Any = gymnasium.make_vec(
+            env_id,
+            num_envs=num_envs,
+            vectorization_mode="vector_entry_point",
+            autoreset_mode="same_step",
+            copy=True,
+            **options,
+        )
+        self._actions: npt.NDArray[Any] | None = None
+        super().__init__(num_envs, self.envs.single_observation_space, self.envs.single_action_space)
+
+    def reset(self) -> Any:
+        """Begins new episodes everywhere, with the seeds and options set before; both are used once.
+
+        Returns:
+            The first observations, ``(num_envs, …)``.
+        """
+        observations: Any = None
+        for options, mask in self._groups():
+            seeds = [seed if is_in else None for seed, is_in in zip(self._seeds, mask, strict=True)]
+            asked: dict[str, Any] = dict(options)
+            if not mask.all():
+                asked["reset_mask"] = mask
+            observations, told = self.envs.reset(seed=seeds if any(seed is not None for seed in seeds) else None, options=asked)
+            for index in np.flatnonzero(mask):
+                self.reset_infos[index] = _of_one(told, int(index))
+        self._reset_seeds()
+        self._reset_options()
+        return observations
+
+    def _groups(self) -> list[tuple[dict[str, Any], npt.NDArray[np.bool_]]]:
+        """The different options, each with the environments that it is for."""
+        groups: list[tuple[dict[str, Any], npt.NDArray[np.bool_]]] = []
+        for index, options in enumerate(self._options):
+            mask = next((mask for known, mask in groups if known == options), None)
+            if mask is None:
+                mask = np.zeros(self.num_envs, dtype=np.bool_)
+                groups.append((options, mask))
+            mask[index] = True
+        return groups
+
+    def step_async(self, actions: npt.NDArray[Any]) -> None:
+        """Keeps the actions, ``(num_envs, …)``; the step is made in :meth:`step_wait`."""
+        self._actions = actions
+
+    def step_wait(self) -> tuple[Any, npt.NDArray[np.float32], npt.NDArray[np.bool_], list[dict[str, Any]]]:
+        """One step of all environments: observations, rewards (float32), dones, and one info for each."""
+        if self._actions is None:
+            raise RuntimeError("step_wait: found no actions, expected step_async before; call step(actions)")
+        observations, rewards, terminated, truncated, told = self.envs.step(self._actions)
+        self._actions = None
+        dones = np.logical_or(terminated, truncated)
+        infos: list[dict[str, Any]] = []
+        for index in range(self.num_envs):
+            info = _of_one(told, index)
+            if dones[index]:
+                info.pop("final_obs", None)
+                last = info.pop("final_info", {})
+                self.reset_infos[index] = info
+                info = {**last, "terminal_observation": told["final_obs"][index]}
+            info["TimeLimit.truncated"] = bool(truncated[index] and not terminated[index])
+            infos.append(info)
+        return observations, np.asarray(rewards, dtype=np.float32), dones, infos
+
+    def close(self) -> None:
+        """Frees the environments; may be called again."""
+        self.envs.close()
+
+    def get_images(self) -> Sequence[npt.NDArray[np.uint8] | None]:
+        """A picture of each environment, with ``render_mode="rgb_array"``."""
+        pictures = self.envs.render()
+        return list(pictures) if pictures is not None else [None] * self.num_envs
+
+    def get_attr(self, attr_name: str, indices: int | Iterable[int] | None = None) -> list[Any]:
+        """An attribute of the environments, which all share it.
+
+        Raises:
+            AttributeError: There is none of that name.
+        """
+        value = getattr(self.envs, attr_name)
+        return [value for _ in self._get_indices(indices)]
+
+    def set_attr(self, attr_name: str, value: Any, indices: int | Iterable[int] | None = None) -> None:
+        """Sets an attribute of all environments at once.
+
+        Raises:
+            ValueError: ``indices`` names some of them only.
+        """
+        if sorted(self._get_indices(indices)) != list(range(self.num_envs)):
+            raise ValueError(
+                f"set_attr({attr_name!r}): found some of {self.num_envs} environments, expected all, for they share their "
+                "attributes; set_options gives each its own variant or world"
+            )
+        setattr(self.envs, attr_name, value)
+
+    def env_method(
+        self,
+        method_name: str,
+        *method_args: Any,
+        indices: int | Iterable[int] | None = None,
+        **method_kwargs: Any,
+    ) -> list[Any]:
+        """A method of the environments: ``"state"`` and ``"render"`` for each of ``indices``, any other once for all of them.
+
+        Raises:
+            AttributeError: There is none of that name.
+        """
+        if method_name == "state":
+            return [self.envs.state(index) for index in self._get_indices(indices)]
+        if method_name == "render":
+            pictures = self.get_images()
+            return [pictures[index] for index in self._get_indices(indices)]
+        value = getattr(self.envs, method_name)(*method_args, **method_kwargs)
+        return [value for _ in self._get_indices(indices)]
+
+    def env_is_wrapped(self, wrapper_class: type[Any], indices: int | Iterable[int] | None = None) -> list[bool]:
+        """Never: there is nothing around native environments."""
+        return [False for _ in self._get_indices(indices)]
+
+
+def _of_one(told: Mapping[str, Any], index: int) -> dict[str, Any]:
+    """What a vector environment told of one of its environments."""
+    one: dict[str, Any] = {}
+    for name, values in told.items():
+        mask = told.get(f"_{name}")
+        # Masks themselves have none, and say nothing by themselves.
+        if mask is None or not mask[index]:
+            continue
+        value = _of_one(values, index) if isinstance(values, Mapping) else values[index]
+        one[name] = value.item() if isinstance(value, np.generic) else value
+    return one

@@ -1,0 +1,217 @@
+//! Documents as files and texts: what one is, seen from its keys, and all that is wrong with it. What may stand in each is `spec`'s.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::sync::Arc;
+
+use driftworld_spec::maps::MapLibrary;
+use driftworld_spec::{Scenario, SpecError, TaskSpec, World, nearest};
+use serde_json::Value;
+
+use crate::tasks::TaskError;
+
+/// Why a document cannot be had from its file.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DocumentError {
+    /// The file cannot be read.
+    #[error("{}: cannot be read: {source}", path.display())]
+    Unreadable {
+        /// Its path.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The file is no text.
+    #[error("{}: byte {at} is not UTF-8; JSON documents are UTF-8 text", path.display())]
+    NotText {
+        /// Its path.
+        path: PathBuf,
+        /// The first byte that is no text.
+        at: usize,
+    },
+    /// The document is wrong.
+    #[error(transparent)]
+    Spec(#[from] SpecError),
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// [`DocumentError::Unreadable`], [`DocumentError::NotText`].
+pub fn text(path: &Path) -> Result<String, DocumentError> {
+    let bytes = std::fs::read(path).map_err(|source| DocumentError::Unreadable {
+        path: path.to_owned(),
+        source,
+    })?;
+    String::from_utf8(bytes).map_err(|error| DocumentError::NotText {
+        path: path.to_owned(),
+        at: error.utf8_error().valid_up_to(),
+    })
+}
+
+/// What a document is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A task spec.
+    Task,
+    /// A world.
+    World,
+    /// A scenario: the blocks of a curriculum.
+    Scenario,
+    /// Layouts.
+    Maps,
+    /// A world as L2Explorer wrote it.
+    L2ExplorerWorld,
+    /// A scenario as L2Explorer wrote it.
+    L2ExplorerScenario,
+}
+
+impl Kind {
+    /// Every kind.
+    pub const ALL: [Self; 6] = [
+        Self::Task,
+        Self::World,
+        Self::Scenario,
+        Self::Maps,
+        Self::L2ExplorerWorld,
+        Self::L2ExplorerScenario,
+    ];
+
+    /// What a text is, seen from its keys: `blocks` make a scenario, `scenario` one of L2Explorer's, `maps` a maps file, `name`,
+    /// `parameters` or `groups` a task spec, anything else a world.
+    pub fn of(text: &str) -> Self {
+        let json: Value = serde_json::from_str(text).unwrap_or_default();
+        let has = |key: &str| json.get(key).is_some();
+        if has("blocks") {
+            Self::Scenario
+        } else if Scenario::is_l2explorer(&json) {
+            Self::L2ExplorerScenario
+        } else if has("maps") {
+            Self::Maps
+        } else if has("name") || has("parameters") || has("groups") {
+            Self::Task
+        } else {
+            Self::World
+        }
+    }
+
+    /// What messages call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Task => "task spec",
+            Self::World => "world",
+            Self::Scenario => "scenario",
+            Self::Maps => "maps file",
+            Self::L2ExplorerWorld => "L2Explorer world",
+            Self::L2ExplorerScenario => "L2Explorer scenario",
+        }
+    }
+
+    /// The word by which programs ask for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Task => "task",
+            Self::World => "world",
+            Self::Scenario => "scenario",
+            Self::Maps => "maps",
+            Self::L2ExplorerWorld => "l2explorer-world",
+            Self::L2ExplorerScenario => "l2explorer-scenario",
+        }
+    }
+}
+
+impl FromStr for Kind {
+    type Err = String;
+
+    fn from_str(word: &str) -> Result<Self, String> {
+        let words = Self::ALL.map(Self::word);
+        Self::ALL.into_iter().find(|kind| kind.word() == word).ok_or_else(|| {
+            let near = nearest(word, words).map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
+            format!("kind: found {word:?}, expected one of {}{near}", words.join(", "))
+        })
+    }
+}
+
+/// What a document came to when it was checked.
+#[derive(Debug)]
+pub struct Checked {
+    /// What it was taken for.
+    pub kind: Kind,
+    /// What is odd about it.
+    pub warnings: Vec<String>,
+    /// What is wrong with it; nothing where it is valid.
+    pub error: Option<SpecError>,
+}
+
+/// Checks a document. `name` is what messages call it; `task` finds the tasks that a scenario names, whose variants are checked
+/// where it finds them.
+pub fn check(
+    name: &str,
+    text: &str,
+    kind: Kind,
+    task: &mut dyn FnMut(&str) -> Result<Arc<TaskSpec>, TaskError>,
+) -> Checked {
+    let mut warnings = Vec::new();
+    let error = match kind {
+        Kind::Task => TaskSpec::from_json(name, text).err(),
+        Kind::World => World::from_json(name, text).err(),
+        Kind::Maps => MapLibrary::from_json(name, text).err(),
+        Kind::Scenario => {
+            let read = Scenario::from_json_with(name, text, |called| {
+                let unchecked = |error| format!("{name}: the variants of {called} are not checked: {error}");
+                task(called).map_err(|error| warnings.push(unchecked(error))).ok()
+            });
+            read.err()
+        }
+        Kind::L2ExplorerWorld => told(World::from_l2explorer(name, text), &mut warnings),
+        Kind::L2ExplorerScenario => told(Scenario::from_l2explorer(name, text), &mut warnings),
+    };
+    Checked { kind, warnings, error }
+}
+
+/// What is wrong with a document of the original's; what is odd goes to the warnings.
+fn told<T, W: ToString>(read: Result<(T, Vec<W>), SpecError>, warnings: &mut Vec<String>) -> Option<SpecError> {
+    match read {
+        Ok((_, found)) => {
+            warnings.extend(found.iter().map(ToString::to_string));
+            None
+        }
+        Err(error) => Some(error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tasks;
+
+    #[test]
+    fn what_a_document_is_is_seen_from_its_keys() {
+        let check = |text: &str, expected: Kind| assert_eq!(Kind::of(text), expected, "{text}");
+        check(r#"{ "blocks": [] }"#, Kind::Scenario);
+        check(r#"{ "maps": [] }"#, Kind::Maps);
+        check(r#"{ "name": "t" }"#, Kind::Task);
+        check(r#"{ "objects": [] }"#, Kind::World);
+        check("{", Kind::World);
+    }
+
+    #[test]
+    fn every_kind_is_asked_for_by_its_word() {
+        for kind in Kind::ALL {
+            assert_eq!(kind.word().parse(), Ok(kind));
+        }
+        let refused = "scenrio".parse::<Kind>().unwrap_err();
+        assert!(refused.ends_with("did you mean \"scenario\"?"), "{refused}");
+    }
+
+    #[test]
+    fn variants_of_a_scenario_are_checked_where_its_task_is_found() {
+        let text = r#"{ "name": "s", "blocks": [{ "type": "learning", "regimes": [
+            { "task": "find_objects", "variant": "rde", "count": 1 }, { "task": "nowhere", "variant": "x", "count": 1 }] }] }"#;
+        let found = check("s.json", text, Kind::Scenario, &mut tasks::task);
+        let error = found.error.expect("there is no such variant").to_string();
+        assert!(error.contains("did you mean \"red\"?"), "{error}");
+        assert_eq!(found.warnings.len(), 1, "{:?}", found.warnings);
+    }
+}
