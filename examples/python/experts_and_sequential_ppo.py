@@ -91,7 +91,7 @@ class Learner:
     def __init__(self, seed: int) -> None:
         torch.manual_seed(seed)
         self.network = Network()
-        self.optimizer = torch.optim.Adam(self.network.parameters(), lr=3e-4, eps=1e-5)
+        self.optimizer = torch.optim.Adam(self.network.parameters(), lr=5e-4, eps=1e-5)
 
     @torch.no_grad()
     def policy(self, images: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
@@ -101,13 +101,13 @@ class Learner:
 
     def learn(self, rollout: Rollout) -> None:
         """Three passes of PPO over a rollout."""
+        advantages = rollout.advantages()
         for _ in range(3):
             for part in minibatches(rollout.counts):
-                self.step(self.loss(rollout, part))
+                self.step(self.loss(rollout, advantages, part))
 
-    def loss(self, rollout: Rollout, part: torch.Tensor, clip: float = 0.2) -> torch.Tensor:
+    def loss(self, rollout: Rollout, advantages: torch.Tensor, part: torch.Tensor, clip: float = 0.2) -> torch.Tensor:
         """PPO's loss over some steps of a rollout."""
-        advantages = rollout.advantages()
         target = (advantages + rollout.values[:-1]).flatten()[part]
         advantage = advantages.flatten()[part]
         advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)
@@ -142,8 +142,8 @@ class Lives:
         )
         self.num_envs, self.length = num_envs, length
 
-    def live(self, learner: Learner, regime: dict[str, Any], learning: bool, note: Callable[[dict[str, Any]], None]) -> None:
-        """Lives a regime's experiences: each environment a share of them, all at the same time."""
+    def live(self, learner: Learner, regime: dict[str, Any], learning: bool) -> Iterator[dict[str, Any]]:
+        """Lives a regime's experiences, each environment a share of them, all at the same time; the numbers of each as it ends."""
         count, first = regime["count"], regime["first_index"]
         if count % self.num_envs:
             raise ValueError(f"count: found {count}, expected a multiple of the {self.num_envs} environments")
@@ -170,10 +170,10 @@ class Lives:
                 rollout.ended[t] = torch.tensor(just_ended)
                 reward, steps = reward + pay * counts, steps + counts
                 for env in np.flatnonzero(just_ended & counts):
-                    note({
+                    yield {
                         "reward": reward[env], "success": float(info["is_success"][env]),
                         "episode_step_count": int(steps[env]), "truncated": float(truncated[env]), "world_index": int(world[env]),
-                    })  # fmt: skip
+                    }  # fmt: skip
                     reward[env], steps[env] = 0.0, 0
                     left[env], world[env] = left[env] - 1, world[env] + 1
                 if not left.any():
@@ -183,72 +183,74 @@ class Lives:
                 learner.learn(rollout)
 
 
-def scenario(variants: tuple[str, ...], arguments: argparse.Namespace, evaluate: bool = True) -> dict[str, Any]:
+def scenario(variants: tuple[str, ...], seed: int, arguments: argparse.Namespace, evaluate: bool = True) -> dict[str, Any]:
     """Learning blocks for variants in turn; evaluations of all of them around each, on worlds that are not learned from."""
 
     def regime(variant: str, count: int, seed: int) -> dict[str, Any]:
         return {"task": TASK, "variant": variant, "count": count, "seed": seed, "first_index": 0}
 
-    evaluation = {
-        "type": "evaluation",
-        "regimes": [regime(variant, arguments.evaluate, arguments.seed + 1000) for variant in variants],
-    }
+    evaluation = {"type": "evaluation", "regimes": [regime(variant, arguments.evaluate, seed + 1000) for variant in variants]}
     blocks: list[dict[str, Any]] = [evaluation] if evaluate else []
     for variant in variants:
-        blocks.append({"type": "learning", "regimes": [regime(variant, arguments.learn, arguments.seed)]})
+        blocks.append({"type": "learning", "regimes": [regime(variant, arguments.learn, seed)]})
         blocks += [evaluation] if evaluate else []
-    name = "_".join(["brg", *variants]) if evaluate else f"brg_expert_{variants[0]}"
-    return {"version": 1, "name": name, "blocks": blocks}
+    plan = {"version": 1, "name": "_".join([TASK, *variants]), "blocks": blocks}
+    driftworld.validate(plan, "scenario", check=True)
+    return plan
 
 
 COLUMNS = ["reward", "success", "episode_step_count", "truncated", "world_index"]
 
 
-def lifetime(learner: Learner, scenario: dict[str, Any], folder: Path, num_envs: int, agent: str) -> list[dict[str, Any]]:
-    """Lives a scenario and logs every experience; what each evaluation and each learning block came to."""
+def lifetime(learner: Learner, plan: dict[str, Any], folder: Path, arguments: argparse.Namespace) -> dict[str, Any]:
+    """Lives a scenario and logs every experience, or finds it lived; what its blocks came to, and how long they took."""
+    agent, kept = folder.name, folder.with_suffix(".json")
+    if kept.exists() and not arguments.again:
+        done: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8"))
+        if done["scenario"] == plan:
+            print(f"{agent}: found in {folder}, not lived again (--again does)")
+            return done
     shutil.rmtree(folder, ignore_errors=True)
-    lives = Lives(num_envs)
-    told, learned, experience = [], 0, 0
-    with driftworld.LogWriter(folder, COLUMNS, scenario=scenario, agent=agent) as log:
-        for number, block in enumerate(scenario["blocks"]):
+    watch, lives = Watch(), Lives(arguments.num_envs)
+    told: list[dict[str, Any]] = []
+    learned = experience = 0
+    info = {"scenario_type": "custom", "agent": agent, "scenario": plan}
+    with driftworld.LogWriter(folder, COLUMNS, scenario_info=info) as log:
+        for number, block in enumerate(plan["blocks"]):
             learning = block["type"] == "learning"
             for regime in block["regimes"]:
                 rewards: list[float] = []
-
-                def note(told: dict[str, Any], regime: dict[str, Any] = regime, rewards: list[float] = rewards) -> None:
-                    nonlocal experience
+                for numbers in lives.live(learner, regime, learning):
                     log.write(
                         block_num=number, exp_num=experience, block_type="train" if learning else "test",
                         task_name=f"{TASK.replace('_', '')}_{regime['variant']}",
-                        task_params={key: regime[key] for key in ("task", "variant", "seed")}, **told,
+                        task_params={key: regime[key] for key in ("task", "variant", "seed")}, **numbers,
                     )  # fmt: skip
                     experience += 1
-                    rewards.append(told["reward"])
-
-                lives.live(learner, regime, learning, note)
+                    rewards.append(numbers["reward"])
                 learned += len(rewards) * learning
                 told.append({
-                    "block": number, "learning": learning, "variant": regime["variant"], "experiences learned": learned,
+                    "block": number, "learning": learning, "variant": regime["variant"], "experiences": learned,
                     "reward": round(float(np.mean(rewards[-200:])), 1),
                 })  # fmt: skip
                 print(f"{agent}: block {number} {block['type']:10} {regime['variant']}: reward {told[-1]['reward']:6.1f}", flush=True)
-    return told
+    done = {"scenario": plan, "seconds": round(watch.seconds, 1), "load_before": watch.load, "told": told}
+    kept.write_text(json.dumps(done, indent=2) + "\n", encoding="utf-8")
+    return done
 
 
-def add_arguments(parser: argparse.ArgumentParser, program: str) -> None:
-    """What both examples may be told."""
-    parser.add_argument("--seed", type=int, default=1, help="of the network, the actions and the worlds (default: 1)")
+def parse_arguments(program: str, text: str) -> argparse.Namespace:
+    """What this example and `replay_ppo.py` may be told."""
+    parser = argparse.ArgumentParser(description=text.splitlines()[0])
+    parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="a lifetime each (default: 1)")
     parser.add_argument("--learn", type=int, default=2048, help="experiences of a learning block (default: 2048)")
     parser.add_argument("--evaluate", type=int, default=128, help="of each variant in an evaluation block (default: 128)")
     parser.add_argument("--num-envs", type=int, default=32)
     parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
     parser.add_argument("--logs", type=Path, default=Path("logs/blue_red_green"), help="where the lifetimes are logged")
+    parser.add_argument("--again", action="store_true", help="live also what is in the logs already")
     parser.add_argument("--results", nargs="?", const=folder_of(program), metavar="FOLDER", help="write the result down")
     parser.add_argument("--quick", action="store_true", help="a few experiences, to see that it runs")
-
-
-def take_arguments(parser: argparse.ArgumentParser) -> argparse.Namespace:
-    """Reads them."""
     arguments = parser.parse_args()
     if arguments.quick:
         arguments.learn, arguments.evaluate, arguments.num_envs = 32, 8, 8
@@ -256,35 +258,83 @@ def take_arguments(parser: argparse.ArgumentParser) -> argparse.Namespace:
     return arguments
 
 
-def curve_of(told: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The evaluations as rows of a curve, a line for each variant."""
+def live_experts(arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
+    """An expert for each variant and seed, with as much experience as the lifetime has of it; where they are logged."""
+    lived = {}
+    for seed in arguments.seeds:
+        for variant in VARIANTS:
+            folder = arguments.logs / f"expert_{variant}_{seed}"
+            lived[folder] = lifetime(Learner(seed), scenario((variant,), seed, arguments, evaluate=False), folder, arguments)
+    return lived
+
+
+def live_lifetimes(name: str, learner: Callable[[int], Learner], arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
+    """A lifetime over all variants for each seed; where they are logged."""
+    lived = {}
+    for seed in arguments.seeds:
+        folder = arguments.logs / f"{name}_{seed}"
+        lived[folder] = lifetime(learner(seed), scenario(VARIANTS, seed, arguments), folder, arguments)
+    return lived
+
+
+def evaluations(lived: dict[Path, dict[str, Any]], label: str = "") -> list[dict[str, Any]]:
+    """A row for each variant and evaluation: its reward, the mean over lifetimes."""
+    told = [row for done in lived.values() for row in done["told"] if not row["learning"]]
+    places = sorted({(row["variant"], row["experiences"]) for row in told})
     return [
-        {"run": row["variant"], "experiences": row["experiences learned"], "reward": row["reward"]}
-        for row in sorted(told, key=lambda row: row["variant"])
-        if not row["learning"]
+        {
+            "run": f"{variant}{label}",
+            "experiences": experiences,
+            "reward": round(
+                float(np.mean([row["reward"] for row in told if (row["variant"], row["experiences"]) == (variant, experiences)])), 1
+            ),
+        }
+        for variant, experiences in places
     ]
 
 
-def scores_of(*names: str, scores: driftworld.Metrics) -> dict[str, float]:
-    """Some metrics of a lifetime, rounded."""
-    return {name: round(scores.lifetime[name], 3) for name in names}
+def scores_table(**agents: driftworld.Metrics) -> list[dict[str, Any]]:
+    """A row for each metric, a column for each agent: the mean over its lifetimes."""
+    names = list(next(iter(agents.values())).lifetime)
+
+    def value(scores: driftworld.Metrics, name: str) -> str:
+        number = scores.lifetime[name]
+        return "none" if number is None else f"{number:.3f}"
+
+    return [{"metric": name} | {agent: value(scores, name) for agent, scores in agents.items()} for name in names]
+
+
+def show(rows: list[dict[str, Any]]) -> None:
+    """Prints a table."""
+    for row in [dict.fromkeys(rows[0], ""), *rows]:
+        cells = [str(cell or name) for name, cell in row.items()]
+        print("  ".join(f"{cell:<{26 if place == 0 else 16}}" for place, cell in enumerate(cells)).rstrip())
 
 
 def main() -> None:
-    """Experts first, then the lifetime, then the scores."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    add_arguments(parser, __file__)
-    arguments = take_arguments(parser)
-    watch = Watch()
-    experts = []
-    for variant in VARIANTS:
-        plan = scenario((variant,), arguments, evaluate=False)
-        lifetime(Learner(arguments.seed), plan, arguments.logs / "experts" / variant, arguments.num_envs, f"expert_{variant}")
-        experts.append(arguments.logs / "experts" / variant)
-    plan = scenario(VARIANTS, arguments)
-    told = lifetime(Learner(arguments.seed), plan, arguments.logs / "sequential", arguments.num_envs, "sequential_ppo")
-    scores = driftworld.metrics(arguments.logs / "sequential", ste=experts)
-    print(json.dumps(scores.lifetime, indent=2))
+    """Experts first, then the lifetimes, then the scores."""
+    arguments = parse_arguments(__file__, __doc__ or "")
+    experts = live_experts(arguments)
+    lived = live_lifetimes("sequential_ppo", Learner, arguments)
+    scores = driftworld.metrics(list(lived), ste=list(experts))
+    table = scores_table(sequential=scores)
+    show(table)
+    page = driftworld.report(list(lived), ste=list(experts), title="A sequential PPO over blue_red_green")
+    (arguments.logs / "sequential_ppo.html").write_text(page, encoding="utf-8")
+    print(f"the report is {arguments.logs / 'sequential_ppo.html'}")
+    if arguments.results:
+        everything = [*experts.values(), *lived.values()]
+        Record(
+            title="Experts, and a sequential PPO",
+            text=f"One PPO learns `{TASK}` a, b and c in turn, {arguments.learn} experiences each, and is evaluated in all three around "
+            "each block; experts have the same experience of one variant alone. The curve is of the evaluations: from left to right before "
+            "anything was learned, after a, after b, after c.",
+            settings={**vars(arguments), **OPTIONS}, variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
+            curve=evaluations(lived), table=table, axes=("experiences", "reward"),
+            labels=("experiences learned from", "reward in evaluations, mean over lifetimes"),
+            seconds=sum(done["seconds"] for done in everything), load_before=everything[0]["load_before"],
+            files={"curriculum.json": everything[-1]["scenario"], "scores.json": scores.lifetimes},
+        ).write(arguments.results)  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -3,9 +3,9 @@
 After Rolnick et al. 2019 (arXiv:1811.11682): a reservoir keeps a fair sample of everything that was ever lived; beside each
 update from new experience stands one from as much of the old, by V-trace, and *cloning* holds policy and values near what they
 were at that time. Nothing tells the learner where one task ends and another begins. Network, worlds, curriculum and counts are
-those of `experts_and_sequential_ppo.py`; run that first, its logs are what this one is compared with.
+those of `experts_and_sequential_ppo.py`, whose logs this one is compared with; what is not there yet is lived first.
 
-    python examples/python/experts_and_sequential_ppo.py && python examples/python/replay_ppo.py
+    python examples/python/replay_ppo.py               # lifetimes, scores and the report that compares
     python examples/python/replay_ppo.py --results     # what is written down in results/
     python examples/python/replay_ppo.py --quick       # does it run?
 
@@ -14,12 +14,25 @@ Needs PyTorch (`pip install torch`).
 
 from __future__ import annotations
 
-import argparse
-from typing import Any
-
 import numpy as np
 import torch
-from experts_and_sequential_ppo import DISCOUNT, Learner, Rollout
+from experts_and_sequential_ppo import (
+    DISCOUNT,
+    OPTIONS,
+    TASK,
+    VARIANTS,
+    Learner,
+    Rollout,
+    evaluations,
+    live_experts,
+    live_lifetimes,
+    parse_arguments,
+    scores_table,
+    show,
+)
+from record import Record
+
+import driftworld
 
 
 class Reservoir:
@@ -33,6 +46,8 @@ class Reservoir:
     def offer(self, rollout: Rollout) -> None:
         """Offers every environment's stretch of a rollout."""
         for env in range(rollout.rewards.shape[1]):
+            if not rollout.counts[:, env].any():
+                continue
             self.offered += 1
             place = len(self.stretches)
             if place == self.capacity:
@@ -51,7 +66,7 @@ class Reservoir:
 class ReplayLearner(Learner):
     """PPO on what is new, V-trace and cloning on what is old, half and half."""
 
-    def __init__(self, seed: int, capacity: int) -> None:
+    def __init__(self, seed: int, capacity: int = 256) -> None:
         super().__init__(seed)
         self.reservoir = Reservoir(capacity, seed)
 
@@ -97,3 +112,35 @@ def v_trace(old: dict[str, torch.Tensor], values: torch.Tensor, log_ratio: torch
         later = surprise + DISCOUNT * ratio[t] * carried
         targets[t] = values[t] + later
     return targets, advantages
+
+
+def main() -> None:
+    """The lifetimes with replay, and what they are compared with."""
+    arguments = parse_arguments(__file__, __doc__ or "")
+    experts = live_experts(arguments)
+    without = live_lifetimes("sequential_ppo", Learner, arguments)
+    lived = live_lifetimes("replay_ppo", ReplayLearner, arguments)
+    compared = driftworld.metrics(list(lived), against=list(without), ste=list(experts))
+    table = scores_table(
+        replay=driftworld.metrics(list(lived), ste=list(experts)), sequential=driftworld.metrics(list(without), ste=list(experts))
+    )
+    show(table)
+    page = driftworld.report(list(lived), against=list(without), ste=list(experts), title="PPO with experience replay")
+    (arguments.logs / "replay_ppo.html").write_text(page, encoding="utf-8")
+    print(f"the report is {arguments.logs / 'replay_ppo.html'}")
+    if arguments.results:
+        runs = list(lived.values())
+        Record(
+            title="PPO with experience replay",
+            text="The learner, the worlds and the curriculum of `experts_and_sequential_ppo.py`, with a reservoir of 256 stretches of 64 steps "
+            "in the manner of CLEAR. The curve is of the evaluations; the time is that of the lifetimes with replay alone.",
+            settings={**vars(arguments), **OPTIONS}, variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
+            curve=evaluations(lived, ", replay") + evaluations(without, ", sequential"), table=table, axes=("experiences", "reward"),
+            labels=("experiences learned from", "reward in evaluations, mean over lifetimes"),
+            seconds=sum(done["seconds"] for done in runs), load_before=runs[0]["load_before"],
+            files={"curriculum.json": runs[0]["scenario"], "scores.json": compared.lifetimes, "improvement.json": compared.improvement},
+        ).write(arguments.results)  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()
