@@ -51,6 +51,7 @@ def run_python(program: str, **environment: str) -> subprocess.CompletedProcess[
         capture_output=True,
         text=True,
         timeout=200,
+        check=False,
     )
 
 
