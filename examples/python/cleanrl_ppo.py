@@ -207,7 +207,7 @@ def main() -> None:
             text="The learner of `cleanrl_ppo.py` on `driftworld/FindObjects-v0` from 64 × 64 colour pictures, in the native vector "
             "environment with autoreset NEXT_STEP.",
             settings={**vars(arguments), **options},
-            variants=[f"find_objects#{arguments.variant}"], seeds=[arguments.seed], curve=curve, watch=watch, table=[curve[-1]],
+            variants=[f"find_objects#{arguments.variant}"], seeds=[arguments.seed], curve=curve, seconds=watch.seconds, load_before=watch.load, table=[curve[-1]],
             labels=("steps of learning, each held for five time steps", "reward of an episode, mean of the last 200"),
         ).write(arguments.results)  # fmt: skip
 

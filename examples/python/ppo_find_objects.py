@@ -23,7 +23,7 @@ from record import Record, Watch, folder_of
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
-from stable_baselines3.common.vec_env import VecEnv, VecMonitor, VecNormalize
+from stable_baselines3.common.vec_env import VecNormalize
 from torch import nn
 
 import driftworld
@@ -69,7 +69,7 @@ class Curve(BaseCallback):
 
     def _on_rollout_end(self) -> None:
         episodes = self.model.ep_info_buffer
-        if not episodes:
+        if not episodes or not self.model.ep_success_buffer:
             return
         seconds = time.perf_counter() - self.began
         row = {
@@ -77,7 +77,7 @@ class Curve(BaseCallback):
             "steps": self.num_timesteps,
             "seconds": round(seconds, 1),
             "reward": round(float(np.mean([episode["r"] for episode in episodes])), 2),
-            "success": round(float(np.mean([episode["is_success"] for episode in episodes])), 3),
+            "success": round(float(np.mean(self.model.ep_success_buffer)), 3),
         }
         self.rows.append(row)
         if len(self.rows) % 10 == 1:
@@ -91,8 +91,8 @@ class Curve(BaseCallback):
 def learn(seed: int, arguments: argparse.Namespace) -> tuple[PPO, list[dict[str, Any]]]:
     """Learns from nothing; the learner and its curve."""
     envs = make_vec_env(ID, arguments.num_envs, seed=seed, variant=arguments.variant, **OPTIONS)
-    # The monitor notes rewards as the task pays them; the learner gets them on a scale of about 1.
-    envs = VecNormalize(VecMonitor(envs, info_keywords=("is_success",)), norm_obs=False, gamma=0.98)
+    # The curve is of rewards as the task pays them; the learner gets them on a scale of about 1.
+    envs = VecNormalize(envs, norm_obs=False, gamma=0.98)
     model = PPO(
         "CnnPolicy", envs, seed=seed, device="cpu",
         n_steps=arguments.rollout, batch_size=512, n_epochs=3, gamma=0.98, gae_lambda=0.95, ent_coef=0.01,
@@ -107,13 +107,12 @@ def learn(seed: int, arguments: argparse.Namespace) -> tuple[PPO, list[dict[str,
 
 def evaluate(arguments: argparse.Namespace, model: PPO | None) -> dict[str, float]:
     """Reward and success on worlds that were never learned from; without a model an agent that acts at random."""
-    envs: VecEnv = make_vec_env(ID, arguments.num_envs, seed=EVALUATION_SEED, variant=arguments.variant, **OPTIONS)
-    envs = VecMonitor(envs, info_keywords=("is_success",))
+    envs = make_vec_env(ID, arguments.num_envs, seed=EVALUATION_SEED, variant=arguments.variant, **OPTIONS)
     envs.action_space.seed(EVALUATION_SEED)
     observation = envs.reset()
     # As many of each environment, else short episodes would count more often than long ones.
     wanted = -(-arguments.episodes // arguments.num_envs)
-    episodes: list[list[dict[str, Any]]] = [[] for _ in range(arguments.num_envs)]
+    episodes: list[list[tuple[float, bool]]] = [[] for _ in range(arguments.num_envs)]
     while min(map(len, episodes)) < wanted:
         if model is None:
             actions = np.array([envs.action_space.sample() for _ in range(arguments.num_envs)])
@@ -121,14 +120,14 @@ def evaluate(arguments: argparse.Namespace, model: PPO | None) -> dict[str, floa
             actions, _ = model.predict(observation, deterministic=False)  # type: ignore[arg-type]
         observation, _, ended, infos = envs.step(actions)
         for env in np.flatnonzero(ended):
-            episodes[env].append(infos[env]["episode"])
+            episodes[env].append((infos[env]["episode"]["r"], infos[env]["is_success"]))
     envs.close()
     counted = [episode for row in episodes for episode in row[:wanted]][: arguments.episodes]
-    rewards = np.array([episode["r"] for episode in counted])
+    rewards = np.array([reward for reward, _ in counted])
     return {
         "reward": round(float(rewards.mean()), 1),
         "deviation": round(float(rewards.std()), 1),
-        "success": round(float(np.mean([episode["is_success"] for episode in counted])), 3),
+        "success": round(float(np.mean([success for _, success in counted])), 3),
         "episodes": len(counted),
     }
 
@@ -157,7 +156,7 @@ def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--variant", default="blue", help="variant of find_objects (default: blue)")
     parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="one run each (default: 1)")
-    parser.add_argument("--steps", type=int, default=400_000, help="steps of learning, over all environments")
+    parser.add_argument("--steps", type=int, default=500_000, help="steps of learning, over all environments")
     parser.add_argument("--num-envs", type=int, default=32)
     parser.add_argument("--rollout", type=int, default=64, help="steps of each environment between updates")
     parser.add_argument("--episodes", type=int, default=200, help="of each evaluation")
@@ -206,7 +205,7 @@ def main() -> None:
             settings={"id": ID, **vars(arguments), **OPTIONS, "evaluation_seed": EVALUATION_SEED},
             variants=[f"find_objects#{arguments.variant}"],
             seeds=[*arguments.seeds, EVALUATION_SEED],
-            curve=curve, lines=lines, table=table, watch=watch,
+            curve=curve, lines=lines, table=table, seconds=watch.seconds, load_before=watch.load,
             labels=("steps of learning, each held for five time steps", "reward of an episode, mean of the last 100"),
         ).write(arguments.results)  # fmt: skip
 

@@ -53,9 +53,11 @@ class Record:
         variants: The variants that were lived in, `task#variant`.
         seeds: The seeds whose first worlds are named by their hashes.
         curve: Rows of numbers; those with the same `seed` (or `run`) make one line of the figure.
-        watch: Started when the run began.
+        seconds: How long it took.
+        load_before: How busy the machine was before.
         lines: Levels to compare with, by name, drawn across the figure.
         table: Rows of the page's table.
+        files: What else is kept: documents by the names of their files.
         axes: Which columns of the curve are drawn: across and up.
     """
 
@@ -65,9 +67,11 @@ class Record:
     variants: Sequence[str]
     seeds: Sequence[int]
     curve: Sequence[Mapping[str, Any]]
-    watch: Watch
+    seconds: float
+    load_before: float
     lines: Mapping[str, float] = field(default_factory=dict)
     table: Sequence[Mapping[str, Any]] = ()
+    files: Mapping[str, Any] = field(default_factory=dict)
     axes: tuple[str, str] = ("steps", "reward")
     labels: tuple[str, str] = ("steps of learning", "reward of an episode, mean of the last 100")
 
@@ -77,6 +81,8 @@ class Record:
         folder.mkdir(parents=True, exist_ok=True)
         config = self._config()
         (folder / "config.json").write_text(json.dumps(config, indent=2) + "\n", encoding="utf-8")
+        for name, document in self.files.items():
+            (folder / name).write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
         if self.curve:
             with (folder / "curve.csv").open("w", newline="", encoding="utf-8") as file:
                 writer = csv.DictWriter(file, list(self.curve[0]), lineterminator="\n")
@@ -90,8 +96,8 @@ class Record:
         return {
             "command": " ".join(["python", f"examples/python/{Path(sys.argv[0]).name}", *_spoken(sys.argv[1:])]),
             "date": datetime.date.today().isoformat(),
-            "seconds": round(self.watch.seconds, 1),
-            "machine": {"processor": _processor(), "cores": os.cpu_count(), "load_before": self.watch.load},
+            "seconds": round(self.seconds, 1),
+            "machine": {"processor": _processor(), "cores": os.cpu_count(), "load_before": self.load_before},
             "versions": {"python": platform.python_version(), **_versions()},
             "settings": dict(self.settings),
             "worlds": {variant: _hashes(variant, self.seeds) for variant in self.variants},
@@ -110,12 +116,12 @@ class Record:
             f"Made on {config['date']} in {config['seconds'] / 60:.1f} minutes on {machine['cores']} cores ({machine['processor']}; "
             f"load of the machine before it began {machine['load_before']}), with {written}.",
             "",
-            "Everything that was set, and the hashes of the variants and of the first worlds, is in [config.json](config.json); "
-            "the curve is in [curve.csv](curve.csv)."
-            if self.curve
-            else "Everything that was set, and the hashes of the variants and of the first worlds, is in [config.json](config.json).",
-            "",
+            "Everything that was set, and the hashes of the variants and of the first worlds, is in [config.json](config.json).",
         ]
+        kept = [*(["curve.csv"] if self.curve else []), *self.files]
+        if kept:
+            parts += ["Beside it: " + ", ".join(f"[{name}]({name})" for name in kept) + "."]
+        parts += [""]
         return "\n".join(parts)
 
     def _draw(self, path: Path) -> None:
@@ -140,7 +146,8 @@ class Record:
         axes.set_xlim(left=0)
         axes.grid(alpha=0.25)
         axes.spines[["top", "right"]].set_visible(False)
-        axes.legend(frameon=False, loc="best")
+        if key or self.lines:
+            axes.legend(frameon=False, loc="best")
         figure.savefig(path, metadata={"Software": None})
         pyplot.close(figure)
 
@@ -191,11 +198,12 @@ def _processor() -> str:
 
 def _hashes(variant: str, seeds: Sequence[int]) -> dict[str, Any]:
     """The hash of a variant, and of its first world under each seed."""
+    import gymnasium
+
     import driftworld
 
     task, _, name = variant.partition("#")
-    held = driftworld.TaskSpec.load(task).variant(name)
-    return {
-        "variant": held.hash,
-        "first_worlds": {str(seed): held.sample(seed, 0).hash for seed in seeds},
-    }
+    env = gymnasium.make("driftworld/Task-v0", task=variant)
+    first_worlds = {str(seed): env.reset(seed=seed)[1]["world_hash"] for seed in seeds}
+    env.close()
+    return {"variant": driftworld.TaskSpec.load(task).variant(name).hash, "first_worlds": first_worlds}

@@ -1,0 +1,146 @@
+"""PPO that rehearses: the sequential learner with experience replay in the manner of CLEAR, beside the one without.
+
+After Rolnick et al. 2019 (arXiv:1811.11682): a reservoir keeps a fair sample of everything that was ever lived; beside each
+update from new experience stands one from as much of the old, by V-trace, and *cloning* holds policy and values near what they
+were at that time. Nothing tells the learner where one task ends and another begins. Network, worlds, curriculum and counts are
+those of `experts_and_sequential_ppo.py`, whose logs this one is compared with; what is not there yet is lived first.
+
+    python examples/python/replay_ppo.py               # lifetimes, scores and the report that compares
+    python examples/python/replay_ppo.py --results     # what is written down in results/
+    python examples/python/replay_ppo.py --quick       # does it run?
+
+Needs PyTorch (`pip install torch`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+from experts_and_sequential_ppo import (
+    DISCOUNT,
+    OPTIONS,
+    TASK,
+    VARIANTS,
+    Learner,
+    Rollout,
+    evaluations,
+    live_experts,
+    live_lifetimes,
+    parse_arguments,
+    scores_table,
+    show,
+)
+from record import Record
+
+import driftworld
+
+
+class Reservoir:
+    """A fair sample of all stretches of experience ever offered (Vitter's algorithm R), each `length` steps of one environment."""
+
+    def __init__(self, capacity: int, seed: int) -> None:
+        self.capacity, self.offered = capacity, 0
+        self.stretches: list[dict[str, torch.Tensor]] = []
+        self.chance = np.random.default_rng(seed)
+
+    def offer(self, rollout: Rollout) -> None:
+        """Offers every environment's stretch of a rollout."""
+        for env in range(rollout.rewards.shape[1]):
+            if not rollout.counts[:, env].any():
+                continue
+            self.offered += 1
+            place = len(self.stretches)
+            if place == self.capacity:
+                place = int(self.chance.integers(self.offered))
+                if place >= self.capacity:
+                    continue
+            stretch = {name: value[:, env].clone() for name, value in vars(rollout).items()}
+            self.stretches[place : place + 1] = [stretch]
+
+    def draw(self, count: int) -> dict[str, torch.Tensor]:
+        """Stretches drawn with replacement, `(length, count, …)`."""
+        chosen = [self.stretches[place] for place in self.chance.integers(len(self.stretches), size=count)]
+        return {name: torch.stack([stretch[name] for stretch in chosen], dim=1) for name in chosen[0]}
+
+
+class ReplayLearner(Learner):
+    """PPO on what is new, V-trace and cloning on what is old, half and half."""
+
+    def __init__(self, seed: int, capacity: int = 256) -> None:
+        super().__init__(seed)
+        self.reservoir = Reservoir(capacity, seed)
+
+    def learn(self, rollout: Rollout) -> None:
+        """As PPO does; then as many steps from the reservoir, in portions of eight stretches."""
+        super().learn(rollout)
+        self.reservoir.offer(rollout)
+        for _ in range(rollout.rewards.shape[1] // 8):
+            self.step(self.replay_loss(self.reservoir.draw(8)))
+
+    def replay_loss(self, old: dict[str, torch.Tensor], policy_cloning: float = 0.1, value_cloning: float = 0.05) -> torch.Tensor:
+        """The loss on old experience; means over the steps that count."""
+        length, count = old["rewards"].shape
+        log_policy, values = self.network(old["images"].flatten(0, 1))
+        log_policy, values = log_policy.view(length + 1, count, -1)[:-1], values.view(length + 1, count)
+        action = old["actions"].unsqueeze(-1)
+        log_prob = log_policy.gather(-1, action).squeeze(-1)
+        log_ratio = log_prob - old["log_policy"].gather(-1, action).squeeze(-1)
+        target, advantage = v_trace(old, values.detach(), log_ratio.detach())
+        entropy = -(log_policy.exp() * log_policy).sum(-1)
+        clone_policy = (old["log_policy"].exp() * (old["log_policy"] - log_policy)).sum(-1)
+        clone_value = (values[:-1] - old["values"][:-1]).square()
+        loss = (
+            0.5 * (values[:-1] - target).square() - advantage * log_prob - 0.01 * entropy
+            + policy_cloning * clone_policy + value_cloning * clone_value
+        )  # fmt: skip
+        return loss[old["counts"]].mean()
+
+
+def v_trace(old: dict[str, torch.Tensor], values: torch.Tensor, log_ratio: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+    """V-trace targets and policy-gradient advantages (Espeholt et al. 2018, eq. 1), ratios cut off at 1; `(length, count)` each."""
+    ratio = log_ratio.exp().clamp(max=1.0)
+    goes_on, bootstraps = ~old["ended"], ~old["terminated"]
+    targets, advantages = torch.zeros_like(ratio), torch.zeros_like(ratio)
+    later = torch.zeros_like(ratio[0])
+    for t in reversed(range(len(ratio))):
+        surprise = ratio[t] * (old["rewards"][t] + DISCOUNT * values[t + 1] * bootstraps[t] - values[t])
+        # `later` is how far the next step's target lies above its value; nothing of it crosses the end of an episode.
+        carried = later * goes_on[t]
+        advantages[t] = ratio[t] * (
+            old["rewards"][t] + DISCOUNT * (values[t + 1] + carried) * bootstraps[t] - values[t]
+        )
+        later = surprise + DISCOUNT * ratio[t] * carried
+        targets[t] = values[t] + later
+    return targets, advantages
+
+
+def main() -> None:
+    """The lifetimes with replay, and what they are compared with."""
+    arguments = parse_arguments(__file__, __doc__ or "")
+    experts = live_experts(arguments)
+    without = live_lifetimes("sequential_ppo", Learner, arguments)
+    lived = live_lifetimes("replay_ppo", ReplayLearner, arguments)
+    compared = driftworld.metrics(list(lived), against=list(without), ste=list(experts))
+    table = scores_table(
+        replay=driftworld.metrics(list(lived), ste=list(experts)), sequential=driftworld.metrics(list(without), ste=list(experts))
+    )
+    show(table)
+    page = driftworld.report(list(lived), against=list(without), ste=list(experts), title="PPO with experience replay")
+    (arguments.logs / "replay_ppo.html").write_text(page, encoding="utf-8")
+    print(f"the report is {arguments.logs / 'replay_ppo.html'}")
+    if arguments.results:
+        runs = list(lived.values())
+        Record(
+            title="PPO with experience replay",
+            text="The learner, the worlds and the curriculum of `experts_and_sequential_ppo.py`, with a reservoir of 256 stretches of 64 steps "
+            "in the manner of CLEAR. The curve is of the evaluations; the time is that of the lifetimes with replay alone.",
+            settings={**vars(arguments), **OPTIONS}, variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
+            curve=evaluations(lived, ", replay") + evaluations(without, ", sequential"), table=table, axes=("experiences", "reward"),
+            labels=("experiences learned from", "reward in evaluations, mean over lifetimes"),
+            seconds=sum(done["seconds"] for done in runs), load_before=runs[0]["load_before"],
+            files={"curriculum.json": runs[0]["scenario"], "scores.json": compared.lifetimes, "improvement.json": compared.improvement},
+        ).write(arguments.results)  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()

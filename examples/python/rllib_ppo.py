@@ -1,0 +1,126 @@
+"""RLlib's PPO on Find Objects, several env runners stepping native vector environments; needs only an address to run on a cluster.
+
+    python examples/python/rllib_ppo.py                    # a cluster of this machine's own
+    python examples/python/rllib_ppo.py --address auto     # the Ray cluster that this machine is in
+    python examples/python/rllib_ppo.py --quick            # does it run?
+
+Unlike sampling and measuring (`ray_sample_and_measure.py`), learning is not the same on another number of runners: what is
+learned from then comes from other worlds, in another order. Needs `pip install "driftworld[ray]" torch`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import logging
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import ray
+from ray.rllib.algorithms.ppo import PPOConfig
+from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
+from ray.tune.registry import register_env
+
+from driftworld.envs import DriftworldVectorEnv
+
+# Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.
+ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
+OPTIONS: dict[str, Any] = {
+    "task": "find_objects#blue", "modalities": "rgb", "size": 64, "actions": ACTIONS, "interact": False,
+    "frame_skip": 5, "max_steps": 60,
+}  # fmt: skip
+
+
+class ForRllib(gym.vector.VectorWrapper):
+    """Native environments as RLlib's networks want them.
+
+    Pictures are in 0 to 1 and in memory of their own, for RLlib keeps what the environment's next step writes over; rewards are
+    on a scale of about 1. RLlib hands runner *w* the seed *s* + *w*, and environment *i* of a runner draws its worlds under the
+    runner's seed + *i*: seeds are spread out, so that no two runners live in the same worlds.
+    """
+
+    def __init__(self, env: gym.vector.VectorEnv) -> None:
+        super().__init__(env)
+        self.single_observation_space = gym.spaces.Box(0.0, 1.0, (64, 64, 3), np.float32)
+        self.observation_space = gym.vector.utils.batch_space(self.single_observation_space, self.num_envs)
+
+    def reset(self, *, seed: Any = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        observation, info = self.env.reset(seed=None if seed is None else seed * 1000, options=options)
+        return observation.astype(np.float32) / 255.0, info
+
+    def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
+        observation, reward, terminated, truncated, info = self.env.step(actions)
+        return observation.astype(np.float32) / 255.0, reward / 100.0, terminated, truncated, info
+
+
+def make_environments(config: dict[str, Any]) -> gym.vector.VectorEnv:
+    """What each env runner calls, on whichever machine it is."""
+    return ForRllib(DriftworldVectorEnv(**config))
+
+
+def configuration(arguments: argparse.Namespace) -> PPOConfig:
+    """PPO with the settings of the other examples."""
+    register_env("find_objects", make_environments)
+    each = arguments.num_envs // arguments.runners
+    return (
+        PPOConfig()
+        .environment("find_objects", env_config=OPTIONS)
+        .env_runners(
+            num_env_runners=arguments.runners,
+            num_envs_per_env_runner=each,
+            gym_env_vectorize_mode=gym.VectorizeMode.VECTOR_ENTRY_POINT,
+            rollout_fragment_length=arguments.rollout,
+        )
+        .learners(num_learners=0)
+        .training(
+            lr=5e-4, gamma=0.98, lambda_=0.95, entropy_coeff=0.01, num_epochs=3, minibatch_size=512, vf_clip_param=10.0,
+            train_batch_size_per_learner=arguments.runners * each * arguments.rollout, use_kl_loss=False, grad_clip=0.5,
+        )
+        .rl_module(
+            model_config=DefaultModelConfig(
+                conv_filters=[[16, 8, 4], [32, 4, 2]], conv_activation="relu",
+                head_fcnet_hiddens=[128], head_fcnet_activation="relu", vf_share_layers=True,
+            )
+        )
+        .debugging(seed=arguments.seed, log_level="ERROR")
+    )  # fmt: skip
+
+
+def parse_arguments() -> argparse.Namespace:
+    """What may be said on the command line."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--address", help="of a Ray cluster that is there, such as auto or ray://HOST:10001")
+    parser.add_argument("--runners", type=int, default=2, help="env runners, a processor each (default: 2)")
+    parser.add_argument("--num-envs", type=int, default=32, help="of all runners together")
+    parser.add_argument("--rollout", type=int, default=64, help="steps of each environment between updates")
+    parser.add_argument("--iterations", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--quick", action="store_true", help="two small updates, to see that it runs")
+    arguments = parser.parse_args()
+    if arguments.quick:
+        arguments.num_envs, arguments.iterations = 16, 2
+    return arguments
+
+
+def main() -> None:
+    """Learns, and prints how it goes."""
+    arguments = parse_arguments()
+    if arguments.address is not None:
+        ray.init(address=arguments.address, log_to_driver=False, logging_level=logging.ERROR)
+    else:
+        # Runners and the learner take turns: a processor for each runner is enough, though Ray asks for one more.
+        ray.init(num_cpus=arguments.runners + 1, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
+    algorithm = configuration(arguments).build_algo()
+    for iteration in range(arguments.iterations):
+        runners = algorithm.train()["env_runners"]
+        if "episode_return_mean" in runners and (iteration % 10 == 0 or iteration == arguments.iterations - 1):
+            print(
+                f"{int(runners['num_env_steps_sampled_lifetime']):>9,} steps  reward {100 * runners['episode_return_mean']:7.1f}",
+                flush=True,
+            )
+    algorithm.stop()
+    ray.shutdown()
+
+
+if __name__ == "__main__":
+    main()
