@@ -15,7 +15,8 @@ pub use design::{
 };
 pub use error::CurriculumError;
 pub use run::{
-    COLUMNS, FoundWorld, Journal, Plan, Progress, RegimeSummary, Sources, Summary, Surroundings, log_name, run,
+    COLUMNS, Due, Experience, FoundWorld, Journal, MOST_STEPS, Plan, Progress, RegimeSummary, Sources, Summary,
+    Surroundings, log_name, run,
 };
 pub use transfer::{
     DirectionReport, PairTransfer, TransferOptions, TransferReport, log_name_of_label, transfer_report,

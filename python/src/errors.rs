@@ -8,9 +8,9 @@ use driftworld_generator::GeneratorError;
 use driftworld_metrics::MetricsError;
 use driftworld_similarity::SimilarityError;
 use driftworld_spec::{Problem, SpecError};
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyDict, PyList};
+use pyo3::types::{PyDict, PyList};
 
 /// An error of one of the crates, on its way to Python.
 #[derive(Debug)]
@@ -64,7 +64,7 @@ impl From<DistancesError> for Error {
             DistancesError::Generator(source) => Self::Generator(source),
             DistancesError::Similarity(source) => Self::Similarity(source),
             // The enum may grow; its message says all there is to say.
-            source => Self::Python(PyRuntimeError::new_err(source.to_string())),
+            source => Self::Python(PyValueError::new_err(source.to_string())),
         }
     }
 }
@@ -95,18 +95,52 @@ impl Error {
 
     /// What the exception knows beside its text.
     fn details<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let Self::Spec(source) = self else {
-            return Ok(PyDict::new(py));
-        };
-        let details = [("code", source.code())].into_py_dict(py)?;
-        let problems = source.problems().iter().map(|problem| described(py, problem));
-        details.set_item("problems", PyList::new(py, problems.collect::<PyResult<Vec<_>>>()?)?)?;
-        if let SpecError::Syntax { line, column, .. } = source {
-            details.set_item("line", line)?;
-            details.set_item("column", column)?;
+        let details = PyDict::new(py);
+        match self {
+            Self::Spec(source) => of_spec(&details, source)?,
+            // What is wrong with the variant on the way is what is wrong.
+            Self::Generator(source) => {
+                if let GeneratorError::Between(source) = source {
+                    of_spec(&details, source)?;
+                }
+                details.set_item("code", source.code())?;
+            }
+            Self::Task(_) => details.set_item("code", "task/unknown")?,
+            Self::Similarity(source) => details.set_item("code", source.code())?,
+            Self::Env(source) => {
+                if let EnvError::BadScript { line, .. } = source {
+                    details.set_item("line", line)?;
+                }
+                details.set_item("code", source.code())?;
+            }
+            Self::Metrics(source) | Self::Curriculum(CurriculumError::Log(source)) => of_metrics(&details, source)?,
+            Self::Curriculum(source) => details.set_item("code", source.code())?,
+            Self::Python(_) => {}
         }
         Ok(details)
     }
+}
+
+fn of_spec(details: &Bound<'_, PyDict>, source: &SpecError) -> PyResult<()> {
+    details.set_item("code", source.code())?;
+    let py = details.py();
+    let problems = source.problems().iter().map(|problem| described(py, problem));
+    details.set_item("problems", PyList::new(py, problems.collect::<PyResult<Vec<_>>>()?)?)?;
+    if let SpecError::Syntax { line, column, .. } = source {
+        details.set_item("line", line)?;
+        details.set_item("column", column)?;
+    }
+    Ok(())
+}
+
+fn of_metrics(details: &Bound<'_, PyDict>, source: &MetricsError) -> PyResult<()> {
+    details.set_item("code", source.code())?;
+    details.set_item("line", source.line())?;
+    if let MetricsError::Json { column, .. } = source {
+        // 0 says that the line as a whole is meant.
+        details.set_item("column", (*column > 0).then_some(column))?;
+    }
+    Ok(())
 }
 
 /// A problem of a document as a dictionary.
@@ -120,5 +154,6 @@ pub(crate) fn described<'py>(py: Python<'py>, problem: &Problem) -> PyResult<Bou
     described.set_item("found", &problem.found)?;
     described.set_item("expected", &problem.expected)?;
     described.set_item("advice", problem.advice.as_deref())?;
+    described.set_item("message", problem.to_string())?;
     Ok(described)
 }

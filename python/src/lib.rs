@@ -1,10 +1,18 @@
 //! The native module `driftworld._native`: what Python calls. How it is shown to users is in `package/driftworld/`.
 //!
 //! Values cross the border as JSON text, as arrays, or as handles; nothing here is an idea of its own.
+#![expect(clippy::needless_pass_by_value, reason = "PyO3 hands arguments over by value")]
 
 mod batch;
+mod command;
+mod curriculum;
+mod distances;
+mod document;
 mod dress;
+mod drift;
 mod errors;
+mod logs;
+mod patience;
 mod supply;
 mod task;
 
@@ -17,9 +25,21 @@ mod native {
     #[pymodule_export]
     use super::batch::PyBatch;
     #[pymodule_export]
+    use super::command::{ask, main};
+    #[pymodule_export]
+    use super::curriculum::{PyJournal, PyPlan};
+    #[pymodule_export]
+    use super::distances::{PyMatrix, distance, order_methods};
+    #[pymodule_export]
+    use super::document::check;
+    #[pymodule_export]
+    use super::drift::PyDrift;
+    #[pymodule_export]
+    use super::logs::{PyLogFile, read_log, validate_log};
+    #[pymodule_export]
     use super::supply::PyStream;
     #[pymodule_export]
-    use super::task::{PyTask, PyVariant};
+    use super::task::{PyTask, PyVariant, built_in_names, load_variant, load_variants, variant_again};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use driftworld_generator::{Drift, GeneratorError, Sampler, Schedule, Switch};
-use driftworld_spec::{DriftSchedule, DriftSwitch, RegimeDrift, Variant, World};
+use driftworld_spec::{DriftSchedule, DriftSwitch, Progress, RegimeDrift, Variant, World};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -167,6 +167,13 @@ impl Supply {
         if state.given.take().is_none() {
             state.next = state.next.saturating_add(1);
             state.turn = state.turn.saturating_add(1);
+        }
+        // Chance grows from the world as it was drawn: options such as a picture's size or a limit of steps move no object.
+        if world.progress.is_none() {
+            world.progress = Some(Progress {
+                seed: Some(origin.hash.clone()),
+                ..Progress::default()
+            });
         }
         state.origin = origin;
         drop(state);

@@ -1,0 +1,453 @@
+"""A single environment keeps Gymnasium's rules, under whatever Gymnasium is installed. Vector environments have a file of their own."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from driftworld import _native
+from driftworld._equality import first_difference
+from driftworld.errors import DriftworldError, EnvError, SpecError, TaskError
+from gymnasium.utils.env_checker import check_env
+
+FIND = "driftworld/FindObjects-v0"
+TABLE = [[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [0.0, 90.0, 0.0]]
+#: By waypoints, rows are places to go to.
+PLACES = [[3.0, 4.0, 0.0], [-3.0, 4.0, 0.0], [0.0, 0.0, 1.0]]
+MODALITIES = ["rgb", "depth", "segmentation", "class", "instance", "state"]
+
+
+def bare(env_id: str, **options: Any) -> Any:
+    return gym.make(env_id, disable_env_checker=True, **options).unwrapped
+
+
+def walk(env: Any, seed: int | None, steps: int = 12) -> list[Any]:
+    """An episode's beginning: the reset, and steps with the same random actions for the same seed."""
+    env.action_space.seed(7)
+    told = [env.reset(seed=seed)]
+    for _ in range(steps):
+        told.append(env.step(env.action_space.sample()))
+        if told[-1][2] or told[-1][3]:
+            break
+    return told
+
+
+def run_python(program: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """A program in an interpreter of its own."""
+    import os
+
+    return subprocess.run(
+        [sys.executable, "-W", "error", "-c", program],
+        env={**os.environ, **environment},
+        capture_output=True,
+        text=True,
+        timeout=200,
+    )
+
+
+@pytest.mark.parametrize("actions", ["normalized", "discrete"])
+def test_every_variant_of_every_task_passes_gymnasiums_check(task_variant: tuple[str, str], actions: Any) -> None:
+    env_id, variant = task_variant
+    rows: Any = PLACES if (variant, actions) == ("waypoints", "discrete") else actions
+    # Warnings are errors, by pyproject.toml.
+    check_env(bare(env_id, variant=variant, actions=rows, size=40, render_mode="rgb_array", render_size=(48, 64)))
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        *({"modalities": name} for name in MODALITIES),
+        {"modalities": MODALITIES},
+        {"modalities": ["depth"], "depth": "float32"},
+        {"modalities": "depth", "depth": "uint16"},
+        {"actions": TABLE},
+        {"actions": "normalized", "interact": False},
+        {"actions": "discrete", "interact": True},
+        {"size": (36, 48)},
+        {"frame_skip": 4},
+        {"supersampling": 2},
+        {"task_label": "obs"},
+        {"task_label": "info"},
+        {"drift": {"to": "dusk", "episodes": 3, "schedule": "cosine", "switch": "mixture"}},
+        {"render_mode": "rgb_array", "camera": "both"},
+    ],
+    ids=str,
+)
+def test_every_option_passes_gymnasiums_check(options: dict[str, Any]) -> None:
+    check_env(bare(FIND, **{"render_mode": "rgb_array", "size": 40, **options}))
+
+
+def test_a_task_and_a_world_of_ones_own_pass_gymnasiums_check(world_file: Path, task_file: Path) -> None:
+    check_env(bare("driftworld/World-v0", world=str(world_file), render_mode="rgb_array"))
+    check_env(bare("driftworld/World-v0", world=json.loads(world_file.read_text()), render_mode="rgb_array"))
+    check_env(bare("driftworld/Task-v0", task=f"{task_file}#landmarks", render_mode="rgb_array"))
+
+
+def test_continuous_actions_are_in_units_and_only_that_is_warned_of() -> None:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        check_env(bare(FIND, actions="continuous", size=40, render_mode="rgb_array"))
+    assert all("symmetric and normalized" in str(warning.message) for warning in caught)
+    assert bare(FIND, actions="continuous").action_space.high[1] > 1.0
+
+
+def test_spaces_are_as_documented() -> None:
+    spaces = bare(FIND, modalities=MODALITIES, size=(40, 50), actions="discrete").observation_space.spaces
+    found = {name: (space.dtype.name, space.shape) for name, space in spaces.items()}
+    assert found == {
+        "rgb": ("uint8", (40, 50, 3)),
+        "depth": ("uint8", (40, 50, 1)),
+        "segmentation": ("uint8", (40, 50, 1)),
+        "class": ("uint16", (40, 50, 1)),
+        "instance": ("uint32", (40, 50, 1)),
+        "state": ("float32", spaces["state"].shape),
+    }
+    assert bare(FIND, modalities="rgb").observation_space == gym.spaces.Box(0, 255, (84, 84, 3), np.uint8)
+    assert bare(FIND, interact=False).action_space == gym.spaces.Box(-1.0, 1.0, (2,), np.float32)
+    assert bare(FIND, actions=TABLE).action_space == gym.spaces.Discrete(3)
+
+
+def test_depth_in_metres_millimetres_and_grey_tell_the_same() -> None:
+    images = {}
+    for depth in ("float32", "uint16", "uint8"):
+        images[depth], _ = bare(FIND, modalities="depth", depth=depth).reset(seed=4)
+    metres = images["float32"]
+    assert 0 < metres.min() < 30
+    np.testing.assert_allclose(images["uint16"], np.clip(metres * 1000, 0, 65535), atol=1.0)
+    np.testing.assert_allclose(images["uint8"], np.clip(metres * 2.55, 0, 255), atol=1.0)
+
+
+def test_a_seed_gives_world_0_and_each_reset_after_it_the_next() -> None:
+    env = bare(FIND, variant="red", modalities="state")
+    variant = _native.TaskSpec.load("find_objects").variant("red")
+    places = []
+    for seed in (11, None, None, 11, None, 12):
+        _, info = env.reset(seed=seed)
+        places.append((info["seed"], info["index"]))
+        assert info["variant_id"] == "find_objects#red"
+        assert info["task_id"] == "find_objects"
+        # The options of the environment are laid over the world that the command samples.
+        sampled = json.loads(variant.sample(info["seed"], info["index"]))
+        assert sampled["objects"] == env.state()["objects"]
+    assert places == [(11, 0), (11, 1), (11, 2), (11, 0), (11, 1), (12, 0)]
+
+
+def test_an_environment_that_never_had_a_seed_draws_one_and_keeps_it() -> None:
+    env, other = bare(FIND, modalities="state"), bare(FIND, modalities="state")
+    first, second = env.reset()[1], env.reset()[1]
+    assert (second["seed"], second["index"]) == (first["seed"], 1)
+    assert other.reset()[1]["seed"] != first["seed"]
+
+
+def test_an_index_is_gone_to_and_gone_on_from() -> None:
+    env = bare(FIND, modalities="state")
+    assert env.reset(seed=3, options={"index": 40})[1]["index"] == 40
+    assert env.reset()[1]["index"] == 41
+    info = env.reset(options={"index": 7})[1]
+    assert (info["seed"], info["index"]) == (3, 7)
+    again = bare(FIND, modalities="state")
+    again.reset(seed=3, options={"index": 7})
+    assert again.reset(options={"index": 7})[1]["world_hash"] == info["world_hash"]
+
+
+def test_a_variant_holds_until_another_and_a_queue_goes_round() -> None:
+    env = bare(FIND, modalities="state")
+
+    def ids(resets: int, **options: Any) -> list[str]:
+        told = [env.reset(options=options)[1]] + [env.reset()[1] for _ in range(resets - 1)]
+        return [info["variant_id"].partition("#")[2] for info in told]
+
+    assert ids(2, variant="dusk") == ["dusk", "dusk"]
+    assert ids(5, queue=["red", "blue"]) == ["red", "blue", "red", "blue", "red"]
+    assert ids(2, variant="green") == ["green", "green"]
+
+
+def test_a_given_world_is_for_one_episode(world_file: Path) -> None:
+    env = bare(FIND, modalities="state")
+    env.reset(seed=1)
+    given = env.reset(options={"world": world_file})[1]
+    from_text = env.reset(options={"world": world_file.read_text()})[1]
+    from_dict = env.reset(options={"world": json.loads(world_file.read_text())})[1]
+    assert given["world_hash"] == from_text["world_hash"] == from_dict["world_hash"]
+    assert env.reset()[1]["variant_id"] == "find_objects#default"
+
+
+def test_state_goes_on_to_the_last_bit(env_id: str) -> None:
+    env, other = bare(env_id, size=40), bare(env_id, size=40)
+    walk(env, 5, steps=6)
+    other.reset(options={"world": env.state()})
+    actions = [env.action_space.sample() for _ in range(10)]
+    for action in actions:
+        left, right = env.step(action), other.step(action)
+        assert first_difference(left[:4], right[:4]) is None
+        if left[2] or left[3]:
+            break
+
+
+def test_steps_tell_of_events_and_success(small: dict[str, Any]) -> None:
+    # In a clearing the agent meets things soon; whatever it meets has to add up with what it is paid.
+    env = bare(FIND, variant="near", **small)
+    seen: list[dict[str, Any]] = []
+    env.action_space.seed(0)
+    for seed in range(12):
+        env.reset(seed=seed)
+        for _ in range(60):
+            _, _, terminated, truncated, info = env.step(np.array([1.0, 0.2, 1.0], dtype=np.float32))
+            assert isinstance(info["is_success"], bool)
+            seen.extend(info["events"])
+            if terminated or truncated:
+                break
+    assert seen, "nothing was met in 12 episodes"
+    assert {key for event in seen for key in event} == {"object", "tag", "stimulus", "reward", "destroyed"}
+    assert any(event["reward"] > 0 for event in seen)
+
+
+def test_success_is_told_when_the_goal_is_reached() -> None:
+    env = bare("driftworld/GetToGoal-v0", modalities="state", size=16)
+    env.reset(seed=0)
+    world = env.state()
+    del world["progress"]
+    east, north = world["objects"][0]["coordinates"]
+    world["agent_params"].update(coordinates=[east - 4.0, north], heading=90.0)
+    env.reset(options={"world": world})
+    for _ in range(40):
+        _, _, terminated, truncated, info = env.step(np.array([1.0, 0.0, 0.0], dtype=np.float32))
+        if terminated or truncated:
+            break
+    assert terminated and not truncated
+    assert info["is_success"] is True
+
+
+def test_too_many_steps_are_a_truncation() -> None:
+    env = bare(FIND, modalities="state", max_steps=3)
+    env.reset(seed=0)
+    flags = [env.step(np.zeros(3, dtype=np.float32))[2:4] for _ in range(3)]
+    assert flags == [(False, False), (False, False), (False, True)]
+    with pytest.raises(EnvError):
+        env.step(np.zeros(3, dtype=np.float32))
+
+
+@pytest.mark.parametrize("label, told", [("none", False), ("info", True)])
+def test_a_label_is_told_only_when_asked_for(label: str, told: bool) -> None:
+    env = bare(FIND, variant="red", modalities="state", task_label=label)
+    assert ("task_label" in env.reset(seed=0)[1]) is told
+    assert ("task_label" in env.step(env.action_space.sample())[4]) is told
+
+
+def test_a_label_in_the_observation_is_one_hot() -> None:
+    env = bare(FIND, variant="red", modalities=["state"], task_label="obs")
+    names = _native.TaskSpec.load("find_objects").variant_names()
+    observation, _ = env.reset(seed=0)
+    assert observation["task"].sum() == 1.0
+    assert observation["task"].argmax() == names.index("red")
+
+
+def test_a_drift_ends_at_its_goal() -> None:
+    env = bare(FIND, modalities="state", drift={"to": "dusk", "episodes": 4})
+    told = [env.reset(seed=0)[1], *(env.reset()[1] for _ in range(5))]
+    alone = bare(FIND, variant="dusk", modalities="state").reset(seed=0, options={"index": 5})[1]
+    assert told[5]["world_hash"] == alone["world_hash"]
+    assert len({info["variant_id"] for info in told}) > 2
+
+
+def test_copies_and_pickles_go_on_as_the_original(env_id: str) -> None:
+    env = bare(env_id, size=40)
+    walk(env, 2, steps=5)
+    for other in (copy.deepcopy(env), pickle.loads(pickle.dumps(env))):
+        assert first_difference(env.state(), other.state()) is None
+    others = [copy.deepcopy(env), pickle.loads(pickle.dumps(env))]
+    action = env.action_space.sample()
+    expected = env.step(action)
+    for other in others:
+        assert first_difference(expected[:4], other.step(action)[:4]) is None
+        assert first_difference(walk(env, 9), walk(other, 9)) is None
+
+
+def test_a_spec_goes_through_json(env_id: str) -> None:
+    env = gym.make(env_id, variant="default", actions="discrete", size=40, modalities=["rgb"])
+    spec = gym.envs.registration.EnvSpec.from_json(env.spec.to_json())
+    again = gym.make(spec)
+    assert first_difference(walk(env.unwrapped, 3), walk(again.unwrapped, 3)) is None
+
+
+def test_unknown_things_are_named_with_what_is_known() -> None:
+    with pytest.raises(ValueError, match="modalities: found 'sound', expected one of rgb, depth"):
+        bare(FIND, modalities=["sound"])
+    with pytest.raises(ValueError, match="actions: found 'jump', expected one of normalized"):
+        bare(FIND, actions="jump")
+    with pytest.raises(ValueError, match="renderer: found 'gl', expected one of cpu, gpu, auto"):
+        bare(FIND, renderer="gl")
+    with pytest.raises(TypeError, match="colour"):
+        bare(FIND, colour="red")
+    with pytest.raises(DriftworldError, match="rde.*red"):
+        bare(FIND, variant="rde")
+    with pytest.raises(TaskError, match="find_object"):
+        bare("driftworld/Task-v0", task="find_object")
+    with pytest.raises(SpecError, match="bywaypoint, whose rows are places"):
+        bare(FIND, variant="waypoints", actions="discrete")
+    with pytest.raises(ValueError, match="neither of task and world"):
+        bare("driftworld/Task-v0")
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"colour": "red"}, "options: found 'colour', expected some of variant, index, world, queue"),
+        ({"index": -1}, "index: found -1"),
+        ({"index": "two"}, "index: found 'two'"),
+        ({"queue": []}, "queue: found \\[\\]"),
+        ({"queue": "red"}, "queue: found 'red'"),
+        ({"variant": "red", "queue": ["red"]}, "expected one of them"),
+        ({"world": "no/such/file.json"}, "world: found no file"),
+        ({"variant": 3}, "variant: found 3"),
+    ],
+    ids=str,
+)
+def test_wrong_options_of_a_reset_say_so_and_change_nothing(options: dict[str, Any], message: str) -> None:
+    env = bare(FIND, modalities="state")
+    before = env.reset(seed=3)[1]
+    with pytest.raises((ValueError, TypeError, OSError), match=message):
+        env.reset(options=options)
+    after = env.reset()[1]
+    assert (after["variant_id"], after["seed"], after["index"]) == (before["variant_id"], 3, 1)
+
+
+@pytest.mark.parametrize("action", [np.zeros(2), np.zeros((3, 1)), [0.0, float("nan"), 0.0], "north"], ids=str)
+def test_a_wrong_action_is_refused_and_changes_nothing(action: Any) -> None:
+    env = bare(FIND, modalities="state")
+    env.reset(seed=0)
+    before = env.state()
+    with pytest.raises((ValueError, EnvError)):
+        env.step(action)
+    assert first_difference(before, env.state()) is None
+
+
+def test_a_wrong_world_is_told_with_its_place(tmp_path: Path) -> None:
+    path = tmp_path / "wrong.json"
+    path.write_text('{\n  "objects": [{"shape": "cube", "colour": "red"}]\n}')
+    with pytest.raises(SpecError) as caught:
+        bare("driftworld/World-v0", world=path)
+    assert "wrong.json:2:" in str(caught.value)
+    assert caught.value.line == 2
+    assert caught.value.pointer is not None
+
+
+def test_gymnasium_finds_the_module_by_its_name_without_an_import() -> None:
+    program = (
+        "import gymnasium; print(gymnasium.make('driftworld:driftworld/FindObjects-v0').reset(seed=1)[1]['index'])"
+    )
+    done = run_python(program)
+    assert (done.stdout, done.stderr) == ("0\n", "")
+
+
+def test_importing_does_no_work_and_brings_nothing_large() -> None:
+    large = ["torch", "pandas", "pygame", "matplotlib", "stable_baselines3", "ray", "minari", "scipy"]
+    program = f"import sys, threading, driftworld; print([name for name in {large} if name in sys.modules], threading.active_count())"
+    done = run_python(program)
+    assert (done.stdout, done.stderr) == ("[] 1\n", "")
+
+
+LEAK = """
+import resource, sys
+import gymnasium, driftworld
+env = gymnasium.make("driftworld/FindObjects-v0", variant="near", modalities="rgb", size=40, disable_env_checker=True).unwrapped
+def peak(): return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+action = env.action_space.sample()
+for _ in range(1500):
+    env.reset(seed=1); env.step(action)
+before = peak()
+for number in range(10_000):
+    env.reset(seed=number % 7); env.step(action)
+print(peak() - before)
+"""
+
+
+def test_ten_thousand_resets_leak_nothing() -> None:
+    pytest.importorskip("resource", reason="memory is measured by a module of Unix")
+    done = run_python(LEAK)
+    assert done.returncode == 0, done.stderr
+    # One picture of 40 x 40 x 3 bytes kept at each reset would be 47,000 KiB.
+    assert int(done.stdout) < 12_000, f"{done.stdout} KiB more"
+
+
+def test_a_closed_environment_may_be_closed_again() -> None:
+    env = gym.make(FIND, render_mode="rgb_array")
+    env.reset(seed=0)
+    env.close()
+    env.close()
+
+
+def test_a_window_shows_what_is_rendered(monkeypatch: pytest.MonkeyPatch) -> None:
+    pygame = pytest.importorskip("pygame", reason="windows are pygame's")
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    env = bare(FIND, render_mode="human", size=40, render_size=(48, 64))
+    env.metadata["render_fps"] = 1000
+    picture = bare(FIND, render_mode="rgb_array", size=40, render_size=(48, 64))
+    env.reset(seed=1)
+    picture.reset(seed=1)
+    assert env.render() is None
+    shown = pygame.surfarray.array3d(pygame.display.get_surface()).swapaxes(0, 1)
+    assert np.array_equal(shown, picture.render())
+    env.close()
+
+
+def test_pictures_are_of_the_size_that_was_asked_for() -> None:
+    for camera in ("agent", "above", "both"):
+        env = bare(FIND, render_mode="rgb_array", render_size=(60, 90), camera=camera)
+        env.reset(seed=0)
+        picture = env.render()
+        assert picture.shape == (60, 90, 3)
+        assert picture.dtype == np.uint8
+        assert picture.std() > 5
+
+
+def test_keys_are_actions_of_the_space() -> None:
+    for options in ({}, {"interact": False}, {"actions": "continuous"}):
+        env = bare(FIND, **options)
+        keys = env.get_keys_to_action()
+        assert all(action in env.action_space for action in keys.values())
+        assert keys[("w",)][0] == env.action_space.high[0]
+    with pytest.raises(ValueError, match="normalized"):
+        bare(FIND, actions="discrete").get_keys_to_action()
+
+
+def test_wrappers_of_gymnasium_work(small: dict[str, Any], tmp_path: Path) -> None:
+    env = gym.make(FIND, max_episode_steps=5, render_mode="rgb_array", **{**small, "modalities": "rgb"})
+    env = gym.wrappers.RecordEpisodeStatistics(gym.wrappers.FrameStackObservation(env, 3))
+    observation, _ = env.reset(seed=0)
+    assert observation.shape == (3, 40, 40, 3)
+    truncated = False
+    while not truncated:
+        observation, _, _, truncated, info = env.step(env.action_space.sample())
+    assert info["episode"]["l"] == 5
+    env.close()
+
+
+def test_rendering_for_people_wraps_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pygame", reason="HumanRendering is pygame's")
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    env = gym.wrappers.HumanRendering(gym.make(FIND, render_mode="rgb_array", size=40, render_size=(48, 64)))
+    env.reset(seed=0)
+    env.step(env.action_space.sample())
+    env.close()
+
+
+def test_videos_are_recorded(tmp_path: Path) -> None:
+    pytest.importorskip("moviepy", reason="RecordVideo writes through moviepy")
+    env = gym.make(FIND, render_mode="rgb_array", size=40, render_size=(48, 64), max_episode_steps=4)
+    env = gym.wrappers.RecordVideo(env, str(tmp_path), disable_logger=True)
+    env.reset(seed=0)
+    truncated = False
+    while not truncated:
+        *_, truncated, _ = env.step(env.action_space.sample())
+    env.close()
+    assert list(tmp_path.glob("*.mp4"))

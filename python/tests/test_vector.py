@@ -1,0 +1,338 @@
+"""The native vector environment is what Gymnasium's own vector environments are, bit for bit, in every mode of autoreset."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from driftworld._equality import first_difference
+from driftworld.envs.autoreset import AutoresetMode
+from gymnasium.vector import AsyncVectorEnv, SyncVectorEnv
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+FIND = "driftworld/FindObjects-v0"
+#: Gymnasium 1.0 knows one mode only.
+MODES = (
+    [pytest.param(mode, id=mode.name.lower()) for mode in AutoresetMode] if hasattr(gym.vector, "AutoresetMode") else []
+)
+ANY_MODE = pytest.mark.parametrize("mode", MODES)
+
+
+def native(env_id: str, num_envs: int, **options: Any) -> Any:
+    return gym.make_vec(env_id, num_envs=num_envs, vectorization_mode="vector_entry_point", **options)
+
+
+def sync(env_id: str, num_envs: int, mode: Any = None, **options: Any) -> Any:
+    kwargs = {} if mode is None else {"autoreset_mode": mode}
+    return gym.make_vec(env_id, num_envs=num_envs, vectorization_mode="sync", vector_kwargs=kwargs, **options)
+
+
+def expect_same(left: Any, right: Any, place: str) -> None:
+    difference = first_difference(left, right, place)
+    assert difference is None, difference
+
+
+def live_side_by_side(ours: Any, theirs: Any, steps: int, *, by_mask: bool = False) -> int:
+    """Steps both with the same actions; returns how many episodes ended."""
+    ends = 0
+    theirs.action_space.seed(0)
+    for number in range(steps):
+        action = theirs.action_space.sample()
+        one, other = ours.step(action), theirs.step(action)
+        expect_same(one, other, f"step {number}")
+        ended = one[2] | one[3]
+        ends += int(ended.sum())
+        if by_mask and ended.any():
+            expect_same(
+                ours.reset(options={"reset_mask": ended.copy()}),
+                theirs.reset(options={"reset_mask": ended.copy()}),
+                f"reset after step {number}",
+            )
+    return ends
+
+
+@pytest.mark.parametrize("actions", ["normalized", "discrete"])
+def test_each_task_lives_as_in_gymnasiums_loop(env_id: str, actions: str) -> None:
+    options = {"size": 40, "actions": actions, "max_episode_steps": 7}
+    ours, theirs = native(env_id, 3, **options), sync(env_id, 3, **options)
+    expect_same(ours.reset(seed=4), theirs.reset(seed=4), "reset")
+    assert live_side_by_side(ours, theirs, 40) > 5
+    expect_same(ours.reset(), theirs.reset(), "reset without a seed")
+    expect_same(ours.reset(seed=[9, 3, 9]), theirs.reset(seed=[9, 3, 9]), "reset with a list")
+
+
+@ANY_MODE
+def test_each_mode_of_autoreset_is_gymnasiums(mode: Any) -> None:
+    # Episodes end by themselves as well: a goal that is near, and a limit.
+    options = {"variant": "near", "size": 40, "modalities": ["rgb", "state"], "max_episode_steps": 6}
+    ours, theirs = native(FIND, 4, autoreset_mode=mode, **options), sync(FIND, 4, mode, **options)
+    assert ours.metadata["autoreset_mode"] is mode
+    expect_same(ours.reset(seed=0), theirs.reset(seed=0), "reset")
+    assert live_side_by_side(ours, theirs, 50, by_mask=mode is AutoresetMode.DISABLED) > 10
+
+
+@ANY_MODE
+def test_episodes_that_end_apart_are_told_apart(mode: Any) -> None:
+    # The goal is where the agent runs: episodes end when it is met, each at its own time.
+    options = {"variant": "plain", "modalities": "state", "size": 16, "max_episode_steps": 60}
+    ours, theirs = (
+        native("driftworld/GetToGoal-v0", 3, autoreset_mode=mode, **options),
+        sync("driftworld/GetToGoal-v0", 3, mode, **options),
+    )
+    world = gym.make("driftworld/GetToGoal-v0", variant="plain").unwrapped
+    world.reset(seed=1)
+    for index, away in enumerate((4.0, 9.0, 14.0)):
+        document = copy.deepcopy(world.state())
+        del document["progress"]
+        east, north = document["objects"][0]["coordinates"]
+        document["agent_params"].update(coordinates=[max(-28.0, east - away), north], heading=90.0)
+        mask = np.arange(3) == index
+        for env in (ours, theirs):
+            env.reset(
+                seed=[5 if each == index else None for each in range(3)],
+                options={"reset_mask": mask.copy(), "world": document},
+            )
+    ends: set[int] = set()
+    for number in range(30):
+        action = np.tile(np.array([1.0, 0.0, 0.0], dtype=np.float32), (3, 1))
+        one, other = ours.step(action), theirs.step(action)
+        expect_same(one, other, f"step {number}")
+        if one[2].any():
+            ends.add(number)
+        if mode is AutoresetMode.DISABLED and (one[2] | one[3]).any():
+            for env in (ours, theirs):
+                env.reset(options={"reset_mask": one[2] | one[3]})
+    assert len(ends) > 1, "the episodes ended together"
+
+
+def test_the_final_observation_is_the_last_and_not_the_next() -> None:
+    options = {"modalities": "rgb", "size": 40, "max_episode_steps": 3}
+    ours = native(FIND, 2, autoreset_mode="same_step", **options)
+    alone = gym.make(FIND, modalities="rgb", size=40, disable_env_checker=True).unwrapped
+    ours.reset(seed=6)
+    alone.reset(seed=6)
+    action = np.array([0.5, 0.1, 0.0], dtype=np.float32)
+    for _ in range(3):
+        observations, _, _, truncated, infos = ours.step(np.stack([action, action]))
+        last, *_ = alone.step(action)
+    assert truncated.all()
+    assert np.array_equal(infos["final_obs"][0], last)
+    assert not np.array_equal(observations[0], last)
+    assert np.array_equal(observations[0], alone.reset()[0])
+    assert infos["index"].tolist() == [1, 1]
+
+
+def test_without_autoreset_an_ended_episode_refuses_to_go_on() -> None:
+    ours = native(FIND, 2, autoreset_mode="disabled", modalities="state", max_episode_steps=1)
+    ours.reset(seed=0)
+    ours.step(ours.action_space.sample())
+    with pytest.raises(Exception, match="reset"):
+        ours.step(ours.action_space.sample())
+
+
+@pytest.mark.parametrize("context", ["spawn", "fork", "forkserver"])
+@pytest.mark.filterwarnings("ignore:This process.*multi-threaded:DeprecationWarning")
+def test_processes_of_gymnasiums_live_the_same(context: str) -> None:
+    options = {"size": 40, "modalities": ["rgb", "state"], "max_episode_steps": 6}
+    ours = native(FIND, 2, **options)
+    theirs = gym.make_vec(FIND, num_envs=2, vectorization_mode="async", vector_kwargs={"context": context}, **options)
+    try:
+        expect_same(ours.reset(seed=2), theirs.reset(seed=2), "reset")
+        assert live_side_by_side(ours, theirs, 20) >= 4
+    finally:
+        theirs.close()
+
+
+@pytest.mark.filterwarnings("ignore:This process.*multi-threaded:DeprecationWarning")
+def test_an_error_in_a_worker_comes_across_with_its_fields() -> None:
+    from driftworld import SpecError
+
+    def make() -> Any:
+        return gym.make("driftworld/World-v0", world={"objects": [{"shape": "cube"}]})
+
+    with pytest.raises(SpecError) as caught:
+        make()
+    assert first_difference(vars(caught.value), vars(pickle.loads(pickle.dumps(caught.value)))) is None
+    envs = AsyncVectorEnv([lambda: gym.make(FIND, modalities="state")] * 2, context="fork")
+    try:
+        with pytest.raises(ValueError, match="colour"):
+            envs.reset(options={"colour": "red"})
+    finally:
+        envs.close(terminate=True)
+
+
+def test_observations_are_views_unless_copies_are_asked_for() -> None:
+    views, copies = (native(FIND, 2, size=40, copy=copy) for copy in (False, True))
+    kept = {}
+    for name, env in (("views", views), ("copies", copies)):
+        kept[name], _ = env.reset(seed=0)
+        kept[name + " before"] = {modality: array.copy() for modality, array in kept[name].items()}
+        for _ in range(3):
+            env.step(np.ones(env.action_space.shape, dtype=np.float32))
+    assert first_difference(kept["copies"], kept["copies before"]) is None
+    assert first_difference(kept["views"], kept["views before"]) is not None
+    again, _ = views.reset(seed=0)
+    assert all(np.shares_memory(again[name], kept["views"][name]) for name in again)
+
+
+def test_views_outlive_their_environment() -> None:
+    env = native(FIND, 2, size=40, modalities="rgb")
+    observations, _ = env.reset(seed=0)
+    before = observations.copy()
+    env.close()
+    del env
+    assert np.array_equal(observations, before)
+
+
+def test_observations_go_to_other_libraries_without_a_copy() -> None:
+    observations, _ = native(FIND, 2, size=40).reset(seed=0)
+    for name, array in observations.items():
+        assert np.shares_memory(np.from_dlpack(array), array), name
+
+
+@pytest.mark.parametrize("num_threads", [1, 2, 8])
+def test_the_number_of_threads_changes_nothing(num_threads: int) -> None:
+    one, other = (native(FIND, 5, size=40, num_threads=threads, max_episode_steps=6) for threads in (1, num_threads))
+    expect_same(one.reset(seed=0), other.reset(seed=0), "reset")
+    live_side_by_side(one, other, 15)
+
+
+def test_each_environment_may_have_a_variant_of_its_own() -> None:
+    names = ["red", "dusk", "near"]
+    ours = native(FIND, 3, modalities="state", size=40)
+    infos = ours.reset(seed=0, options={"variants": names})[1]
+    assert [each.partition("#")[2] for each in infos["variant_id"]] == names
+    theirs = SyncVectorEnv(
+        [lambda name=name: gym.make(FIND, variant=name, modalities="state", size=40) for name in names]
+    )
+    expect_same(infos, theirs.reset(seed=0)[1], "infos")
+    made = native(FIND, 3, variants=names, modalities="state", size=40)
+    expect_same(made.reset(seed=0), ours.reset(seed=0), "made with variants")
+    assert [each.partition("#")[2] for each in ours.reset()[1]["variant_id"]] == names
+
+
+def test_a_queue_is_dealt_out_like_cards() -> None:
+    ours = native(FIND, 2, modalities="state", size=16, max_episode_steps=1)
+    told = [ours.reset(seed=0, options={"queue": ["red", "blue", "green"]})[1]]
+    for _ in range(6):
+        _, _, _, truncated, infos = ours.step(ours.action_space.sample())
+        if not truncated.any():
+            told.append(infos)
+    names = [name.partition("#")[2] for infos in told for name in infos["variant_id"]]
+    assert names == ["red", "blue", "green", "red", "blue", "green", "red", "blue"]
+
+
+def test_a_mask_begins_some_and_leaves_the_others() -> None:
+    ours = native(FIND, 3, modalities="state", size=40, autoreset_mode="disabled")
+    ours.reset(seed=0)
+    ours.step(np.ones(ours.action_space.shape, dtype=np.float32))
+    before = [ours.state(env) for env in range(3)]
+    infos = ours.reset(options={"reset_mask": np.array([False, True, False]), "variant": "dusk"})[1]
+    assert infos["_index"].tolist() == [False, True, False]
+    assert infos["variant_id"].tolist() == [None, "find_objects#dusk", None]
+    assert [first_difference(before[env], ours.state(env)) is None for env in range(3)] == [True, False, True]
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"reset_mask": np.zeros(2, dtype=bool)}, "at least one True"),
+        ({"reset_mask": np.ones(3, dtype=bool)}, "shape \\(2,\\)"),
+        ({"reset_mask": [True, False]}, "bool array"),
+        ({"variants": ["red"]}, "found 1, expected 2"),
+        ({"queue": []}, "queue: found \\[\\]"),
+        ({"colour": "red"}, "found 'colour', expected some of variant, index, world, queue, variants, reset_mask"),
+    ],
+    ids=str,
+)
+def test_wrong_options_of_a_reset_say_so(options: dict[str, Any], message: str) -> None:
+    ours = native(FIND, 2, modalities="state", size=16)
+    ours.reset(seed=0)
+    with pytest.raises(ValueError, match=message):
+        ours.reset(options=options)
+
+
+def test_wrong_actions_and_seeds_say_so_and_change_nothing() -> None:
+    ours = native(FIND, 2, modalities="state", size=16)
+    ours.reset(seed=0)
+    before = ours.state(0)
+    with pytest.raises(ValueError, match=r"found shape \(3, 3\), expected \(2, 3\)"):
+        ours.step(np.zeros((3, 3)))
+    with pytest.raises(Exception, match="action"):
+        ours.step(np.full((2, 3), np.nan))
+    with pytest.raises(ValueError, match="found 3 seeds, expected 2"):
+        ours.reset(seed=[1, 2, 3])
+    assert first_difference(before, ours.state(0)) is None
+    discrete = native(FIND, 2, actions="discrete", modalities="state", size=16)
+    discrete.reset(seed=0)
+    with pytest.raises(Exception, match="99"):
+        discrete.step(np.array([0, 99]))
+
+
+@pytest.mark.parametrize("num_envs", [0, -1, 1 << 20])
+def test_a_number_of_environments_out_of_range_is_refused(num_envs: int) -> None:
+    with pytest.raises(Exception, match="num_envs|environments|65"):
+        native(FIND, num_envs, size=16, modalities="state")
+
+
+def test_copies_and_pickles_go_on_as_the_original() -> None:
+    ours = native(FIND, 3, size=40, max_episode_steps=5)
+    ours.reset(seed=0, options={"queue": ["red", "blue"]})
+    actions = [ours.action_space.sample() for _ in range(10)]
+    for action in actions[:3]:
+        ours.step(action)
+    others = [copy.deepcopy(ours), pickle.loads(pickle.dumps(ours))]
+    for number, action in enumerate(actions):
+        expected = copy.deepcopy(ours.step(action))
+        for other in others:
+            expect_same(expected, other.step(action), f"step {number}")
+
+
+def test_vector_wrappers_of_gymnasium_work() -> None:
+    envs = native(FIND, 3, modalities="state", size=16, max_episode_steps=4)
+    envs = gym.wrappers.vector.RecordEpisodeStatistics(gym.wrappers.vector.NormalizeObservation(envs))
+    envs.reset(seed=0)
+    lengths = []
+    for _ in range(12):
+        observations, *_, infos = envs.step(envs.action_space.sample())
+        if "episode" in infos:
+            lengths.extend(infos["episode"]["l"][infos["_episode"]].tolist())
+    assert observations.shape == envs.observation_space.shape
+    assert lengths == [4] * len(lengths) and len(lengths) >= 6
+
+
+def test_pictures_are_one_for_each() -> None:
+    envs = native(FIND, 2, size=16, render_mode="rgb_array", render_size=(48, 64))
+    envs.reset(seed=0)
+    pictures = envs.render()
+    assert [picture.shape for picture in pictures] == [(48, 64, 3)] * 2
+    assert not np.array_equal(*pictures)
+
+
+OPTIONS = st.fixed_dictionaries(
+    {
+        "variant": st.sampled_from(["default", "red", "near", "dusk", "interact", "held"]),
+        "modalities": st.lists(
+            st.sampled_from(["rgb", "depth", "segmentation", "class", "instance", "state"]), min_size=1, unique=True
+        ),
+        "size": st.tuples(st.integers(8, 48), st.integers(8, 48)),
+        "depth": st.sampled_from(["uint8", "uint16", "float32"]),
+        "actions": st.sampled_from(["normalized", "continuous", "discrete", [[5.0, 0.0, 0.0], [0.0, 90.0, 1.0]]]),
+        "frame_skip": st.one_of(st.none(), st.integers(1, 3)),
+        "max_steps": st.integers(2, 9),
+        "task_label": st.sampled_from(["none", "info", "obs"]),
+    }
+)
+
+
+@settings(max_examples=40, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+@given(options=OPTIONS, seed=st.integers(0, 2**40), num_envs=st.integers(1, 4))
+def test_whatever_the_options_many_live_as_one_by_one(options: dict[str, Any], seed: int, num_envs: int) -> None:
+    ours, theirs = native(FIND, num_envs, **options), sync(FIND, num_envs, **options)
+    expect_same(ours.reset(seed=seed), theirs.reset(seed=seed), "reset")
+    live_side_by_side(ours, theirs, 12)

@@ -40,7 +40,7 @@ pub struct Refusal {
 /// ```
 /// let answer = driftworld::commands::ask(["tasks", "--json"].map(Into::into))?;
 /// assert!(answer.output.contains("find_objects"));
-/// let refusal = driftworld::commands::ask(["tasks", "find_object"].map(Into::into)).unwrap_err();
+/// let refusal = driftworld::commands::ask(["sample", "find_object"].map(Into::into)).unwrap_err();
 /// assert!(refusal.message.ends_with("did you mean \"find_objects\"?"));
 /// # Ok::<(), driftworld::commands::Refusal>(())
 /// ```
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn a_refusal_says_what_the_command_says() {
         let refused = |args: &[&str]| asked(args).expect_err("it is wrong");
-        let found = refused(&["tasks", "find_object"]);
+        let found = refused(&["sample", "find_object"]);
         assert!(found.message.contains("did you mean \"find_objects\"?") && !found.in_arguments);
         let found = refused(&["order", "find_objects", "--method", "nearby"]);
         assert!(found.message.starts_with("invalid value 'nearby'") && found.in_arguments);

@@ -3,7 +3,7 @@
 use driftworld_env::{Agent, EnvError, Environment, Label, Step};
 
 /// Steps after which an experience in a world without a limit is over.
-pub(super) const MOST_STEPS: u32 = 100_000;
+pub const MOST_STEPS: u32 = 100_000;
 
 /// What an agent is told of an experience.
 pub(super) struct Briefing<'a> {
@@ -14,14 +14,18 @@ pub(super) struct Briefing<'a> {
 }
 
 /// One experience that is over.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Experience {
-    pub(super) reward: f64,
-    pub(super) success: bool,
-    pub(super) steps: u32,
-    pub(super) seconds: f64,
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Experience {
+    /// What all its steps paid.
+    pub reward: f64,
+    /// Whether the world's success condition ended it.
+    pub success: bool,
+    /// Its steps.
+    pub steps: u32,
+    /// The seconds of the world's time that it took: steps times time step.
+    pub seconds: f64,
     /// Cut off by a limit of steps, not ended by what happened.
-    pub(super) truncated: bool,
+    pub truncated: bool,
 }
 
 /// Lives one experience in an environment that stands at its beginning.

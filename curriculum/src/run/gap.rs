@@ -61,7 +61,7 @@ pub(super) enum Subject<'a> {
 }
 
 /// Measures gaps, each pair of names once.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(super) struct Gaps {
     known: BTreeMap<(String, String), Gap>,
     drawn: BTreeMap<String, Vec<World>>,

@@ -3,21 +3,27 @@
 use std::path::Path;
 
 use driftworld_metrics::{
-    LogWriter, LoggerInfo, MetricsError, Row, Rows, ScenarioInfo, ScenarioType, TaskParams, begun_log, read_log,
+    LogWriter, LoggerInfo, MetricsError, Row, Rows, ScenarioInfo, ScenarioType, TaskParams, Timestamp, begun_log,
+    read_log,
 };
-use driftworld_spec::ScenarioForm;
+use driftworld_spec::{ScenarioForm, Variant};
 use serde_json::{Map, Value, json};
 
-use super::columns::{COLUMNS, block_type};
+use super::columns::{self, COLUMNS, block_type};
+use super::episode::Experience;
+use super::gap::{Gap, Gaps};
 use super::plan::Plan;
-use super::summary::Summary;
+use super::summary::{Progress, Summary};
 use crate::CurriculumError;
 
 /// An open log, and what is in it already.
 #[derive(Debug)]
 pub struct Journal {
-    pub(super) writer: LogWriter,
-    pub(super) summary: Summary,
+    writer: LogWriter,
+    summary: Summary,
+    gaps: Gaps,
+    /// A learning regime, and the variant at the end of its drift if it has one.
+    learned: Option<(usize, Option<Variant>)>,
 }
 
 impl Journal {
@@ -27,10 +33,8 @@ impl Journal {
     /// [`CurriculumError::Log`].
     pub fn create(folder: &Path, plan: &Plan, agent: &str) -> Result<Self, CurriculumError> {
         let columns = LoggerInfo::new(COLUMNS)?;
-        Ok(Self {
-            writer: LogWriter::create(folder, &columns, &scenario_info(plan, agent))?,
-            summary: Summary::default(),
-        })
+        let writer = LogWriter::create(folder, &columns, &scenario_info(plan, agent))?;
+        Ok(Self::new(writer, Summary::default()))
     }
 
     /// Takes up a log that was interrupted, at any moment: it goes on with the first experience that is not completely in
@@ -78,7 +82,87 @@ impl Journal {
             };
             take(plan, &mut summary, number, row).map_err(|(found, expected)| wrong(found, expected))?;
         }
-        Ok(Self { writer, summary })
+        summary.finished = summary.experiences == plan.num_experiences();
+        Ok(Self::new(writer, summary))
+    }
+
+    fn new(writer: LogWriter, summary: Summary) -> Self {
+        Self {
+            writer,
+            summary,
+            gaps: Gaps::default(),
+            learned: None,
+        }
+    }
+
+    /// Logs the next experience of the plan, and counts it. [`run`](crate::run) does this by itself; this is for whoever lives
+    /// experiences elsewhere, one after the other, in the worlds that [`Plan::world`] says.
+    ///
+    /// # Errors
+    /// [`CurriculumError::NoSuchExperience`] when all are in the log; [`CurriculumError::Log`] if it cannot be written;
+    /// [`CurriculumError::World`] if the worlds that tell how far it is from what was learned last cannot be drawn.
+    pub fn record(
+        &mut self,
+        plan: &Plan,
+        experience: &Experience,
+        now: Timestamp,
+    ) -> Result<Progress, CurriculumError> {
+        let (number, total) = (self.summary.experiences, plan.num_experiences());
+        if number >= total {
+            return Err(CurriculumError::NoSuchExperience { found: number, total });
+        }
+        let between = plan.regimes[plan.regime_of(number)].between(number)?;
+        self.take(plan, number, experience, between.as_ref(), now)
+    }
+
+    /// Logs experience `number`, which is the next; `between` is its variant where its regime drifts.
+    pub(super) fn take(
+        &mut self,
+        plan: &Plan,
+        number: u64,
+        experience: &Experience,
+        between: Option<&Variant>,
+        now: Timestamp,
+    ) -> Result<Progress, CurriculumError> {
+        let planned = &plan.regimes[plan.regime_of(number)];
+        let gap = self.gap(plan, number, between)?;
+        self.writer
+            .write(&columns::record(planned, number, experience, &gap, now))?;
+        let success = f64::from(u8::from(experience.success));
+        let steps = u64::from(experience.steps);
+        self.summary
+            .count(planned, number == planned.first, experience.reward, success, steps);
+        self.summary.finished = self.summary.experiences == plan.num_experiences();
+        Ok(Progress {
+            done: self.summary.experiences,
+            total: plan.num_experiences(),
+            block: planned.block,
+            kind: planned.kind,
+            variant: planned.id.clone(),
+            reward: experience.reward,
+        })
+    }
+
+    /// How far an experience is from what was learned last before its regime began.
+    fn gap(&mut self, plan: &Plan, number: u64, between: Option<&Variant>) -> Result<Gap, CurriculumError> {
+        let planned = &plan.regimes[plan.regime_of(number)];
+        let Some(index) = planned.learned else {
+            return Ok(Gap::UNKNOWN);
+        };
+        let learned = &plan.regimes[index];
+        if self.learned.as_ref().is_none_or(|(known, _)| *known != index) {
+            self.learned = Some((index, learned.last()?));
+        }
+        let end = self.learned.as_ref().and_then(|(_, end)| end.as_ref());
+        let before = learned.subject(learned.first + u64::from(learned.count) - 1, end);
+        let here = planned.subject(number, between);
+        let gap = self.gaps.between((&before.0, before.1), (&here.0, here.1));
+        gap.map_err(|source| planned.wrong(source))
+    }
+
+    /// What the lifetime came to so far.
+    pub fn summary(&self) -> &Summary {
+        &self.summary
     }
 
     /// How many experiences are in the log.

@@ -15,17 +15,17 @@ use std::ops::ControlFlow;
 
 use driftworld_env::{Agent, Catalogue, Environment};
 use driftworld_generator::Sampler;
-use driftworld_metrics::{LogWriter, Timestamp};
+use driftworld_metrics::Timestamp;
 use driftworld_spec::{BlockKind, Variant};
 
 pub use columns::COLUMNS;
+pub use episode::{Experience, MOST_STEPS};
 pub use journal::Journal;
-pub use plan::{FoundWorld, Plan, Sources, log_name};
+pub use plan::{Due, FoundWorld, Plan, Sources, log_name};
 pub use summary::{Progress, RegimeSummary, Summary};
 
 use crate::CurriculumError;
-use episode::{Briefing, Experience};
-use gap::{Gap, Gaps};
+use episode::Briefing;
 
 /// What a run is handed, since it does not look at the clock.
 pub struct Surroundings<'a> {
@@ -57,16 +57,9 @@ pub fn run(
 ) -> Result<Summary, CurriculumError> {
     let total = plan.num_experiences();
     let (jobs, catalogue) = (around.jobs.get(), around.catalogue.clone());
-    let mut life = Life {
-        plan,
-        writer: &mut journal.writer,
-        around,
-        summary: &mut journal.summary,
-        gaps: Gaps::default(),
-        learned: None,
-    };
+    let mut life = Life { plan, journal, around };
     let mut desk = Desk::new(plan, catalogue.clone());
-    let mut next = life.summary.experiences;
+    let mut next = life.journal.summary().experiences;
     while next < total {
         let learns = agent.learns();
         let end = if learns { plan.end_of_kind(next) } else { total };
@@ -90,8 +83,7 @@ pub fn run(
         }
         next = end;
     }
-    life.summary.finished = life.summary.experiences == total;
-    Ok(life.summary.clone())
+    Ok(life.journal.summary().clone())
 }
 
 /// An experience that was lived, with the variant that it was an experience of where its regime drifts.
@@ -155,12 +147,8 @@ impl<'a> Desk<'a> {
 /// A lifetime under way.
 struct Life<'a, 'b> {
     plan: &'a Plan,
-    writer: &'a mut LogWriter,
+    journal: &'a mut Journal,
     around: &'a mut Surroundings<'b>,
-    summary: &'a mut Summary,
-    gaps: Gaps,
-    /// A learning regime, and the variant at the end of its drift if it has one.
-    learned: Option<(usize, Option<Variant>)>,
 }
 
 impl Life<'_, '_> {
@@ -181,39 +169,10 @@ impl Life<'_, '_> {
 
     /// Logs an experience, counts it and tells whoever watches.
     fn take(&mut self, number: u64, lived: &Lived) -> Result<ControlFlow<()>, CurriculumError> {
-        let planned = &self.plan.regimes[self.plan.regime_of(number)];
-        let gap = self.gap(number, lived.between.as_ref())?;
-        let experience = &lived.experience;
-        let record = columns::record(planned, number, experience, &gap, (self.around.now)());
-        self.writer.write(&record)?;
-        let success = f64::from(u8::from(experience.success));
-        let steps = u64::from(experience.steps);
-        self.summary
-            .count(planned, number == planned.first, experience.reward, success, steps);
-        Ok((self.around.watch)(&Progress {
-            done: self.summary.experiences,
-            total: self.plan.num_experiences(),
-            block: planned.block,
-            kind: planned.kind,
-            variant: planned.id.clone(),
-            reward: experience.reward,
-        }))
-    }
-
-    /// How far an experience is from what was learned last before its regime began.
-    fn gap(&mut self, number: u64, between: Option<&Variant>) -> Result<Gap, CurriculumError> {
-        let planned = &self.plan.regimes[self.plan.regime_of(number)];
-        let Some(index) = planned.learned else {
-            return Ok(Gap::UNKNOWN);
-        };
-        let learned = &self.plan.regimes[index];
-        if self.learned.as_ref().is_none_or(|(known, _)| *known != index) {
-            self.learned = Some((index, learned.last()?));
-        }
-        let end = self.learned.as_ref().and_then(|(_, end)| end.as_ref());
-        let before = learned.subject(learned.first + u64::from(learned.count) - 1, end);
-        let here = planned.subject(number, between);
-        let gap = self.gaps.between((&before.0, before.1), (&here.0, here.1));
-        gap.map_err(|source| planned.wrong(source))
+        let now = (self.around.now)();
+        let progress = self
+            .journal
+            .take(self.plan, number, &lived.experience, lived.between.as_ref(), now)?;
+        Ok((self.around.watch)(&progress))
     }
 }

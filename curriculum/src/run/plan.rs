@@ -42,6 +42,29 @@ pub struct Plan {
     pub(super) notes: BTreeMap<String, String>,
 }
 
+/// An experience that is to be lived, for whoever lives it elsewhere than [`run`](crate::run) does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Due<'a> {
+    /// Its block, from 0.
+    pub block: usize,
+    /// Its regime in the block, from 0.
+    pub regime: usize,
+    /// Whether the agent may learn from it.
+    pub kind: BlockKind,
+    /// What it is called: `task#variant`, in a drift with both ends.
+    pub variant: &'a str,
+    /// The seed of its world; nothing for a world from a file.
+    pub seed: Option<u64>,
+    /// The number of its world under the seed.
+    pub index: Option<u64>,
+    /// How far on its way a drift is, 0..=1; 0 where nothing drifts.
+    pub progress: f64,
+    /// The number that an agent draws its own chance from.
+    pub chance: u64,
+    /// What the agent is told of its task, where the scenario tells it.
+    pub label: Option<&'a Label>,
+}
+
 /// A regime of it.
 pub(super) struct Planned {
     pub(super) block: usize,
@@ -156,6 +179,30 @@ impl Plan {
             return Err(CurriculumError::NoSuchExperience { found: number, total });
         }
         Ok(self.regimes[self.regime_of(number)].assignment(number, None)?.world)
+    }
+
+    /// What an experience is one of, by its number over the whole lifetime; its world is [`Plan::world`].
+    ///
+    /// # Errors
+    /// [`CurriculumError::NoSuchExperience`].
+    pub fn due(&self, number: u64) -> Result<Due<'_>, CurriculumError> {
+        let total = self.num_experiences();
+        if number >= total {
+            return Err(CurriculumError::NoSuchExperience { found: number, total });
+        }
+        let planned = &self.regimes[self.regime_of(number)];
+        let is_drawn = !matches!(planned.source, Source::World { .. });
+        Ok(Due {
+            block: planned.block,
+            regime: planned.regime,
+            kind: planned.kind,
+            variant: &planned.id,
+            seed: is_drawn.then_some(planned.seed),
+            index: is_drawn.then(|| planned.first_index + (number - planned.first)),
+            progress: planned.progress(number),
+            chance: planned.chance(number),
+            label: planned.label(number),
+        })
     }
 
     /// The index of the regime that an experience belongs to.
@@ -342,7 +389,7 @@ impl Planned {
     }
 
     /// The variant of an experience of a drift.
-    fn between(&self, number: u64) -> Result<Option<Variant>, CurriculumError> {
+    pub(super) fn between(&self, number: u64) -> Result<Option<Variant>, CurriculumError> {
         let Source::Drift { way, drift, .. } = &self.source else {
             return Ok(None);
         };

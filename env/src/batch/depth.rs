@@ -1,6 +1,6 @@
 //! [`DepthForm`]: the numbers that a batch hands out depth in. The metres they are made from are drawn by `render`.
 
-use crate::render::gray_of_metres;
+use crate::render::{gray_of_metres, rounded};
 
 /// What numbers a batch's depth images are made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub enum DepthForm {
 /// Millimetres for metres, rounded.
 pub(super) fn millimetres(depth: &[f32], out: &mut [u16]) {
     for (out, metres) in out.iter_mut().zip(depth) {
-        *out = (metres * 1000.0 + 0.5).clamp(0.0, 65_535.0) as u16;
+        *out = rounded(metres * 1000.0, 65_535.0) as u16;
     }
 }
 
@@ -40,5 +40,17 @@ mod tests {
         millimetres(&depth, &mut large);
         assert_eq!(small, [0, 0, 128, 255, 167, 255]);
         assert_eq!(large, [0, 63, 50_000, 65_535, 65_535, 65_535]);
+    }
+
+    #[test]
+    fn forms_round_as_a_cast_does() {
+        let depth: Vec<f32> = (0..60_000_u16).map(|step| f32::from(step) * 0.001_713).collect();
+        let (mut small, mut large) = (vec![0; depth.len()], vec![0; depth.len()]);
+        gray(&depth, &mut small);
+        millimetres(&depth, &mut large);
+        for ((metres, small), large) in depth.iter().zip(small).zip(large) {
+            assert_eq!(small, (metres * 2.55 + 0.5).clamp(0.0, 255.0) as u8, "{metres}");
+            assert_eq!(large, (metres * 1000.0 + 0.5).clamp(0.0, 65_535.0) as u16, "{metres}");
+        }
     }
 }

@@ -24,11 +24,11 @@ mod top_down;
 mod view;
 
 pub use cpu::CpuRenderer;
-pub(crate) use frame::gray_of_metres;
 pub use frame::{
     CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, FAR_DEPTH,
     Frame, category_color, depth_to_gray,
 };
+pub(crate) use frame::{gray_of_metres, rounded};
 #[cfg(feature = "gpu")]
 pub use gpu::{GpuChoice, GpuRenderer};
 pub use kind::RendererKind;

@@ -136,8 +136,8 @@ impl Environment {
             frame,
         };
         match came {
-            Some(came) => environment.resume(&came),
-            None => environment.take_stock(),
+            Some(came) if came.has_begun() => environment.resume(&came),
+            _ => environment.take_stock(),
         }
         environment
     }

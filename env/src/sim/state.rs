@@ -197,6 +197,15 @@ impl Came {
         }
     }
 
+    /// Whether the world ran before: progress that says no more than a seed is that of a start.
+    pub(super) fn has_begun(&self) -> bool {
+        let only_seed = Progress {
+            seed: self.progress.seed.clone(),
+            ..Progress::default()
+        };
+        self.progress != only_seed
+    }
+
     /// The hash of the world at its start, if its chance has been asked for.
     pub(super) fn seed(&self) -> Option<String> {
         self.progress.seed.clone()

@@ -6,6 +6,8 @@ Importing it registers the environments with Gymnasium and does nothing else.
 from __future__ import annotations
 
 from driftworld import _native
+from driftworld.curricula import Block, Curriculum, Experience
+from driftworld.distances import Distance, DistanceMatrix, Order, distance, distance_matrix, order
 from driftworld.envs import DriftworldEnv, DriftworldVectorEnv, register_envs
 from driftworld.errors import (
     CurriculumError,
@@ -17,20 +19,50 @@ from driftworld.errors import (
     SpecError,
     TaskError,
 )
+from driftworld.lifetimes import Agent, Summary, Transition
+from driftworld.logs import Log, LogWriter, read_log, validate_log
+from driftworld.scores import Metrics, metrics, report
+from driftworld.specs import Drift, TaskSpec, Variant, built_in_tasks, validate, variant, variants
 
 __version__: str = _native.__version__
 __all__ = [
+    "Agent",
+    "Block",
+    "Curriculum",
     "CurriculumError",
+    "Distance",
+    "DistanceMatrix",
+    "Drift",
     "DriftworldEnv",
     "DriftworldError",
     "DriftworldVectorEnv",
     "EnvError",
+    "Experience",
     "GeneratorError",
+    "Log",
+    "LogWriter",
+    "Metrics",
     "MetricsError",
+    "Order",
     "SimilarityError",
     "SpecError",
+    "Summary",
     "TaskError",
+    "TaskSpec",
+    "Transition",
+    "Variant",
     "__version__",
+    "built_in_tasks",
+    "distance",
+    "distance_matrix",
+    "metrics",
+    "order",
+    "read_log",
+    "report",
+    "validate",
+    "validate_log",
+    "variant",
+    "variants",
 ]
 
 register_envs()

@@ -18,7 +18,7 @@ class DriftworldError(Exception):
         column: Its column, in characters from 1.
         expected: What should have stood there.
         problems: Every problem of a document, in the order of places: dictionaries with ``code``, ``pointer``,
-            ``line``, ``column``, ``found``, ``expected`` and ``advice``.
+            ``line``, ``column``, ``found``, ``expected``, ``advice`` and ``message``.
     """
 
     def __init__(

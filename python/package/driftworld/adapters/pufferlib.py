@@ -22,7 +22,9 @@ import driftworld  # noqa: F401 - registers the environments
 try:
     from pufferlib import PufferEnv
 except ImportError as error:
-    raise ImportError("driftworld.adapters.pufferlib: found no pufferlib, expected version 3; pip install pufferlib") from error
+    raise ImportError(
+        "driftworld.adapters.pufferlib: found no pufferlib, expected version 3; pip install pufferlib"
+    ) from error
 
 __all__ = ["DriftworldPuffer"]
 

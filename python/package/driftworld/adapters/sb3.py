@@ -76,7 +76,9 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
     def __init__(self, env_id: str, num_envs: int = 1, **options: Any) -> None:
         refused = sorted({"autoreset_mode", "copy"} & options.keys())
         if refused:
-            raise ValueError(f"{refused[0]}: Stable-Baselines3 needs same_step and copies; found it set, expected it left out")
+            raise ValueError(
+                f"{refused[0]}: Stable-Baselines3 needs same_step and copies; found it set, expected it left out"
+            )
         self.envs: Any = gymnasium.make_vec(
             env_id,
             num_envs=num_envs,
@@ -100,7 +102,9 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
             asked: dict[str, Any] = dict(options)
             if not mask.all():
                 asked["reset_mask"] = mask
-            observations, told = self.envs.reset(seed=seeds if any(seed is not None for seed in seeds) else None, options=asked)
+            observations, told = self.envs.reset(
+                seed=seeds if any(seed is not None for seed in seeds) else None, options=asked
+            )
             for index in np.flatnonzero(mask):
                 self.reset_infos[index] = _of_one(told, int(index))
         self._reset_seeds()

@@ -77,7 +77,9 @@ class Options:
         _one_of("renderer", renderer, RENDERERS)
         _one_of("task_label", task_label, LABELS)
         if task_label == "obs" and not is_dict:
-            raise ValueError('task_label: found "obs", expected modalities to be a list: a single image has no room for it')
+            raise ValueError(
+                'task_label: found "obs", expected modalities to be a list: a single image has no room for it'
+            )
         dress = {
             "modalities": [kind for kind in kinds if kind != "state"],
             "size": _size(size),
@@ -164,7 +166,10 @@ def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any]) -> None:
                 f"variant: found {key} {theirs[key]}, expected {ours[key]} as the environment was made with; give option size, "
                 "or make an environment of its own"
             )
-    shapes = [("n", layout["action"]["n"]) if "n" in layout["action"] else ("numbers", len(layout["action"]["bounds"])) for layout in (ours, theirs)]
+    shapes = [
+        ("n", layout["action"]["n"]) if "n" in layout["action"] else ("numbers", len(layout["action"]["bounds"]))
+        for layout in (ours, theirs)
+    ]
     if shapes[0] != shapes[1]:
         raise ValueError(
             f"variant: found actions of {shapes[1][1]} {_words(shapes[1][0])}, expected {shapes[0][1]} {_words(shapes[0][0])} as the "

@@ -29,7 +29,9 @@ class Home:
     def __init__(self, task: Any, world: Any, variant: str | None) -> None:
         if (task is None) == (world is None):
             found = "neither" if task is None else "both"
-            raise ValueError(f'environment: found {found} of task and world, expected one, as in task="my_task.json#variant"')
+            raise ValueError(
+                f'environment: found {found} of task and world, expected one, as in task="my_task.json#variant"'
+            )
         self.task: _native.TaskSpec | None = None
         self.world: tuple[str, str] | None = None
         self.first: _native.Variant | None = None

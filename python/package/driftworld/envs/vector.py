@@ -18,6 +18,9 @@ from driftworld.envs.members import Members
 from driftworld.envs.options import DEFAULT_MODALITIES, Options
 from driftworld.envs.picture import Camera
 
+#: As many as a native batch holds.
+MOST_ENVS = 65_536
+
 
 class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
     """Environments that step together, without the interpreter's lock, into buffers that are kept.
@@ -75,6 +78,8 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         self._made_with = {name: value for name, value in locals().items() if name not in ("self", "__class__")}
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode: found {render_mode!r}, expected None or rgb_array")
+        if isinstance(num_envs, bool) or not isinstance(num_envs, (int, np.integer)) or not 1 <= num_envs <= MOST_ENVS:
+            raise ValueError(f"num_envs: found {num_envs!r}, expected a whole number in 1..{MOST_ENVS}")
         if variants is not None and variant is not None:
             raise ValueError("variants: found variant beside it, expected one of them")
         if variants is not None and drift is not None:
@@ -183,7 +188,12 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
     def _mask(self, mask: Any) -> NDArray[np.bool_] | None:
         if mask is None:
             return None
-        if not isinstance(mask, np.ndarray) or mask.dtype != np.bool_ or mask.shape != (self.num_envs,) or not mask.any():
+        if (
+            not isinstance(mask, np.ndarray)
+            or mask.dtype != np.bool_
+            or mask.shape != (self.num_envs,)
+            or not mask.any()
+        ):
             raise ValueError(
                 f"options['reset_mask']: found {mask!r}, expected a bool array of shape ({self.num_envs},) with at least one True"
             )
@@ -199,7 +209,9 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             raise ValueError(f"seed: found {len(seeds)} seeds, expected {self.num_envs}, one for each environment")
         return [None if one is None else int(one) for one in seeds]
 
-    def step(self, actions: Any) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
+    def step(
+        self, actions: Any
+    ) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], dict[str, Any]]:
         """Lets every agent act once.
 
         With ``"next_step"``, an environment whose episode has ended begins the next one: its action is ignored, it pays 0, and its
@@ -261,7 +273,11 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
     def _empty(self, key: str) -> Any:
         if key == "final_info":
             return {}
-        return np.full(self.num_envs, None, dtype=object) if key == "final_obs" else np.zeros(self.num_envs, dtype=np.bool_)
+        return (
+            np.full(self.num_envs, None, dtype=object)
+            if key == "final_obs"
+            else np.zeros(self.num_envs, dtype=np.bool_)
+        )
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:  # type: ignore[override]
         """A picture of each environment, uint8 (height, width, 3); ``None`` without a render mode."""

@@ -1,0 +1,19 @@
+"""The ``driftworld`` command, as the wheel installs it and as ``python -m driftworld`` runs it. Its work is native."""
+
+from __future__ import annotations
+
+import signal
+import sys
+
+from driftworld import _native
+
+
+def main() -> int:
+    """Runs the command with the arguments of the process; returns its exit code: 0, 1 for wrong input, 2 for wrong arguments."""
+    # As in the program itself: an interrupt ends it, unless a subcommand asks to be told.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return _native.main(["driftworld", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,55 @@
+"""The ``driftworld`` command asked by the package: options become arguments, what it prints becomes an answer.
+
+Running it as a program is in ``__main__.py``.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from driftworld import _native
+from driftworld.errors import DriftworldError
+
+
+def ask(
+    subcommand: str,
+    arguments: Iterable[str | os.PathLike[str]],
+    options: Mapping[str, Any],
+    refused: type[DriftworldError],
+) -> str:
+    """What a subcommand prints. Its warnings become Python's.
+
+    Args:
+        subcommand: Such as ``"metrics"``.
+        arguments: Those without a name.
+        options: By name, with ``_`` for ``-``: ``None`` and ``False`` are left out, ``True`` is the bare flag, a list is several
+            values, a tuple is one value with commas.
+        refused: What is raised when the command fails, with the command's message.
+    """
+    argv = [subcommand, *(os.fspath(argument) for argument in arguments)]
+    for name, value in options.items():
+        flag = f"--{name.replace('_', '-')}"
+        if value is None or value is False:
+            continue
+        if value is True:
+            argv.append(flag)
+        elif isinstance(value, list):
+            argv.extend([flag, *(_word(item) for item in value)] if value else [])
+        elif isinstance(value, tuple):
+            argv.append(f"{flag}={','.join(_word(item) for item in value)}")
+        else:
+            argv.append(f"{flag}={_word(value)}")
+    output, notes, message = _native.ask(argv)
+    for note in notes:
+        if note.startswith("warning: "):
+            warnings.warn(note.removeprefix("warning: "), stacklevel=3)
+    if message is not None:
+        raise refused(message)
+    return output
+
+
+def _word(value: Any) -> str:
+    return os.fspath(value) if isinstance(value, (str, os.PathLike)) else str(value)

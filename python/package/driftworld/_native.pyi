@@ -1,0 +1,352 @@
+"""What the native module has, as types: a section for each file of ``python/src/``. Private but for what ``driftworld`` re-exports.
+
+``python/tests/test_native_stub.py`` compares it with the module itself.
+"""
+
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import Any, Literal, final
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+
+# -- batch.rs ----------------------------------------------------------------------------------------------------------
+
+_Stepped = tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_], list[int]]
+
+@final
+class Batch:
+    """Environments that step together; single environments are batches of one."""
+
+    def __new__(
+        cls,
+        streams: Sequence[Stream],
+        dress: str,
+        autoreset: str,
+        num_threads: int,
+        renderer: str,
+        depth: str,
+        libraries: Sequence[bytes],
+    ) -> Batch: ...
+    @property
+    def renderer(self) -> str: ...
+    def seed(self, env: int, seed: int, index: int) -> None: ...
+    def index(self, env: int, index: int) -> None: ...
+    def stream(self, env: int, stream: Stream) -> None: ...
+    def give(self, env: int, name: str, text: str) -> None: ...
+    def place(self, env: int) -> tuple[int, int, int]: ...
+    def set_place(self, env: int, place: tuple[int, int, int]) -> None: ...
+    def reset(self, mask: NDArray[np.bool_] | None = None) -> None: ...
+    def step_numbers(self, actions: NDArray[np.float64]) -> _Stepped: ...
+    def step_rows(self, actions: NDArray[np.int64]) -> _Stepped: ...
+    def step_one_by_numbers(self, numbers: Sequence[float]) -> tuple[float, bool, bool, bool, bool]: ...
+    def step_one_by_row(self, row: int) -> tuple[float, bool, bool, bool, bool]: ...
+    def repeat(self, steps: int) -> None: ...
+    def buffers(self) -> dict[str, NDArray[Any]]: ...
+    def final_buffers(self) -> dict[str, NDArray[Any]] | None: ...
+    def origin(self, env: int) -> tuple[str, str, int, int, str]: ...
+    def events(self, env: int) -> tuple[dict[str, Any], ...]: ...
+    def state(self, env: int) -> str: ...
+    def warnings(self, env: int) -> list[str]: ...
+    def picture(self, env: int, height: int, width: int, from_above: bool) -> NDArray[np.uint8]: ...
+
+# -- command.rs --------------------------------------------------------------------------------------------------------
+
+def main(argv: Sequence[str]) -> int: ...
+def ask(argv: Sequence[str]) -> tuple[str, list[str], str | None]: ...
+
+# -- curriculum.rs -----------------------------------------------------------------------------------------------------
+
+@final
+class Plan:
+    """A scenario with everything that it names."""
+
+    def __new__(cls, path: str | PathLike[str], text: str, stand_in: bool) -> Plan: ...
+    @property
+    def warnings(self) -> list[str]: ...
+    def scenario(self) -> dict[str, Any]: ...
+    def text(self) -> str: ...
+    def __len__(self) -> int: ...
+    def due(self, number: int) -> dict[str, Any]: ...
+    def world(self, number: int) -> tuple[str, float]: ...
+    def made_from(self, what: str, print: Any) -> None: ...
+
+@final
+class Journal:
+    """The log that a lifetime is lived into."""
+
+    def __new__(cls, folder: str | PathLike[str], plan: Plan, agent: str, resume: bool) -> Journal: ...
+    def record(self, plan: Plan, outcome: tuple[float, bool, int, float, bool]) -> None: ...
+    def __len__(self) -> int: ...
+    def summary(self) -> dict[str, Any]: ...
+    def close(self) -> None: ...
+
+# -- distances.rs ------------------------------------------------------------------------------------------------------
+
+def distance(
+    a: Variant | tuple[str, str],
+    b: Variant | tuple[str, str],
+    weights: dict[str, float] | None,
+    worlds: int | None,
+    seed: int,
+    index: int,
+) -> dict[str, Any]: ...
+def order_methods() -> list[str]: ...
+
+@final
+class Matrix:
+    """Every distance among some items."""
+
+    @staticmethod
+    def measure(labels: Sequence[str], variants: Sequence[Variant], weights: dict[str, float] | None) -> Matrix: ...
+    @staticmethod
+    def from_values(labels: Sequence[str], values: NDArray[np.float64]) -> Matrix: ...
+    @staticmethod
+    def from_csv(text: str) -> Matrix: ...
+    @staticmethod
+    def from_json(text: str) -> Matrix: ...
+    @staticmethod
+    def from_npy(bytes: bytes, labels: Sequence[str] | None = None) -> Matrix: ...
+    def to_csv(self) -> str: ...
+    def to_json(self) -> str: ...
+    def to_npy(self) -> bytes: ...
+    @property
+    def labels(self) -> list[str]: ...
+    def values(self) -> NDArray[np.float64]: ...
+    @property
+    def is_metric(self) -> bool: ...
+    def map(self) -> tuple[NDArray[np.float64], float]: ...
+    def order(
+        self, method: str | None, start: int | None, end: int | None, seed: int, target_step: float | None
+    ) -> dict[str, Any]: ...
+    def __len__(self) -> int: ...
+
+# -- document.rs -------------------------------------------------------------------------------------------------------
+
+def check(
+    name: str, text: str, kind: str | None
+) -> tuple[str, list[dict[str, Any]], list[str], BaseException | None]: ...
+
+# -- drift.rs ----------------------------------------------------------------------------------------------------------
+
+@final
+class Drift:
+    """The way from one variant of a task to another: ``Drift(blue, dusk, schedule="cosine").at(0.25)``.
+
+    Args:
+        from_: Where it begins.
+        to: Where it leads: a variant of the same task.
+        schedule: ``"linear"``, ``"cosine"``, ``{"steps": n}`` or ``{"sawtooth": n}``, with n from 1 on.
+        switch: When values with nothing in between change: ``"at_point"``, or by chance, more likely as the drift goes on,
+            with ``"mixture"``.
+        seed: What a mixture draws from.
+
+    Raises:
+        GeneratorError: If the variants are of different tasks.
+        ValueError: For a schedule or a switch that there is not.
+    """
+
+    def __new__(
+        cls,
+        from_: Variant,
+        to: Variant,
+        *,
+        schedule: str | Mapping[str, int] | None = None,
+        switch: Literal["at_point", "mixture"] = "at_point",
+        seed: int = 0,
+    ) -> Drift: ...
+    def at(self, progress: float, index: int = 0) -> Variant:
+        """The variant when ``progress``, in 0..=1, has passed; ``index`` is the number of the world, which only mixtures
+        look at."""
+
+# -- logs.rs -----------------------------------------------------------------------------------------------------------
+
+@final
+class LogFile:
+    """An open log."""
+
+    @staticmethod
+    def create(folder: str | PathLike[str], columns: Sequence[str], info: Mapping[str, Any]) -> LogFile: ...
+    @staticmethod
+    def resume(folder: str | PathLike[str]) -> LogFile: ...
+    def write(
+        self,
+        block_num: int,
+        exp_num: int,
+        block_type: str,
+        block_subtype: str,
+        task_name: str,
+        task_params: Mapping[str, Any],
+        exp_status: str,
+        worker_id: str,
+        metrics: dict[str, float],
+    ) -> None: ...
+    def close(self) -> None: ...
+
+def read_log(
+    folder: str | PathLike[str], texts: bool
+) -> tuple[str, dict[str, Any], dict[str, Any], dict[str, Any], list[str]]: ...
+def validate_log(folder: str | PathLike[str]) -> dict[str, Any]: ...
+
+# -- supply.rs ---------------------------------------------------------------------------------------------------------
+
+@final
+class Stream:
+    """Worlds without end: number *i* under a seed."""
+
+    @staticmethod
+    def variants(variants: Sequence[Variant]) -> Stream: ...
+    @staticmethod
+    def drift(from_: Variant, to: Variant, schedule: str, switch: str, episodes: int) -> Stream: ...
+    @staticmethod
+    def world(name: str, text: str) -> Stream: ...
+    def layouts(self, dress: str) -> list[str]: ...
+
+# -- task.rs -----------------------------------------------------------------------------------------------------------
+
+@final
+class TaskSpec:
+    """A task: what its worlds have in common, and exactly what varies between them.
+
+    Made by :meth:`load`, :meth:`from_json` or :meth:`from_dict`. Never changes; equal when the documents say the same; pickles.
+    """
+
+    @staticmethod
+    def load(name_or_path: str | PathLike[str]) -> TaskSpec:
+        """The task of a built-in name, such as ``"find_objects"``, or of a path; a variant behind ``#`` is left aside.
+
+        Raises:
+            TaskError: If there is none.
+            SpecError: If the document is wrong, with every problem and its place.
+        """
+
+    @staticmethod
+    def from_json(name: str, text: str) -> TaskSpec:
+        """The task that a JSON text says; ``name`` is what messages call the text."""
+
+    @staticmethod
+    def from_dict(document: dict[str, Any], name: str = "task spec") -> TaskSpec:
+        """The task that a dictionary says; ``name`` is what messages call it."""
+
+    def to_json(self) -> str:
+        """The document as one line of JSON: :meth:`from_json` reads the same task from it."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """The document as a dictionary."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+    @property
+    def description(self) -> str:
+        """What it is, in its author's words."""
+
+    @property
+    def parameters(self) -> dict[str, dict[str, Any]]:
+        """Its parameters by name, each as the document declares it."""
+
+    @property
+    def families(self) -> dict[str, list[str]]:
+        """Its families of variants, which grids and sweeps declare, each with the names of its members."""
+
+    def variant_names(self) -> list[str]:
+        """The names of the variants that it declares, families unfolded; ``["default"]`` if it declares none."""
+
+    def all_variants(self) -> list[Variant]:
+        """The same as :attr:`variants`."""
+
+    @property
+    def variants(self) -> list[Variant]:
+        """All variants that it declares, in the order of the document."""
+
+    def variant(self, name: str | None = None) -> Variant:
+        """One variant; without a name the one in which every parameter has its default.
+
+        Raises:
+            SpecError: If it has none of this name.
+        """
+
+    def sample(self, variant: str | None = None, seed: int = 0, index: int = 0) -> dict[str, Any]:
+        """World number ``index`` of a variant under a seed."""
+
+    def __hash__(self) -> int: ...
+
+@final
+class Variant:
+    """One variant of a task, in which every parameter that is not drawn anew in each world has its value.
+
+    Never changes; equal when worlds and distances are the same; pickles.
+    """
+
+    @property
+    def id(self) -> str:
+        """``task#variant``."""
+
+    @property
+    def name(self) -> str:
+        """Its name within the task."""
+
+    @property
+    def task(self) -> TaskSpec:
+        """The task that it is a variant of."""
+
+    @property
+    def description(self) -> str | None:
+        """What its author says of it, if anything."""
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The values of all parameters that are the same in every world, by name."""
+
+    @property
+    def hash(self) -> str:
+        """A hash of everything that its worlds and its distances are made from: 64 hexadecimal digits."""
+
+    def with_values(self, name: str, /, **changes: Any) -> Variant:
+        """A variant like this one under another name, with some parameters at other values: ``with_values("dim", light=0.5)``.
+
+        Raises:
+            SpecError: With every parameter that cannot have its value.
+        """
+
+    def at_distance(
+        self, distance: float, subject: str | Sequence[str], *, tolerance: float = 1e-3, name: str = "found"
+    ) -> tuple[Variant, float]:
+        """A variant at a wanted distance, in 0..=1, from this one, and its distance.
+
+        Args:
+            distance: The wanted one.
+            subject: What may change: an element of the decision process (``"reward"`` or ``"R"``; the distance is the one in
+                it), or a list of parameters (the distance is the whole one).
+            tolerance: How far off it may be.
+            name: What it is called.
+
+        Raises:
+            GeneratorError: If nothing can change, or no variant is as far; with the nearest.
+        """
+
+    def sample(self, seed: int = 0, index: int = 0) -> dict[str, Any]:
+        """World number ``index`` under a seed: the same on every machine, whatever was drawn before.
+
+        Raises:
+            GeneratorError: If it cannot be drawn.
+        """
+
+    def sample_json(self, seed: int = 0, index: int = 0) -> str:
+        """The same as one line of JSON."""
+
+    def sample_many(self, count: int, *, seed: int = 0, start: int = 0, threads: int = 0) -> list[dict[str, Any]]:
+        """``count`` worlds from number ``start`` on, drawn by several threads: 0 for one on each processor."""
+
+    def sample_many_json(self, count: int, *, seed: int = 0, start: int = 0, threads: int = 0) -> list[str]:
+        """The same, each world as one line of JSON."""
+
+    def __hash__(self) -> int: ...
+
+def built_in_names() -> list[str]: ...
+def load_variant(name: str) -> Variant: ...
+def load_variants(name: str) -> list[Variant]: ...
+def variant_again(task: TaskSpec, name: str, values: str) -> Variant: ...

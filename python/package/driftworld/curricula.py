@@ -1,0 +1,365 @@
+"""Curricula: learning and evaluation blocks of variants, designed, read, iterated and lived.
+
+A curriculum is a scenario, the document that ``driftworld curriculum`` writes and ``driftworld run`` lives. Living one is in
+``lifetimes.py``, scoring what was lived in ``scores.py``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+
+from driftworld import _native
+from driftworld._command import ask
+from driftworld._files import write_whole
+from driftworld.errors import CurriculumError
+from driftworld.lifetimes import Agent, Lifetime, Summary, environment
+from driftworld.specs import variants
+
+PathLike = str | os.PathLike[str]
+
+
+@dataclass(frozen=True)
+class Experience:
+    """One episode of a lifetime.
+
+    Attributes:
+        number: Its number over the whole lifetime, from 0.
+        block: Its block, from 0.
+        regime: Its regime in the block, from 0.
+        learning: Whether the agent may learn from it.
+        variant: What it is called: ``task#variant``, in a drift with both ends.
+        seed: The seed of its world; ``None`` for a world from a file.
+        index: The number of its world under the seed.
+        progress: How far on its way a drift is, in 0..=1; 0 where nothing drifts.
+        chance: The number that the agent's own chance should be drawn from.
+        label: Where the scenario tells the task: ``number``, ``of``, ``name``, and ``observed``, whether in observations.
+    """
+
+    number: int
+    block: int
+    regime: int
+    learning: bool
+    variant: str
+    seed: int | None
+    index: int | None
+    progress: float
+    chance: int = field(repr=False)
+    label: dict[str, Any] | None = field(repr=False)
+    _plan: _native.Plan = field(repr=False, compare=False)
+
+    @property
+    def task(self) -> str:
+        """The name of its task."""
+        return self.variant.rpartition("#")[0]
+
+    def world(self) -> dict[str, Any]:
+        """Its world, as it is lived: with the scenario's limit of steps laid over it."""
+        world: dict[str, Any] = json.loads(self._plan.world(self.number)[0])
+        return world
+
+
+@dataclass(frozen=True)
+class Block:
+    """Experiences in which the agent learns, or does not. Iterating it gives them; ``len(block)``, ``block[0]``, ``block[-2:]``.
+
+    Attributes:
+        number: Its number in the curriculum, from 0.
+        kind: ``"learning"`` or ``"evaluation"``.
+        phase: ``"deployment"`` or ``"pre_deployment"``.
+        first: The number of its first experience.
+        num_experiences: How many it has.
+    """
+
+    number: int
+    kind: str
+    phase: str
+    first: int
+    num_experiences: int
+    _plan: _native.Plan = field(repr=False, compare=False)
+
+    def __len__(self) -> int:
+        return self.num_experiences
+
+    def __getitem__(self, place: Any) -> Any:
+        if isinstance(place, slice):
+            return [self[index] for index in range(*place.indices(len(self)))]
+        if not -len(self) <= place < len(self):
+            raise IndexError(f"block {self.number}: found experience {place}, expected one of {len(self)}")
+        return _experience(self._plan, self.first + place % len(self))
+
+    def __iter__(self) -> Iterator[Experience]:
+        return (self[place] for place in range(len(self)))
+
+
+def _experience(plan: _native.Plan, number: int) -> Experience:
+    return Experience(**plan.due(number), _plan=plan)
+
+
+class Curriculum(Sequence[Block]):
+    """Learning and evaluation blocks of variants. A sequence of blocks.
+
+    Made by :meth:`load`, :meth:`from_dict`, :meth:`design`, :meth:`experts` or :meth:`lifetimes`::
+
+        curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=20)
+        for block in curriculum:
+            for experience in block:
+                print(block.kind, experience.variant, experience.seed, experience.index)
+        curriculum.run(agent, log="logs/mine")
+
+    Args:
+        text: The scenario, as JSON text; ours, or one of L2Explorer's.
+        path: What messages call it; tasks and worlds that it names by paths are looked for from its folder first.
+        stand_in: Let the world file with the nearest name stand in for one that is nowhere.
+
+    Raises:
+        SpecError: If the scenario is wrong, with pointer, line and column.
+        CurriculumError: If something that it names cannot be had.
+    """
+
+    def __init__(self, text: str, path: PathLike = "scenario", *, stand_in: bool = False) -> None:
+        self._text, self._path, self._stand_in = text, Path(path), stand_in
+        self._plan = self._new_plan()
+        for warning in self._plan.warnings:
+            warnings.warn(warning, stacklevel=2)
+        self.scenario: dict[str, Any] = self._plan.scenario()
+        """The scenario as a dictionary."""
+        self._blocks: list[Block] = []
+        first = 0
+        for number, block in enumerate(self.scenario["blocks"]):
+            count = sum(regime["count"] for regime in block["regimes"])
+            phase = block.get("phase", "deployment")
+            self._blocks.append(Block(number, block["type"], phase, first, count, self._plan))
+            first += count
+
+    def _new_plan(self) -> _native.Plan:
+        return _native.Plan(self._path, self._text, self._stand_in)
+
+    @classmethod
+    def load(cls, path: PathLike, *, stand_in: bool = False) -> Curriculum:
+        """Reads a scenario file.
+
+        Raises:
+            FileNotFoundError: If there is no such file.
+            SpecError, CurriculumError: As the class.
+        """
+        return cls(Path(path).read_text(encoding="utf-8"), path, stand_in=stand_in)
+
+    @classmethod
+    def from_dict(cls, scenario: Mapping[str, Any], *, folder: PathLike = ".") -> Curriculum:
+        """Takes a scenario from a dictionary; what it names by paths is looked for in ``folder``.
+
+        Raises:
+            SpecError, CurriculumError: As the class.
+        """
+        return cls(json.dumps(scenario), Path(folder) / "scenario")
+
+    @classmethod
+    def design(
+        cls,
+        *tasks: str,
+        name: str | None = None,
+        learn: int | None = None,
+        eval_episodes: int | None = None,
+        evaluate: str | None = None,
+        evaluate_after: Sequence[int] | None = None,
+        pre_deployment: int | None = None,
+        form: str | None = None,
+        blocks: int | None = None,
+        method: str | None = None,
+        start: str | None = None,
+        end: str | None = None,
+        target_step: float | None = None,
+        order: str | None = None,
+        probe: str | None = None,
+        variants: int | None = None,
+        step_distance: float | None = None,
+        tolerance: float | None = None,
+        steps: int | None = None,
+        drift: str | None = None,
+        mix: bool = False,
+        task_label: str | None = None,
+        seed: int | None = None,
+        controls: PathLike | None = None,
+        plot: PathLike | None = None,
+    ) -> Curriculum:
+        """Designs blocks from variants and their distances, as ``driftworld curriculum`` does.
+
+        Args:
+            tasks: Variants, or tasks, which stand for all their variants.
+            name: The scenario's name.
+            learn: Experiences of each learning block; 20 if not given.
+            eval_episodes: Experiences of each variant in each evaluation block; 5 if not given.
+            evaluate: When the agent is evaluated, frozen, in all variants: ``"every"`` block (default) or at the ``"ends"``.
+            evaluate_after: After so many learning blocks each instead; 0 is before the first.
+            pre_deployment: Experiences of the first variant in a block before deployment.
+            form: ``"condensed"``, ``"dispersed"``, ``"permuted"``, ``"alternating"`` or ``"custom"``.
+            blocks: How many learning blocks; as many as the form has of itself if not given.
+            method: The method of the order, as for :func:`driftworld.order`.
+            start: The variant that comes first.
+            end: The variant that comes last.
+            target_step: The step that the method ``target-step`` wants.
+            order: From ``start`` on: ``"gradual"``, ``"abrupt"``, ``"path"`` or ``"farthest"``.
+            probe: Take variants that differ from the start in this element alone: ``"state"``, ``"action"``, ``"transition"``,
+                ``"reward"`` or ``"observation"``.
+            variants: How many the probe takes.
+            step_distance: Make a sequence of variants, each so far from the one before.
+            tolerance: How far off each step may be.
+            steps: How many steps.
+            drift: Learning blocks drift from each variant to the next: ``"linear"``, ``"cosine"``, ``"step:N"`` or ``"sawtooth:N"``.
+            mix: Values with nothing in between switch by chance.
+            task_label: Whether the learner is told its task: ``"none"`` (default), ``"info"`` or ``"observation"``.
+            seed: What all worlds follow from.
+            controls: A folder to write the controls into: the same variants in reversed, random and contrasting order.
+            plot: A PNG file to draw the blocks into.
+
+        Raises:
+            SpecError, TaskError: If a task is wrong or nowhere.
+            CurriculumError: If the design cannot be.
+        """
+        options = dict(locals())
+        del options["cls"]
+        return cls(_designed(options), "scenario")
+
+    @classmethod
+    def experts(cls, *tasks: str, **options: Any) -> list[Curriculum]:
+        """Single-task experts to compare with: a curriculum for every variant, in which it alone is learned.
+
+        Args:
+            tasks: As for :meth:`design`.
+            options: As for :meth:`design`.
+        """
+        return cls._several({**options, "tasks": tasks, "form": "expert"})
+
+    @classmethod
+    def lifetimes(cls, count: int, *tasks: str, **options: Any) -> list[Curriculum]:
+        """So many lifetimes of the permuted form, each in an order of its own.
+
+        Args:
+            count: How many, 1 to 10,000.
+            tasks: As for :meth:`design`.
+            options: As for :meth:`design`.
+        """
+        return cls._several({**options, "tasks": tasks, "form": "permuted", "lifetimes": count})
+
+    @classmethod
+    def _several(cls, options: dict[str, Any]) -> list[Curriculum]:
+        with tempfile.TemporaryDirectory() as folder:
+            said = _designed({**options, "output": folder})
+            names = [line.removeprefix(folder + os.sep).partition(".json: ")[0] for line in said.splitlines()]
+            paths = [Path(folder) / f"{name}.json" for name in names]
+            return [cls(path.read_text(encoding="utf-8"), "scenario") for path in paths]
+
+    @property
+    def name(self) -> str:
+        """The scenario's name."""
+        name: str = self.scenario["name"]
+        return name
+
+    @property
+    def blocks(self) -> list[Block]:
+        """The blocks, in the order in which they are lived."""
+        return list(self._blocks)
+
+    @property
+    def num_experiences(self) -> int:
+        """How many experiences the whole lifetime has."""
+        return len(self._plan)
+
+    def experience(self, number: int) -> Experience:
+        """An experience by its number over the whole lifetime.
+
+        Raises:
+            CurriculumError: If there is none.
+        """
+        return _experience(self._plan, number)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The scenario as a dictionary of its own."""
+        return self._plan.scenario()
+
+    def save(self, path: PathLike) -> None:
+        """Writes the scenario file. What it names by paths is not moved with it."""
+        write_whole(Path(path), self._plan.text().encode())
+
+    def environment(self, **options: Any) -> gymnasium.Env[Any, Any]:
+        """The environment that :meth:`run` lives it in, for agents that are made for its spaces.
+
+        Args:
+            options: As for :class:`driftworld.DriftworldEnv`, without what the curriculum says itself.
+        """
+        return environment(self._plan, options)
+
+    def run(
+        self,
+        agent: Agent,
+        log: PathLike | None = None,
+        *,
+        resume: bool = True,
+        watch: Callable[[Experience, float], Any] | None = None,
+        **options: Any,
+    ) -> Summary:
+        """Lives the curriculum with an agent, and logs every experience as ``driftworld run`` does.
+
+        Interrupted in whatever way, it goes on with the same call at the first experience that is not in the log. An agent that
+        has ``save`` and ``load`` is saved after each learning block, into a folder beside the log, ``LOG.agent``, and loaded when the
+        log is taken up; what it learned since then it lives again, unlogged. Without them, hand over one that has learned
+        what is in the log.
+
+        Args:
+            agent: See :class:`driftworld.Agent`.
+            log: The folder of the log; without one nothing is kept.
+            resume: Go on with the log in the folder, if there is one; else the folder must hold nothing.
+            watch: Told each experience and its reward as soon as it is logged; ``False`` from it ends the run there.
+            options: Options of the environment, as for :class:`driftworld.DriftworldEnv`: ``modalities``, ``size``, ``actions`` and
+                so on. A log is taken up only with the same ones.
+
+        Raises:
+            CurriculumError: If the log is of another curriculum, agent or environment, or a world cannot be drawn.
+            MetricsError: If the log cannot be written.
+            EnvError: If an action is none.
+            TypeError: If the agent lacks a method.
+        """
+        plan = self._new_plan()
+        lifetime = Lifetime(plan, agent, options, log, resume, watch)
+        return lifetime.live(lambda number: _experience(plan, number))
+
+    def __len__(self) -> int:
+        return len(self._blocks)
+
+    def __getitem__(self, place: Any) -> Any:
+        return self._blocks[place]
+
+    def __iter__(self) -> Iterator[Block]:
+        return iter(self._blocks)
+
+    def __repr__(self) -> str:
+        return f"<Curriculum {self.name!r} of {len(self)} blocks, {self.num_experiences} experiences>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_curriculum_again, (self._text, str(self._path), self._stand_in))
+
+
+def _curriculum_again(text: str, path: str, stand_in: bool) -> Curriculum:
+    """A curriculum in another process."""
+    return Curriculum(text, path, stand_in=stand_in)
+
+
+def _designed(options: dict[str, Any]) -> str:
+    """What the command prints of a design: the scenario, or a line for each of several."""
+    tasks = options.pop("tasks")
+    if not all(isinstance(task, str) for task in tasks):
+        raise TypeError("tasks: expected names such as \"find_objects#red\": a scenario calls tasks by their names")
+    # First, so that what is wrong with a task is raised with its place.
+    variants(*tasks)
+    if options.get("evaluate_after") is not None:
+        options["evaluate_after"] = tuple(options["evaluate_after"])
+    return ask("curriculum", tasks, options, CurriculumError)

@@ -1,0 +1,379 @@
+"""How far apart variants and worlds are, matrices of it, and orders by it.
+
+The measures are the ones of ``driftworld distance`` and ``driftworld order``, with the same numbers. Which variants there are is
+in ``specs.py``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import total_ordering
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from driftworld import _native
+from driftworld._files import write_whole
+from driftworld.specs import TaskSpec, Variant, document_text, variant, variants
+
+#: The elements of the decision process, by letter.
+ELEMENTS = {"S": "state", "A": "action", "T": "transition", "R": "reward", "O": "observation"}
+
+Weights = Mapping[str, float]
+Named = str | Variant | TaskSpec
+
+
+@total_ordering
+@dataclass(frozen=True, eq=False)
+class Distance:
+    """How far apart two are. A number wherever one is wanted: ``float(d)``, ``d < 0.3``, ``max(distances)``.
+
+    Attributes:
+        total: All elements together, in 0..=1.
+        elements: The distance in each element of the decision process, by letter: ``S``, ``A``, ``T``, ``R``, ``O``; ``None``
+            where nothing could differ.
+        parts: What was compared: dictionaries with ``name``, ``element``, ``measure``, ``how`` (for distributions), ``raw``,
+            ``normalised``, ``weight`` and ``share``, those that matter most first.
+        compared: How the two were compared, in words.
+    """
+
+    total: float
+    elements: dict[str, float | None]
+    parts: list[dict[str, Any]]
+    compared: str
+
+    def __float__(self) -> float:
+        return self.total
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, (int, float, Distance)):
+            return self.total == float(other)
+        return NotImplemented
+
+    def __lt__(self, other: object) -> bool:
+        if isinstance(other, (int, float, Distance)):
+            return self.total < float(other)
+        return NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.total)
+
+    def explain(self) -> str:
+        """What the distance is made of, as a table in plain text."""
+        lines = [f"{self.total:.4f}, {self.compared}"]
+        for letter, value in self.elements.items():
+            lines.append(f"  {letter} {ELEMENTS[letter]:<12} {'-' if value is None else f'{value:.4f}'}")
+        rows = [("part", "element", "measure", "how", "raw", "counts", "weight", "share")]
+        for part in self.parts:
+            numbers = (f"{part['raw']:.4f}", f"{part['normalised']:.4f}", f"{part['weight']:g}", f"{part['share']:.1%}")
+            rows.append((part["name"], part["element"], part["measure"], _words(part.get("how")), *numbers))
+        widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+        for row in rows:
+            cells = [f"{cell:<{width}}" if k < 4 else f"{cell:>{width}}" for k, (cell, width) in enumerate(zip(row, widths))]
+            lines.append("  ".join(cells).rstrip())
+        return "\n".join(lines)
+
+
+def _words(how: Any) -> str:
+    return "of the values" if how is None else str(how)
+
+
+def distance(
+    a: Any,
+    b: Any,
+    *,
+    weights: Weights | None = None,
+    worlds: int | None = None,
+    seed: int = 0,
+    index: int = 0,
+) -> Distance:
+    """How far apart two variants, or two worlds, are.
+
+    Two variants of one task are compared parameter by parameter, at the weights and by the measures that the task declares.
+    Variants of different tasks are compared by worlds drawn from each under one seed, worlds as they are.
+
+    Args:
+        a: A variant, its name such as ``"find_objects#red"``, a world as a dictionary or JSON text, or the path of a world.
+        b: Another.
+        weights: What elements weigh, over what the task says: ``{"R": 2}`` or ``{"reward": 2}``, each 0 to 1,000,000.
+        worlds: Compare so many worlds of each, 1 to 100,000, even where both are variants of one task; 16 where they are not.
+        seed: The seed of worlds that are drawn.
+        index: The number of the first of them.
+
+    Raises:
+        SpecError: If a document is wrong.
+        TaskError: If there is no such task.
+        GeneratorError: If a world cannot be drawn.
+        SimilarityError: For a weight that is none.
+    """
+    laid = None if weights is None else dict(weights)
+    found = _native.distance(_side(a), _side(b), laid, worlds, seed, index)
+    letters = {name: letter for letter, name in ELEMENTS.items()}
+    return Distance(
+        total=found["total"],
+        elements={letters[name]: value for name, value in found["elements"].items()},
+        parts=sorted(found["parts"], key=lambda part: -part["share"]),
+        compared=found["compared"],
+    )
+
+
+def _side(side: Any) -> Variant | tuple[str, str]:
+    """A variant, or the name and the text of a world."""
+    if isinstance(side, Variant):
+        return side
+    if isinstance(side, TaskSpec):
+        return side.variant()
+    if isinstance(side, (str, os.PathLike)):
+        name = os.fspath(side)
+        if not name.lstrip().startswith("{") and not _is_world_file(name):
+            return variant(name)
+    return document_text(side)
+
+
+def _is_world_file(name: str) -> bool:
+    try:
+        document = json.loads(Path(name).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return False
+    return not any(key in document for key in ("name", "parameters", "groups"))
+
+
+class DistanceMatrix:
+    """Every distance among labelled items: symmetric, at least 0, and 0 on the diagonal.
+
+    ``np.asarray(matrix)`` is the array; ``matrix[0, 1]`` and ``matrix["task#a", "task#b"]`` are distances.
+
+    Args:
+        labels: What the items are called, each once.
+        values: The distances, float64 (items, items).
+
+    Raises:
+        SimilarityError: If the numbers are no distances, or do not fit the labels.
+    """
+
+    def __init__(self, labels: Sequence[str], values: ArrayLike) -> None:
+        self._native = _native.Matrix.from_values(list(labels), np.asarray(values, dtype=np.float64))
+        self._values: NDArray[np.float64] | None = None
+
+    @classmethod
+    def _of(cls, native: _native.Matrix) -> DistanceMatrix:
+        matrix = cls.__new__(cls)
+        matrix._native = native
+        matrix._values = None
+        return matrix
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> DistanceMatrix:
+        """Reads a matrix, as :meth:`save` and ``driftworld order --matrix`` write it, by the file's ending.
+
+        Raises:
+            SimilarityError: If the file holds no distances.
+        """
+        path = Path(path)
+        match _ending(path):
+            case ".csv":
+                return cls._of(_native.Matrix.from_csv(path.read_text(encoding="utf-8")))
+            case ".json":
+                return cls._of(_native.Matrix.from_json(path.read_text(encoding="utf-8")))
+            case _:
+                beside = path.with_suffix(".labels.json")
+                labels = json.loads(beside.read_text(encoding="utf-8")) if beside.exists() else None
+                return cls._of(_native.Matrix.from_npy(path.read_bytes(), labels))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the matrix as ``.csv``, ``.json`` or ``.npy``, by the name's ending; labels of ``.npy`` come into a ``.labels.json``
+        beside it."""
+        path = Path(path)
+        match _ending(path):
+            case ".csv":
+                write_whole(path, self._native.to_csv().encode())
+            case ".json":
+                write_whole(path, self._native.to_json().encode())
+            case _:
+                write_whole(path, self._native.to_npy())
+                write_whole(path.with_suffix(".labels.json"), json.dumps(self.labels, indent=2, ensure_ascii=False).encode())
+
+    @property
+    def labels(self) -> list[str]:
+        """What the items are called."""
+        return self._native.labels
+
+    @property
+    def values(self) -> NDArray[np.float64]:
+        """The distances, float64 (items, items); read-only."""
+        if self._values is None:
+            self._values = self._native.values()
+            self._values.flags.writeable = False
+        return self._values
+
+    @property
+    def is_metric(self) -> bool:
+        """Whether no detour is shorter than the straight way, by what is known of the measure."""
+        return self._native.is_metric
+
+    def embed(self, dim: int = 2) -> NDArray[np.float64]:
+        """The items as points whose distances are as true as they can be (classical scaling), float64 (items, dim).
+
+        Args:
+            dim: 1 or 2. The first axis is the longer one.
+        """
+        if dim not in (1, 2):
+            raise ValueError(f"dim: found {dim!r}, expected 1 or 2; for more, hand `values` to a library of its own")
+        points, _ = self._native.map()
+        return points[:, :dim]
+
+    def explained(self) -> float:
+        """How much of the matrix two dimensions show, in 0..=1."""
+        return self._native.map()[1]
+
+    def order(
+        self,
+        method: str | None = None,
+        *,
+        start: str | None = None,
+        end: str | None = None,
+        seed: int = 0,
+        target_step: float | None = None,
+    ) -> Order:
+        """The items in an order; see :func:`order`."""
+        ends = [None if label is None else self._index(option, label) for option, label in (("start", start), ("end", end))]
+        return Order(**self._native.order(method, ends[0], ends[1], seed, target_step))
+
+    def _index(self, option: str, label: str) -> int:
+        labels = self.labels
+        if label in labels:
+            return labels.index(label)
+        shown = ", ".join(labels[:20]) + (f" and {len(labels) - 20} more" if len(labels) > 20 else "")
+        raise ValueError(f"{option}: found {label!r}, expected one of {shown}")
+
+    def __len__(self) -> int:
+        return len(self._native)
+
+    def __getitem__(self, key: Any) -> Any:
+        if isinstance(key, tuple):
+            key = tuple(self._index("label", part) if isinstance(part, str) else part for part in key)
+        elif isinstance(key, str):
+            key = self._index("label", key)
+        return self.values[key]
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[Any]:
+        if copy is False and dtype is not None and np.dtype(dtype) != self.values.dtype:
+            raise ValueError(f"copy: found False with {dtype}, expected float64, which the distances are")
+        return np.array(self.values, dtype=dtype) if copy else np.asarray(self.values, dtype=dtype)
+
+    def __repr__(self) -> str:
+        return f"<DistanceMatrix of {len(self)} items>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_matrix_again, (self._native.to_json(),))
+
+
+def _matrix_again(text: str) -> DistanceMatrix:
+    """A matrix in another process."""
+    return DistanceMatrix._of(_native.Matrix.from_json(text))
+
+
+def _ending(path: Path) -> str:
+    if path.suffix not in (".csv", ".json", ".npy"):
+        raise ValueError(f"path: found {str(path)!r}, expected a name that ends with .csv, .json or .npy")
+    return path.suffix
+
+
+@dataclass(frozen=True)
+class Order:
+    """Items in an order by their distances. Iterating it gives their labels.
+
+    Attributes:
+        method: How it was found.
+        order: The labels, in order.
+        indices: The same as numbers of items, from 0.
+        steps: The distance from each item to the next.
+        length: The sum of the steps.
+        largest_step: The largest of them.
+        mean_step: Their mean.
+        anchor_correlation: How steadily the order leads away from its first item, a rank correlation in −1..=1, or ``None``.
+    """
+
+    method: str
+    order: list[str]
+    indices: list[int]
+    steps: list[float]
+    length: float
+    largest_step: float
+    mean_step: float
+    anchor_correlation: float | None
+
+    @property
+    def labels(self) -> list[str]:
+        """The labels, in order."""
+        return self.order
+
+    def __iter__(self) -> Any:
+        return iter(self.order)
+
+    def __len__(self) -> int:
+        return len(self.order)
+
+
+def distance_matrix(items: Named | Iterable[Named], weights: Weights | None = None) -> DistanceMatrix:
+    """Every distance among variants, measured in parallel.
+
+    Variants of one task are compared parameter by parameter, those of several tasks by 16 worlds of each, drawn under seed 0.
+
+    Args:
+        items: Names, variants and task specs; a task stands for all its variants, and each variant is taken once.
+        weights: As for :func:`distance`.
+
+    Raises:
+        SpecError, TaskError, GeneratorError, SimilarityError: As :func:`distance`; SimilarityError also for more than 20,000.
+    """
+    found = _variants(items)
+    laid = None if weights is None else dict(weights)
+    return DistanceMatrix._of(_native.Matrix.measure([label for label, _ in found], [item for _, item in found], laid))
+
+
+def _variants(items: Named | Iterable[Named]) -> list[tuple[str, Variant]]:
+    if isinstance(items, (str, os.PathLike, Variant, TaskSpec)):
+        return variants(items)
+    return variants(*items)
+
+
+def order(
+    items: DistanceMatrix | Named | Iterable[Named],
+    method: str | None = None,
+    *,
+    start: str | None = None,
+    end: str | None = None,
+    seed: int = 0,
+    target_step: float | None = None,
+    weights: Weights | None = None,
+) -> Order:
+    """Variants in an order by their distances.
+
+    Args:
+        items: A matrix, or what :func:`distance_matrix` takes.
+        method: ``nearest``, ``exact`` (up to 15), ``two-opt``, ``spectral``, ``tree``, ``leaf``, ``contrast``, ``typical-last``,
+            ``farthest-first``, ``random``, ``bottleneck``, ``target-step`` or ``given``; exact where possible if none is given, else
+            two-opt.
+        start: The label that comes first; whichever is best if none is given.
+        end: The label that comes last.
+        seed: What ``random`` draws from.
+        target_step: The step that ``target-step`` wants.
+        weights: As for :func:`distance`.
+
+    Raises:
+        SimilarityError: If there is no such method, or it cannot have such ends or items.
+        ValueError: If a label is none of the items'.
+    """
+    if isinstance(items, DistanceMatrix):
+        if weights is not None:
+            raise ValueError("weights: found some beside a matrix, expected none: its distances are measured already")
+        matrix = items
+    else:
+        matrix = distance_matrix(items, weights)
+    return matrix.order(method, start=start, end=end, seed=seed, target_step=target_step)

@@ -1,0 +1,282 @@
+"""Living a curriculum: an agent in a single environment, experience after experience, each logged.
+
+Which experiences there are is said by ``curricula.py``, what a log holds by the native journal: the columns of ``driftworld run``.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import tempfile
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+
+import gymnasium
+import numpy as np
+
+from driftworld import _native
+from driftworld.envs import DriftworldEnv
+
+if TYPE_CHECKING:
+    from driftworld.curricula import Experience
+
+
+@dataclass(frozen=True, slots=True)
+class Transition:
+    """One step, as an agent learns from it.
+
+    Attributes:
+        observation: What it saw before.
+        action: What it did.
+        reward: What that paid.
+        terminated: Whether what happened ended the episode.
+        truncated: Whether a limit of steps did.
+        next_observation: What it saw then.
+        info: What the step said beside it.
+    """
+
+    observation: Any
+    action: Any
+    reward: float
+    terminated: bool
+    truncated: bool
+    next_observation: Any
+    info: dict[str, Any]
+
+
+@runtime_checkable
+class Agent(Protocol):
+    """Who lives a curriculum.
+
+    Beside these three methods an agent may have
+
+    - ``name``, what logs call it; its class's name if not;
+    - ``begin(label, seed)``, called before each experience with the name of its variant where the scenario tells it, else
+      ``None``, and the number that its chance should be drawn from: the same in every evaluation of a world, so that an agent that
+      has not changed earns the same in it;
+    - ``save(path)`` and ``load(path)``, called with a path that nothing is at, respectively with the last that was saved at: after
+      each learning block, and when a log is taken up.
+    """
+
+    def act(self, observation: Any, info: dict[str, Any]) -> Any:
+        """An action for an observation; ``info`` is what the last reset or step said beside it."""
+
+    def learn(self, transition: Transition) -> None:
+        """Learns from a step; only called in learning blocks."""
+
+    def freeze(self, frozen: bool) -> None:
+        """Told before the first experience of a block that it may not learn, or may again."""
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a lifetime came to.
+
+    Attributes:
+        experiences: How many were lived, those of earlier runs included.
+        steps: Steps in all of them.
+        finished: Whether the whole curriculum was lived.
+        regimes: One dictionary for each regime that was begun: ``block``, ``kind``, ``variant``, ``experiences``,
+            ``mean_reward`` and ``success_rate``.
+        log: The folder of the log, if it was kept.
+    """
+
+    experiences: int
+    steps: int
+    finished: bool
+    regimes: list[dict[str, Any]]
+    log: Path | None
+
+    def __str__(self) -> str:
+        rows = [("block", "kind", "variant", "experiences", "mean reward", "success")]
+        for regime in self.regimes:
+            numbers = (str(regime["experiences"]), f"{regime['mean_reward']:.1f}", f"{regime['success_rate']:.0%}")
+            rows.append((str(regime["block"]), regime["kind"], regime["variant"], *numbers))
+        widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+        lines = ["  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+        return "\n".join(lines)
+
+
+class Lifetime:
+    """A curriculum under way.
+
+    Args:
+        plan: What is lived.
+        agent: Who lives it.
+        options: Options of the environment.
+        log: The folder to log into; without one the log is forgotten.
+        resume: Go on with the log in the folder if there is one.
+        watch: Told each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
+    """
+
+    def __init__(
+        self,
+        plan: _native.Plan,
+        agent: Agent,
+        options: Mapping[str, Any],
+        log: str | PathLike[str] | None,
+        resume: bool,
+        watch: Callable[[Experience, float], Any] | None,
+    ) -> None:
+        missing = [name for name in ("act", "learn", "freeze") if not callable(getattr(agent, name, None))]
+        if missing:
+            found = f"{type(agent).__name__} without {', '.join(missing)}"
+            raise TypeError(f"agent: found {found}, expected act, learn and freeze; see driftworld.Agent")
+        self._plan, self._agent, self._options, self._watch = plan, agent, dict(options), watch
+        self._log = None if log is None else Path(log)
+        self._resume = resume
+        # What is saved lies beside the log: a log holds rows, nothing else.
+        self._saves = None if self._log is None else self._log.with_name(f"{self._log.name}.agent")
+        self._frozen: bool | None = None
+
+    def live(self, experience: Callable[[int], Experience]) -> Summary:
+        """Lives it from the first experience that is not in the log to the last; ``experience`` finds one by its number."""
+        with ExitStack() as stack:
+            folder = self._log or Path(stack.enter_context(tempfile.TemporaryDirectory())) / "log"
+            self._plan.made_from("environment", {name: repr(value) for name, value in sorted(self._options.items())})
+            name = str(getattr(self._agent, "name", type(self._agent).__name__))
+            journal = _native.Journal(folder, self._plan, name, self._resume)
+            stack.callback(journal.close)
+            env = environment(self._plan, self._options)
+            stack.callback(env.close)
+            done, total = len(journal), len(self._plan)
+            self._take_up(env, experience, done)
+            for number in range(done, total):
+                now = experience(number)
+                outcome = self._live_one(env, now)
+                journal.record(self._plan, outcome)
+                if now.learning and (number + 1 == total or experience(number + 1).block != now.block):
+                    self._save(number + 1)
+                if self._watch is not None and self._watch(now, outcome[0]) is False:
+                    break
+            said = journal.summary()
+        return Summary(**said, log=self._log)
+
+    def _live_one(self, env: gymnasium.Env[Any, Any], now: Experience) -> tuple[float, bool, int, float, bool]:
+        """One experience: reward, success, steps, seconds and whether a limit cut it off."""
+        if self._frozen is not (not now.learning):
+            self._frozen = not now.learning
+            self._agent.freeze(self._frozen)
+        begin = getattr(self._agent, "begin", None)
+        if begin is not None:
+            begin(None if now.label is None else now.label["name"], now.chance)
+        world, time_step = self._plan.world(now.number)
+        observation, info = env.reset(options={"world": world, "label": now.label})
+        earned, steps, terminated, truncated = 0.0, 0, False, False
+        while not (terminated or truncated):
+            action = self._agent.act(observation, info)
+            following, reward, terminated, truncated, info = env.step(action)
+            earned += float(reward)
+            steps += 1
+            if now.learning:
+                self._agent.learn(
+                    Transition(observation, action, float(reward), terminated, truncated, following, info)
+                )
+            observation = following
+        return earned, bool(info["is_success"]), steps, steps * time_step, truncated and not terminated
+
+    def _save(self, done: int) -> None:
+        """Lets the agent save itself after so many experiences; then what was saved before goes."""
+        if self._saves is None or not hasattr(self._agent, "save"):
+            return
+        self._saves.mkdir(parents=True, exist_ok=True)
+        # Renamed when it is whole: what lies under a number was saved to the end.
+        unfinished = self._saves / "unfinished"
+        _remove(unfinished)
+        self._agent.save(unfinished)
+        if unfinished.exists():
+            place = self._saves / f"{done:08d}"
+            _remove(place)
+            unfinished.rename(place)
+        for number, place in self._saved():
+            if number < done:
+                _remove(place)
+
+    def _saved(self) -> list[tuple[int, Path]]:
+        """Where the agent was saved, and after how many experiences, in order."""
+        if self._saves is None or not self._saves.is_dir():
+            return []
+        places = [place for place in self._saves.iterdir() if re.fullmatch(r"\d{8,}", place.name)]
+        return sorted((int(place.name), place) for place in places)
+
+    def _take_up(self, env: gymnasium.Env[Any, Any], experience: Callable[[int], Experience], done: int) -> None:
+        """Brings an agent that can be loaded to where the log stands.
+
+        What it learned after the last save it learns again, in the same worlds, without being logged again.
+        """
+        if done == 0 or not hasattr(self._agent, "load"):
+            return
+        number = 0
+        for number, place in reversed([saved for saved in self._saved() if saved[0] <= done]):
+            self._agent.load(place)
+            break
+        for lived in range(number, done):
+            if experience(lived).learning:
+                self._live_one(env, experience(lived))
+
+
+def environment(plan: _native.Plan, options: Mapping[str, Any]) -> gymnasium.Env[Any, Any]:
+    """The environment that a plan is lived in, at its first world."""
+    refused = [name for name in ("task", "world", "variant", "drift", "task_label") if name in options]
+    if refused:
+        raise TypeError(f"{refused[0]}: found it among the options, expected none: the curriculum says what is lived")
+    env = DriftworldEnv(world=plan.world(0)[0], **options)
+    return Labelled(env, plan.due(0)["label"])
+
+
+class Labelled(gymnasium.Wrapper[Any, Any, Any, Any]):
+    """An environment that tells the label of each experience, where the scenario wants it told.
+
+    As the environments do with ``task_label``: the number of the variant as ``info["task_label"]``, or one-hot as ``"task"`` in
+    observations.
+
+    Args:
+        env: The environment.
+        label: The label of the first experience, or ``None`` where none are told.
+    """
+
+    def __init__(self, env: gymnasium.Env[Any, Any], label: Mapping[str, Any] | None) -> None:
+        super().__init__(env)
+        self._label = label
+        self._observed = label is not None and bool(label["observed"])
+        if label is not None and self._observed:
+            space = env.observation_space
+            if not isinstance(space, gymnasium.spaces.Dict):
+                raise ValueError(
+                    "modalities: found a single image, expected a list: the scenario's task_label is a part of observations"
+                )
+            box = gymnasium.spaces.Box(0.0, 1.0, (label["of"],), np.float32)
+            self.observation_space = gymnasium.spaces.Dict({**space.spaces, "task": box})
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Begins an episode; ``options["label"]`` is its label."""
+        options = dict(options or {})
+        self._label = options.pop("label", self._label)
+        observation, info = self.env.reset(seed=seed, options=options)
+        return self._told(observation, info)
+
+    def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
+        """Lets the agent act once."""
+        observation, reward, terminated, truncated, info = self.env.step(action)
+        observation, info = self._told(observation, info)
+        return observation, reward, terminated, truncated, info
+
+    def _told(self, observation: Any, info: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+        if self._label is None:
+            return observation, info
+        if self._observed:
+            one_hot = np.zeros(self._label["of"], dtype=np.float32)
+            one_hot[self._label["number"]] = 1.0
+            return {**observation, "task": one_hot}, info
+        return observation, {**info, "task_label": self._label["number"]}
+
+
+def _remove(place: Path) -> None:
+    if place.is_dir():
+        shutil.rmtree(place)
+    else:
+        place.unlink(missing_ok=True)

@@ -1,0 +1,267 @@
+"""What agents kept and transferred, from the logs of their lifetimes; and the page that shows it.
+
+The numbers are those of ``driftworld metrics``, the page that of ``driftworld report``: their options have the same names here.
+Reading and writing logs is in ``logs.py``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from driftworld._command import ask
+from driftworld.errors import MetricsError
+from driftworld.logs import _pandas
+
+if TYPE_CHECKING:
+    import pandas
+
+PathLike = str | os.PathLike[str]
+Paths = PathLike | Iterable[PathLike]
+
+#: The values of a lifetime as a whole, in the order in which they are told.
+LIFETIME = (
+    "perf_recovery",
+    "avg_train_perf",
+    "avg_eval_perf",
+    "perf_maintenance_mrlep",
+    "perf_maintenance_mrtlp",
+    "forward_transfer_ratio",
+    "forward_transfer_contrast",
+    "backward_transfer_ratio",
+    "backward_transfer_contrast",
+    "ste_rel_perf",
+    "sample_efficiency",
+)
+
+
+@dataclass(frozen=True)
+class Metrics:
+    """The scores of one lifetime or of several.
+
+    ``metrics["avg_train_perf"]`` is the value of one lifetime; of several, a list of one for each.
+
+    Attributes:
+        lifetimes: Of each lifetime everything that was computed, as ``driftworld metrics --json`` says it.
+        repeats: Of several lifetimes each metric over all of them, with interquartile mean, mean and median and their bootstrap
+            intervals; empty for one.
+        improvement: With ``against``, of each metric how probably a lifetime is better than one of the other agent.
+        lifetimes_against: The other agent's lifetimes.
+        repeats_against: Each metric over those.
+        intervals: How the intervals were made.
+    """
+
+    lifetimes: list[dict[str, Any]]
+    repeats: list[dict[str, Any]] = field(default_factory=list)
+    improvement: list[dict[str, Any]] = field(default_factory=list, repr=False)
+    lifetimes_against: list[dict[str, Any]] = field(default_factory=list, repr=False)
+    repeats_against: list[dict[str, Any]] = field(default_factory=list, repr=False)
+    intervals: dict[str, Any] = field(default_factory=dict, repr=False)
+    _asked: tuple[tuple[str, ...], dict[str, Any]] = field(default=((), {}), repr=False, compare=False)
+
+    @property
+    def lifetime(self) -> dict[str, Any]:
+        """The values of the lifetime as a whole; of several the mean of each over those lifetimes that have it."""
+        if len(self.lifetimes) == 1:
+            only = self.lifetimes[0]
+            return {name: only[name] for name in LIFETIME if name in only}
+        told: dict[str, Any] = {}
+        for name in LIFETIME:
+            values = [lifetime[name] for lifetime in self.lifetimes if isinstance(lifetime.get(name), (int, float))]
+            if any(name in lifetime for lifetime in self.lifetimes):
+                told[name] = sum(values) / len(values) if values else None
+        return told
+
+    @property
+    def tasks(self) -> dict[str, dict[str, Any]]:
+        """The values of each task of the one lifetime.
+
+        Raises:
+            ValueError: If there are several lifetimes; ask each of :attr:`lifetimes` then.
+        """
+        if len(self.lifetimes) != 1:
+            raise ValueError(f"tasks: found {len(self.lifetimes)} lifetimes, expected one; see `lifetimes`")
+        tasks: dict[str, dict[str, Any]] = self.lifetimes[0]["task_metrics"]
+        return tasks
+
+    def __getitem__(self, name: str) -> Any:
+        values = [lifetime[name] for lifetime in self.lifetimes]
+        return values[0] if len(values) == 1 else values
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The values of the lifetimes as a data frame, a row for each, by the names of their logs.
+
+        Raises:
+            ImportError: If pandas is not installed.
+        """
+        names = [name for name in LIFETIME if any(name in lifetime for lifetime in self.lifetimes)]
+        rows = [{name: lifetime.get(name) for name in names} for lifetime in self.lifetimes]
+        index = [lifetime["run_id"] for lifetime in self.lifetimes]
+        return _pandas().DataFrame(rows, index=index, columns=names)
+
+    def regimes(self) -> pandas.DataFrame:
+        """The regimes of the lifetimes as a data frame, a row for each, as ``driftworld metrics --do-save`` writes them.
+
+        Raises:
+            ImportError: If pandas is not installed.
+        """
+        with tempfile.TemporaryDirectory() as folder:
+            self.save(folder, name="all")
+            frame: pandas.DataFrame = _pandas().read_csv(Path(folder) / "all_regime.tsv", sep="\t")
+        return frame
+
+    def save(self, folder: PathLike, *, name: str | None = None) -> None:
+        """Saves the results as ``driftworld metrics --do-save`` does: of one lifetime ``NAME_metrics.json``, ``NAME_regime.tsv``
+        and ``NAME_settings.json``, of several ``NAME.json``, ``NAME.tsv`` and more.
+
+        Args:
+            folder: Where; made if need be.
+            name: The log's, or ``ll_metrics`` for several, if not given.
+        """
+        logs, options = self._asked
+        ask("metrics", logs, {**options, "output_dir": Path(folder), "output": name}, MetricsError)
+
+
+def metrics(
+    logs: Paths,
+    *,
+    ste: Paths | None = None,
+    against: Paths | None = None,
+    recursive: bool = False,
+    ste_data: PathLike | None = None,
+    perf_measure: str | None = None,
+    variant_mode: str | None = None,
+    ste_averaging_method: str | None = None,
+    aggregation_method: str | None = None,
+    maintenance_method: str | None = None,
+    transfer_method: str | None = None,
+    normalization_method: str | None = None,
+    smoothing_method: str | None = None,
+    smooth_eval_data: bool = False,
+    window_length: int | None = None,
+    clamp_outliers: bool = False,
+    data_range: Mapping[str, Mapping[str, float]] | None = None,
+    noise: tuple[float, float] | None = None,
+    noise_seed: int | None = None,
+    strict_definitions: bool = False,
+    load_settings: PathLike | None = None,
+    common_ranges: bool = False,
+    confidence: float | None = None,
+    resamples: int | None = None,
+    resampling: str | None = None,
+    bootstrap_seed: int | None = None,
+) -> Metrics:
+    """Scores the logs of lifetimes.
+
+    Args:
+        logs: The folder of a log, or several, which are taken as repeats by one agent.
+        ste: Folders of logs of single-task experts to compare with.
+        against: Folders of another agent's logs.
+        recursive: Take all logs in the folders, also further below.
+        ste_data: The folder where ``driftworld metrics --ste-store-mode`` keeps experts.
+        perf_measure: The column that holds the performance; ``"reward"`` if not given.
+        variant_mode: Whether variants of a task count as tasks: ``"aware"`` (default) or ``"agnostic"``.
+        ste_averaging_method: ``"metrics"`` (default) or ``"time"``.
+        aggregation_method: ``"mean"`` (default) or ``"median"``.
+        maintenance_method: ``"mrlep"`` (default), ``"mrtlp"`` or ``"both"``.
+        transfer_method: ``"ratio"`` (default), ``"contrast"`` or ``"both"``.
+        normalization_method: ``"task"`` (default), ``"run"`` or ``"none"``.
+        smoothing_method: ``"flat"`` (default), ``"hanning"``, ``"hamming"``, ``"bartlett"``, ``"blackman"`` or ``"none"``.
+        smooth_eval_data: Smooth evaluations too.
+        window_length: Of the smoothing window, in experiences.
+        clamp_outliers: Clip performances to the ranges given, or to the 0.1 and 0.9 quantiles of each task.
+        data_range: The range of each task: ``{"findobjects_red": {"min": 0, "max": 10}}``.
+        noise: Mean and standard deviation of normal noise on every performance.
+        noise_seed: What it is drawn from.
+        strict_definitions: Follow the published definitions where the reference's program departs from them.
+        load_settings: A JSON file of settings to start from.
+        common_ranges: Scale each task by its range over all lifetimes.
+        confidence: How much of the bootstrap's distribution an interval holds.
+        resamples: How many times lifetimes are drawn again.
+        resampling: ``"strata"`` or ``"runs"``.
+        bootstrap_seed: What the draws come from.
+
+    Raises:
+        MetricsError: If a log cannot be read or scored, or an option is wrong.
+    """
+    options = dict(locals())
+    folders = tuple(os.fspath(path) for path in _paths(options.pop("logs")))
+    for name in ("ste", "against"):
+        options[name] = None if options[name] is None else list(_paths(options[name]))
+    options["noise"] = None if noise is None else list(noise)
+    if options.pop("data_range") is None:
+        return _metrics(folders, options)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "data_range.json"
+        file.write_text(json.dumps({task: dict(limits) for task, limits in (data_range or {}).items()}), encoding="utf-8")
+        return _metrics(folders, {**options, "data_range_file": file})
+
+
+def _metrics(folders: tuple[str, ...], options: dict[str, Any]) -> Metrics:
+    said = json.loads(ask("metrics", folders, {**options, "json": True}, MetricsError))
+    if "lifetimes" not in said:
+        said = {"lifetimes": [said]}
+    return Metrics(**said, _asked=(folders, options))
+
+
+def report(
+    logs: Paths,
+    path: PathLike | None = None,
+    *,
+    ste: Paths | None = None,
+    against: Paths | None = None,
+    title: str | None = None,
+    date: str | None = None,
+    distances: PathLike | None = None,
+    plots: PathLike | None = None,
+    plot_types: Sequence[str] | None = None,
+    unit: str | None = None,
+    perf_measure: str | None = None,
+    variant_mode: str | None = None,
+    load_settings: PathLike | None = None,
+    common_ranges: bool = False,
+) -> str:
+    """Shows lifetimes on one page of HTML that loads nothing: metrics, curriculum, curves.
+
+    Args:
+        logs: Folders of logs, or folders of such folders.
+        path: The file to write; without one the page is handed back only.
+        ste: Folders of logs of single-task experts to compare with.
+        against: Folders of another agent's logs.
+        title: What stands on top; the lifetime's name if not given.
+        date: When the report was made, to be written on it; left out, the same logs give the same bytes.
+        distances: A distance matrix file, as :meth:`DistanceMatrix.save` writes it.
+        plots: A folder to write the figures into, too.
+        plot_types: Which figures: ``"all"``, or some of ``raw``, ``lb``, ``eb``, ``ste``, ``timeline``.
+        unit: What the horizontal axis counts: ``"exp_num"`` or ``"steps"``.
+        perf_measure: As for :func:`metrics`.
+        variant_mode: As for :func:`metrics`.
+        load_settings: As for :func:`metrics`; settings say all that else can be said of scoring.
+        common_ranges: As for :func:`metrics`.
+
+    Returns:
+        The page.
+
+    Raises:
+        MetricsError: If a log cannot be read or scored.
+    """
+    options = dict(locals())
+    folders, file = list(_paths(options.pop("logs"))), options.pop("path")
+    for name in ("ste", "against"):
+        options[name] = None if options[name] is None else list(_paths(options[name]))
+    options["plot_types"] = None if plot_types is None else list(plot_types)
+    page = ask("report", folders, {**options, "output": "-"}, MetricsError)
+    if file is not None:
+        from driftworld._files import write_whole
+
+        write_whole(Path(file), page.encode())
+    return page
+
+
+def _paths(paths: Paths) -> list[PathLike]:
+    return [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)

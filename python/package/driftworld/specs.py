@@ -1,0 +1,129 @@
+"""Task specs, their variants, drifts between them, and documents checked.
+
+``TaskSpec``, ``Variant`` and ``Drift`` are the native classes; worlds are dictionaries, as the JSON of a reset says them.
+Distances are in ``distances.py``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from driftworld import _native
+from driftworld._native import Drift, TaskSpec, Variant
+
+__all__ = ["Drift", "TaskSpec", "Variant", "built_in_tasks", "validate", "variant", "variants"]
+
+
+def built_in_tasks() -> list[str]:
+    """The names of the tasks that come with the package."""
+    return _native.built_in_names()
+
+
+def variant(name: str | os.PathLike[str]) -> Variant:
+    """The variant of a name: ``"find_objects#red"``, ``"my.json#night"``; without ``#`` that of all defaults.
+
+    Raises:
+        TaskError: If there is no such task or file.
+        SpecError: If the document is wrong, or has no such variant.
+    """
+    return _native.load_variant(os.fspath(name))
+
+
+def variants(*names: str | Variant | TaskSpec) -> list[tuple[str, Variant]]:
+    """The variants that names stand for, each once, with what they are called.
+
+    Args:
+        names: ``task#variant`` for one, ``task#family`` for the members of a family, ``task`` for all that a task declares;
+            variants and task specs stand for themselves.
+
+    Returns:
+        Pairs of ``task#variant``, where the task is called as it was here, and the variant.
+
+    Raises:
+        TaskError: If there is no such task or file.
+        SpecError: If a document is wrong, or has no such variant.
+    """
+    found: dict[str, Variant] = {}
+    for name in names:
+        for label, member in _named(name):
+            found.setdefault(label, member)
+    return list(found.items())
+
+
+def _named(name: str | Variant | TaskSpec) -> Iterable[tuple[str, Variant]]:
+    if isinstance(name, Variant):
+        return [(name.id, name)]
+    if isinstance(name, TaskSpec):
+        return [(member.id, member) for member in name.variants]
+    if isinstance(name, (str, os.PathLike)):
+        text = os.fspath(name)
+        task = text.rpartition("#")[0] or text
+        return [(f"{task}#{member.name}", member) for member in _native.load_variants(text)]
+    raise TypeError(f"variants: found {name!r}, expected names, variants or task specs")
+
+
+def validate(
+    document: str | os.PathLike[str] | Mapping[str, Any],
+    kind: str | None = None,
+    *,
+    check: bool = False,
+) -> list[dict[str, Any]]:
+    """Every problem of a document, in the order of places; none if it is valid.
+
+    Args:
+        document: A path, the name of a built-in task, JSON text, or a dictionary.
+        kind: ``"task"``, ``"world"``, ``"scenario"``, ``"maps"``, ``"l2explorer-world"`` or ``"l2explorer-scenario"``; seen from
+            the document's keys if not given, as ``driftworld validate`` does.
+        check: Raise what is wrong instead of handing it back.
+
+    Returns:
+        Dictionaries with ``code``, ``pointer``, ``line``, ``column`` (from 1; of a dictionary as it is written without line
+        breaks), ``found``, ``expected``, ``advice`` and ``message``. What is not JSON at all has no ``found`` and ``expected``.
+
+    Raises:
+        SpecError: With ``check``, and something is wrong: with all problems, and pointer, line and column of the first.
+        FileNotFoundError: If there is no such file.
+        ValueError: If there is no such kind.
+    """
+    name, text = document_text(document)
+    _, problems, _, error = _native.check(name, text, kind)
+    if check and error is not None:
+        raise error
+    return problems
+
+
+def document_text(document: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str]:
+    """What messages call a document, and its text.
+
+    Raises:
+        FileNotFoundError: If there is no such file.
+    """
+    if isinstance(document, Mapping):
+        return "document", json.dumps(document)
+    if isinstance(document, str) and document.lstrip().startswith("{"):
+        return "document", document
+    if not isinstance(document, (str, os.PathLike)):
+        found = type(document).__name__
+        raise TypeError(f"document: found {found}, expected a path, JSON text or a dictionary")
+    name = os.fspath(document)
+    if name in built_in_tasks():
+        return f"{name}.json", TaskSpec.load(name).to_json()
+    try:
+        return name, Path(name).read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        expected = f"the path of a document, JSON text, a dictionary, or one of {', '.join(built_in_tasks())}"
+        raise FileNotFoundError(f"document: found no file {name!r}, expected {expected}") from error
+
+
+def _task_again(name: str, text: str) -> TaskSpec:
+    """A task spec in another process."""
+    return TaskSpec.from_json(name, text)
+
+
+def _variant_again(task: TaskSpec, name: str, values: str) -> Variant:
+    """A variant in another process."""
+    return _native.variant_again(task, name, values)

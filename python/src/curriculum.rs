@@ -1,0 +1,147 @@
+//! Scenarios and the logs that they are lived into, as Python holds them. What they mean is `spec`'s, the plan and the log
+//! `curriculum`'s; the agent and its environment are in `package/driftworld/curricula.py`.
+
+use std::path::{Path, PathBuf};
+
+use driftworld::scenarios::{Missing, ScenarioFile};
+use driftworld_curriculum::{Experience, Journal, MOST_STEPS, Plan};
+use driftworld_spec::BlockKind;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use serde_json::json;
+
+use crate::document::{from_python, to_python, told};
+use crate::errors::Result;
+use crate::logs::now;
+
+/// A scenario with everything that it names.
+#[pyclass(name = "Plan", module = "driftworld._native")]
+pub(crate) struct PyPlan {
+    plan: Plan,
+    warnings: Vec<String>,
+}
+
+#[pymethods]
+impl PyPlan {
+    /// The plan of a scenario's text; what it names by paths is looked for as if it stood at `path`.
+    #[new]
+    fn new(py: Python<'_>, path: PathBuf, text: &str, stand_in: bool) -> Result<Self> {
+        let mut warnings = Vec::new();
+        let plan = py.detach(|| {
+            let mut warn = |warning| warnings.push(warning);
+            let file = ScenarioFile::from_text(Path::new(&path), text, &mut warn)?;
+            let missing = if stand_in { Missing::StandIn } else { Missing::Refused };
+            Ok::<_, crate::errors::Error>(file.plan(missing, &mut warn)?)
+        })?;
+        Ok(Self { plan, warnings })
+    }
+
+    /// What was odd about it.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.warnings.clone()
+    }
+
+    /// The scenario as a dictionary, in our form.
+    fn scenario<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        Ok(told(py, self.plan.scenario())?)
+    }
+
+    /// The scenario as the text of a file.
+    fn text(&self) -> String {
+        self.plan.scenario().to_json_pretty()
+    }
+
+    /// How many experiences the whole lifetime has.
+    fn __len__(&self) -> usize {
+        usize::try_from(self.plan.num_experiences()).unwrap_or(usize::MAX)
+    }
+
+    /// What experience `number` is, as a dictionary, without its world.
+    fn due<'py>(&self, py: Python<'py>, number: u64) -> Result<Bound<'py, PyAny>> {
+        let due = self.plan.due(number)?;
+        let label = due.label.map(
+            |label| json!({ "number": label.number, "of": label.of, "name": label.name, "observed": label.observed }),
+        );
+        let told = json!({
+            "number": number, "block": due.block, "regime": due.regime, "learning": due.kind == BlockKind::Learning,
+            "variant": due.variant, "seed": due.seed, "index": due.index, "progress": due.progress,
+            "chance": due.chance, "label": label,
+        });
+        Ok(to_python(py, &told)?)
+    }
+
+    /// The JSON of the world of experience `number`, and its time step in seconds; a world without a limit of steps has one here.
+    fn world(&self, py: Python<'_>, number: u64) -> Result<(String, f64)> {
+        let mut world = py.detach(|| self.plan.world(number))?;
+        if world.max_steps == 0 {
+            world.max_steps = MOST_STEPS;
+        }
+        Ok((world.to_json(), world.agent_params.time_step))
+    }
+
+    /// Notes what else its lifetime depends on: a log is taken up only if it is the same.
+    fn made_from(&mut self, what: &str, print: &Bound<'_, PyAny>) -> Result<()> {
+        self.plan.made_from(what, from_python(print)?);
+        Ok(())
+    }
+}
+
+/// The log that a lifetime is lived into.
+#[pyclass(name = "Journal", module = "driftworld._native")]
+pub(crate) struct PyJournal(Option<Journal>);
+
+#[pymethods]
+impl PyJournal {
+    /// Begins a log, or takes one up.
+    #[new]
+    fn new(py: Python<'_>, folder: PathBuf, plan: &Bound<'_, PyPlan>, agent: &str, resume: bool) -> Result<Self> {
+        let plan = &plan.borrow().plan;
+        let journal = py.detach(|| {
+            if resume {
+                Journal::resume(&folder, plan, agent)
+            } else {
+                Journal::create(&folder, plan, agent)
+            }
+        })?;
+        Ok(Self(Some(journal)))
+    }
+
+    /// Logs the next experience; `outcome` is reward, success, steps, seconds and truncated.
+    fn record(&mut self, plan: &Bound<'_, PyPlan>, outcome: (f64, bool, u32, f64, bool)) -> Result<()> {
+        let (reward, success, steps, seconds, truncated) = outcome;
+        let experience = Experience {
+            reward,
+            success,
+            steps,
+            seconds,
+            truncated,
+        };
+        self.open()?.record(&plan.borrow().plan, &experience, now()?)?;
+        Ok(())
+    }
+
+    /// How many experiences are in the log.
+    fn __len__(&mut self) -> Result<usize> {
+        let lived = self.open()?.num_experiences();
+        Ok(usize::try_from(lived).unwrap_or(usize::MAX))
+    }
+
+    /// What the lifetime came to so far, as a dictionary.
+    fn summary<'py>(&mut self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        Ok(told(py, self.open()?.summary())?)
+    }
+
+    /// Ends the log: asks the disk to have all of it. Does nothing a second time.
+    fn close(&mut self) -> Result<()> {
+        self.0.take().map_or(Ok(()), |journal| Ok(journal.finish()?))
+    }
+}
+
+impl PyJournal {
+    fn open(&mut self) -> PyResult<&mut Journal> {
+        self.0
+            .as_mut()
+            .ok_or_else(|| PyValueError::new_err("log: found it closed, expected an open one"))
+    }
+}

@@ -1,0 +1,207 @@
+//! Distances, matrices of them and orders, as Python asks for them. What is measured, and how, is `similarity`'s.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::Ordering;
+
+use driftworld::distances::{Sample, Side, between, variant_matrix_while};
+use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, SimilarityError, Weights, classical_map, order};
+use driftworld_spec::{Element, Variant, World};
+use numpy::{PyArray2, PyReadonlyArray2, ToPyArray};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use serde_json::json;
+
+use crate::document::{to_python, told};
+use crate::errors::Result;
+use crate::patience::patiently;
+use crate::task::PyVariant;
+
+/// What elements weigh, by letters or names.
+type Weighing = Option<BTreeMap<String, f64>>;
+
+/// A variant, or the name and the text of a world.
+#[derive(FromPyObject)]
+pub(crate) enum Compared<'py> {
+    Variant(Bound<'py, PyVariant>),
+    World(String, String),
+}
+
+/// How far apart two are: the JSON of `driftworld distance --json` as a dictionary.
+#[pyfunction]
+pub(crate) fn distance<'py>(
+    py: Python<'py>,
+    a: Compared<'py>,
+    b: Compared<'py>,
+    weights: Weighing,
+    worlds: Option<u64>,
+    seed: u64,
+    index: u64,
+) -> Result<Bound<'py, PyAny>> {
+    if worlds.is_some_and(|worlds| !(1..=100_000).contains(&worlds)) {
+        return Err(PyValueError::new_err("worlds: expected a number from 1 to 100000").into());
+    }
+    let laid = laid(weights)?;
+    let (a, b) = (a.side()?, b.side()?);
+    let sample = Sample { worlds, seed, index };
+    let (distance, compared) = patiently(py, |_| between(&a, &b, &sample, |declared| over(&laid, declared)))??;
+    let found = told(py, &distance)?;
+    found.set_item("compared", compared)?;
+    Ok(found)
+}
+
+impl Compared<'_> {
+    fn side(self) -> Result<Side> {
+        Ok(match self {
+            Self::Variant(variant) => Side::Variant(variant.get().0.clone()),
+            Self::World(name, text) => Side::World(Box::new(World::from_json(&name, &text)?)),
+        })
+    }
+}
+
+/// Every distance among some items.
+#[pyclass(name = "Matrix", module = "driftworld._native", frozen)]
+pub(crate) struct PyMatrix(DistanceMatrix);
+
+#[pymethods]
+impl PyMatrix {
+    /// Measures every pair of variants, each under its label.
+    #[staticmethod]
+    fn measure(
+        py: Python<'_>,
+        labels: Vec<String>,
+        variants: Vec<Bound<'_, PyVariant>>,
+        weights: Weighing,
+    ) -> Result<Self> {
+        let laid = laid(weights)?;
+        let variants = variants.iter().map(|variant| variant.get().0.clone());
+        let variants: Vec<(String, Variant)> = labels.into_iter().zip(variants).collect();
+        let matrix = patiently(py, |stop| {
+            variant_matrix_while(
+                &variants,
+                |declared| over(&laid, declared),
+                || !stop.load(Ordering::Relaxed),
+            )
+        })??;
+        Ok(Self(matrix))
+    }
+
+    /// A matrix of distances that are there already.
+    #[staticmethod]
+    fn from_values(labels: Vec<String>, values: PyReadonlyArray2<'_, f64>) -> Result<Self> {
+        Ok(Self(DistanceMatrix::from_values(labels, values.as_array().to_owned())?))
+    }
+
+    #[staticmethod]
+    fn from_csv(text: &str) -> Result<Self> {
+        Ok(Self(DistanceMatrix::from_csv(text)?))
+    }
+
+    #[staticmethod]
+    fn from_json(text: &str) -> Result<Self> {
+        Ok(Self(DistanceMatrix::from_json(text)?))
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (bytes, labels=None))]
+    fn from_npy(bytes: &[u8], labels: Option<Vec<String>>) -> Result<Self> {
+        Ok(Self(DistanceMatrix::from_npy(bytes, labels)?))
+    }
+
+    fn to_csv(&self) -> String {
+        self.0.to_csv()
+    }
+
+    fn to_json(&self) -> String {
+        self.0.to_json()
+    }
+
+    fn to_npy<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &self.0.to_npy())
+    }
+
+    /// The items' names.
+    #[getter]
+    fn labels(&self) -> Vec<String> {
+        self.0.labels().to_vec()
+    }
+
+    /// The distances, ``(items, items)``.
+    fn values<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        self.0.values().to_pyarray(py)
+    }
+
+    /// Whether the triangle inequality holds, by what is known of the measure.
+    #[getter]
+    fn is_metric(&self) -> bool {
+        self.0.nature().is_metric()
+    }
+
+    /// The items as points of a plane, ``(items, 2)``, and how much of the matrix the plane shows.
+    fn map<'py>(&self, py: Python<'py>) -> Result<(Bound<'py, PyArray2<f64>>, f64)> {
+        let map = patiently(py, |_| classical_map(&self.0))?;
+        let flat: Vec<f64> = map.points.into_iter().flatten().collect();
+        let points = numpy::ndarray::Array2::from_shape_vec((flat.len() / 2, 2), flat)
+            .map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok((points.to_pyarray(py), map.explained))
+    }
+
+    /// The items in an order: the JSON of ``driftworld order --json`` without the matrix, as a dictionary.
+    #[pyo3(signature = (method, start, end, seed, target_step))]
+    fn order<'py>(
+        &self,
+        py: Python<'py>,
+        method: Option<&str>,
+        start: Option<usize>,
+        end: Option<usize>,
+        seed: u64,
+        target_step: Option<f64>,
+    ) -> Result<Bound<'py, PyAny>> {
+        let matrix = &self.0;
+        let method = method.map_or_else(|| Ok(Method::default_for(matrix.len())), str::parse)?;
+        let options = OrderOptions {
+            first: start,
+            last: end,
+            seed,
+            target_step,
+        };
+        let found = patiently(py, |_| order(matrix, method, &options))??;
+        let labels: Vec<&String> = found.indices.iter().map(|index| &matrix.labels()[*index]).collect();
+        let found = json!({
+            "method": method, "order": labels, "indices": found.indices, "steps": found.steps, "length": found.length,
+            "largest_step": found.largest_step(), "mean_step": found.mean_step(),
+            "anchor_correlation": found.anchor_correlation,
+        });
+        Ok(to_python(py, &found)?)
+    }
+
+    fn __len__(&self) -> usize {
+        self.0.len()
+    }
+}
+
+/// The names of the methods of ordering.
+#[pyfunction]
+pub(crate) fn order_methods() -> Vec<&'static str> {
+    Method::ALL.map(Method::name).to_vec()
+}
+
+/// An element of the decision process by its letter or name.
+pub(crate) fn element(word: &str) -> PyResult<Element> {
+    let known = |known: &Element| known.letter().eq_ignore_ascii_case(word) || known.name() == word;
+    Element::ALL.into_iter().find(known).ok_or_else(|| {
+        let expected = "S, A, T, R or O, or state, action, transition, reward or observation";
+        PyValueError::new_err(format!("element: found {word:?}, expected {expected}"))
+    })
+}
+
+fn laid(weights: Weighing) -> PyResult<Vec<(Element, f64)>> {
+    let weights = weights.unwrap_or_default().into_iter();
+    weights.map(|(word, weight)| Ok((element(&word)?, weight))).collect()
+}
+
+/// Weights with these laid over them.
+fn over(laid: &[(Element, f64)], declared: Weights) -> std::result::Result<Weights, SimilarityError> {
+    laid.iter()
+        .try_fold(declared, |weights, (element, weight)| weights.with(*element, *weight))
+}

@@ -1,0 +1,98 @@
+//! JSON as Python's own values and back, and documents checked. What may stand in a document is `spec`'s.
+
+use std::path::Path;
+
+use driftworld::documents::{self, Kind};
+use driftworld::{scenarios, tasks};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
+use serde_json::Value;
+
+use crate::errors::{Result, described};
+
+/// A JSON value as Python has it.
+pub(crate) fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match value {
+        Value::Null => py.None().into_bound(py),
+        Value::Bool(truth) => PyBool::new(py, *truth).to_owned().into_any(),
+        Value::Number(number) => match (number.as_i64(), number.as_u64()) {
+            (Some(whole), _) => PyInt::new(py, whole).into_any(),
+            (None, Some(whole)) => PyInt::new(py, whole).into_any(),
+            (None, None) => PyFloat::new(py, number.as_f64().unwrap_or(f64::NAN)).into_any(),
+        },
+        Value::String(text) => PyString::new(py, text).into_any(),
+        Value::Array(items) => {
+            let items = items.iter().map(|item| to_python(py, item));
+            PyList::new(py, items.collect::<PyResult<Vec<_>>>()?)?.into_any()
+        }
+        Value::Object(fields) => {
+            let dict = PyDict::new(py);
+            for (key, field) in fields {
+                dict.set_item(key, to_python(py, field)?)?;
+            }
+            dict.into_any()
+        }
+    })
+}
+
+/// Anything that serialises, as Python has it.
+pub(crate) fn told<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let value = serde_json::to_value(value).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    to_python(py, &value)
+}
+
+/// The JSON value of Python's.
+pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
+    let text: String = value.py().import("json")?.call_method1("dumps", (value,))?.extract()?;
+    serde_json::from_str(&text).map_err(|error| PyValueError::new_err(format!("found {text}: {error}")))
+}
+
+/// What a document was taken for, its problems, its warnings, and the error to raise.
+type Verdict<'py> = (&'static str, Bound<'py, PyList>, Vec<String>, Option<Py<PyAny>>);
+
+/// What a document was taken for, its problems and its warnings. `name` is what messages call it: a path where it has one, from
+/// whose folder a scenario's tasks are looked for.
+#[pyfunction]
+pub(crate) fn check<'py>(py: Python<'py>, name: &str, text: &str, kind: Option<&str>) -> Result<Verdict<'py>> {
+    let kind = match kind {
+        Some(word) => word.parse::<Kind>().map_err(PyValueError::new_err)?,
+        None => Kind::of(text),
+    };
+    let path = Path::new(name);
+    let checked = py.detach(|| {
+        let mut task = |called: &str| {
+            if path.is_file() {
+                scenarios::task_from(path, called)
+            } else {
+                tasks::task(called)
+            }
+        };
+        documents::check(name, text, kind, &mut task)
+    });
+    let problems = PyList::empty(py);
+    let mut error = None;
+    if let Some(found) = checked.error {
+        let listed = found.problems().iter().map(|problem| described(py, problem));
+        for problem in listed.collect::<PyResult<Vec<_>>>()? {
+            problems.append(problem)?;
+        }
+        let raised = PyErr::from(crate::errors::Error::from(found));
+        if problems.is_empty() {
+            problems.append(alone(py, &raised)?)?;
+        }
+        error = Some(raised.into_value(py).into_any());
+    }
+    Ok((kind.word(), problems, checked.warnings, error))
+}
+
+/// A problem that is a whole document's, in words.
+fn alone<'py>(py: Python<'py>, raised: &PyErr) -> PyResult<Bound<'py, PyDict>> {
+    let value = raised.value(py);
+    let problem = PyDict::new(py);
+    for name in ["code", "pointer", "line", "column"] {
+        problem.set_item(name, value.getattr(name)?)?;
+    }
+    problem.set_item("message", value.str()?)?;
+    Ok(problem)
+}

@@ -1,0 +1,64 @@
+//! [`PyDrift`]: the variants between two variants, as Python holds them. The way itself is `generator`'s.
+
+use driftworld_generator::{Drift, Schedule, Switch};
+use driftworld_spec::{DriftSchedule, DriftSwitch};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::document::from_python;
+use crate::errors::Result;
+use crate::task::PyVariant;
+
+/// The way from one variant of a task to another: ``Drift(blue, dusk, schedule="cosine").at(0.25)``.
+///
+/// ``schedule`` is ``"linear"``, ``"cosine"``, ``{"steps": n}`` or ``{"sawtooth": n}``; ``switch`` says when values with nothing
+/// in between change: ``"at_point"``, or by chance under ``seed``, more likely as the drift goes on, with ``"mixture"``.
+#[pyclass(name = "Drift", module = "driftworld._native", frozen)]
+pub(crate) struct PyDrift(Drift);
+
+#[pymethods]
+impl PyDrift {
+    #[new]
+    #[pyo3(signature = (from_, to, *, schedule=None, switch="at_point", seed=0))]
+    fn new(
+        from_: &Bound<'_, PyVariant>,
+        to: &Bound<'_, PyVariant>,
+        schedule: Option<&Bound<'_, PyAny>>,
+        switch: &str,
+        seed: u64,
+    ) -> Result<Self> {
+        let wrong = |option: &str, found: &str, expected: &str| {
+            PyValueError::new_err(format!("drift, {option}: found {found}, expected {expected}"))
+        };
+        let schedule = match schedule {
+            None => DriftSchedule::default(),
+            Some(said) => {
+                let json = from_python(said)?;
+                let sound = serde_json::from_value(json.clone())
+                    .ok()
+                    .filter(|schedule| !matches!(schedule, DriftSchedule::Steps(0) | DriftSchedule::Sawtooth(0)));
+                sound.ok_or_else(|| {
+                    let expected = "\"linear\", \"cosine\", {\"steps\": n} or {\"sawtooth\": n} with n from 1 on";
+                    wrong("schedule", &json.to_string(), expected)
+                })?
+            }
+        };
+        let switch = match serde_json::from_value(switch.into()) {
+            Ok(DriftSwitch::AtPoint) => Switch::AtPoint,
+            Ok(DriftSwitch::Mixture) => Switch::Mixture { seed },
+            Err(_) => return Err(wrong("switch", &format!("{switch:?}"), "\"at_point\" or \"mixture\"").into()),
+        };
+        let drift = Drift::new(from_.get().0.clone(), to.get().0.clone())?;
+        Ok(Self(drift.with_schedule(Schedule::from(schedule)).with_switch(switch)))
+    }
+
+    /// The variant when ``progress``, 0..=1, has passed; ``index`` is the number of the world, which only mixtures look at.
+    #[pyo3(signature = (progress, index=0))]
+    fn at(&self, progress: f64, index: u64) -> Result<PyVariant> {
+        if !(0.0..=1.0).contains(&progress) {
+            let message = format!("drift, progress: found {progress}, expected a number in 0..1");
+            return Err(PyValueError::new_err(message).into());
+        }
+        Ok(PyVariant(self.0.at(progress, index)?))
+    }
+}

@@ -1,0 +1,203 @@
+//! Logs of lifetimes, as Python writes, reads and checks them. The format is `metrics`'.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::SystemTime;
+
+use driftworld_metrics::{
+    BlockType, LogWriter, LoggerInfo, Record, Rows, ScenarioInfo, SharedColumn, TaskParams, Timestamp,
+};
+use numpy::{PyArray1, ToPyArray};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use serde_json::{Map, Value, json};
+
+use crate::document::{from_python, to_python, told};
+use crate::errors::Result;
+
+/// An open log.
+#[pyclass(name = "LogFile", module = "driftworld._native")]
+pub(crate) struct PyLogFile(Option<LogWriter>);
+
+#[pymethods]
+impl PyLogFile {
+    /// Begins a log in a new or empty folder.
+    #[staticmethod]
+    fn create(folder: PathBuf, columns: Vec<String>, info: &Bound<'_, PyAny>) -> Result<Self> {
+        let info = scenario_info(from_python(info)?)?;
+        Ok(Self(Some(LogWriter::create(
+            folder,
+            &LoggerInfo::new(columns)?,
+            &info,
+        )?)))
+    }
+
+    /// Goes on with a log.
+    #[staticmethod]
+    fn resume(folder: PathBuf) -> Result<Self> {
+        Ok(Self(Some(LogWriter::resume(folder)?)))
+    }
+
+    /// Writes one row and flushes it. The time is now.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a row has these cells; called from one place, by name"
+    )]
+    fn write(
+        &mut self,
+        block_num: u64,
+        exp_num: u64,
+        block_type: &str,
+        block_subtype: &str,
+        task_name: &str,
+        task_params: &Bound<'_, PyAny>,
+        exp_status: &str,
+        worker_id: &str,
+        metrics: BTreeMap<String, f64>,
+    ) -> Result<()> {
+        let writer = self.0.as_mut().ok_or_else(|| {
+            PyValueError::new_err("log: found it closed, expected an open one; begin another, or resume it")
+        })?;
+        let params = match from_python(task_params)? {
+            Value::Object(params) => params,
+            other => {
+                let message = format!("task_params: found {other}, expected a dictionary");
+                return Err(PyValueError::new_err(message).into());
+            }
+        };
+        let record = Record {
+            block_subtype: block_subtype.parse()?,
+            exp_status: exp_status.parse()?,
+            metrics: metrics.into_iter().collect(),
+            ..Record::new(block_num, exp_num, block_type.parse::<BlockType>()?, task_name, now()?)
+                .with_task_params(TaskParams::new(params))
+                .with_worker(worker_id)
+        };
+        Ok(writer.write(&record)?)
+    }
+
+    /// Ends the log: asks the disk to have all of it. Does nothing a second time.
+    fn close(&mut self) -> Result<()> {
+        self.0.take().map_or(Ok(()), |writer| Ok(writer.finish()?))
+    }
+}
+
+/// Name, columns, the two info files, warnings.
+type ReadLog<'py> = (
+    String,
+    Bound<'py, PyDict>,
+    Bound<'py, PyAny>,
+    Bound<'py, PyAny>,
+    Vec<String>,
+);
+
+/// What a log holds: its name, its columns by name, its two info files, its warnings.
+#[pyfunction]
+pub(crate) fn read_log(py: Python<'_>, folder: PathBuf, texts: bool) -> Result<ReadLog<'_>> {
+    let log = py.detach(|| {
+        if texts {
+            driftworld_metrics::read_log_with_texts(&folder)
+        } else {
+            driftworld_metrics::read_log(&folder)
+        }
+    })?;
+    let columns = columns(py, &log.rows)?;
+    let logger = json!({
+        "metrics_columns": log.logger_info.metrics_columns(), "log_format_version": log.logger_info.log_format_version(),
+    });
+    let warnings = log.warnings.iter().map(ToString::to_string).collect();
+    Ok((
+        log.run_id,
+        columns,
+        to_python(py, &logger)?,
+        told(py, &log.scenario_info)?,
+        warnings,
+    ))
+}
+
+/// Every problem of a log: whether it is valid, problems as pairs of code and message, how many more, warnings, how many more, counts.
+#[pyfunction]
+pub(crate) fn validate_log(py: Python<'_>, folder: PathBuf) -> Result<Bound<'_, PyAny>> {
+    let found = py.detach(|| driftworld_metrics::validate_log(&folder));
+    let problems = found.problems.iter();
+    let problems: Vec<Value> = problems
+        .map(|problem| json!({ "code": problem.code(), "message": problem.to_string() }))
+        .collect();
+    let counts = &found.counts;
+    let said = json!({
+        "valid": found.is_valid(), "problems": problems, "more_problems": found.more_problems,
+        "warnings": found.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "more_warnings": found.more_warnings, "rows": counts.rows, "complete_rows": counts.complete_rows,
+        "experiences": counts.experiences, "files": counts.files, "workers": counts.workers, "blocks": counts.blocks,
+        "tasks": counts.tasks,
+    });
+    Ok(to_python(py, &said)?)
+}
+
+/// The time on the clock, to the microsecond.
+pub(crate) fn now() -> Result<Timestamp> {
+    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+    let micros = since.map_or(0, |since| since.as_micros());
+    Ok(Timestamp::from_unix_micros(i64::try_from(micros).unwrap_or(i64::MAX))?)
+}
+
+fn scenario_info(said: Value) -> Result<ScenarioInfo> {
+    let Value::Object(mut extra) = said else {
+        let message = format!("scenario_info: found {said}, expected a dictionary");
+        return Err(PyValueError::new_err(message).into());
+    };
+    let mut word = |key: &str| extra.shift_remove(key).and_then(|word| Some(word.as_str()?.to_owned()));
+    let (complexity, difficulty, form) = (word("complexity"), word("difficulty"), word("scenario_type"));
+    Ok(ScenarioInfo {
+        complexity: complexity.map(|word| word.parse()).transpose()?,
+        difficulty: difficulty.map(|word| word.parse()).transpose()?,
+        scenario_type: form.map(|word| word.parse()).transpose()?,
+        extra,
+    })
+}
+
+/// The columns of a log: whole numbers and numbers as arrays, words as lists.
+fn columns<'py>(py: Python<'py>, rows: &Rows) -> Result<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    columns.set_item("block_num", rows.block_nums().to_pyarray(py))?;
+    columns.set_item("exp_num", rows.exp_nums().to_pyarray(py))?;
+    columns.set_item(
+        "worker_id",
+        shared(py, rows.workers(), |worker| Ok(worker.into_pyobject(py)?.into_any()))?,
+    )?;
+    columns.set_item("block_type", words(py, rows.block_types())?)?;
+    columns.set_item("block_subtype", words(py, rows.block_subtypes())?)?;
+    columns.set_item(
+        "task_name",
+        shared(py, rows.task_names(), |name| Ok(name.into_pyobject(py)?.into_any()))?,
+    )?;
+    let params = |params: &TaskParams| to_python(py, &Value::Object(Map::clone(&Arc::clone(params))));
+    columns.set_item("task_params", shared(py, rows.task_params(), params)?)?;
+    columns.set_item("exp_status", words(py, rows.exp_statuses())?)?;
+    let micros = rows.timestamps().iter().map(|stamp| stamp.unix_micros());
+    columns.set_item("timestamp", PyArray1::from_iter(py, micros))?;
+    for name in rows.metric_names() {
+        columns.set_item(name, rows.metric(name).unwrap_or_default().to_pyarray(py))?;
+    }
+    for name in rows.text_names() {
+        let text = (0..rows.len()).map(|row| rows.text(name).and_then(|column| column.get(row)));
+        columns.set_item(name, PyList::new(py, text.collect::<Vec<_>>())?)?;
+    }
+    Ok(columns)
+}
+
+/// A column of which each value stands in many rows: each is made once.
+fn shared<'py, T>(
+    py: Python<'py>,
+    column: &SharedColumn<T>,
+    make: impl Fn(&T) -> PyResult<Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyList>> {
+    let values = column.values().iter().map(make).collect::<PyResult<Vec<_>>>()?;
+    PyList::new(py, column.ids().iter().map(|id| &values[*id as usize]))
+}
+
+fn words<'py>(py: Python<'py>, column: &[impl ToString]) -> PyResult<Bound<'py, PyList>> {
+    PyList::new(py, column.iter().map(ToString::to_string))
+}

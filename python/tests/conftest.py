@@ -1,0 +1,62 @@
+"""What the tests share: the ids and variants there are, and one small world file. What must be true stands in the tests."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import driftworld
+import pytest
+from driftworld import _native
+
+#: The checkout that the tests are in.
+ROOT = Path(__file__).parents[2]
+
+TASKS = {
+    "driftworld/FindObjects-v0": "find_objects",
+    "driftworld/GetToGoal-v0": "get_to_goal",
+    "driftworld/SelectObject-v0": "select_object",
+    "driftworld/MovingObject-v0": "moving_object",
+    "driftworld/ScavengerHunt-v0": "scavenger_hunt",
+}
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """``env_id`` is each task's; ``task_variant`` is each variant of each task, as (id, name)."""
+    if "env_id" in metafunc.fixturenames:
+        metafunc.parametrize("env_id", TASKS)
+    if "task_variant" in metafunc.fixturenames:
+        every = [
+            (env_id, name) for env_id, task in TASKS.items() for name in _native.TaskSpec.load(task).variant_names()
+        ]
+        metafunc.parametrize("task_variant", every, ids=[f"{TASKS[env_id]}#{name}" for env_id, name in every])
+
+
+@pytest.fixture
+def small() -> dict[str, Any]:
+    """Options that make steps cheap."""
+    return {"modalities": ["rgb", "state"], "size": 40}
+
+
+@pytest.fixture
+def world_file(tmp_path: Path) -> Path:
+    """A world as ``driftworld sample`` writes it."""
+    path = tmp_path / "world.json"
+    path.write_text(_native.TaskSpec.load("find_objects").variant("red").sample(5, 0), encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def task_file(tmp_path: Path) -> Path:
+    """A task spec of a user's own."""
+    document = json.loads((ROOT / "examples" / "tasks" / "get_to_goal.json").read_text(encoding="utf-8"))
+    path = tmp_path / "own_task.json"
+    path.write_text(json.dumps({**document, "name": "own_task"}), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="session")
+def package() -> Path:
+    """Where the package under test is installed."""
+    return Path(driftworld.__file__).parent
