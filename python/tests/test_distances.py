@@ -26,7 +26,12 @@ def commanded(*argv: str) -> Any:
     ("a", "b", "options", "flags"),
     [
         ("find_objects#blue", "find_objects#dusk", {}, []),
-        ("find_objects#blue", "find_objects#dusk", {"weights": {"R": 2, "observation": 0.5}}, ["--weight", "R=2", "--weight", "O=0.5"]),
+        (
+            "find_objects#blue",
+            "find_objects#dusk",
+            {"weights": {"R": 2, "observation": 0.5}},
+            ["--weight", "R=2", "--weight", "O=0.5"],
+        ),
         ("find_objects#blue", "get_to_goal#plain", {"worlds": 3, "seed": 4}, ["--worlds", "3", "--seed", "4"]),
     ],
 )
@@ -48,7 +53,12 @@ def test_worlds_are_compared_as_they_are(tmp_path: Path) -> None:
         path.write_text(json.dumps(world), encoding="utf-8")
     expected = commanded("distance", *map(str, paths))["total"]
     assert expected > 0
-    assert distance(*worlds).total == distance(*paths).total == distance(json.dumps(worlds[0]), worlds[1]).total == expected
+    assert (
+        distance(*worlds).total
+        == distance(*paths).total
+        == distance(json.dumps(worlds[0]), worlds[1]).total
+        == expected
+    )
     assert distance(worlds[0], worlds[0]) == 0
     assert distance(variant, worlds[0]).compared == "mean of 16 worlds of each, drawn under seed 0"
 

@@ -53,9 +53,9 @@ def test_a_task_is_loaded_by_its_name_or_its_path(tmp_path: Path, lamps: TaskSpe
     path.write_text(json.dumps(LAMPS), encoding="utf-8")
     assert TaskSpec.load(path) == TaskSpec.load(str(path)) == lamps
     assert driftworld.variant(f"{path}#dusk") == lamps.variant("dusk")
-    assert [label for label, _ in driftworld.variants("find_objects#red", f"{path}#light", lamps.variant("day"))][0] == (
-        "find_objects#red"
-    )
+    found = driftworld.variants("find_objects#red", f"{path}#light", lamps.variant("day"), f"{path}#light")
+    members = [f"{path}#{name}" for name in lamps.families["light"]]
+    assert [label for label, _ in found] == ["find_objects#red", *members, "lamps#day"]
     assert {TaskSpec.load(name).name for name in driftworld.built_in_tasks()} >= {"find_objects", "scavenger_hunt"}
 
 
@@ -117,7 +117,9 @@ def test_many_worlds_are_the_single_ones(lamps: TaskSpec, threads: int) -> None:
     variant = lamps.variant("dusk")
     many = variant.sample_many(600, seed=2, start=10, threads=threads)
     assert many == [variant.sample(2, index) for index in range(10, 610)]
-    assert variant.sample_many_json(3, seed=2, start=10, threads=threads) == [variant.sample_json(2, k) for k in (10, 11, 12)]
+    assert variant.sample_many_json(3, seed=2, start=10, threads=threads) == [
+        variant.sample_json(2, k) for k in (10, 11, 12)
+    ]
     assert variant.sample_many(0) == []
 
 

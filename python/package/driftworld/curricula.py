@@ -357,7 +357,7 @@ def _designed(options: dict[str, Any]) -> str:
     """What the command prints of a design: the scenario, or a line for each of several."""
     tasks = options.pop("tasks")
     if not all(isinstance(task, str) for task in tasks):
-        raise TypeError("tasks: expected names such as \"find_objects#red\": a scenario calls tasks by their names")
+        raise TypeError('tasks: expected names such as "find_objects#red": a scenario calls tasks by their names')
     # First, so that what is wrong with a task is raised with its place.
     variants(*tasks)
     if options.get("evaluate_after") is not None:

@@ -74,7 +74,9 @@ class Distance:
             rows.append((part["name"], part["element"], part["measure"], _words(part.get("how")), *numbers))
         widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
         for row in rows:
-            cells = [f"{cell:<{width}}" if k < 4 else f"{cell:>{width}}" for k, (cell, width) in enumerate(zip(row, widths))]
+            cells = [
+                f"{cell:<{width}}" if k < 4 else f"{cell:>{width}}" for k, (cell, width) in enumerate(zip(row, widths))
+            ]
             lines.append("  ".join(cells).rstrip())
         return "\n".join(lines)
 
@@ -196,7 +198,9 @@ class DistanceMatrix:
                 write_whole(path, self._native.to_json().encode())
             case _:
                 write_whole(path, self._native.to_npy())
-                write_whole(path.with_suffix(".labels.json"), json.dumps(self.labels, indent=2, ensure_ascii=False).encode())
+                write_whole(
+                    path.with_suffix(".labels.json"), json.dumps(self.labels, indent=2, ensure_ascii=False).encode()
+                )
 
     @property
     def labels(self) -> list[str]:
@@ -241,7 +245,9 @@ class DistanceMatrix:
         target_step: float | None = None,
     ) -> Order:
         """The items in an order; see :func:`order`."""
-        ends = [None if label is None else self._index(option, label) for option, label in (("start", start), ("end", end))]
+        ends = [
+            None if label is None else self._index(option, label) for option, label in (("start", start), ("end", end))
+        ]
         return Order(**self._native.order(method, ends[0], ends[1], seed, target_step))
 
     def _index(self, option: str, label: str) -> int:

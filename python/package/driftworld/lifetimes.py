@@ -97,7 +97,9 @@ class Summary:
             numbers = (str(regime["experiences"]), f"{regime['mean_reward']:.1f}", f"{regime['success_rate']:.0%}")
             rows.append((str(regime["block"]), regime["kind"], regime["variant"], *numbers))
         widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-        lines = ["  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+        lines = [
+            "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
+        ]
         return "\n".join(lines)
 
 

@@ -198,7 +198,9 @@ def metrics(
         return _metrics(folders, options)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "data_range.json"
-        file.write_text(json.dumps({task: dict(limits) for task, limits in (data_range or {}).items()}), encoding="utf-8")
+        file.write_text(
+            json.dumps({task: dict(limits) for task, limits in (data_range or {}).items()}), encoding="utf-8"
+        )
         return _metrics(folders, {**options, "data_range_file": file})
 
 
