@@ -66,7 +66,10 @@ def test_worlds_are_compared_as_they_are(tmp_path: Path) -> None:
 def test_a_distance_is_a_number_where_one_is_wanted() -> None:
     near, far = distance(SOME[0], SOME[1]), distance(SOME[0], SOME[3])
     assert near < far and max(near, far) is far and near < 0.9 and near != far and near == near.total
-    assert np.asarray([float(near), float(far)]).sum() == near.total + far.total
+    assert np.asarray([near, far]).sum() == near + far == near.total + far.total
+    again = pickle.loads(pickle.dumps(far))
+    assert again == far and again.parts == far.parts and again.elements == far.elements
+    assert f"{near:.3f}" == f"{near.total:.3f}" and repr(near).startswith("Distance(0.0")
 
 
 def test_a_distance_explains_itself() -> None:

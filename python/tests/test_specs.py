@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import driftworld
+import numpy as np
 import pytest
 from driftworld import Drift, SpecError, TaskError, TaskSpec, Variant, validate
 
@@ -126,6 +127,15 @@ def test_many_worlds_are_the_single_ones(lamps: TaskSpec, threads: int) -> None:
 def test_a_number_of_worlds_that_there_are_not_is_refused(lamps: TaskSpec) -> None:
     with pytest.raises(ValueError, match="room for 2 worlds"):
         lamps.variant("day").sample_many(2, start=2**64 - 1)
+
+
+@pytest.mark.parametrize("seed", [-1, 2**64])
+def test_a_seed_is_a_whole_number(lamps: TaskSpec, seed: int) -> None:
+    with pytest.raises(ValueError, match=f"found {seed}, expected a whole number in 0..18446744073709551615"):
+        lamps.variant("day").sample(seed)
+    with pytest.raises(TypeError, match="seed"):
+        lamps.variant("day").sample(1.5)  # type: ignore[arg-type]
+    assert lamps.variant("day").sample(np.int64(3)) == lamps.variant("day").sample(3)  # type: ignore[arg-type]
 
 
 def test_a_drift_leads_from_one_variant_to_the_other(lamps: TaskSpec) -> None:

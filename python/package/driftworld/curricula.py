@@ -362,4 +362,4 @@ def _designed(options: dict[str, Any]) -> str:
     variants(*tasks)
     if options.get("evaluate_after") is not None:
         options["evaluate_after"] = tuple(options["evaluate_after"])
-    return ask("curriculum", tasks, options, CurriculumError)
+    return ask("curriculum", tasks, options, CurriculumError, stacklevel=4)

@@ -205,7 +205,7 @@ def metrics(
 
 
 def _metrics(folders: tuple[str, ...], options: dict[str, Any]) -> Metrics:
-    said = json.loads(ask("metrics", folders, {**options, "json": True}, MetricsError))
+    said = json.loads(ask("metrics", folders, {**options, "json": True}, MetricsError, stacklevel=4))
     if "lifetimes" not in said:
         said = {"lifetimes": [said]}
     return Metrics(**said, _asked=(folders, options))
