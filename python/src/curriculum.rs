@@ -25,12 +25,17 @@ pub(crate) struct PyPlan {
 impl PyPlan {
     /// The plan of a scenario's text; what it names by paths is looked for as if it stood at `path`.
     #[new]
-    fn new(py: Python<'_>, path: PathBuf, text: &str, stand_in: bool) -> Result<Self> {
+    fn new(py: Python<'_>, path: PathBuf, text: &str, stand_in: Option<bool>) -> Result<Self> {
         let mut warnings = Vec::new();
         let plan = py.detach(|| {
             let mut warn = |warning| warnings.push(warning);
             let file = ScenarioFile::from_text(Path::new(&path), text, &mut warn)?;
-            let missing = if stand_in { Missing::StandIn } else { Missing::Refused };
+            // The original's own scenario names a map that it does not come with, and has to run as it stands.
+            let missing = if stand_in.unwrap_or(file.original) {
+                Missing::StandIn
+            } else {
+                Missing::Refused
+            };
             Ok::<_, crate::errors::Error>(file.plan(missing, &mut warn)?)
         })?;
         Ok(Self { plan, warnings })

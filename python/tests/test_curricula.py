@@ -378,3 +378,18 @@ def test_what_is_no_curriculum_says_where() -> None:
         small().run(object())  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="variant: found it among the options"):
         small().run(Circler(), variant="red")
+
+
+def test_a_scenario_of_the_originals_is_lived_as_the_command_lives_it(tmp_path: Path) -> None:
+    theirs, maps = tmp_path / "theirs.json", tmp_path / "theirs-maps"
+    small(max_steps=5).save(tmp_path / "ours.json")
+    argv = ["convert", str(tmp_path / "ours.json"), "--to", "l2explorer", "-o", str(theirs)]
+    subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
+    # A map that is nowhere: another stands in for it, as the original's own scenario needs it.
+    sorted(maps.iterdir())[0].unlink()
+    with pytest.warns(UserWarning, match="stood in for it"):
+        curriculum = Curriculum.load(theirs)
+    summary = curriculum.run(Circler(), tmp_path / "log", **SMALL)
+    assert summary.finished and summary.experiences == curriculum.num_experiences == small().num_experiences
+    with pytest.raises(CurriculumError, match="expected a world file"):
+        Curriculum.load(theirs, stand_in=False)

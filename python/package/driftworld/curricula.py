@@ -118,14 +118,15 @@ class Curriculum(Sequence[Block]):
     Args:
         text: The scenario, as JSON text; ours, or one of L2Explorer's.
         path: What messages call it; tasks and worlds that it names by paths are looked for from its folder first.
-        stand_in: Let the world file with the nearest name stand in for one that is nowhere.
+        stand_in: Let the world file with the nearest name stand in for one that is nowhere; if not given, in L2Explorer's
+            scenarios only, as ``driftworld run`` does.
 
     Raises:
         SpecError: If the scenario is wrong, with pointer, line and column.
         CurriculumError: If something that it names cannot be had.
     """
 
-    def __init__(self, text: str, path: PathLike = "scenario", *, stand_in: bool = False) -> None:
+    def __init__(self, text: str, path: PathLike = "scenario", *, stand_in: bool | None = None) -> None:
         self._text, self._path, self._stand_in = text, Path(path), stand_in
         self._plan = self._new_plan()
         for warning in self._plan.warnings:
@@ -144,7 +145,7 @@ class Curriculum(Sequence[Block]):
         return _native.Plan(self._path, self._text, self._stand_in)
 
     @classmethod
-    def load(cls, path: PathLike, *, stand_in: bool = False) -> Curriculum:
+    def load(cls, path: PathLike, *, stand_in: bool | None = None) -> Curriculum:
         """Reads a scenario file.
 
         Raises:
@@ -348,7 +349,7 @@ class Curriculum(Sequence[Block]):
         return (_curriculum_again, (self._text, str(self._path), self._stand_in))
 
 
-def _curriculum_again(text: str, path: str, stand_in: bool) -> Curriculum:
+def _curriculum_again(text: str, path: str, stand_in: bool | None) -> Curriculum:
     """A curriculum in another process."""
     return Curriculum(text, path, stand_in=stand_in)
 

@@ -61,6 +61,9 @@ class Distance(float):
     def __repr__(self) -> str:
         return f"Distance({self.total!r}, {self.compared!r})"
 
+    def __str__(self) -> str:
+        return str(self.total)
+
     def __getnewargs__(self) -> tuple[Any, ...]:
         return (self.total, self.elements, self.parts, self.compared)
 
