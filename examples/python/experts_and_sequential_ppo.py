@@ -1,7 +1,8 @@
 """Single-task experts, and one PPO that meets their tasks one after the other: what does it keep, what carries over?
 
-The curriculum is the L2Explorer paper's example: blue objects pay (a), red ones are added and cost (b), green ones pay (c).
-Before and after each learning block the learner is frozen and evaluated in all three. It is never told where it is.
+The task is `two_skies.json` beside this file: by day blue cubes pay and red ones cost, in the evening it is the other way round.
+The sky shows which it is, and nothing else tells the learner; one policy could do both. It lives day, evening, day, evening, and
+is frozen and evaluated in both before and after each block.
 
     python examples/python/experts_and_sequential_ppo.py               # experts, lifetime, scores and the report
     python examples/python/experts_and_sequential_ppo.py --results     # what is written down in results/
@@ -14,6 +15,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -27,8 +29,9 @@ from torch import nn
 
 import driftworld
 
-TASK = "blue_red_green"
-VARIANTS = ("a", "b", "c")
+TASK = os.path.relpath(Path(__file__).with_name("two_skies.json"))
+VARIANTS = ("day", "evening")
+ORDER = ("day", "evening", "day", "evening")
 # Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
 OPTIONS: dict[str, Any] = {
@@ -183,18 +186,20 @@ class Lives:
                 learner.learn(rollout)
 
 
-def scenario(variants: tuple[str, ...], seed: int, arguments: argparse.Namespace, evaluate: bool = True) -> dict[str, Any]:
-    """Learning blocks for variants in turn; evaluations of all of them around each, on worlds that are not learned from."""
+def scenario(order: tuple[str, ...], seed: int, arguments: argparse.Namespace, evaluate: bool = True) -> dict[str, Any]:
+    """Learning blocks in an order; evaluations of all variants around each, on worlds that are not learned from."""
 
-    def regime(variant: str, count: int, seed: int) -> dict[str, Any]:
-        return {"task": TASK, "variant": variant, "count": count, "seed": seed, "first_index": 0}
+    def regime(variant: str, count: int, seed: int, first: int = 0) -> dict[str, Any]:
+        return {"task": TASK, "variant": variant, "count": count, "seed": seed, "first_index": first}
 
-    evaluation = {"type": "evaluation", "regimes": [regime(variant, arguments.evaluate, seed + 1000) for variant in variants]}
+    evaluation = {"type": "evaluation", "regimes": [regime(variant, arguments.evaluate, seed + 1000) for variant in VARIANTS]}
     blocks: list[dict[str, Any]] = [evaluation] if evaluate else []
-    for variant in variants:
-        blocks.append({"type": "learning", "regimes": [regime(variant, arguments.learn, seed)]})
+    for place, variant in enumerate(order):
+        # The worlds of a variant go on where its last block left off.
+        first = order[:place].count(variant) * arguments.learn
+        blocks.append({"type": "learning", "regimes": [regime(variant, arguments.learn, seed, first)]})
         blocks += [evaluation] if evaluate else []
-    plan = {"version": 1, "name": "_".join([TASK, *variants]), "blocks": blocks}
+    plan = {"version": 1, "name": "_".join(["two_skies", *order]), "blocks": blocks}
     driftworld.validate(plan, "scenario", check=True)
     return plan
 
@@ -223,7 +228,7 @@ def lifetime(learner: Learner, plan: dict[str, Any], folder: Path, arguments: ar
                 for numbers in lives.live(learner, regime, learning):
                     log.write(
                         block_num=number, exp_num=experience, block_type="train" if learning else "test",
-                        task_name=f"{TASK.replace('_', '')}_{regime['variant']}",
+                        task_name=f"twoskies_{regime['variant']}",
                         task_params={key: regime[key] for key in ("task", "variant", "seed")}, **numbers,
                     )  # fmt: skip
                     experience += 1
@@ -243,11 +248,11 @@ def parse_arguments(program: str, text: str) -> argparse.Namespace:
     """What this example and `replay_ppo.py` may be told."""
     parser = argparse.ArgumentParser(description=text.splitlines()[0])
     parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="a lifetime each (default: 1)")
-    parser.add_argument("--learn", type=int, default=2048, help="experiences of a learning block (default: 2048)")
+    parser.add_argument("--learn", type=int, default=1536, help="experiences of a learning block (default: 1536)")
     parser.add_argument("--evaluate", type=int, default=128, help="of each variant in an evaluation block (default: 128)")
     parser.add_argument("--num-envs", type=int, default=32)
     parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
-    parser.add_argument("--logs", type=Path, default=Path("logs/blue_red_green"), help="where the lifetimes are logged")
+    parser.add_argument("--logs", type=Path, default=Path("logs/two_skies"), help="where the lifetimes are logged")
     parser.add_argument("--again", action="store_true", help="live also what is in the logs already")
     parser.add_argument("--results", nargs="?", const=folder_of(program), metavar="FOLDER", help="write the result down")
     parser.add_argument("--quick", action="store_true", help="a few experiences, to see that it runs")
@@ -259,12 +264,12 @@ def parse_arguments(program: str, text: str) -> argparse.Namespace:
 
 
 def live_experts(arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
-    """An expert for each variant and seed, with as much experience as the lifetime has of it; where they are logged."""
+    """An expert for each variant and seed, with as much experience as the lifetime's blocks of it; where they are logged."""
     lived = {}
     for seed in arguments.seeds:
         for variant in VARIANTS:
             folder = arguments.logs / f"expert_{variant}_{seed}"
-            lived[folder] = lifetime(Learner(seed), scenario((variant,), seed, arguments, evaluate=False), folder, arguments)
+            lived[folder] = lifetime(Learner(seed), scenario(tuple(block for block in ORDER if block == variant), seed, arguments, evaluate=False), folder, arguments)
     return lived
 
 
@@ -273,7 +278,7 @@ def live_lifetimes(name: str, learner: Callable[[int], Learner], arguments: argp
     lived = {}
     for seed in arguments.seeds:
         folder = arguments.logs / f"{name}_{seed}"
-        lived[folder] = lifetime(learner(seed), scenario(VARIANTS, seed, arguments), folder, arguments)
+        lived[folder] = lifetime(learner(seed), scenario(ORDER, seed, arguments), folder, arguments)
     return lived
 
 
@@ -319,21 +324,21 @@ def main() -> None:
     scores = driftworld.metrics(list(lived), ste=list(experts))
     table = scores_table(sequential=scores)
     show(table)
-    page = driftworld.report(list(lived), ste=list(experts), title="A sequential PPO over blue_red_green")
+    page = driftworld.report(list(lived), ste=list(experts), title="A sequential PPO under two skies")
     (arguments.logs / "sequential_ppo.html").write_text(page, encoding="utf-8")
     print(f"the report is {arguments.logs / 'sequential_ppo.html'}")
     if arguments.results:
         everything = [*experts.values(), *lived.values()]
         Record(
             title="Experts, and a sequential PPO",
-            text=f"One PPO learns `{TASK}` a, b and c in turn, {arguments.learn} experiences each, and is evaluated in all three around "
-            "each block; experts have the same experience of one variant alone. The curve is of the evaluations: from left to right before "
-            "anything was learned, after a, after b, after c.",
+            text=f"By day blue cubes pay and red ones cost, in the evening it is the other way round. One PPO lives {', '.join(ORDER)}, "
+            f"{arguments.learn} experiences each, and is evaluated in both around each block; experts have the same experience of one variant "
+            "alone. The curve is of the evaluations.",
             settings={**vars(arguments), **OPTIONS}, variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
             curve=evaluations(lived), table=table, axes=("experiences", "reward"),
             labels=("experiences learned from", "reward in evaluations, mean over lifetimes"),
             seconds=sum(done["seconds"] for done in everything), load_before=everything[0]["load_before"],
-            files={"curriculum.json": everything[-1]["scenario"], "scores.json": scores.lifetimes},
+            files={"curriculum.json": everything[-1]["scenario"], "two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "scores.json": scores.lifetimes},
         ).write(arguments.results)  # fmt: skip
 
 

@@ -21,6 +21,8 @@ from pathlib import Path
 from typing import Any
 
 FOLDER = Path(__file__).parent / "results"
+# Settings that say where and whether things are kept: each reader's own.
+_WHERE = ("logs", "results", "quick", "again", "threads", "address")
 PACKAGES = ("driftworld", "gymnasium", "numpy", "torch", "stable-baselines3", "ray")
 
 
@@ -99,7 +101,7 @@ class Record:
             "seconds": round(self.seconds, 1),
             "machine": {"processor": _processor(), "cores": os.cpu_count(), "load_before": self.load_before},
             "versions": {"python": platform.python_version(), **_versions()},
-            "settings": dict(self.settings),
+            "settings": {name: value for name, value in self.settings.items() if name not in _WHERE},
             "worlds": {variant: _hashes(variant, self.seeds) for variant in self.variants},
         }
 

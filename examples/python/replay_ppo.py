@@ -138,7 +138,7 @@ def main() -> None:
             curve=evaluations(lived, ", replay") + evaluations(without, ", sequential"), table=table, axes=("experiences", "reward"),
             labels=("experiences learned from", "reward in evaluations, mean over lifetimes"),
             seconds=sum(done["seconds"] for done in runs), load_before=runs[0]["load_before"],
-            files={"curriculum.json": runs[0]["scenario"], "scores.json": compared.lifetimes, "improvement.json": compared.improvement},
+            files={"two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "curriculum.json": runs[0]["scenario"], "scores.json": compared.lifetimes, "improvement.json": compared.improvement},
         ).write(arguments.results)  # fmt: skip
 
 

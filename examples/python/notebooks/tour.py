@@ -1,0 +1,149 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # From a task spec to a curriculum
+#
+# The whole way once: a spec with its variants, worlds drawn from them, what an agent sees there, how far apart variants are, and a
+# curriculum that is ordered by it. `jupytext --to notebook tour.py` makes a notebook of this file; as it stands it is a program.
+#
+# Needs `pip install driftworld matplotlib`.
+
+# %%
+import gymnasium as gym
+import numpy as np
+from matplotlib import pyplot as plt
+
+import driftworld
+
+# %% [markdown]
+# ## A spec and its variants
+#
+# Parameters are fixed, drawn for every world, or set by variants. Each variant parameter says which element of the decision
+# process it touches: states, actions, transitions, rewards, observations.
+
+# %%
+task = driftworld.TaskSpec.load("find_objects")
+print(task.name, "-", task.description)
+for name, parameter in task.parameters.items():
+    print(f"{name:14} {parameter['role']:11} {' '.join(parameter.get('affects', [])):4} {parameter['description']}")
+
+# %%
+NAMES = ["blue", "red", "green", "dusk", "spheres", "huddle", "wide", "slow"]
+variants = [task.variant(name) for name in NAMES]
+
+# %% [markdown]
+# ## Worlds
+#
+# World number i under a seed is a pure function of the variant, the seed and i. Under one seed variants share their chance: what
+# is alike in their specs is alike in their worlds.
+
+# %%
+world = task.variant("blue").sample(seed=3, index=0)
+again = task.variant("blue").sample(seed=3, index=0)
+assert world == again
+wide = task.variant("wide").sample(seed=3, index=0)
+for name, drawn in (("blue", world), ("wide", wide)):
+    cubes = [thing["coordinates"] for thing in drawn["objects"] if thing.get("tag") == "targets"]
+    print(f"{name}: cubes at", [[round(number, 1) for number in place] for place in cubes])
+
+# %% [markdown]
+# ## What an agent sees
+#
+# Colour, distance, and what things are worth: the modalities of one observation.
+
+# %%
+env = gym.make("driftworld/FindObjects-v0", size=120, depth="float32")
+figure, axes = plt.subplots(3, len(NAMES), figsize=(14, 5.4), layout="constrained")
+for column, name in enumerate(NAMES):
+    observation, info = env.reset(seed=3, options={"variant": name})
+    axes[0, column].imshow(observation["rgb"])
+    axes[1, column].imshow(observation["depth"][..., 0], cmap="viridis_r", vmax=40)
+    axes[2, column].imshow(observation["segmentation"][..., 0], cmap="tab10", vmin=0, vmax=9, interpolation="nearest")
+    axes[0, column].set_title(name)
+for row, words in enumerate(("colour", "distance to 40 m", "reward category")):
+    axes[row, 0].set_ylabel(words)
+for axis in axes.flat:
+    axis.set_xticks([])
+    axis.set_yticks([])
+env.close()
+plt.show()
+
+# %% [markdown]
+# ## How far apart they are
+#
+# Parameter by parameter, in units of each parameter's range, and for each element apart.
+
+# %%
+print(driftworld.distance("find_objects#blue", "find_objects#dusk").explain())
+
+# %%
+matrix = driftworld.distance_matrix(variants)
+figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), layout="constrained")
+picture = left.imshow(matrix.values, cmap="magma_r", vmin=0)
+left.set_xticks(range(len(NAMES)), NAMES, rotation=45, ha="right")
+left.set_yticks(range(len(NAMES)), NAMES)
+left.set_title("distance")
+figure.colorbar(picture, ax=left, shrink=0.85)
+
+order = driftworld.order(matrix)
+print("a short way through all of them:", " > ".join(label.split("#")[-1] for label in order.labels))
+
+# Two numbers for each variant whose distances come as near as they can: classical scaling.
+squared = np.asarray(matrix.values) ** 2
+centring = np.eye(len(NAMES)) - 1 / len(NAMES)
+values, vectors = np.linalg.eigh(-0.5 * centring @ squared @ centring)
+places = vectors[:, -2:] * np.sqrt(np.maximum(values[-2:], 0))
+right.plot(*places[order.indices].T, color="0.6", linewidth=1)
+right.scatter(*places.T, zorder=2)
+for name, place in zip(NAMES, places, strict=True):
+    right.annotate(name, place, xytext=(5, 4), textcoords="offset points")
+right.set_title("variants on a plane, and the order")
+right.set_aspect("equal", adjustable="datalim")
+plt.show()
+
+# %% [markdown]
+# ## A curriculum
+#
+# The same variants as blocks of learning, with evaluations of all of them before and after each.
+
+# %%
+curriculum = driftworld.Curriculum.design(
+    "find_objects#blue", "find_objects#red", "find_objects#dusk", start="find_objects#blue", learn=6, eval_episodes=2, seed=3
+)
+for block in curriculum:
+    print(f"{block.kind:10} {len(block):2} experiences, first of {block[0].variant}, world {block[0].index} under seed {block[0].seed}")
+
+
+# %% [markdown]
+# Anything with `act`, `learn` and `freeze` can live it; what it did is logged, and scored in the other notebook, `lifetime.py`.
+
+
+# %%
+class Wanderer:
+    """Walks ahead and turns as it pleases; learns nothing."""
+
+    def __init__(self) -> None:
+        self.chance = np.random.default_rng(0)
+
+    def act(self, observation, info):
+        return np.array([1.0, self.chance.uniform(-0.4, 0.4)])
+
+    def learn(self, transition):
+        pass
+
+    def freeze(self, frozen):
+        pass
+
+
+summary = curriculum.run(Wanderer(), interact=False, size=48, modalities="rgb")
+print(summary)
