@@ -49,7 +49,7 @@ def test_a_log_is_written_as_the_format_says(tmp_path: Path) -> None:
     folder = written(tmp_path / "log", [1.0])
     lines = (folder / "worker-default" / "0-train" / "data-log.tsv").read_text(encoding="utf-8").splitlines()
     assert lines[0].split("\t") == (
-        "block_num exp_num worker_id block_type block_subtype task_name task_params exp_status timestamp reward steps".split()
+        ["block_num", "exp_num", "worker_id", "block_type", "block_subtype", "task_name", "task_params", "exp_status", "timestamp", "reward", "steps"]
     )
     assert validate_log(folder)["valid"] and validate_log(folder)["rows"] == 1
 

@@ -53,7 +53,7 @@ def test_a_task_is_loaded_by_its_name_or_its_path(tmp_path: Path, lamps: TaskSpe
     path.write_text(json.dumps(LAMPS), encoding="utf-8")
     assert TaskSpec.load(path) == TaskSpec.load(str(path)) == lamps
     assert driftworld.variant(f"{path}#dusk") == lamps.variant("dusk")
-    assert [label for label, _ in driftworld.variants("find_objects#red", f"{path}#light", lamps.variant("day"))][0] == (
+    assert next(label for label, _ in driftworld.variants("find_objects#red", f"{path}#light", lamps.variant("day"))) == (
         "find_objects#red"
     )
     assert {TaskSpec.load(name).name for name in driftworld.built_in_tasks()} >= {"find_objects", "scavenger_hunt"}
