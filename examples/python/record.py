@@ -115,8 +115,8 @@ class Record:
         if self.lines:
             parts += [*_table([{"to compare with": name, "reward": level} for name, level in self.lines.items()]), ""]
         parts += [
-            f"Made on {config['date']} in {config['seconds'] / 60:.1f} minutes on {machine['cores']} cores ({machine['processor']}; "
-            f"load of the machine before it began {machine['load_before']}), with {written}.",
+            (f"Made on {config['date']} in {config['seconds'] / 60:.1f} minutes on {machine['cores']} cores ({machine['processor']}; "
+            f"load of the machine before it began {machine['load_before']}), with {written}."),
             "",
             "Everything that was set, and the hashes of the variants and of the first worlds, is in [config.json](config.json).",
         ]
