@@ -258,7 +258,7 @@ def parse_arguments(program: str, text: str) -> argparse.Namespace:
     parser.add_argument("--quick", action="store_true", help="a few experiences, to see that it runs")
     arguments = parser.parse_args()
     if arguments.quick:
-        arguments.learn, arguments.evaluate, arguments.num_envs = 32, 8, 8
+        arguments.learn, arguments.evaluate, arguments.num_envs = 16, 8, 8
     torch.set_num_threads(arguments.threads)
     return arguments
 

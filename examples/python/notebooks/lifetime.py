@@ -118,7 +118,7 @@ for axis, name in zip(axes, ("one_memory", "memory_by_sky"), strict=True):
     axis.set_title(name.replace("_", " "))
     axis.set_ylabel("reward")
 axes[1].set_xlabel("experience")
-axes[0].legend(ncols=4, fontsize=8, loc="lower right")
+axes[1].legend(ncols=2, loc="lower right")
 plt.show()
 
 # %% [markdown]
