@@ -21,13 +21,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import driftworld
 import gymnasium as gym
 import numpy as np
 import torch
 from record import Record, Watch, folder_of
 from torch import nn
-
-import driftworld
 
 TASK = os.path.relpath(Path(__file__).with_name("two_skies.json"))
 VARIANTS = ("day", "evening")
@@ -192,7 +191,10 @@ def scenario(order: tuple[str, ...], seed: int, arguments: argparse.Namespace, e
     def regime(variant: str, count: int, seed: int, first: int = 0) -> dict[str, Any]:
         return {"task": TASK, "variant": variant, "count": count, "seed": seed, "first_index": first}
 
-    evaluation = {"type": "evaluation", "regimes": [regime(variant, arguments.evaluate, seed + 1000) for variant in VARIANTS]}
+    evaluation = {
+        "type": "evaluation",
+        "regimes": [regime(variant, arguments.evaluate, seed + 1000) for variant in VARIANTS],
+    }
     blocks: list[dict[str, Any]] = [evaluation] if evaluate else []
     for place, variant in enumerate(order):
         # The worlds of a variant go on where its last block left off.
@@ -238,7 +240,10 @@ def lifetime(learner: Learner, plan: dict[str, Any], folder: Path, arguments: ar
                     "block": number, "learning": learning, "variant": regime["variant"], "experiences": learned,
                     "reward": round(float(np.mean(rewards[-200:])), 1),
                 })  # fmt: skip
-                print(f"{agent}: block {number} {block['type']:10} {regime['variant']}: reward {told[-1]['reward']:6.1f}", flush=True)
+                print(
+                    f"{agent}: block {number} {block['type']:10} {regime['variant']}: reward {told[-1]['reward']:6.1f}",
+                    flush=True,
+                )
     done = {"scenario": plan, "seconds": round(watch.seconds, 1), "load_before": watch.load, "told": told}
     kept.write_text(json.dumps(done, indent=2) + "\n", encoding="utf-8")
     return done
@@ -249,12 +254,16 @@ def parse_arguments(program: str, text: str) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=text.splitlines()[0])
     parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="a lifetime each (default: 1)")
     parser.add_argument("--learn", type=int, default=1536, help="experiences of a learning block (default: 1536)")
-    parser.add_argument("--evaluate", type=int, default=128, help="of each variant in an evaluation block (default: 128)")
+    parser.add_argument(
+        "--evaluate", type=int, default=128, help="of each variant in an evaluation block (default: 128)"
+    )
     parser.add_argument("--num-envs", type=int, default=32)
     parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
     parser.add_argument("--logs", type=Path, default=Path("logs/two_skies"), help="where the lifetimes are logged")
     parser.add_argument("--again", action="store_true", help="live also what is in the logs already")
-    parser.add_argument("--results", nargs="?", const=folder_of(program), metavar="FOLDER", help="write the result down")
+    parser.add_argument(
+        "--results", nargs="?", const=folder_of(program), metavar="FOLDER", help="write the result down"
+    )
     parser.add_argument("--quick", action="store_true", help="a few experiences, to see that it runs")
     arguments = parser.parse_args()
     if arguments.quick:
@@ -269,11 +278,18 @@ def live_experts(arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
     for seed in arguments.seeds:
         for variant in VARIANTS:
             folder = arguments.logs / f"expert_{variant}_{seed}"
-            lived[folder] = lifetime(Learner(seed), scenario(tuple(block for block in ORDER if block == variant), seed, arguments, evaluate=False), folder, arguments)
+            lived[folder] = lifetime(
+                Learner(seed),
+                scenario(tuple(block for block in ORDER if block == variant), seed, arguments, evaluate=False),
+                folder,
+                arguments,
+            )
     return lived
 
 
-def live_lifetimes(name: str, learner: Callable[[int], Learner], arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
+def live_lifetimes(
+    name: str, learner: Callable[[int], Learner], arguments: argparse.Namespace
+) -> dict[Path, dict[str, Any]]:
     """A lifetime over all variants for each seed; where they are logged."""
     lived = {}
     for seed in arguments.seeds:
@@ -291,7 +307,16 @@ def evaluations(lived: dict[Path, dict[str, Any]], label: str = "") -> list[dict
             "run": f"{variant}{label}",
             "experiences": experiences,
             "reward": round(
-                float(np.mean([row["reward"] for row in told if (row["variant"], row["experiences"]) == (variant, experiences)])), 1
+                float(
+                    np.mean(
+                        [
+                            row["reward"]
+                            for row in told
+                            if (row["variant"], row["experiences"]) == (variant, experiences)
+                        ]
+                    )
+                ),
+                1,
             ),
         }
         for variant, experiences in places

@@ -16,18 +16,17 @@ import argparse
 import time
 from typing import Any
 
+import driftworld
 import gymnasium as gym
 import numpy as np
 import torch
+from driftworld.adapters.sb3 import make_vec_env
 from record import Record, Watch, folder_of
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from stable_baselines3.common.vec_env import VecNormalize
 from torch import nn
-
-import driftworld
-from driftworld.adapters.sb3 import make_vec_env
 
 ID = "driftworld/FindObjects-v0"
 # Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.
@@ -161,7 +160,9 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--rollout", type=int, default=64, help="steps of each environment between updates")
     parser.add_argument("--episodes", type=int, default=200, help="of each evaluation")
     parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
-    parser.add_argument("--results", nargs="?", const=folder_of(__file__), metavar="FOLDER", help="write the result down")
+    parser.add_argument(
+        "--results", nargs="?", const=folder_of(__file__), metavar="FOLDER", help="write the result down"
+    )
     parser.add_argument("--quick", action="store_true", help="a few updates, to see that it runs")
     arguments = parser.parse_args()
     if arguments.quick:
@@ -185,7 +186,9 @@ def main() -> None:
     for seed in arguments.seeds:
         model, rows = learn(seed, arguments)
         scored = evaluate(arguments, model)
-        print(f"seed {seed}: on worlds never learned from, reward {scored['reward']}, found all {scored['success']:.0%}")
+        print(
+            f"seed {seed}: on worlds never learned from, reward {scored['reward']}, found all {scored['success']:.0%}"
+        )
         curve += rows
         table.append({
             "seed": seed,

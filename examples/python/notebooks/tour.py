@@ -19,11 +19,10 @@
 # Needs `pip install driftworld matplotlib`.
 
 # %%
+import driftworld
 import gymnasium as gym
 import numpy as np
 from matplotlib import pyplot as plt
-
-import driftworld
 
 # %% [markdown]
 # ## A spec and its variants
@@ -115,10 +114,18 @@ plt.show()
 
 # %%
 curriculum = driftworld.Curriculum.design(
-    "find_objects#blue", "find_objects#red", "find_objects#dusk", start="find_objects#blue", learn=6, eval_episodes=2, seed=3
+    "find_objects#blue",
+    "find_objects#red",
+    "find_objects#dusk",
+    start="find_objects#blue",
+    learn=6,
+    eval_episodes=2,
+    seed=3,
 )
 for block in curriculum:
-    print(f"{block.kind:10} {len(block):2} experiences, first of {block[0].variant}, world {block[0].index} under seed {block[0].seed}")
+    print(
+        f"{block.kind:10} {len(block):2} experiences, first of {block[0].variant}, world {block[0].index} under seed {block[0].seed}"
+    )
 
 
 # %% [markdown]
