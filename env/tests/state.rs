@@ -2,8 +2,8 @@
 
 use driftworld_env::{Action, Agent, EnvError, Environment, RandomAgent};
 use driftworld_spec::{
-    ActionModel, ActionSpace, EndCondition, MotionModel, Object, Pushable, Respawn, Shaping, StateFeature, Stimulus,
-    Wall, World,
+    ActionModel, ActionSpace, EndCondition, MotionModel, Object, Progress, Pushable, Respawn, Shaping, StateFeature,
+    Stimulus, Wall, World,
 };
 use proptest::prelude::*;
 
@@ -258,4 +258,44 @@ fn a_state_without_its_seed_takes_that_of_its_world() {
         environment.scene().items[0].heading_deg
     };
     assert_ne!(goal("a"), goal("b"));
+}
+
+#[test]
+fn a_world_whose_progress_is_a_seed_alone_is_at_its_start() {
+    // The agent stands in the barrel: at a start that is no news, and pays nothing.
+    let touched = || {
+        let mut barrel = Object::new("barrel", [0.0, 0.5]);
+        barrel.reward = 5.0;
+        barrel.reward_stimulus = vec![Stimulus::AgentCollide];
+        let mut wanderer = Object::new("rock", [5.0, 5.0]);
+        (wanderer.motion_model, wanderer.speed) = (MotionModel::RandomWaypoint, 2.0);
+        World {
+            objects: vec![barrel, wanderer],
+            ..World::default()
+        }
+    };
+    let seeded = |letter: char| {
+        let mut world = touched();
+        world.progress = Some(Progress {
+            seed: Some(letter.to_string().repeat(64)),
+            ..Progress::default()
+        });
+        world
+    };
+    let live = |world: World| {
+        let mut environment = start(world);
+        let rewards: Vec<f64> = (0..5)
+            .map(|_| environment.step(Action::Continuous([0.0; 3])).expect("goes on").reward)
+            .collect();
+        (rewards, environment.scene().items[1].position)
+    };
+    let own = touched().hash();
+    let mut as_its_own = touched();
+    as_its_own.progress = Some(Progress {
+        seed: Some(own),
+        ..Progress::default()
+    });
+    assert_eq!(live(as_its_own), live(touched()));
+    assert_eq!(live(seeded('a')).0, live(touched()).0);
+    assert_ne!(live(seeded('a')).1, live(seeded('b')).1);
 }

@@ -1,6 +1,7 @@
 //! Distances, matrices of them and orders, as Python asks for them. What is measured, and how, is `similarity`'s.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use driftworld::distances::{Sample, Side, between, variant_matrix_while};
@@ -14,7 +15,7 @@ use serde_json::json;
 
 use crate::document::{to_python, told};
 use crate::errors::Result;
-use crate::patience::patiently;
+use crate::patience::{impatiently, patiently};
 use crate::task::PyVariant;
 
 /// What elements weigh, by letters or names.
@@ -44,7 +45,7 @@ pub(crate) fn distance<'py>(
     let laid = laid(weights)?;
     let (a, b) = (a.side()?, b.side()?);
     let sample = Sample { worlds, seed, index };
-    let (distance, compared) = patiently(py, |_| between(&a, &b, &sample, |declared| over(&laid, declared)))??;
+    let (distance, compared) = impatiently(py, move || between(&a, &b, &sample, |declared| over(&laid, declared)))??;
     let found = told(py, &distance)?;
     found.set_item("compared", compared)?;
     Ok(found)
@@ -61,7 +62,7 @@ impl Compared<'_> {
 
 /// Every distance among some items.
 #[pyclass(name = "Matrix", module = "driftworld._native", frozen)]
-pub(crate) struct PyMatrix(DistanceMatrix);
+pub(crate) struct PyMatrix(Arc<DistanceMatrix>);
 
 #[pymethods]
 impl PyMatrix {
@@ -83,29 +84,32 @@ impl PyMatrix {
                 || !stop.load(Ordering::Relaxed),
             )
         })??;
-        Ok(Self(matrix))
+        Ok(Self(Arc::new(matrix)))
     }
 
     /// A matrix of distances that are there already.
     #[staticmethod]
     fn from_values(labels: Vec<String>, values: PyReadonlyArray2<'_, f64>) -> Result<Self> {
-        Ok(Self(DistanceMatrix::from_values(labels, values.as_array().to_owned())?))
+        Ok(Self(Arc::new(DistanceMatrix::from_values(
+            labels,
+            values.as_array().to_owned(),
+        )?)))
     }
 
     #[staticmethod]
     fn from_csv(text: &str) -> Result<Self> {
-        Ok(Self(DistanceMatrix::from_csv(text)?))
+        Ok(Self(Arc::new(DistanceMatrix::from_csv(text)?)))
     }
 
     #[staticmethod]
     fn from_json(text: &str) -> Result<Self> {
-        Ok(Self(DistanceMatrix::from_json(text)?))
+        Ok(Self(Arc::new(DistanceMatrix::from_json(text)?)))
     }
 
     #[staticmethod]
     #[pyo3(signature = (bytes, labels=None))]
     fn from_npy(bytes: &[u8], labels: Option<Vec<String>>) -> Result<Self> {
-        Ok(Self(DistanceMatrix::from_npy(bytes, labels)?))
+        Ok(Self(Arc::new(DistanceMatrix::from_npy(bytes, labels)?)))
     }
 
     fn to_csv(&self) -> String {
@@ -139,7 +143,8 @@ impl PyMatrix {
 
     /// The items as points of a plane, ``(items, 2)``, and how much of the matrix the plane shows.
     fn map<'py>(&self, py: Python<'py>) -> Result<(Bound<'py, PyArray2<f64>>, f64)> {
-        let map = patiently(py, |_| classical_map(&self.0))?;
+        let matrix = Arc::clone(&self.0);
+        let map = impatiently(py, move || classical_map(&matrix))?;
         let flat: Vec<f64> = map.points.into_iter().flatten().collect();
         let points = numpy::ndarray::Array2::from_shape_vec((flat.len() / 2, 2), flat)
             .map_err(|error| PyValueError::new_err(error.to_string()))?;
@@ -165,7 +170,8 @@ impl PyMatrix {
             seed,
             target_step,
         };
-        let found = patiently(py, |_| order(matrix, method, &options))??;
+        let shared = Arc::clone(matrix);
+        let found = impatiently(py, move || order(&shared, method, &options))??;
         let labels: Vec<&String> = found.indices.iter().map(|index| &matrix.labels()[*index]).collect();
         let found = json!({
             "method": method, "order": labels, "indices": found.indices, "steps": found.steps, "length": found.length,

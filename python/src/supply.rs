@@ -41,7 +41,7 @@ impl PyStream {
     /// The worlds on the way from one variant to another. `schedule` and `switch` are JSON, as in a scenario.
     #[staticmethod]
     fn drift(
-        from: &Bound<'_, PyVariant>,
+        from_: &Bound<'_, PyVariant>,
         to: &Bound<'_, PyVariant>,
         schedule: &str,
         switch: &str,
@@ -64,7 +64,7 @@ impl PyStream {
             // Under one seed, so that every environment meets a new value in the same episode.
             DriftSwitch::Mixture => Switch::Mixture { seed: 0 },
         };
-        let drift = Drift::new(from.get().0.clone(), to.get().0.clone())?
+        let drift = Drift::new(from_.get().0.clone(), to.get().0.clone())?
             .with_schedule(Schedule::from(schedule))
             .with_switch(switch);
         let drift = Arc::new(drift);

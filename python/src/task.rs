@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use crate::distances::element;
 use crate::document::{from_python, to_python, told};
 use crate::errors::Result;
-use crate::patience::patiently;
+use crate::patience::{impatiently, patiently};
 
 /// Worlds that are drawn at once: between two such portions Ctrl-C is looked for.
 const PORTION: u64 = 256;
@@ -221,17 +221,17 @@ impl PyVariant {
             }
             Err(_) => (Subject::Parameters(subject.extract()?), None),
         };
-        let from = &self.0;
-        let found = patiently(py, |_| {
+        let from = self.0.clone();
+        let found = impatiently(py, move || {
             let measured = VariantMeasure::new(from.task(), Weights::of_task(from.task()));
             let measure = |other: &Variant| {
                 // Distributions of numbers beyond all bounds have no finite distance: farther than any that is asked for.
-                let Ok(distance) = measured.between(from, other) else {
+                let Ok(distance) = measured.between(&from, other) else {
                     return f64::INFINITY;
                 };
                 element.map_or(distance.total, |element| distance.element(element).unwrap_or(0.0))
             };
-            at_distance(from, &subject, distance, tolerance, measure)
+            at_distance(&from, &subject, distance, tolerance, measure)
         })??;
         Ok((Self(found.variant.with(name, [])?), found.distance))
     }

@@ -8,7 +8,6 @@ from typing import Any
 
 import driftworld
 import pytest
-from driftworld import _native
 
 #: The checkout that the tests are in.
 ROOT = Path(__file__).parents[2]
@@ -28,7 +27,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         metafunc.parametrize("env_id", TASKS)
     if "task_variant" in metafunc.fixturenames:
         every = [
-            (env_id, name) for env_id, task in TASKS.items() for name in _native.TaskSpec.load(task).variant_names()
+            (env_id, name) for env_id, task in TASKS.items() for name in driftworld.TaskSpec.load(task).variant_names()
         ]
         metafunc.parametrize("task_variant", every, ids=[f"{TASKS[env_id]}#{name}" for env_id, name in every])
 
@@ -43,7 +42,7 @@ def small() -> dict[str, Any]:
 def world_file(tmp_path: Path) -> Path:
     """A world as ``driftworld sample`` writes it."""
     path = tmp_path / "world.json"
-    path.write_text(_native.TaskSpec.load("find_objects").variant("red").sample(5, 0), encoding="utf-8")
+    path.write_text(driftworld.variant("find_objects#red").sample_json(5, 0), encoding="utf-8")
     return path
 
 

@@ -5,7 +5,7 @@
 
 from collections.abc import Mapping, Sequence
 from os import PathLike
-from typing import Any, Literal, final
+from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ __version__: str
 
 # -- batch.rs ----------------------------------------------------------------------------------------------------------
 
-_Stepped = tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_], list[int]]
+_Stepped: TypeAlias = tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_], list[int]]
 
 @final
 class Batch:

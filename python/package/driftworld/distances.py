@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import total_ordering
 from pathlib import Path
 from typing import Any
@@ -44,7 +44,7 @@ class Distance:
 
     total: float
     elements: dict[str, float | None]
-    parts: list[dict[str, Any]]
+    parts: list[dict[str, Any]] = field(repr=False)
     compared: str
 
     def __float__(self) -> float:

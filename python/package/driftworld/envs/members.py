@@ -56,7 +56,9 @@ class Members:
         self.layout = options.layout(self._home)
         self._checked: set[str] = set()
         kept = ("home", None) if drift is None else ("drift", drift)
-        self._sources: list[Source] = [kept if name is None or drift is not None else ("variants", [name]) for name in variants]
+        self._sources: list[Source] = [
+            kept if name is None or drift is not None else ("variants", [name]) for name in variants
+        ]
         streams = [self._stream(source) for source in self._sources]
         self._labels = [variant.id for variant in self._home.task.all_variants()] if self._home.task else []
         self.label_in_info = options.task_label == "info"
@@ -221,7 +223,9 @@ class Members:
             return self.batch.step_one_by_row(self._row(action))
         numbers = np.asarray(action, dtype=np.float64)
         if numbers.shape != self.action_space.shape:
-            raise ValueError(f"action: found shape {numbers.shape}, expected {self.action_space.shape}; nothing was changed")
+            raise ValueError(
+                f"action: found shape {numbers.shape}, expected {self.action_space.shape}; nothing was changed"
+            )
         return self.batch.step_one_by_numbers(numbers.tolist())
 
     @staticmethod

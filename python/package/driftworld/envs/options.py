@@ -145,7 +145,9 @@ def _as_options(error: SpecError) -> SpecError:
         option = next((name for pointer, name in _OPTIONS.items() if problem["pointer"].startswith(pointer)), None)
         if option is None:
             return error
-        expected = problem["expected"].replace('{"discrete": [[3, 4, 0], [-3, 4, 0]]}', "actions=[[3, 4, 0], [-3, 4, 0]]")
+        expected = problem["expected"].replace(
+            '{"discrete": [[3, 4, 0], [-3, 4, 0]]}', "actions=[[3, 4, 0], [-3, 4, 0]]"
+        )
         advice = f"; {problem['advice']}" if problem["advice"] else ""
         lines.append(f"{option}: found {problem['found']}, expected {expected}{advice}")
     if not lines:

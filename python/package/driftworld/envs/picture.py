@@ -16,7 +16,7 @@ class Camera:
     """Where pictures are taken from, and how large they are.
 
     Args:
-        name: ``"agent"``, ``"above"`` or ``"both"``, side by side.
+        name: ``"agent"``, ``"above"``, or ``"both"``: what the agent sees and beside it a square from above.
         size: Height and width in pixels, each 1 to 4096.
     """
 
@@ -33,12 +33,9 @@ class Camera:
         self._size = (height, width)
 
     def picture(self, batch: _native.Batch, env: int) -> NDArray[np.uint8]:
-        """One environment, uint8 (height, width, 3)."""
+        """One environment, uint8 (height, width, 3); with ``"both"`` as wide as width and height together."""
         height, width = self._size
         if self._name != "both":
             return batch.picture(env, height, width, self._name == "above")
-        left = max(1, width - height) if width > height else max(1, width // 2)
-        seen = batch.picture(env, height, left, False)
-        if left == width:
-            return seen
-        return np.concatenate([seen, batch.picture(env, height, width - left, True)], axis=1)
+        seen, above = batch.picture(env, height, width, False), batch.picture(env, height, height, True)
+        return np.concatenate([seen, above], axis=1)

@@ -1,0 +1,47 @@
+"""What somebody does who has just read the README, run by an interpreter in which nothing but `pip install ./python` was done.
+
+Runs every block of Python in README.md as it stands, each in a folder and an interpreter of its own; then the command. `cargo xtask
+python` starts it; what the blocks print is printed. The guide's blocks are run by `test_readme.py`.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+README = Path(__file__).parents[2] / "README.md"
+
+
+def run(arguments: list[str], folder: Path) -> None:
+    """Runs a program in a folder; its failure is ours."""
+    print("$", " ".join("…" if "\n" in argument else argument for argument in arguments), flush=True)
+    subprocess.run(arguments, cwd=folder, check=True, timeout=300)
+
+
+def main() -> None:
+    """Takes the steps."""
+    brought = {distribution.metadata["Name"].lower() for distribution in importlib.metadata.distributions()}
+    unexpected = brought & {"torch", "pandas", "pygame", "pytest", "scipy", "matplotlib"}
+    if "driftworld" not in brought or unexpected:
+        sys.exit(f"newcomer: found {sorted(brought)}, expected driftworld and little more: make an empty environment")
+    blocks = re.findall(r"^```python\n(.*?)^```", README.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    if not blocks:
+        sys.exit(f"newcomer: found no block of Python in {README}, expected the example that users begin with")
+    command = str(Path(sys.executable).with_name("driftworld"))
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for block in blocks:
+            run([sys.executable, "-W", "error", "-c", block], folder)
+        run([command, "--version"], folder)
+        run([sys.executable, "-m", "driftworld", "--version"], folder)
+        run([command, "demo"], folder)
+        if not any(folder.iterdir()):
+            sys.exit("newcomer: `driftworld demo` wrote nothing, expected its folder")
+
+
+if __name__ == "__main__":
+    main()

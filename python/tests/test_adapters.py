@@ -1,0 +1,275 @@
+"""What the adapters hand to other libraries is what those want: tried with the libraries themselves where they can be had."""
+
+from __future__ import annotations
+
+import importlib
+import subprocess
+import sys
+import types
+from pathlib import Path
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from driftworld._equality import first_difference
+
+FIND = "driftworld/FindObjects-v0"
+SMALL = {"size": 40, "modalities": "rgb", "actions": "discrete"}
+PACKAGES = {
+    "sb3": "stable_baselines3",
+    "pufferlib": "pufferlib",
+    "minari": "minari",
+}
+
+
+@pytest.mark.parametrize("name, package", PACKAGES.items())
+def test_a_missing_library_is_named_with_what_to_install(
+    name: str, package: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, package, None)
+    monkeypatch.delitem(sys.modules, f"driftworld.adapters.{name}", raising=False)
+    with pytest.raises(ImportError, match=f"found no {package}, expected version .*pip install"):
+        importlib.import_module(f"driftworld.adapters.{name}")
+
+
+def in_a_loop(seed: int, num_envs: int, **options: Any) -> Any:
+    from stable_baselines3.common.vec_env import DummyVecEnv
+
+    envs = DummyVecEnv([lambda: gym.make(FIND, **options)] * num_envs)
+    envs.seed(seed)
+    return envs
+
+
+@pytest.mark.learners
+@pytest.mark.parametrize("modalities", ["rgb", ["rgb", "state"]], ids=str)
+def test_sb3s_vector_environment_lives_as_its_own_loop(modalities: Any) -> None:
+    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    from driftworld.adapters.sb3 import DriftworldVecEnv
+
+    options = {**SMALL, "modalities": modalities}
+    ours = DriftworldVecEnv(FIND, 3, max_episode_steps=5, **options)
+    theirs = in_a_loop(4, 3, max_episode_steps=5, **options)
+    ours.seed(4)
+    assert first_difference(ours.reset(), theirs.reset()) is None
+    assert first_difference(ours.reset_infos, theirs.reset_infos) is None
+    chance = np.random.default_rng(0)
+    for number in range(14):
+        actions = chance.integers(0, theirs.action_space.n, 3)
+        left, right = ours.step(actions), theirs.step(actions)
+        # Gymnasium's own limit of steps says that it was it; ours is the world's.
+        for info in right[3]:
+            info.setdefault("TimeLimit.truncated", False)
+        assert first_difference(left, right, f"step {number}") is None
+        assert first_difference(ours.reset_infos, theirs.reset_infos) is None
+    assert [type(each).__name__ for each in left[3]] == ["dict"] * 3
+
+
+@pytest.mark.learners
+def test_sb3_keeps_what_it_was_given() -> None:
+    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    from driftworld.adapters.sb3 import DriftworldVecEnv
+
+    envs = DriftworldVecEnv(FIND, 2, **SMALL)
+    first = envs.reset()
+    before = first.copy()
+    for _ in range(3):
+        envs.step(np.ones(2, dtype=np.int64))
+    assert np.array_equal(first, before)
+
+
+@pytest.mark.learners
+def test_sb3s_options_are_for_all_or_for_each() -> None:
+    pytest.importorskip("stable_baselines3", reason="the adapter is for it")
+    from driftworld.adapters.sb3 import DriftworldVecEnv
+
+    envs = DriftworldVecEnv(FIND, 3, render_mode="rgb_array", render_size=(24, 32), **SMALL)
+    envs.seed(3)
+    envs.set_options([{"variant": "red"}, {}, {"variant": "dusk"}])
+    envs.reset()
+    told = [(info["variant_id"].partition("#")[2], info["seed"], info["index"]) for info in envs.reset_infos]
+    assert told == [("red", 3, 0), ("default", 4, 0), ("dusk", 5, 0)]
+    envs.set_options({"variant": "near"})
+    envs.reset()
+    assert [info["variant_id"].partition("#")[2] for info in envs.reset_infos] == ["near"] * 3
+    assert [each["version"] for each in envs.env_method("state", indices=[0, 2])] == [1, 1]
+    assert envs.get_attr("num_envs", indices=1) == [3]
+    assert envs.env_is_wrapped(gym.Wrapper) == [False] * 3
+    assert [image.shape for image in envs.get_images()] == [(24, 32, 3)] * 3
+    assert envs.render().shape == (48, 64, 3)
+    with pytest.raises(ValueError, match="expected all"):
+        envs.set_attr("anything", 1, indices=[0])
+    envs.set_attr("anything", 1)
+    assert envs.get_attr("anything") == [1] * 3
+    with pytest.raises(AttributeError):
+        envs.get_attr("nothing")
+    with pytest.raises(RuntimeError, match="step_async before"):
+        envs.step_wait()
+    with pytest.raises(ValueError, match="autoreset_mode"):
+        DriftworldVecEnv(FIND, 2, autoreset_mode="disabled")
+    envs.close()
+    envs.close()
+
+
+@pytest.mark.learners
+@pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::UserWarning")
+@pytest.mark.parametrize("algorithm", ["PPO", "DQN"])
+def test_sb3_learns_on_it(algorithm: str, tmp_path: Path) -> None:
+    sb3 = pytest.importorskip("stable_baselines3", reason="it learns")
+    from driftworld.adapters.sb3 import make_vec_env
+    from stable_baselines3.common.evaluation import evaluate_policy
+
+    envs = make_vec_env(FIND, num_envs=2, seed=0, max_episode_steps=12, monitor_dir=str(tmp_path / "monitor"), **SMALL)
+    more = {"n_steps": 16, "batch_size": 16} if algorithm == "PPO" else {"buffer_size": 200, "learning_starts": 16}
+    model = getattr(sb3, algorithm)("CnnPolicy", envs, seed=0, device="cpu", **more)
+    before = [parameter.detach().clone() for parameter in model.policy.parameters()]
+    model.learn(64)
+    assert any(not old.equal(new) for old, new in zip(before, model.policy.parameters(), strict=True))
+    assert len(model.ep_info_buffer) >= 4
+    assert model.ep_info_buffer[0]["l"] == 12
+    mean, _ = evaluate_policy(model, envs, n_eval_episodes=2)
+    assert np.isfinite(mean)
+
+
+@pytest.mark.learners
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+@pytest.mark.parametrize("actions", ["normalized", "discrete"])
+def test_sb3s_check_passes_without_a_warning(env_id: str, actions: str) -> None:
+    pytest.importorskip("stable_baselines3", reason="the check is its")
+    from stable_baselines3.common.env_checker import check_env
+
+    for modalities in ("rgb", ["rgb", "depth", "segmentation", "state"]):
+        check_env(gym.make(env_id, actions=actions, modalities=modalities).unwrapped)
+
+
+@pytest.mark.learners
+def test_torch_sees_the_buffers_themselves() -> None:
+    torch = pytest.importorskip("torch", reason="the views are its")
+    envs = gym.make_vec(FIND, num_envs=2, vectorization_mode="vector_entry_point", size=40)
+    observations, _ = envs.reset(seed=0)
+    for name, array in observations.items():
+        tensor = torch.from_dlpack(array)
+        assert tensor.data_ptr() == array.ctypes.data, name
+        assert tuple(tensor.shape) == array.shape
+    tensor = torch.from_dlpack(observations["rgb"])
+    before = tensor.clone()
+    envs.step(np.ones(envs.action_space.shape, dtype=np.float32))
+    assert not tensor.equal(before), "the view did not follow the step"
+
+
+@pytest.mark.learners
+@pytest.mark.parametrize("modalities", ["rgb", ["rgb", "state"]], ids=str)
+def test_minari_reads_back_what_was_lived(modalities: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MINARI_DATASETS_PATH", str(tmp_path))
+    minari = pytest.importorskip("minari", reason="the data set is its")
+    from driftworld.adapters.minari import collect
+
+    options = {**SMALL, "modalities": modalities, "max_steps": 6}
+    env = gym.make(FIND, **options)
+    collect(env, "driftworld/find-objects/test-v0", episodes=3, seed=8, queue=["red", "blue"])
+    dataset = minari.load_dataset("driftworld/find-objects/test-v0")
+    metadata = list(dataset.storage.get_episode_metadata(range(3)))
+    assert [each["variant_id"] for each in metadata] == ["find_objects#red", "find_objects#blue", "find_objects#red"]
+    assert [(each["world_seed"], each["world_index"]) for each in metadata] == [(8, 0), (8, 1), (8, 2)]
+    again = dataset.recover_environment()
+    for episode, told in zip(dataset.iterate_episodes(), metadata, strict=True):
+        observation, info = again.reset(
+            seed=int(told["world_seed"]),
+            options={"variant": told["variant_id"].partition("#")[2], "index": int(told["world_index"])},
+        )
+        assert info["world_hash"] == told["world_hash"]
+        lived = [observation] + [again.step(int(action))[0] for action in episode.actions]
+        for number, each in enumerate(lived):
+            if isinstance(each, dict):
+                kept: Any = {name: array[number] for name, array in episode.observations.items()}
+            else:
+                kept = episode.observations[number]
+            assert first_difference(kept, each, f"observation {number}") is None
+        assert sum(episode.rewards) == pytest.approx(told["episode_return"])
+
+
+class StandIn:
+    """PufferLib's `PufferEnv` as its documentation has it: it checks its class's attributes and brings buffers."""
+
+    def __init__(self, buf: Any = None) -> None:
+        assert isinstance(self.single_observation_space, gym.spaces.Box)
+        assert isinstance(self.single_action_space, (gym.spaces.Discrete, gym.spaces.MultiDiscrete, gym.spaces.Box))
+        assert not hasattr(self, "observation_space")
+        if buf is None:
+            shape = (self.num_agents, *self.single_observation_space.shape)
+            buf = {
+                "observations": np.zeros(shape, self.single_observation_space.dtype),
+                "rewards": np.zeros(self.num_agents, np.float32),
+                "terminals": np.zeros(self.num_agents, bool),
+                "truncations": np.zeros(self.num_agents, bool),
+                "masks": np.ones(self.num_agents, bool),
+            }
+        for name, array in buf.items():
+            setattr(self, name, array)
+
+
+@pytest.fixture
+def puffer(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The adapter with PufferLib itself where it is installed, else with a stand-in that keeps to its documentation."""
+    if importlib.util.find_spec("pufferlib") is None:
+        library = types.ModuleType("pufferlib")
+        library.PufferEnv = StandIn  # type: ignore[attr-defined]
+        monkeypatch.setitem(sys.modules, "pufferlib", library)
+    monkeypatch.delitem(sys.modules, "driftworld.adapters.pufferlib", raising=False)
+    module = importlib.import_module("driftworld.adapters.pufferlib")
+    yield module.DriftworldPuffer
+    sys.modules.pop("driftworld.adapters.pufferlib", None)
+
+
+def test_puffers_buffers_hold_what_the_environments_say(puffer: Any) -> None:
+    options = {"size": 40, "actions": "discrete", "max_episode_steps": 5}
+    ours = puffer(FIND, 3, **options)
+    theirs = gym.make_vec(
+        FIND,
+        num_envs=3,
+        vectorization_mode="vector_entry_point",
+        modalities="rgb",
+        autoreset_mode="same_step",
+        **options,
+    )
+    observations, infos = ours.reset(seed=2)
+    buffers = {name: getattr(ours, name) for name in ("observations", "rewards", "terminals", "truncations")}
+    assert infos == []
+    assert np.array_equal(observations, theirs.reset(seed=2)[0])
+    told = []
+    for number in range(12):
+        actions = np.array([number % 3, 1, 2], dtype=np.int32)
+        found, expected = ours.step(actions), theirs.step(actions)
+        for name, one, other in zip(buffers, found, expected, strict=False):
+            assert one is buffers[name]
+            assert np.array_equal(one, other.astype(one.dtype)), name
+        told.extend(found[4])
+    assert len(told) == 6
+    assert {info["episode_length"] for info in told} == {5}
+    assert set(told[0]) == {"episode_return", "episode_length", "is_success"}
+    assert puffer(FIND, 1, seed=2).reset()[0].shape[0] == 1
+
+
+def test_puffer_writes_into_the_buffers_that_it_is_given(puffer: Any) -> None:
+    space = gym.make(FIND, modalities="rgb", size=40).observation_space
+    given = {
+        "observations": np.zeros((2, *space.shape), np.uint8),
+        "rewards": np.zeros(2, np.float32),
+        "terminals": np.zeros(2, bool),
+        "truncations": np.zeros(2, bool),
+        "masks": np.zeros(2, bool),
+        "actions": np.zeros((2, 3), np.float32),
+    }
+    ours = puffer(FIND, 2, given, size=40)
+    ours.reset(seed=0)
+    assert given["observations"].any() and given["masks"].all()
+
+
+def test_puffer_wants_one_array(puffer: Any) -> None:
+    with pytest.raises(ValueError, match="expected one for PufferLib"):
+        puffer(FIND, 1, modalities=["rgb", "state"])
+
+
+def test_adapters_are_not_imported_with_the_package() -> None:
+    program = "import sys, driftworld; sys.exit(any(name.startswith('driftworld.adapters') for name in sys.modules))"
+    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0

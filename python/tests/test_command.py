@@ -1,0 +1,92 @@
+"""The command that the wheel brings: arguments, exit codes, pipes and signals."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import driftworld
+import pytest
+
+
+def command(*argv: str) -> list[str]:
+    return [sys.executable, "-m", "driftworld", *argv]
+
+
+def run(*argv: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command(*argv), capture_output=True, text=True, check=False)
+
+
+def test_it_says_its_version() -> None:
+    said = run("--version")
+    assert (said.returncode, said.stdout) == (0, f"driftworld {driftworld.__version__}\n")
+
+
+def test_it_prints_what_it_found() -> None:
+    said = run("sample", "find_objects#red", "--seed", "7")
+    assert said.returncode == 0 and json.loads(said.stdout) == driftworld.variant("find_objects#red").sample(7)
+
+
+def test_wrong_input_is_exit_code_1() -> None:
+    said = run("sample", "find_object#red")
+    assert said.returncode == 1 and said.stdout == ""
+    assert said.stderr.startswith("error: found task") and 'did you mean "find_objects"?' in said.stderr
+
+
+@pytest.mark.parametrize("argv", [["sampel"], ["sample", "find_objects", "--sed", "3"], ["order"]])
+def test_wrong_arguments_are_exit_code_2(argv: list[str]) -> None:
+    said = run(*argv)
+    assert said.returncode == 2 and "driftworld" in said.stderr and "__main__" not in said.stderr
+
+
+def test_help_is_no_mistake() -> None:
+    said = run("sample", "--help")
+    assert said.returncode == 0 and "Usage: driftworld sample" in said.stdout and said.stderr == ""
+
+
+def test_the_errors_of_python_say_what_the_command_says() -> None:
+    with pytest.raises(driftworld.TaskError) as refused:
+        driftworld.variant("find_object#red")
+    assert run("sample", "find_object#red").stderr == f"error: {refused.value}\n"
+
+
+def test_it_ends_quietly_when_its_reader_goes() -> None:
+    child = subprocess.Popen(
+        command("sample", "find_objects", "--count", "100000", "--jsonl"), stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    assert child.stdout is not None and child.stderr is not None
+    child.stdout.readline()
+    child.stdout.close()
+    assert child.stderr.read() == b"" and child.wait(60) == 0
+    child.stderr.close()
+
+
+def test_an_interrupt_ends_it() -> None:
+    child = subprocess.Popen(
+        command("sample", "find_objects", "--count", "100000000", "--jsonl"), stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    assert child.stdout is not None
+    child.stdout.readline()
+    child.send_signal(signal.SIGINT)
+    # Read to the end: a writer that waits for its reader could not be seen to end.
+    _, said = child.communicate(timeout=60)
+    assert child.returncode == -signal.SIGINT and b"Traceback" not in said
+
+
+def test_an_interrupted_run_leaves_a_log_that_goes_on(tmp_path: Path) -> None:
+    scenario, log = tmp_path / "scenario.json", tmp_path / "log"
+    driftworld.Curriculum.design("find_objects#blue", learn=3000, eval_episodes=1).save(scenario)
+    argv = command("run", str(scenario), "--agent", "random", "--logs", str(log))
+    child = subprocess.Popen(argv, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while not list(log.glob("*/1-train")) and child.poll() is None:
+        pass
+    child.send_signal(signal.SIGINT)
+    _, said = child.communicate(timeout=60)
+    assert child.returncode == 1 and "interrupted" in said and "--resume" in said
+    lived = len(driftworld.read_log(log))
+    assert 0 < lived < 3002
+    subprocess.run([*argv, "--resume"], check=True, capture_output=True)
+    assert len(driftworld.read_log(log)) == 3002

@@ -1,0 +1,172 @@
+"""Distances, matrices and orders from Python are the command's."""
+
+from __future__ import annotations
+
+import json
+import pickle
+from pathlib import Path
+from typing import Any
+
+import driftworld
+import numpy as np
+import pytest
+from driftworld import DistanceMatrix, SimilarityError, _native, distance, distance_matrix, order
+
+SOME = ["find_objects#blue", "find_objects#red", "find_objects#dusk", "find_objects#penalty"]
+
+
+def commanded(*argv: str) -> Any:
+    """What the command says as JSON."""
+    output, _, refused = _native.ask([*argv, "--json"])
+    assert refused is None, refused
+    return json.loads(output)
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "options", "flags"),
+    [
+        ("find_objects#blue", "find_objects#dusk", {}, []),
+        ("find_objects#blue", "find_objects#dusk", {"weights": {"R": 2, "observation": 0.5}}, ["--weight", "R=2", "--weight", "O=0.5"]),
+        ("find_objects#blue", "get_to_goal#plain", {"worlds": 3, "seed": 4}, ["--worlds", "3", "--seed", "4"]),
+    ],
+)
+def test_a_distance_is_the_commands(a: str, b: str, options: dict[str, Any], flags: list[str]) -> None:
+    found, expected = distance(a, b, **options), commanded("distance", a, b, *flags)
+    assert float(found) == found.total == expected["total"]
+    assert list(found.elements.values()) == list(expected["elements"].values())
+    assert found.compared == expected["compared"]
+    assert sorted(part["name"] for part in found.parts) == sorted(part["name"] for part in expected["parts"])
+    shares = [part["share"] for part in found.parts]
+    assert shares == sorted(shares, reverse=True) and sum(shares) == pytest.approx(1)
+
+
+def test_worlds_are_compared_as_they_are(tmp_path: Path) -> None:
+    variant = driftworld.variant("find_objects#blue")
+    paths = [tmp_path / "a.json", tmp_path / "b.json"]
+    worlds = variant.sample_many(2)
+    for path, world in zip(paths, worlds, strict=True):
+        path.write_text(json.dumps(world), encoding="utf-8")
+    expected = commanded("distance", *map(str, paths))["total"]
+    assert expected > 0
+    assert distance(*worlds).total == distance(*paths).total == distance(json.dumps(worlds[0]), worlds[1]).total == expected
+    assert distance(worlds[0], worlds[0]) == 0
+    assert distance(variant, worlds[0]).compared == "mean of 16 worlds of each, drawn under seed 0"
+
+
+def test_a_distance_is_a_number_where_one_is_wanted() -> None:
+    near, far = distance(SOME[0], SOME[1]), distance(SOME[0], SOME[3])
+    assert near < far and max(near, far) is far and near < 0.9 and near != far and near == near.total
+    assert np.asarray([float(near), float(far)]).sum() == near.total + far.total
+
+
+def test_a_distance_explains_itself() -> None:
+    said = distance("find_objects#blue", "find_objects#dusk").explain()
+    lines = said.splitlines()
+    assert lines[0] == "0.0656, parameter by parameter"
+    assert any(line.startswith("  O observation") for line in lines)
+    assert any(line.startswith("light ") and line.endswith("%") for line in lines)
+
+
+def test_what_cannot_be_compared_says_so() -> None:
+    with pytest.raises(SimilarityError) as refused:
+        distance(SOME[0], SOME[1], weights={"R": -1})
+    assert refused.value.code is not None and refused.value.code.startswith("similarity/")
+    with pytest.raises(ValueError, match="element: found"):
+        distance(SOME[0], SOME[1], weights={"X": 1})
+    with pytest.raises(ValueError, match="worlds"):
+        distance(SOME[0], SOME[1], worlds=0)
+    with pytest.raises(driftworld.TaskError):
+        distance("find_object#blue", SOME[1])
+    with pytest.raises(TypeError, match="document: found int"):
+        distance(3, SOME[1])
+
+
+def test_a_matrix_is_the_commands() -> None:
+    matrix, expected = distance_matrix(SOME), commanded("order", *SOME)["matrix"]
+    assert matrix.labels == expected["labels"] == SOME
+    assert np.array_equal(matrix, np.array(expected["values"]))
+    assert matrix.is_metric and expected["nature"] == "metric"
+    assert matrix[0, 1] == matrix["find_objects#blue", "find_objects#red"] == distance(SOME[0], SOME[1]).total
+    assert matrix.values.dtype == np.float64 and matrix.values.shape == (4, 4) and len(matrix) == 4
+    with pytest.raises(ValueError, match="read-only"):
+        matrix.values[0, 1] = 3
+
+
+def test_a_matrix_takes_tasks_variants_and_names_each_once() -> None:
+    task = driftworld.TaskSpec.load("find_objects")
+    whole = distance_matrix("find_objects")
+    assert len(whole) == len(task.variants) and np.array_equal(whole, distance_matrix(task))
+    made = task.variant("red").with_values("mine", light=0.3)
+    mixed = distance_matrix(["find_objects#red", task.variant("red"), made, "find_objects"])
+    assert mixed.labels[:2] == ["find_objects#red", "find_objects#mine"] and len(mixed) == len(whole) + 1
+
+
+def test_variants_of_several_tasks_are_compared_by_worlds() -> None:
+    matrix = distance_matrix(["find_objects#blue", "get_to_goal#plain"])
+    assert not matrix.is_metric and matrix[0, 1] == distance("find_objects#blue", "get_to_goal#plain").total
+
+
+@pytest.mark.parametrize("ending", ["csv", "json", "npy"])
+def test_a_matrix_comes_back_from_its_file(tmp_path: Path, ending: str) -> None:
+    matrix, path = distance_matrix(SOME), tmp_path / "new" / f"matrix.{ending}"
+    matrix.save(path)
+    again = DistanceMatrix.load(path)
+    assert again.labels == SOME and np.array_equal(again, matrix)
+    assert commanded("order", "--from-matrix", str(path))["order"] == order(matrix).labels
+    if ending == "npy":
+        assert np.array_equal(np.load(path), matrix)
+
+
+def test_a_matrix_of_numbers_is_checked() -> None:
+    assert DistanceMatrix(["a", "b"], [[0, 1], [1, 0]]).values[0, 1] == 1
+    for values in ([[0, 1], [2, 0]], [[0, -1], [-1, 0]], [[0, np.nan], [np.nan, 0]], [[0, 1, 2], [1, 0, 2]]):
+        with pytest.raises(SimilarityError):
+            DistanceMatrix(["a", "b"], values)
+    with pytest.raises(ValueError, match="ends with .csv"):
+        distance_matrix(SOME[:2]).save("matrix.txt")
+
+
+def test_a_matrix_is_an_array_as_numpy_wants_it() -> None:
+    matrix = distance_matrix(SOME[:2])
+    assert np.asarray(matrix) is matrix.values
+    owned = np.array(matrix)
+    owned[0, 1] = 7
+    assert matrix[0, 1] != 7
+    assert np.asarray(matrix, dtype=np.float32).dtype == np.float32
+    assert np.array_equal(pickle.loads(pickle.dumps(matrix)), matrix)
+
+
+@pytest.mark.parametrize("method", [None, *_native.order_methods()])
+def test_an_order_is_the_commands(method: str | None) -> None:
+    options: dict[str, Any] = {"seed": 3} if method == "random" else {}
+    flags = ["--seed", "3"] if method == "random" else []
+    if method == "target-step":
+        options, flags = {"target_step": 0.05}, ["--target-step", "0.05"]
+    expected = commanded("order", *SOME, *flags, *([] if method is None else ["--method", method]))
+    found = order(SOME, method, **options)
+    for field in ("method", "order", "steps", "length", "largest_step", "mean_step", "anchor_correlation"):
+        assert getattr(found, field) == expected[field], field
+    assert [SOME[index] for index in found.indices] == found.labels == list(found)
+
+
+def test_an_order_keeps_to_its_ends() -> None:
+    found = order(SOME, start=SOME[2], end=SOME[1])
+    assert (found.labels[0], found.labels[-1]) == (SOME[2], SOME[1])
+    with pytest.raises(ValueError, match="start: found 'nobody', expected one of find_objects#blue"):
+        order(SOME, start="nobody")
+    with pytest.raises(SimilarityError, match="nearby"):
+        order(SOME, "nearby")
+    with pytest.raises(ValueError, match="measured already"):
+        order(distance_matrix(SOME[:2]), weights={"R": 1})
+
+
+def test_a_map_keeps_distances_in_a_plane() -> None:
+    points = np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 4.0]])
+    apart = np.linalg.norm(points[:, None] - points[None], axis=-1)
+    matrix = DistanceMatrix(["a", "b", "c"], apart)
+    mapped = matrix.embed()
+    assert mapped.shape == (3, 2) and matrix.explained() == pytest.approx(1)
+    assert np.linalg.norm(mapped[:, None] - mapped[None], axis=-1) == pytest.approx(apart)
+    assert matrix.embed(1).shape == (3, 1)
+    with pytest.raises(ValueError, match="expected 1 or 2"):
+        matrix.embed(3)

@@ -1,0 +1,167 @@
+"""Every exception says what the native error says: its text, its code, its place."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import driftworld
+import pytest
+from driftworld import Curriculum, DriftworldError, TaskSpec, _native
+
+CROWDED: dict[str, Any] = {
+    "name": "crowded",
+    "groups": [
+        {
+            "name": "rocks",
+            "count": 50,
+            "placement": {"disc": {"center": [0, 0], "radius": 2}},
+            "object": {"class": "cube", "scale": 4},
+        }
+    ],
+}
+
+
+def no_key() -> Any:
+    return TaskSpec.from_json("mine.json", '{\n  "name": "x",\n  "paramters": {}\n}')
+
+
+def no_json() -> Any:
+    return TaskSpec.from_json("mine.json", '{\n  "name": }')
+
+
+def no_task() -> Any:
+    return TaskSpec.load("find_object")
+
+
+def no_place() -> Any:
+    return TaskSpec.from_dict(CROWDED).sample()
+
+
+def other_task() -> Any:
+    return driftworld.Drift(driftworld.variant("find_objects#red"), driftworld.variant("get_to_goal#plain"))
+
+
+def no_method() -> Any:
+    return driftworld.order("find_objects", "nearby")
+
+
+def no_action() -> Any:
+    env = driftworld.DriftworldEnv("find_objects", modalities="rgb", size=16, max_steps=1)
+    env.reset(seed=0)
+    env.step(env.action_space.sample())
+    return env.step(env.action_space.sample())
+
+
+def no_log() -> Any:
+    return driftworld.read_log("nowhere")
+
+
+def no_experience() -> Any:
+    return Curriculum.design("find_objects#red").experience(10**6)
+
+
+CASES: list[tuple[Callable[[], Any], type[DriftworldError], type[Exception], str]] = [
+    (no_key, driftworld.SpecError, ValueError, "spec/unknown-key"),
+    (no_json, driftworld.SpecError, ValueError, "spec/syntax"),
+    (no_task, driftworld.TaskError, LookupError, "task/unknown"),
+    (no_place, driftworld.GeneratorError, Exception, "generator/no-place"),
+    (other_task, driftworld.GeneratorError, Exception, "generator/different-tasks"),
+    (no_method, driftworld.SimilarityError, Exception, "similarity/unknown-method"),
+    (no_action, driftworld.EnvError, Exception, "env/episode-over"),
+    (no_log, driftworld.MetricsError, Exception, "metrics/missing-file"),
+    (no_experience, driftworld.CurriculumError, Exception, "curriculum/no-such-experience"),
+]
+
+
+@pytest.mark.parametrize(("wrong", "kind", "also", "code"), CASES, ids=[case[0].__name__ for case in CASES])
+def test_a_mistake_is_of_its_class_and_has_a_code(
+    wrong: Callable[[], Any], kind: type[DriftworldError], also: type[Exception], code: str
+) -> None:
+    with pytest.raises(DriftworldError) as refused:
+        wrong()
+    error = refused.value
+    assert type(error) is kind and isinstance(error, also) and isinstance(error, DriftworldError)
+    assert error.code == code and "expected" in str(error)
+
+
+@pytest.mark.parametrize(("wrong", "kind", "also", "code"), CASES, ids=[case[0].__name__ for case in CASES])
+def test_an_error_survives_being_copied(
+    wrong: Callable[[], Any], kind: type[DriftworldError], also: type[Exception], code: str
+) -> None:
+    with pytest.raises(DriftworldError) as refused:
+        wrong()
+    error = refused.value
+    for again in (pickle.loads(pickle.dumps(error)), copy.copy(error)):
+        assert type(again) is kind and str(again) == str(error)
+        for name in ("code", "pointer", "line", "column", "expected", "problems"):
+            assert getattr(again, name) == getattr(error, name), name
+
+
+def test_every_class_has_a_case() -> None:
+    classes = {value for value in vars(driftworld).values() if isinstance(value, type) and issubclass(value, DriftworldError)}
+    assert classes - {DriftworldError} == {kind for _, kind, _, _ in CASES}
+
+
+def test_a_document_is_refused_with_pointer_line_and_column() -> None:
+    with pytest.raises(driftworld.SpecError) as refused:
+        no_key()
+    error = refused.value
+    assert (error.pointer, error.line, error.column) == ("/paramters", 3, 3)
+    assert error.expected is not None and error.expected.startswith("one of version, name")
+    assert error.problems[0]["advice"] == 'did you mean "parameters"?'
+    with pytest.raises(driftworld.SpecError) as refused:
+        no_json()
+    assert (refused.value.pointer, refused.value.line, refused.value.column) == (None, 2, 11)
+
+
+def test_all_problems_come_at_once_in_the_order_of_places() -> None:
+    with pytest.raises(driftworld.SpecError) as refused:
+        TaskSpec.from_json("mine.json", '{ "name": "x", "b": 1,\n "a": 2, "world": { "c": 3 } }')
+    assert [(problem["pointer"], problem["line"]) for problem in refused.value.problems] == [("/b", 1), ("/a", 2), ("/world/c", 2)]
+    assert len(str(refused.value).splitlines()) == 3
+
+
+def test_a_message_is_the_commands(tmp_path: Path) -> None:
+    path = tmp_path / "wrong.json"
+    path.write_text('{ "name": "x", "paramters": {} }', encoding="utf-8")
+    for call, argv in [
+        (lambda: TaskSpec.load(path), ["tasks", str(path)]),
+        (lambda: driftworld.variant("find_objects#rde"), ["sample", "find_objects#rde"]),
+        (lambda: TaskSpec.load("find_object"), ["sample", "find_object"]),
+        (lambda: driftworld.read_log(tmp_path / "x"), ["metrics", str(tmp_path / "x")]),
+    ]:
+        with pytest.raises(DriftworldError) as refused:
+            call()
+        _, _, message = _native.ask(argv)
+        if argv[0] != "metrics":
+            assert message == str(refused.value)
+        else:
+            assert message is not None and str(tmp_path / "x") in message and str(tmp_path / "x") in str(refused.value)
+
+
+def test_a_drift_through_what_cannot_be_says_what_is_wrong_there() -> None:
+    task = TaskSpec.from_dict(
+        {
+            "name": "t",
+            "parameters": {
+                "least": {"role": "variant", "type": "number", "affects": ["S"], "range": [0, 9], "default": 1},
+                "most": {"role": "variant", "type": "number", "affects": ["S"], "range": [0, 9], "default": 2},
+            },
+            "require": ["(least - 4) * (least - 4) > 1"],
+            "variants": {"low": {}, "high": {"least": 8}},
+        }
+    )
+    with pytest.raises(driftworld.GeneratorError) as refused:
+        driftworld.Drift(task.variant("low"), task.variant("high")).at(0.45)
+    assert refused.value.code == "generator/between" and len(refused.value.problems) == 1
+
+
+def test_problems_go_into_json() -> None:
+    with pytest.raises(driftworld.SpecError) as refused:
+        no_key()
+    assert json.loads(json.dumps(refused.value.problems)) == refused.value.problems

@@ -1,0 +1,36 @@
+"""Ctrl-C ends long native calls, from within them."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+#: Each call would take hours.
+CALLS = {
+    "sample_many": "driftworld.variant('scavenger_hunt').sample_many_json(10**9)",
+    "distance_matrix": "driftworld.distance_matrix(variants)",
+    "distance": "driftworld.distance('find_objects#blue', 'find_objects#red', worlds=100000)",
+}
+
+PROGRAM = """
+import os, signal, threading
+import driftworld
+
+red = driftworld.variant("find_objects#red")
+variants = ["get_to_goal#plain", *(red.with_values(f"v{{n}}", light=0.3 + n / 20000) for n in range(4000))]
+threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+try:
+    {call}
+    print("finished")
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_ctrl_c_ends_a_long_call(call: str) -> None:
+    program = PROGRAM.format(call=CALLS[call])
+    said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
+    assert (said.stdout, said.returncode) == ("interrupted\n", 0), said.stderr

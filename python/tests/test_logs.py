@@ -1,0 +1,105 @@
+"""Logs of lifetimes, written, read and checked from Python."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from driftworld import LogWriter, MetricsError, read_log, validate_log
+
+
+def written(folder: Path, rewards: list[float]) -> Path:
+    info = {"scenario_type": "alternating", "author": "nobody"}
+    with LogWriter(folder, ["reward"], scenario_info=info) as log:
+        for number, reward in enumerate(rewards):
+            log.write(
+                block_num=number // 2,
+                exp_num=number,
+                block_type="train" if number // 2 % 2 == 0 else "test",
+                task_name="find_red",
+                task_params={"seed": 7},
+                reward=reward,
+                steps=number,
+            )
+    return folder
+
+
+def test_what_is_written_is_read(tmp_path: Path) -> None:
+    log = read_log(written(tmp_path / "log", [1.0, math.nan, 0.1 + 0.2]))
+    assert (log.run_id, len(log), sorted(log.metrics)) == ("log", 3, ["reward", "steps"])
+    assert np.array_equal(log["reward"], [1.0, math.nan, 0.1 + 0.2], equal_nan=True)
+    assert log["block_num"].tolist() == [0, 0, 1] and log["exp_num"].dtype == np.int64
+    assert log["block_type"].tolist() == ["train", "train", "test"]
+    assert log["task_params"].tolist() == [{"seed": 7}] * 3
+    assert log["timestamp"].dtype == np.dtype("datetime64[us]") and (np.diff(log["timestamp"]) >= np.timedelta64(0)).all()
+    assert log.scenario_info == {"scenario_type": "alternating", "author": "nobody"}
+    assert log.logger_info["metrics_columns"] == ["reward"]
+
+
+def test_a_log_is_a_data_frame(tmp_path: Path) -> None:
+    pytest.importorskip("pandas", reason="data frames are pandas'")
+    frame = read_log(written(tmp_path / "log", [1.0, 2.0])).to_pandas()
+    assert frame["reward"].tolist() == [1.0, 2.0] and frame["task_name"].tolist() == ["find_red"] * 2
+
+
+def test_a_log_is_written_as_the_format_says(tmp_path: Path) -> None:
+    folder = written(tmp_path / "log", [1.0])
+    lines = (folder / "worker-default" / "0-train" / "data-log.tsv").read_text(encoding="utf-8").splitlines()
+    assert lines[0].split("\t") == (
+        "block_num exp_num worker_id block_type block_subtype task_name task_params exp_status timestamp reward steps".split()
+    )
+    assert validate_log(folder)["valid"] and validate_log(folder)["rows"] == 1
+
+
+def test_a_log_goes_on_where_it_stopped(tmp_path: Path) -> None:
+    folder = written(tmp_path / "log", [1.0, 2.0])
+    with pytest.raises(MetricsError) as refused:
+        LogWriter(folder)
+    assert refused.value.code == "metrics/log-exists"
+    with LogWriter(folder, resume=True) as log:
+        log.write(block_num=1, exp_num=2, block_type="test", task_name="find_red", reward=3.0, steps=2)
+    assert read_log(folder)["reward"].tolist() == [1.0, 2.0, 3.0]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"exp_num": 0}, "numbers never fall"),
+        ({"block_type": "learn"}, "train"),
+        ({"reward": math.inf}, "finite"),
+        ({"worker_id": "a/b"}, "worker_id"),
+        ({"more": 1.0}, "as in the first record"),
+    ],
+)
+def test_a_row_that_breaks_a_rule_is_not_written(tmp_path: Path, wrong: dict[str, Any], message: str) -> None:
+    row: dict[str, Any] = {"block_num": 0, "block_type": "train", "task_name": "find_red", "reward": 1.0}
+    with LogWriter(tmp_path / "log") as log:
+        log.write(exp_num=3, **row)
+        with pytest.raises(MetricsError, match=message):
+            log.write(**{"exp_num": 4, **row, **wrong})
+        log.write(exp_num=5, **row)
+    assert read_log(tmp_path / "log")["exp_num"].tolist() == [3, 5]
+
+
+def test_a_closed_log_takes_no_rows(tmp_path: Path) -> None:
+    log = LogWriter(tmp_path / "log")
+    log.close()
+    log.close()
+    with pytest.raises(ValueError, match="found it closed"):
+        log.write(block_num=0, exp_num=0, block_type="train", task_name="find_red", reward=1.0)
+
+
+def test_what_is_wrong_with_a_log_is_named_with_its_line(tmp_path: Path) -> None:
+    folder = written(tmp_path / "log", [1.0, 2.0])
+    file = folder / "worker-default" / "0-train" / "data-log.tsv"
+    file.write_text(file.read_text(encoding="utf-8").replace("\t2.0\t", "\tmuch\t"), encoding="utf-8")
+    with pytest.raises(MetricsError, match="much") as refused:
+        read_log(folder)
+    assert (refused.value.code, refused.value.line) == ("metrics/cell", 3)
+    checked = validate_log(folder)
+    assert not checked["valid"] and [problem["code"] for problem in checked["problems"]] == ["metrics/cell"]
+    with pytest.raises(MetricsError):
+        read_log(tmp_path / "nowhere")

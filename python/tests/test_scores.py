@@ -1,0 +1,151 @@
+"""Scores and pages of lifetimes from Python are the command's."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from driftworld import LogWriter, Metrics, MetricsError, metrics, report
+
+TASKS = ("find_red", "find_blue")
+
+
+def lifetime(folder: Path, better: float) -> Path:
+    """Two tasks learned one after the other, evaluated before, between and after."""
+    number = 0
+    with LogWriter(folder) as log:
+        for block in range(5):
+            kind = "test" if block % 2 == 0 else "train"
+            for task in TASKS if kind == "test" else (TASKS[block // 2],):
+                for step in range(6):
+                    reward = better * block + step + (0.5 if task == TASKS[0] else 0.0)
+                    log.write(block_num=block, exp_num=number, block_type=kind, task_name=task, reward=reward)
+                    number += 1
+    return folder
+
+
+def expert(folder: Path, task: str) -> Path:
+    with LogWriter(folder, scenario_info={"scenario_type": "ste"}) as log:
+        for number in range(12):
+            log.write(block_num=0, exp_num=number, block_type="train", task_name=task, reward=2.0 * number)
+    return folder
+
+
+@pytest.fixture(name="logs")
+def three_logs(tmp_path: Path) -> list[Path]:
+    return [lifetime(tmp_path / name, better) for name, better in (("one", 1.0), ("two", 2.0), ("three", 2.5))]
+
+
+def commanded(*argv: str | Path) -> Any:
+    command = [sys.executable, "-m", "driftworld", *map(str, argv), "--json"]
+    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+
+
+def test_one_lifetime_has_the_commands_scores(logs: list[Path]) -> None:
+    found, expected = metrics(logs[0]), commanded("metrics", logs[0])
+    assert found.lifetimes == [expected]
+    assert found["avg_train_perf"] == expected["avg_train_perf"] == found.lifetime["avg_train_perf"]
+    assert found.tasks == expected["task_metrics"] and set(found.tasks) == set(TASKS)
+    assert found.repeats == []
+
+
+def test_options_do_what_they_do_for_the_command(logs: list[Path], tmp_path: Path) -> None:
+    experts = [expert(tmp_path / f"expert_{task}", task) for task in TASKS]
+    ranges = tmp_path / "ranges.json"
+    limits = {task: {"min": -1.0, "max": 30.0} for task in TASKS}
+    ranges.write_text(json.dumps(limits), encoding="utf-8")
+    found = metrics(
+        logs[0],
+        ste=experts,
+        transfer_method="both",
+        maintenance_method="both",
+        smoothing_method="none",
+        clamp_outliers=True,
+        data_range=limits,
+        noise=(0.0, 0.5),
+        noise_seed=3,
+    )
+    flags = "-t both -m both -g none -x -N 0.0 0.5 --noise-seed 3".split()
+    expected = commanded("metrics", logs[0], "--ste", *experts, *flags, "-d", ranges)
+    assert found.lifetimes == [expected]
+    assert found["ste_rel_perf"] is not None and "forward_transfer_contrast" in found.lifetime
+    assert found.lifetimes != metrics(logs[0]).lifetimes
+
+
+def test_several_lifetimes_have_the_commands_intervals(logs: list[Path]) -> None:
+    found, expected = metrics(logs, bootstrap_seed=5), commanded("metrics", *logs, "--bootstrap-seed", "5")
+    assert found.repeats == expected["repeats"] and found.lifetimes == expected["lifetimes"]
+    assert found.intervals == expected["intervals"]
+    values = found["avg_eval_perf"]
+    assert len(values) == 3 and found.lifetime["avg_eval_perf"] == pytest.approx(sum(values) / 3)
+    with pytest.raises(ValueError, match="found 3 lifetimes"):
+        _ = found.tasks
+
+
+def test_two_agents_are_compared(logs: list[Path]) -> None:
+    found = metrics(logs[:1], against=logs[1:])
+    assert found.improvement and len(found.lifetimes_against) == 2 and found.repeats_against
+
+
+def test_scores_are_data_frames(logs: list[Path]) -> None:
+    pytest.importorskip("pandas", reason="data frames are pandas'")
+    found = metrics(logs)
+    frame = found.to_pandas()
+    assert frame.index.tolist() == ["one", "two", "three"]
+    assert frame["avg_train_perf"].tolist() == found["avg_train_perf"]
+    assert len(found.regimes()) == 3 * (3 * 2 + 2)
+
+
+def test_scores_are_saved_as_the_command_saves_them(logs: list[Path], tmp_path: Path) -> None:
+    metrics(logs[0]).save(tmp_path / "results")
+    names = ["one_metrics.json", "one_regime.tsv", "one_settings.json"]
+    assert sorted(path.name for path in (tmp_path / "results").iterdir()) == names
+    metrics(logs).save(tmp_path / "many", name="all")
+    assert "all_repeats.json" in [path.name for path in (tmp_path / "many").iterdir()]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"transfer_method": "ratoi"}, "expected one of ratio, contrast, both"),
+        ({"perf_measure": "rewrd"}, "rewrd"),
+        ({"confidence": 2.0}, "2"),
+    ],
+)
+def test_what_cannot_be_scored_says_what_the_command_says(
+    logs: list[Path], options: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(MetricsError, match=message):
+        metrics(logs, **options)
+
+
+def test_a_log_that_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(MetricsError, match="found nothing, expected the folder of a log"):
+        metrics(tmp_path / "nowhere")
+
+
+def test_warnings_are_pythons(logs: list[Path], tmp_path: Path) -> None:
+    stranger = expert(tmp_path / "stranger", "other_task")
+    with pytest.warns(UserWarning, match="is left aside"):
+        metrics(logs[0], ste=stranger)
+
+
+def test_the_page_is_the_commands(logs: list[Path], tmp_path: Path) -> None:
+    path = tmp_path / "pages" / "mine.html"
+    page = report(logs, path, title="Mine", unit="exp_num", plot_types=["raw", "timeline"])
+    assert path.read_text(encoding="utf-8") == page and "<title>Mine" in page
+    other = tmp_path / "theirs.html"
+    command = [sys.executable, "-m", "driftworld", "report", *map(str, logs), "-o", str(other), "--title", "Mine"]
+    subprocess.run([*command, "-T", "raw", "timeline", "--unit", "exp_num"], check=True, capture_output=True)
+    assert other.read_text(encoding="utf-8") == page
+    with pytest.raises(MetricsError):
+        report(tmp_path / "nowhere")
+
+
+def test_scores_without_a_log_of_their_own_compare_by_what_they_say(logs: list[Path]) -> None:
+    assert metrics(logs[0]) == metrics(str(logs[0])) != metrics(logs[1])
+    assert isinstance(metrics(logs[0]), Metrics)

@@ -1,0 +1,218 @@
+"""Task specs, variants, drifts and documents from Python."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+from pathlib import Path
+from typing import Any
+
+import driftworld
+import pytest
+from driftworld import Drift, SpecError, TaskError, TaskSpec, Variant, validate
+
+LAMPS: dict[str, Any] = {
+    "name": "lamps",
+    "description": "Light and dark.",
+    "parameters": {
+        "light": {"role": "variant", "type": "number", "affects": ["O"], "range": [0.2, 4], "default": 2},
+        "far": {"role": "variant", "type": "number", "affects": ["S"], "range": [1, 9], "default": 5},
+    },
+    "world": {"max_steps": 50, "environment_params": {"light_intensity": {"param": "light"}}},
+    "groups": [
+        {
+            "name": "trees",
+            "count": 3,
+            "placement": {"disc": {"center": [0, 0], "radius": 20}},
+            "object": {"class": "tree"},
+        }
+    ],
+    "variants": {"day": {}, "dusk": {"light": 0.5}, "light": {"grid": {"light": [1, 2, 3]}}},
+}
+
+
+@pytest.fixture(name="lamps")
+def lamps_task() -> TaskSpec:
+    return TaskSpec.from_dict(LAMPS)
+
+
+def test_a_task_says_what_its_document_says(lamps: TaskSpec) -> None:
+    assert (lamps.name, lamps.description) == ("lamps", "Light and dark.")
+    assert lamps.parameters["light"]["range"] == [0.2, 4]
+    assert list(lamps.parameters) == ["light", "far"]
+    names = lamps.families["light"]
+    assert lamps.variant_names() == ["day", "dusk", *names] and len(names) == 3
+    assert [variant.name for variant in lamps.variants] == lamps.variant_names()
+    assert TaskSpec.from_json("again", lamps.to_json()) == lamps
+    assert lamps.to_dict()["world"] == LAMPS["world"]
+
+
+def test_a_task_is_loaded_by_its_name_or_its_path(tmp_path: Path, lamps: TaskSpec) -> None:
+    path = tmp_path / "lamps.json"
+    path.write_text(json.dumps(LAMPS), encoding="utf-8")
+    assert TaskSpec.load(path) == TaskSpec.load(str(path)) == lamps
+    assert driftworld.variant(f"{path}#dusk") == lamps.variant("dusk")
+    assert [label for label, _ in driftworld.variants("find_objects#red", f"{path}#light", lamps.variant("day"))][0] == (
+        "find_objects#red"
+    )
+    assert {TaskSpec.load(name).name for name in driftworld.built_in_tasks()} >= {"find_objects", "scavenger_hunt"}
+
+
+def test_a_task_that_is_not_there_is_told_the_ones_that_are() -> None:
+    with pytest.raises(TaskError, match='did you mean "find_objects"'):
+        TaskSpec.load("find_object")
+    with pytest.raises(SpecError, match='did you mean "red"') as refused:
+        TaskSpec.load("find_objects").variant("rde")
+    assert refused.value.code == "spec/unknown-variant"
+
+
+def test_a_variant_says_what_it_is(lamps: TaskSpec) -> None:
+    dusk = lamps.variant("dusk")
+    assert (dusk.id, dusk.name, dusk.task) == ("lamps#dusk", "dusk", lamps)
+    assert dusk.values == {"light": 0.5, "far": 5.0}
+    assert len(dusk.hash) == 64 and dusk.hash != lamps.variant("day").hash
+    assert lamps.variant().values == {"light": 2.0, "far": 5.0}
+
+
+def test_a_variant_is_changed_into_another(lamps: TaskSpec) -> None:
+    made = lamps.variant("dusk").with_values("made", far=7)
+    assert (made.id, made.values) == ("lamps#made", {"light": 0.5, "far": 7.0})
+    with pytest.raises(SpecError) as refused:
+        made.with_values("wrong", light=9, far="wide")
+    assert len(refused.value.problems) == 2
+    with pytest.raises(SpecError, match="brightness"):
+        made.with_values("wrong", brightness=1)
+
+
+@pytest.mark.parametrize("copied", [pickle.loads, copy.deepcopy], ids=["pickle", "deepcopy"])
+@pytest.mark.parametrize("name", ["day", "dusk", "made", "between"])
+def test_a_variant_survives_being_copied(lamps: TaskSpec, name: str, copied: Any) -> None:
+    variant = {
+        "made": lambda: lamps.variant("day").with_values("made", light=3.25),
+        "between": lambda: Drift(lamps.variant("day"), lamps.variant("dusk")).at(0.3),
+    }.get(name, lambda: lamps.variant(name))()
+    again = copied(variant) if copied is copy.deepcopy else copied(pickle.dumps(variant))
+    assert again == variant and hash(again) == hash(variant) and again.hash == variant.hash
+    assert again.sample(3, 4) == variant.sample(3, 4)
+
+
+@pytest.mark.parametrize("task", driftworld.built_in_tasks())
+def test_every_variant_of_every_built_in_task_pickles(task: str) -> None:
+    spec = TaskSpec.load(task)
+    assert pickle.loads(pickle.dumps(spec)) == spec
+    assert pickle.loads(pickle.dumps(spec.variants)) == spec.variants
+
+
+def test_worlds_are_those_of_the_command() -> None:
+    variant = driftworld.variant("find_objects#red")
+    text, _, _ = driftworld._native.ask(["sample", "find_objects#red", "--seed", "7", "--index", "123"])
+    assert variant.sample_json(7, 123) == text.strip()
+    assert variant.sample(7, 123) == json.loads(text)
+    assert TaskSpec.load("find_objects").sample("red", 7, 123) == variant.sample(7, 123)
+
+
+@pytest.mark.parametrize("threads", [0, 1, 3])
+def test_many_worlds_are_the_single_ones(lamps: TaskSpec, threads: int) -> None:
+    variant = lamps.variant("dusk")
+    many = variant.sample_many(600, seed=2, start=10, threads=threads)
+    assert many == [variant.sample(2, index) for index in range(10, 610)]
+    assert variant.sample_many_json(3, seed=2, start=10, threads=threads) == [variant.sample_json(2, k) for k in (10, 11, 12)]
+    assert variant.sample_many(0) == []
+
+
+def test_a_number_of_worlds_that_there_are_not_is_refused(lamps: TaskSpec) -> None:
+    with pytest.raises(ValueError, match="room for 2 worlds"):
+        lamps.variant("day").sample_many(2, start=2**64 - 1)
+
+
+def test_a_drift_leads_from_one_variant_to_the_other(lamps: TaskSpec) -> None:
+    day, dusk = lamps.variant("day"), lamps.variant("dusk")
+    drift = Drift(day, dusk)
+    assert (drift.at(0.0), drift.at(1.0)) == (day, dusk)
+    assert drift.at(0.5).values["light"] == pytest.approx(1.25)
+    assert Drift(day, dusk, schedule="cosine").at(0.25).values["light"] > drift.at(0.25).values["light"]
+    assert Drift(day, dusk, schedule={"steps": 1}).at(0.25) == day
+    assert Drift(day, dusk, schedule={"sawtooth": 2}).at(0.5) == day
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"schedule": "cosinus"}, 'found "cosinus", expected "linear"'),
+        ({"schedule": {"steps": 0}}, "with n from 1 on"),
+        ({"switch": "sudden"}, 'found "sudden", expected "at_point" or "mixture"'),
+    ],
+)
+def test_a_drift_that_is_none_says_what_there_is(lamps: TaskSpec, options: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        Drift(lamps.variant("day"), lamps.variant("dusk"), **options)
+    with pytest.raises(ValueError, match="in 0..1"):
+        Drift(lamps.variant("day"), lamps.variant("dusk")).at(1.5)
+
+
+def test_a_variant_at_a_distance_is_at_that_distance(lamps: TaskSpec) -> None:
+    day = lamps.variant("day")
+    found, distance = day.at_distance(0.25, "observation", name="dimmer")
+    assert found.id == "lamps#dimmer" and distance == pytest.approx(0.25, abs=1e-3)
+    assert driftworld.distance(day, found).elements["O"] == distance
+    found, distance = day.at_distance(0.1, ["far"])
+    assert float(driftworld.distance(day, found)) == distance == pytest.approx(0.1, abs=1e-3)
+    with pytest.raises(driftworld.GeneratorError):
+        day.at_distance(0.5, "reward")
+    with pytest.raises(ValueError, match="element: found"):
+        day.at_distance(0.5, "rewards")
+
+
+def test_what_is_valid_has_no_problems(lamps: TaskSpec) -> None:
+    world = lamps.variant("day").sample()
+    for document in (LAMPS, json.dumps(LAMPS), world, "find_objects"):
+        assert validate(document) == []
+    assert validate(world, kind="world", check=True) == []
+
+
+def test_what_is_wrong_comes_with_every_place(tmp_path: Path) -> None:
+    path = tmp_path / "wrong.json"
+    path.write_text('{ "name": "x",\n  "paramters": {},\n  "world": { "max_stepps": 3 } }', encoding="utf-8")
+    problems = validate(path)
+    assert [(problem["pointer"], problem["line"], problem["column"]) for problem in problems] == [
+        ("/paramters", 2, 3),
+        ("/world/max_stepps", 3, 14),
+    ]
+    with pytest.raises(SpecError) as refused:
+        validate(path, check=True)
+    error = refused.value
+    assert (error.pointer, error.line, error.column, error.code) == ("/paramters", 2, 3, "spec/unknown-key")
+    assert error.problems == problems and str(error).count("\n") == 1
+    assert str(error).splitlines()[0] == f"{path}:{problems[0]['message']}"
+
+
+def test_what_is_no_json_is_one_problem() -> None:
+    (problem,) = validate('{ "name": ', kind="task")
+    assert (problem["code"], problem["line"]) == ("spec/syntax", 1)
+    with pytest.raises(SpecError) as refused:
+        validate('{ "name": ', kind="task", check=True)
+    assert (refused.value.code, refused.value.line) == ("spec/syntax", 1)
+
+
+def test_a_scenario_is_checked_against_its_tasks() -> None:
+    regime = {"task": "find_objects", "variant": "rde", "count": 1}
+    (problem,) = validate({"name": "s", "blocks": [{"type": "learning", "regimes": [regime]}]})
+    assert problem["pointer"] == "/blocks/0/regimes/0/variant" and '"red"' in problem["message"]
+
+
+def test_a_document_that_is_none_is_refused() -> None:
+    with pytest.raises(FileNotFoundError, match="expected the path of a document"):
+        validate("nowhere.json")
+    with pytest.raises(TypeError, match="found int"):
+        validate(3)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match='did you mean "scenario"'):
+        validate("{}", kind="scenrio")
+
+
+def test_variants_and_tasks_are_compared_by_what_they_are(lamps: TaskSpec) -> None:
+    other = TaskSpec.from_dict({**LAMPS, "name": "candles"})
+    assert lamps != other and lamps.variant("day") != other.variant("day")
+    assert lamps.variant("day") == TaskSpec.from_dict(LAMPS).variant("day") != "lamps#day"
+    assert len({lamps.variant("day"), TaskSpec.from_dict(LAMPS).variant("day")}) == 1
+    assert isinstance(lamps.variant("day"), Variant)
