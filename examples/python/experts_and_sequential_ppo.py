@@ -363,7 +363,7 @@ def main() -> None:
             curve=evaluations(lived), table=table, axes=("experiences", "reward"),
             labels=("experiences learned from", "reward in evaluations, mean over lifetimes"),
             seconds=sum(done["seconds"] for done in everything), load_before=everything[0]["load_before"],
-            files={"curriculum.json": everything[-1]["scenario"], "two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "scores.json": scores.lifetimes},
+            files={"curriculum.json": everything[-1]["scenario"], "two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "scores.json": scores.lifetimes, "report.html": page},
         ).write(arguments.results)  # fmt: skip
 
 
