@@ -28,7 +28,7 @@ pub use frame::{
     CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, FAR_DEPTH,
     Frame, category_color, depth_to_gray,
 };
-pub(crate) use frame::{gray_of_metres, rounded};
+pub(crate) use frame::{GRAY_PER_METRE, rounded};
 #[cfg(feature = "gpu")]
 pub use gpu::{GpuChoice, GpuRenderer};
 pub use kind::RendererKind;
