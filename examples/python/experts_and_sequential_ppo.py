@@ -323,6 +323,14 @@ def evaluations(lived: dict[Path, dict[str, Any]], label: str = "") -> list[dict
     ]
 
 
+def levels(experts: dict[Path, dict[str, Any]]) -> dict[str, float]:
+    """What the experts earned in their last 200 experiences of learning, mean over seeds."""
+    earned: dict[str, list[float]] = {}
+    for done in experts.values():
+        earned.setdefault(f"expert, {done['told'][-1]['variant']}", []).append(done["told"][-1]["reward"])
+    return {name: round(float(np.mean(rewards)), 1) for name, rewards in earned.items()}
+
+
 def scores_table(**agents: driftworld.Metrics) -> list[dict[str, Any]]:
     """A row for each metric, a column for each agent: the mean over its lifetimes."""
     names = list(next(iter(agents.values())).lifetime)
@@ -358,9 +366,9 @@ def main() -> None:
             title="Experts, and a sequential PPO",
             text=f"By day blue cubes pay and red ones cost, in the evening it is the other way round. One PPO lives {', '.join(ORDER)}, "
             f"{arguments.learn} experiences each, and is evaluated in both around each block; experts have the same experience of one variant "
-            "alone. The curve is of the evaluations.",
+            "alone, and their levels are what they earned in their last 200. The curve is of the evaluations.",
             settings={**vars(arguments), **OPTIONS}, variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
-            curve=evaluations(lived), table=table, axes=("experiences", "reward"),
+            curve=evaluations(lived), lines=levels(experts), table=table, axes=("experiences", "reward"),
             labels=("experiences learned from", "reward in evaluations, mean over lifetimes"),
             seconds=sum(done["seconds"] for done in everything), load_before=everything[0]["load_before"],
             files={"curriculum.json": everything[-1]["scenario"], "two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "scores.json": scores.lifetimes, "report.html": page},

@@ -4,7 +4,7 @@ The learner sees what the agent sees and nothing else; beside it stand an agent 
 which knows the map and walks from cube to cube, both in the same environment.
 
     python examples/python/ppo_find_objects.py                         # one seed
-    python examples/python/ppo_find_objects.py --seeds 1 2 3 --results # what is written down in results/ppo_find_objects
+    python examples/python/ppo_find_objects.py --seeds 1 2 --results   # what is written down in results/ppo_find_objects
     python examples/python/ppo_find_objects.py --quick                 # does it run?
 
 Needs `pip install "driftworld[sb3]"`.
@@ -155,7 +155,7 @@ def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--variant", default="blue", help="variant of find_objects (default: blue)")
     parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="one run each (default: 1)")
-    parser.add_argument("--steps", type=int, default=400_000, help="steps of learning, over all environments")
+    parser.add_argument("--steps", type=int, default=300_000, help="steps of learning, over all environments")
     parser.add_argument("--num-envs", type=int, default=32)
     parser.add_argument("--rollout", type=int, default=64, help="steps of each environment between updates")
     parser.add_argument("--episodes", type=int, default=200, help="of each evaluation")

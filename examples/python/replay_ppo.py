@@ -25,6 +25,7 @@ from experts_and_sequential_ppo import (
     Learner,
     Rollout,
     evaluations,
+    levels,
     live_experts,
     live_lifetimes,
     parse_arguments,
@@ -139,7 +140,7 @@ def main() -> None:
             text="The learner, the worlds and the curriculum of `experts_and_sequential_ppo.py`, with a reservoir of 256 stretches of 64 steps "
             "in the manner of CLEAR. The curve is of the evaluations; the time is that of the lifetimes with replay alone.",
             settings={**vars(arguments), **OPTIONS}, variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
-            curve=evaluations(lived, ", replay") + evaluations(without, ", sequential"), table=table, axes=("experiences", "reward"),
+            curve=evaluations(lived, ", replay") + evaluations(without, ", sequential"), lines=levels(experts), table=table, axes=("experiences", "reward"),
             labels=("experiences learned from", "reward in evaluations, mean over lifetimes"),
             seconds=sum(done["seconds"] for done in runs), load_before=runs[0]["load_before"],
             files={"two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "curriculum.json": runs[0]["scenario"], "scores.json": compared.lifetimes, "improvement.json": compared.improvement},
