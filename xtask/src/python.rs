@@ -54,7 +54,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
     ))
 }
 
-/// Tests with PyTorch, Stable-Baselines3, Minari and Ray; they are gigabytes, so who cannot install them is not held up.
+/// Tests with torch, Stable-Baselines3, Minari and Ray; they are gigabytes, so who cannot install them is not held up.
 pub(crate) fn learners(workspace: &Workspace) -> Result<Outcome, XtaskError> {
     let Some(interpreter) = interpreter() else {
         return missing(REQUIRE_LEARNERS, NO_INTERPRETER.to_owned());
