@@ -19,13 +19,12 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+import driftworld  # noqa: F401  (registers the environments)
 import gymnasium as gym
 import numpy as np
 import torch
 from record import Record, Watch, folder_of
 from torch import nn
-
-import driftworld  # noqa: F401  (registers the environments)
 
 # Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
@@ -40,7 +39,9 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--num-envs", type=int, default=32)
     parser.add_argument("--rollout", type=int, default=64, help="steps of each environment between updates")
     parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
-    parser.add_argument("--results", nargs="?", const=folder_of(__file__), metavar="FOLDER", help="write the result down")
+    parser.add_argument(
+        "--results", nargs="?", const=folder_of(__file__), metavar="FOLDER", help="write the result down"
+    )
     parser.add_argument("--quick", action="store_true", help="a few updates, to see that it runs")
     arguments = parser.parse_args()
     if arguments.quick:

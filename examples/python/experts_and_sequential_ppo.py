@@ -21,13 +21,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import driftworld
 import gymnasium as gym
 import numpy as np
 import torch
 from record import Record, Watch, folder_of
 from torch import nn
-
-import driftworld
 
 TASK = os.path.relpath(Path(__file__).with_name("two_skies.json"))
 VARIANTS = ("day", "evening")
@@ -192,7 +191,10 @@ def scenario(order: tuple[str, ...], seed: int, arguments: argparse.Namespace, e
     def regime(variant: str, count: int, seed: int, first: int = 0) -> dict[str, Any]:
         return {"task": TASK, "variant": variant, "count": count, "seed": seed, "first_index": first}
 
-    evaluation = {"type": "evaluation", "regimes": [regime(variant, arguments.evaluate, seed + 1000) for variant in VARIANTS]}
+    evaluation = {
+        "type": "evaluation",
+        "regimes": [regime(variant, arguments.evaluate, seed + 1000) for variant in VARIANTS],
+    }
     blocks: list[dict[str, Any]] = [evaluation] if evaluate else []
     for place, variant in enumerate(order):
         # The worlds of a variant go on where its last block left off.
@@ -238,7 +240,10 @@ def lifetime(learner: Learner, plan: dict[str, Any], folder: Path, arguments: ar
                     "block": number, "learning": learning, "variant": regime["variant"], "experiences": learned,
                     "reward": round(float(np.mean(rewards[-200:])), 1),
                 })  # fmt: skip
-                print(f"{agent}: block {number} {block['type']:10} {regime['variant']}: reward {told[-1]['reward']:6.1f}", flush=True)
+                print(
+                    f"{agent}: block {number} {block['type']:10} {regime['variant']}: reward {told[-1]['reward']:6.1f}",
+                    flush=True,
+                )
     done = {"scenario": plan, "seconds": round(watch.seconds, 1), "load_before": watch.load, "told": told}
     kept.write_text(json.dumps(done, indent=2) + "\n", encoding="utf-8")
     return done
@@ -249,16 +254,20 @@ def parse_arguments(program: str, text: str) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=text.splitlines()[0])
     parser.add_argument("--seeds", type=int, nargs="+", default=[1], help="a lifetime each (default: 1)")
     parser.add_argument("--learn", type=int, default=1536, help="experiences of a learning block (default: 1536)")
-    parser.add_argument("--evaluate", type=int, default=128, help="of each variant in an evaluation block (default: 128)")
+    parser.add_argument(
+        "--evaluate", type=int, default=128, help="of each variant in an evaluation block (default: 128)"
+    )
     parser.add_argument("--num-envs", type=int, default=32)
     parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
     parser.add_argument("--logs", type=Path, default=Path("logs/two_skies"), help="where the lifetimes are logged")
     parser.add_argument("--again", action="store_true", help="live also what is in the logs already")
-    parser.add_argument("--results", nargs="?", const=folder_of(program), metavar="FOLDER", help="write the result down")
+    parser.add_argument(
+        "--results", nargs="?", const=folder_of(program), metavar="FOLDER", help="write the result down"
+    )
     parser.add_argument("--quick", action="store_true", help="a few experiences, to see that it runs")
     arguments = parser.parse_args()
     if arguments.quick:
-        arguments.learn, arguments.evaluate, arguments.num_envs = 32, 8, 8
+        arguments.learn, arguments.evaluate, arguments.num_envs = 16, 8, 8
     torch.set_num_threads(arguments.threads)
     return arguments
 
@@ -269,11 +278,18 @@ def live_experts(arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
     for seed in arguments.seeds:
         for variant in VARIANTS:
             folder = arguments.logs / f"expert_{variant}_{seed}"
-            lived[folder] = lifetime(Learner(seed), scenario(tuple(block for block in ORDER if block == variant), seed, arguments, evaluate=False), folder, arguments)
+            lived[folder] = lifetime(
+                Learner(seed),
+                scenario(tuple(block for block in ORDER if block == variant), seed, arguments, evaluate=False),
+                folder,
+                arguments,
+            )
     return lived
 
 
-def live_lifetimes(name: str, learner: Callable[[int], Learner], arguments: argparse.Namespace) -> dict[Path, dict[str, Any]]:
+def live_lifetimes(
+    name: str, learner: Callable[[int], Learner], arguments: argparse.Namespace
+) -> dict[Path, dict[str, Any]]:
     """A lifetime over all variants for each seed; where they are logged."""
     lived = {}
     for seed in arguments.seeds:
@@ -291,11 +307,28 @@ def evaluations(lived: dict[Path, dict[str, Any]], label: str = "") -> list[dict
             "run": f"{variant}{label}",
             "experiences": experiences,
             "reward": round(
-                float(np.mean([row["reward"] for row in told if (row["variant"], row["experiences"]) == (variant, experiences)])), 1
+                float(
+                    np.mean(
+                        [
+                            row["reward"]
+                            for row in told
+                            if (row["variant"], row["experiences"]) == (variant, experiences)
+                        ]
+                    )
+                ),
+                1,
             ),
         }
         for variant, experiences in places
     ]
+
+
+def levels(experts: dict[Path, dict[str, Any]]) -> dict[str, float]:
+    """What the experts earned in their last 200 experiences of learning, mean over seeds."""
+    earned: dict[str, list[float]] = {}
+    for done in experts.values():
+        earned.setdefault(f"expert, {done['told'][-1]['variant']}", []).append(done["told"][-1]["reward"])
+    return {name: round(float(np.mean(rewards)), 1) for name, rewards in earned.items()}
 
 
 def scores_table(**agents: driftworld.Metrics) -> list[dict[str, Any]]:
@@ -333,12 +366,12 @@ def main() -> None:
             title="Experts, and a sequential PPO",
             text=f"By day blue cubes pay and red ones cost, in the evening it is the other way round. One PPO lives {', '.join(ORDER)}, "
             f"{arguments.learn} experiences each, and is evaluated in both around each block; experts have the same experience of one variant "
-            "alone. The curve is of the evaluations.",
+            "alone, and their levels are what they earned in their last 200. The curve is of the evaluations.",
             settings={**vars(arguments), **OPTIONS}, variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
-            curve=evaluations(lived), table=table, axes=("experiences", "reward"),
+            curve=evaluations(lived), lines=levels(experts), table=table, axes=("experiences", "reward"),
             labels=("experiences learned from", "reward in evaluations, mean over lifetimes"),
             seconds=sum(done["seconds"] for done in everything), load_before=everything[0]["load_before"],
-            files={"curriculum.json": everything[-1]["scenario"], "two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "scores.json": scores.lifetimes},
+            files={"curriculum.json": everything[-1]["scenario"], "two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "scores.json": scores.lifetimes, "report.html": page},
         ).write(arguments.results)  # fmt: skip
 
 

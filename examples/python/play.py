@@ -31,18 +31,14 @@ def main() -> None:
         "--variant",
         help="one of its variants (`driftworld tasks show TASK` lists them)",
     )
-    parser.add_argument(
-        "--seed", type=int, default=0, help="of the worlds (default: %(default)s)"
-    )
+    parser.add_argument("--seed", type=int, default=0, help="of the worlds (default: %(default)s)")
     parser.add_argument(
         "--camera",
         default="both",
         choices=["agent", "above", "both"],
         help="what is shown",
     )
-    parser.add_argument(
-        "--quick", action="store_true", help="without a display, end after 20 steps"
-    )
+    parser.add_argument("--quick", action="store_true", help="without a display, end after 20 steps")
     asked = parser.parse_args()
     if asked.quick:
         os.environ["SDL_VIDEODRIVER"] = "dummy"
@@ -55,9 +51,7 @@ def main() -> None:
     )
 
 
-def play(
-    task: str, variant: str | None, *, seed: int, camera: str, most_steps: int | None
-) -> None:
+def play(task: str, variant: str | None, *, seed: int, camera: str, most_steps: int | None) -> None:
     """Lets a person play; returns when they end it, or after so many steps."""
     import pygame
     from gymnasium.utils.play import play as gymnasiums_play
@@ -77,9 +71,7 @@ def play(
     print(f"{task}: {KEYS}")
     pygame.display.init()
     pygame.display.set_caption(f"Driftworld {task}: {KEYS}")
-    gymnasiums_play(
-        env, seed=seed, noop=np.zeros(env.action_space.shape, dtype=np.float32)
-    )
+    gymnasiums_play(env, seed=seed, noop=np.zeros(env.action_space.shape, dtype=np.float32))
     env.close()
     print(f"{env.num_episodes} episodes ended, {env.num_steps} steps")
 
@@ -96,9 +88,7 @@ class Episodes(gymnasium.Wrapper[Any, Any, Any, Any]):
         self._index: int | None = None
         self._length = 0
 
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Any, dict[str, Any]]:
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Begins an episode. Gymnasium's `play` resets twice before the first step, and gives the same seed every time."""
         if self._index is None:
             observation, info = self.env.reset(seed=seed, options=options)
@@ -119,14 +109,10 @@ class Episodes(gymnasium.Wrapper[Any, Any, Any, Any]):
         self._length += 1
         self._return += float(reward)
         for event in info["events"]:
-            print(
-                f"  {event['tag'] or 'object ' + str(event['object'])}: {event['reward']:+g}"
-            )
+            print(f"  {event['tag'] or 'object ' + str(event['object'])}: {event['reward']:+g}")
         if terminated or truncated:
             self.num_episodes += 1
-            print(
-                f"  over: return {self._return:.1f}, {'success' if info['is_success'] else 'no success'}"
-            )
+            print(f"  over: return {self._return:.1f}, {'success' if info['is_success'] else 'no success'}")
         if self.num_steps == self._most_steps:
             import pygame
 

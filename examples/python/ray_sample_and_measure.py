@@ -21,16 +21,21 @@ import time
 from functools import partial
 from typing import Any
 
+import driftworld
 import numpy as np
 import ray
 import ray.data
 from record import Record, Watch, folder_of
 
-import driftworld
-
 TASK = "find_objects"
 # What varies: the parameters' whole ranges. The rest stays as the first variant has it.
-RANGES = {"light": (0.2, 4.0), "spread": (2.0, 40.0), "target_reward": (-100.0, 100.0), "speed": (1.0, 10.0), "turn_rate": (15.0, 180.0)}
+RANGES = {
+    "light": (0.2, 4.0),
+    "spread": (2.0, 40.0),
+    "target_reward": (-100.0, 100.0),
+    "speed": (1.0, 10.0),
+    "turn_rate": (15.0, 180.0),
+}
 COLOURS = ("blue", "red", "green")
 ELEMENTS = ("S", "A", "T", "R", "O")
 BINS = 20
@@ -117,10 +122,14 @@ def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--variants", type=int, default=20_000, help="how many are drawn (default: 20000)")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--shard-size", type=int, default=500, help="variants of a shard; part of what the digest is of")
+    parser.add_argument(
+        "--shard-size", type=int, default=500, help="variants of a shard; part of what the digest is of"
+    )
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="how many work at the same time")
     parser.add_argument("--address", help="of a Ray cluster that is there, such as auto or ray://HOST:10001")
-    parser.add_argument("--results", nargs="?", const=folder_of(__file__), metavar="FOLDER", help="write the result down")
+    parser.add_argument(
+        "--results", nargs="?", const=folder_of(__file__), metavar="FOLDER", help="write the result down"
+    )
     parser.add_argument("--quick", action="store_true", help="a few variants, to see that it runs")
     arguments = parser.parse_args()
     if arguments.quick:

@@ -59,7 +59,7 @@ class Record:
         load_before: How busy the machine was before.
         lines: Levels to compare with, by name, drawn across the figure.
         table: Rows of the page's table.
-        files: What else is kept: documents by the names of their files.
+        files: What else is kept: texts and documents by the names of their files.
         axes: Which columns of the curve are drawn: across and up.
     """
 
@@ -84,7 +84,8 @@ class Record:
         config = self._config()
         (folder / "config.json").write_text(json.dumps(config, indent=2) + "\n", encoding="utf-8")
         for name, document in self.files.items():
-            (folder / name).write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+            text = document if isinstance(document, str) else json.dumps(document, indent=1) + "\n"
+            (folder / name).write_text(text, encoding="utf-8")
         if self.curve:
             with (folder / "curve.csv").open("w", newline="", encoding="utf-8") as file:
                 writer = csv.DictWriter(file, list(self.curve[0]), lineterminator="\n")
@@ -108,6 +109,10 @@ class Record:
     def _page(self, config: Mapping[str, Any]) -> str:
         machine, versions = config["machine"], config["versions"]
         written = ", ".join(f"{name} {version}" for name, version in versions.items())
+        made = (
+            f"Made on {config['date']} in {config['seconds'] / 60:.1f} minutes on {machine['cores']} cores "
+            f"({machine['processor']}; load of the machine before it began {machine['load_before']}), with {written}."
+        )
         parts = [f"# {self.title}", "", self.text, "", "```sh", config["command"], "```", ""]
         if self.curve:
             parts += ["![The curve: " + self.labels[1] + ", by " + self.labels[0] + "](curve.png)", ""]
@@ -115,8 +120,7 @@ class Record:
         if self.lines:
             parts += [*_table([{"to compare with": name, "reward": level} for name, level in self.lines.items()]), ""]
         parts += [
-            (f"Made on {config['date']} in {config['seconds'] / 60:.1f} minutes on {machine['cores']} cores ({machine['processor']}; "
-            f"load of the machine before it began {machine['load_before']}), with {written}."),
+            made,
             "",
             "Everything that was set, and the hashes of the variants and of the first worlds, is in [config.json](config.json).",
         ]
@@ -136,10 +140,21 @@ class Record:
         key = next((name for name in ("run", "seed") if name in self.curve[0]), None)
         figure, axes = pyplot.subplots(figsize=(7.2, 4.2), dpi=120, layout="constrained")
         names = dict.fromkeys(row[key] for row in self.curve) if key else {None: None}
-        for name in names:
+        # Runs called "day, replay" and "day, sequential" share a colour; the second of them is dashed.
+        parts = [str(name).partition(", ") for name in names]
+        colours = list(dict.fromkeys(first for first, _, _ in parts))
+        styles = list(dict.fromkeys(second for _, _, second in parts))
+        for name, (first, _, second) in zip(names, parts, strict=True):
             rows = [row for row in self.curve if key is None or row[key] == name]
-            label = None if key is None else f"{key} {name}" if key == "seed" else str(name)
-            axes.plot([row[across] for row in rows], [row[up] for row in rows], label=label, linewidth=1.6)
+            axes.plot(
+                [row[across] for row in rows],
+                [row[up] for row in rows],
+                label=None if key is None else f"{key} {name}" if key == "seed" else str(name),
+                color=f"C{colours.index(first)}",
+                linestyle=("-", "--")[styles.index(second) % 2],
+                marker="o" if len(rows) < 20 else None,
+                linewidth=1.6,
+            )
         for (name, level), style in zip(self.lines.items(), ("--", ":", "-."), strict=False):
             axes.axhline(level, color="0.35", linestyle=style, linewidth=1.1, label=f"{name} ({level:g})")
         axes.set_xlabel(self.labels[0])
@@ -149,7 +164,7 @@ class Record:
         axes.grid(alpha=0.25)
         axes.spines[["top", "right"]].set_visible(False)
         if key or self.lines:
-            axes.legend(frameon=False, loc="best")
+            figure.legend(frameon=False, loc="outside upper center", ncols=2)
         figure.savefig(path, metadata={"Software": None})
         pyplot.close(figure)
 
@@ -200,9 +215,8 @@ def _processor() -> str:
 
 def _hashes(variant: str, seeds: Sequence[int]) -> dict[str, Any]:
     """The hash of a variant, and of its first world under each seed."""
-    import gymnasium
-
     import driftworld
+    import gymnasium
 
     task, _, name = variant.partition("#")
     env = gymnasium.make("driftworld/Task-v0", task=variant)

@@ -24,9 +24,7 @@ def main() -> None:
         default="driftworld/find-objects/random-v0",
         help="its id (default: %(default)s)",
     )
-    parser.add_argument(
-        "--episodes", type=int, default=10, help="how many (default: %(default)s)"
-    )
+    parser.add_argument("--episodes", type=int, default=10, help="how many (default: %(default)s)")
     parser.add_argument(
         "--seed",
         type=int,

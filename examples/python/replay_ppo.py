@@ -14,6 +14,7 @@ Needs PyTorch (`pip install torch`).
 
 from __future__ import annotations
 
+import driftworld
 import numpy as np
 import torch
 from experts_and_sequential_ppo import (
@@ -24,6 +25,7 @@ from experts_and_sequential_ppo import (
     Learner,
     Rollout,
     evaluations,
+    levels,
     live_experts,
     live_lifetimes,
     parse_arguments,
@@ -31,8 +33,6 @@ from experts_and_sequential_ppo import (
     show,
 )
 from record import Record
-
-import driftworld
 
 
 class Reservoir:
@@ -77,7 +77,9 @@ class ReplayLearner(Learner):
         for _ in range(rollout.rewards.shape[1] // 8):
             self.step(self.replay_loss(self.reservoir.draw(8)))
 
-    def replay_loss(self, old: dict[str, torch.Tensor], policy_cloning: float = 0.1, value_cloning: float = 0.05) -> torch.Tensor:
+    def replay_loss(
+        self, old: dict[str, torch.Tensor], policy_cloning: float = 0.1, value_cloning: float = 0.05
+    ) -> torch.Tensor:
         """The loss on old experience; means over the steps that count."""
         length, count = old["rewards"].shape
         log_policy, values = self.network(old["images"].flatten(0, 1))
@@ -96,7 +98,9 @@ class ReplayLearner(Learner):
         return loss[old["counts"]].mean()
 
 
-def v_trace(old: dict[str, torch.Tensor], values: torch.Tensor, log_ratio: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+def v_trace(
+    old: dict[str, torch.Tensor], values: torch.Tensor, log_ratio: torch.Tensor
+) -> tuple[torch.Tensor, torch.Tensor]:
     """V-trace targets and policy-gradient advantages (Espeholt et al. 2018, eq. 1), ratios cut off at 1; `(length, count)` each."""
     ratio = log_ratio.exp().clamp(max=1.0)
     goes_on, bootstraps = ~old["ended"], ~old["terminated"]
@@ -122,7 +126,8 @@ def main() -> None:
     lived = live_lifetimes("replay_ppo", ReplayLearner, arguments)
     compared = driftworld.metrics(list(lived), against=list(without), ste=list(experts))
     table = scores_table(
-        replay=driftworld.metrics(list(lived), ste=list(experts)), sequential=driftworld.metrics(list(without), ste=list(experts))
+        replay=driftworld.metrics(list(lived), ste=list(experts)),
+        sequential=driftworld.metrics(list(without), ste=list(experts)),
     )
     show(table)
     page = driftworld.report(list(lived), against=list(without), ste=list(experts), title="PPO with experience replay")
@@ -135,7 +140,7 @@ def main() -> None:
             text="The learner, the worlds and the curriculum of `experts_and_sequential_ppo.py`, with a reservoir of 256 stretches of 64 steps "
             "in the manner of CLEAR. The curve is of the evaluations; the time is that of the lifetimes with replay alone.",
             settings={**vars(arguments), **OPTIONS}, variants=[f"{TASK}#{variant}" for variant in VARIANTS], seeds=arguments.seeds,
-            curve=evaluations(lived, ", replay") + evaluations(without, ", sequential"), table=table, axes=("experiences", "reward"),
+            curve=evaluations(lived, ", replay") + evaluations(without, ", sequential"), lines=levels(experts), table=table, axes=("experiences", "reward"),
             labels=("experiences learned from", "reward in evaluations, mean over lifetimes"),
             seconds=sum(done["seconds"] for done in runs), load_before=runs[0]["load_before"],
             files={"two_skies.json": driftworld.TaskSpec.load(TASK).to_dict(), "curriculum.json": runs[0]["scenario"], "scores.json": compared.lifetimes, "improvement.json": compared.improvement},

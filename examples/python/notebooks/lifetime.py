@@ -24,10 +24,9 @@
 import tempfile
 from pathlib import Path
 
+import driftworld
 import numpy as np
 from matplotlib import pyplot as plt
-
-import driftworld
 
 HERE = Path(__file__).parent if "__file__" in globals() else Path.cwd()
 SPEC = str(HERE.parent / "two_skies.json")
@@ -55,7 +54,9 @@ class Seeker:
     def act(self, picture, info):
         red, green, blue = np.moveaxis(picture.astype(int), -1, 0)
         seen = {"blue": (blue > 60) & (red < 40) & (green < 40), "red": (red > 60) & (green < 40) & (blue < 40)}
-        worths = {colour: self.worth.get(self.key(picture, colour), 30.0) for colour in seen}  # the unknown is worth a try
+        worths = {
+            colour: self.worth.get(self.key(picture, colour), 30.0) for colour in seen
+        }  # the unknown is worth a try
         self.sought, turn = None, 0.6
         best = min(0.0, max(worths.values()) - 1.0)  # if all seem to cost, the least bad
         for colour, pixels in seen.items():
@@ -118,12 +119,17 @@ for axis, name in zip(axes, ("one_memory", "memory_by_sky"), strict=True):
     axis.set_title(name.replace("_", " "))
     axis.set_ylabel("reward")
 axes[1].set_xlabel("experience")
-axes[0].legend(ncols=4, fontsize=8, loc="lower right")
+axes[1].legend(ncols=2, loc="lower right")
 plt.show()
 
 # %% [markdown]
 # ## One page of it all
 
 # %%
-page = driftworld.report([LOGS / "one_memory", LOGS / "memory_by_sky"], LOGS / "report.html", ste=experts, title="Two memories under two skies")
+page = driftworld.report(
+    [LOGS / "one_memory", LOGS / "memory_by_sky"],
+    LOGS / "report.html",
+    ste=experts,
+    title="Two memories under two skies",
+)
 print(f"the report: {LOGS / 'report.html'}, {len(page):,} characters")

@@ -19,11 +19,10 @@
 # Needs `pip install driftworld matplotlib`.
 
 # %%
+import driftworld
 import gymnasium as gym
 import numpy as np
 from matplotlib import pyplot as plt
-
-import driftworld
 
 # %% [markdown]
 # ## A spec and its variants
@@ -99,14 +98,11 @@ order = driftworld.order(matrix)
 print("a short way through all of them:", " > ".join(label.split("#")[-1] for label in order.labels))
 
 # Two numbers for each variant whose distances come as near as they can: classical scaling.
-squared = np.asarray(matrix.values) ** 2
-centring = np.eye(len(NAMES)) - 1 / len(NAMES)
-values, vectors = np.linalg.eigh(-0.5 * centring @ squared @ centring)
-places = vectors[:, -2:] * np.sqrt(np.maximum(values[-2:], 0))
+places = matrix.embed(2)
 right.plot(*places[order.indices].T, color="0.6", linewidth=1)
 right.scatter(*places.T, zorder=2)
-for name, place in zip(NAMES, places, strict=True):
-    right.annotate(name, place, xytext=(5, 4), textcoords="offset points")
+for number, (name, place) in enumerate(zip(NAMES, places, strict=True)):
+    right.annotate(name, place, xytext=(6, 6 if number % 2 else -12), textcoords="offset points")
 right.set_title("variants on a plane, and the order")
 right.set_aspect("equal", adjustable="datalim")
 plt.show()
@@ -118,10 +114,18 @@ plt.show()
 
 # %%
 curriculum = driftworld.Curriculum.design(
-    "find_objects#blue", "find_objects#red", "find_objects#dusk", start="find_objects#blue", learn=6, eval_episodes=2, seed=3
+    "find_objects#blue",
+    "find_objects#red",
+    "find_objects#dusk",
+    start="find_objects#blue",
+    learn=6,
+    eval_episodes=2,
+    seed=3,
 )
 for block in curriculum:
-    print(f"{block.kind:10} {len(block):2} experiences, first of {block[0].variant}, world {block[0].index} under seed {block[0].seed}")
+    print(
+        f"{block.kind:10} {len(block):2} experiences, first of {block[0].variant}, world {block[0].index} under seed {block[0].seed}"
+    )
 
 
 # %% [markdown]

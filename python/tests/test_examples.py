@@ -1,0 +1,219 @@
+"""The examples in Python: they run, what they say holds, and their results can still be had. Learning well is not tested here."""
+
+from __future__ import annotations
+
+import ast
+import importlib.util
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import gymnasium
+import pytest
+from driftworld import _native
+
+FOLDER = Path(__file__).parents[2] / "examples" / "python"
+EXAMPLES = sorted(path for path in FOLDER.glob("*.py") if path.stem != "record")
+NOTEBOOKS = sorted((FOLDER / "notebooks").glob("*.py"))
+RESULTS = sorted((FOLDER / "results").glob("*/config.json"))
+
+learners = pytest.mark.learners
+
+
+def run(program: Path, *arguments: str, cwd: Path) -> str:
+    """What a program prints; it must end well, without a display."""
+    environment = {**os.environ, "MPLBACKEND": "Agg", "SDL_VIDEODRIVER": "dummy"}
+    done = subprocess.run(
+        [sys.executable, str(program), *arguments],
+        cwd=cwd,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=400,
+        check=False,
+    )
+    assert done.returncode == 0, f"{program.name} {' '.join(arguments)}\n{done.stdout}\n{done.stderr}"
+    return done.stdout
+
+
+def load(name: str) -> ModuleType:
+    """An example as a module; what it defines can be asked without running it."""
+    if str(FOLDER) not in sys.path:
+        sys.path.insert(0, str(FOLDER))
+    specification = importlib.util.spec_from_file_location(name, FOLDER / f"{name}.py")
+    assert specification is not None and specification.loader is not None
+    module = importlib.util.module_from_spec(specification)
+    sys.modules[name] = module
+    specification.loader.exec_module(module)
+    return module
+
+
+def first_line(path: Path) -> str:
+    """What an example says of itself."""
+    if path.parent.name == "notebooks":
+        return next(line for line in path.read_text(encoding="utf-8").splitlines() if line.startswith("# # "))[4:]
+    return (ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or "").splitlines()[0]
+
+
+def test_the_index_says_of_each_example_what_it_says_of_itself() -> None:
+    readme = (FOLDER / "README.md").read_text(encoding="utf-8")
+    index = readme.split("<!-- index -->\n")[1].split("<!-- end of index -->")[0]
+    paths = [path.relative_to(FOLDER).as_posix() for path in [*EXAMPLES, *NOTEBOOKS]]
+    lines = [f"- [{path}]({path}): {first_line(FOLDER / path)}" for path in paths]
+    assert index == "\n".join(lines) + "\n", "the index is\n" + "\n".join(lines)
+
+
+@pytest.mark.parametrize("config", RESULTS, ids=[path.parent.name for path in RESULTS])
+def test_a_result_names_worlds_that_are_still_drawn(config: Path) -> None:
+    said = json.loads(config.read_text(encoding="utf-8"))
+    assert said["command"].startswith("python examples/python/")
+    assert said["worlds"]
+    for name, hashes in said["worlds"].items():
+        path = name if name.partition("#")[0] in _native.built_in_names() else str(FOLDER.parents[1] / name)
+        env = gymnasium.make("driftworld/Task-v0", task=path)
+        assert _native.load_variant(path).hash == hashes["variant"], name
+        for seed, world_hash in hashes["first_worlds"].items():
+            assert env.reset(seed=int(seed))[1]["world_hash"] == world_hash, f"{name} under seed {seed}"
+        env.close()
+
+
+@pytest.mark.parametrize("config", RESULTS, ids=[path.parent.name for path in RESULTS])
+def test_a_result_has_its_page_its_curve_and_its_picture(config: Path) -> None:
+    page = (config.parent / "README.md").read_text(encoding="utf-8")
+    said = json.loads(config.read_text(encoding="utf-8"))
+    assert said["command"] in page
+    assert (config.parent / "curve.csv").read_text(encoding="utf-8").count("\n") > 3
+    assert (config.parent / "curve.png").read_bytes().startswith(b"\x89PNG")
+
+
+@learners
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=[path.stem for path in NOTEBOOKS])
+def test_a_notebook_runs_as_a_program(notebook: Path, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib", reason="notebooks draw")
+    pytest.importorskip("pandas", reason="scores are shown as data frames")
+    run(notebook, cwd=tmp_path)
+
+
+@learners
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=[path.stem for path in NOTEBOOKS])
+def test_a_notebook_is_one_to_jupytext(notebook: Path) -> None:
+    jupytext = pytest.importorskip("jupytext", reason="it is what makes notebooks of scripts")
+    kinds = [cell.cell_type for cell in jupytext.read(notebook).cells]
+    assert kinds.count("code") >= 5
+    assert kinds.count("markdown") >= 5
+
+
+@learners
+@pytest.mark.parametrize("name", ["cleanrl_ppo", "ppo_find_objects", "experts_and_sequential_ppo"])
+def test_a_learner_runs_and_writes_its_result_down(name: str, tmp_path: Path) -> None:
+    pytest.importorskip("torch", reason="the learners are networks")
+    pytest.importorskip("matplotlib", reason="results have a figure")
+    if name == "ppo_find_objects":
+        pytest.importorskip("stable_baselines3", reason="its PPO is what learns")
+    run(FOLDER / f"{name}.py", "--quick", "--results", str(tmp_path / "result"), cwd=tmp_path)
+    said = json.loads((tmp_path / "result" / "config.json").read_text(encoding="utf-8"))
+    assert {"command", "settings", "versions", "machine", "seconds", "worlds"} <= said.keys()
+    assert str(tmp_path) not in json.dumps(said), "a result is the same wherever it is written to"
+    assert (tmp_path / "result" / "curve.png").read_bytes().startswith(b"\x89PNG")
+
+
+@learners
+def test_replay_is_compared_with_the_lifetime_without_and_lives_nothing_twice(tmp_path: Path) -> None:
+    pytest.importorskip("torch", reason="the learners are networks")
+    first = run(FOLDER / "replay_ppo.py", "--quick", cwd=tmp_path)
+    assert "not lived again" not in first
+    assert "perf_maintenance_mrlep" in first
+    assert (tmp_path / "logs" / "two_skies" / "replay_ppo.html").exists()
+    second = run(FOLDER / "replay_ppo.py", "--quick", cwd=tmp_path)
+    assert second.count("not lived again") == 4
+    assert second.splitlines()[-10:] == first.splitlines()[-10:]
+
+
+@learners
+def test_rllib_learns_on_several_runners(tmp_path: Path) -> None:
+    pytest.importorskip("ray.rllib", reason="it is what learns")
+    assert "steps  reward" in run(FOLDER / "rllib_ppo.py", "--quick", cwd=tmp_path)
+
+
+@learners
+def test_what_ray_measures_does_not_depend_on_the_number_of_workers(tmp_path: Path) -> None:
+    pytest.importorskip("ray.data", reason="it is what shares the work out")
+    answers = []
+    for workers in ("1", "2"):
+        told = run(FOLDER / "ray_sample_and_measure.py", "--quick", "--workers", workers, cwd=tmp_path)
+        answers.append(json.loads(told[: told.rindex("}") + 1]))
+    assert answers[0] == answers[1]
+    assert answers[0]["variants"] == 60
+    assert sum(answers[0]["distance"]["histogram"]) == 60
+
+
+def one_environment(**columns: list[Any]) -> dict[str, Any]:
+    """Columns of a rollout of one environment, as tensors of shape (length, 1)."""
+    import torch
+
+    return {name: torch.tensor(values).unsqueeze(1) for name, values in columns.items()}
+
+
+@learners
+@pytest.mark.parametrize("name", ["cleanrl_ppo", "experts_and_sequential_ppo"])
+def test_advantages_bootstrap_what_ran_out_of_time_and_nothing_that_terminated(name: str) -> None:
+    torch = pytest.importorskip("torch", reason="the learners are networks")
+    module = load(name)
+    rollout = module.Rollout(4, 1)
+    # An episode of two steps, the step that only resets, and the first step of the next episode.
+    columns = one_environment(
+        rewards=[1.0, 2.0, 0.0, 4.0],
+        values=[10.0, 20.0, 30.0, 40.0, 50.0],
+        ended=[False, True, False, False],
+        terminated=[False, False, False, False],
+        counts=[True, True, False, True],
+    )
+    for column, values in columns.items():
+        setattr(rollout, column, values)
+    settings = {"discount": 0.5, "trace": 0.5} if name == "cleanrl_ppo" else {"trace": 0.5}
+    discount = settings.get("discount", getattr(module, "DISCOUNT", None))
+    last = 2.0 + discount * 30.0 - 20.0  # the observation after the end is the episode's last: worth 30
+    first = 1.0 + discount * 20.0 - 10.0 + discount * 0.5 * last
+    assert rollout.advantages(**settings)[:2].flatten().tolist() == pytest.approx([first, last])
+    rollout.terminated = torch.tensor([[False], [True], [False], [False]])
+    assert rollout.advantages(**settings)[1].item() == pytest.approx(2.0 - 20.0)
+
+
+@learners
+def test_v_trace_on_the_policy_itself_gives_discounted_returns() -> None:
+    torch = pytest.importorskip("torch", reason="the learners are networks")
+    load("experts_and_sequential_ppo")
+    module = load("replay_ppo")
+    old = one_environment(
+        rewards=[1.0, 2.0, 0.0, 4.0],
+        ended=[False, True, False, False],
+        terminated=[False, True, False, False],
+    )
+    values = torch.tensor([[3.0], [5.0], [7.0], [9.0], [11.0]])
+    targets, advantages = module.v_trace(old, values, torch.zeros(4, 1))
+    discount = module.DISCOUNT
+    returns = [1.0 + discount * 2.0, 2.0, discount * (4.0 + discount * 11.0), 4.0 + discount * 11.0]
+    assert targets.flatten().tolist() == pytest.approx(returns)
+    assert advantages.flatten().tolist() == pytest.approx([r - v for r, v in zip(returns, values.flatten().tolist())])
+
+
+@learners
+def test_the_reservoir_keeps_a_fair_share_of_early_and_late() -> None:
+    torch = pytest.importorskip("torch", reason="the learners are networks")
+    load("experts_and_sequential_ppo")
+    module = load("replay_ppo")
+    reservoir = module.Reservoir(capacity=200, seed=1)
+    for number in range(250):
+        rollout = module.Rollout(1, 8)
+        rollout.rewards[:] = float(number)
+        rollout.counts[:] = number < 200  # what does not count is not offered
+        reservoir.offer(rollout)
+    kept = torch.stack([stretch["rewards"] for stretch in reservoir.stretches]).flatten()
+    assert len(kept) == 200
+    assert kept.max() < 200
+    early = (kept < 100).sum().item()
+    assert 70 <= early <= 130, "of 200 places half are for the first half, give or take four standard deviations"
