@@ -215,8 +215,9 @@ def _processor() -> str:
 
 def _hashes(variant: str, seeds: Sequence[int]) -> dict[str, Any]:
     """The hash of a variant, and of its first world under each seed."""
-    import driftworld
     import gymnasium
+
+    import driftworld
 
     task, _, name = variant.partition("#")
     env = gymnasium.make("driftworld/Task-v0", task=variant)

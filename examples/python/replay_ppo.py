@@ -14,7 +14,6 @@ Needs PyTorch (`pip install torch`).
 
 from __future__ import annotations
 
-import driftworld
 import numpy as np
 import torch
 from experts_and_sequential_ppo import (
@@ -33,6 +32,8 @@ from experts_and_sequential_ppo import (
     show,
 )
 from record import Record
+
+import driftworld
 
 
 class Reservoir:

@@ -10,7 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::json;
 
-use crate::document::{from_python, to_python, told};
+use crate::document::{Whole, from_python, to_python, told};
 use crate::errors::Result;
 use crate::logs::now;
 
@@ -25,12 +25,17 @@ pub(crate) struct PyPlan {
 impl PyPlan {
     /// The plan of a scenario's text; what it names by paths is looked for as if it stood at `path`.
     #[new]
-    fn new(py: Python<'_>, path: PathBuf, text: &str, stand_in: bool) -> Result<Self> {
+    fn new(py: Python<'_>, path: PathBuf, text: &str, stand_in: Option<bool>) -> Result<Self> {
         let mut warnings = Vec::new();
         let plan = py.detach(|| {
             let mut warn = |warning| warnings.push(warning);
             let file = ScenarioFile::from_text(Path::new(&path), text, &mut warn)?;
-            let missing = if stand_in { Missing::StandIn } else { Missing::Refused };
+            // The original's own scenario names a map that it does not come with, and has to run as it stands.
+            let missing = if stand_in.unwrap_or(file.original) {
+                Missing::StandIn
+            } else {
+                Missing::Refused
+            };
             Ok::<_, crate::errors::Error>(file.plan(missing, &mut warn)?)
         })?;
         Ok(Self { plan, warnings })
@@ -58,13 +63,13 @@ impl PyPlan {
     }
 
     /// What experience `number` is, as a dictionary, without its world.
-    fn due<'py>(&self, py: Python<'py>, number: u64) -> Result<Bound<'py, PyAny>> {
-        let due = self.plan.due(number)?;
+    fn due<'py>(&self, py: Python<'py>, number: Whole) -> Result<Bound<'py, PyAny>> {
+        let due = self.plan.due(number.0)?;
         let label = due.label.map(
             |label| json!({ "number": label.number, "of": label.of, "name": label.name, "observed": label.observed }),
         );
         let told = json!({
-            "number": number, "block": due.block, "regime": due.regime, "learning": due.kind == BlockKind::Learning,
+            "number": number.0, "block": due.block, "regime": due.regime, "learning": due.kind == BlockKind::Learning,
             "variant": due.variant, "seed": due.seed, "index": due.index, "progress": due.progress,
             "chance": due.chance, "label": label,
         });
@@ -72,8 +77,8 @@ impl PyPlan {
     }
 
     /// The JSON of the world of experience `number`, and its time step in seconds; a world without a limit of steps has one here.
-    fn world(&self, py: Python<'_>, number: u64) -> Result<(String, f64)> {
-        let mut world = py.detach(|| self.plan.world(number))?;
+    fn world(&self, py: Python<'_>, number: Whole) -> Result<(String, f64)> {
+        let mut world = py.detach(|| self.plan.world(number.0))?;
         if world.max_steps == 0 {
             world.max_steps = MOST_STEPS;
         }

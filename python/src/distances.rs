@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde_json::json;
 
-use crate::document::{to_python, told};
+use crate::document::{Whole, to_python, told};
 use crate::errors::Result;
 use crate::patience::{impatiently, patiently};
 use crate::task::PyVariant;
@@ -36,15 +36,19 @@ pub(crate) fn distance<'py>(
     b: Compared<'py>,
     weights: Weighing,
     worlds: Option<u64>,
-    seed: u64,
-    index: u64,
+    seed: Whole,
+    index: Whole,
 ) -> Result<Bound<'py, PyAny>> {
     if worlds.is_some_and(|worlds| !(1..=100_000).contains(&worlds)) {
         return Err(PyValueError::new_err("worlds: expected a number from 1 to 100000").into());
     }
     let laid = laid(weights)?;
     let (a, b) = (a.side()?, b.side()?);
-    let sample = Sample { worlds, seed, index };
+    let sample = Sample {
+        worlds,
+        seed: seed.0,
+        index: index.0,
+    };
     let (distance, compared) = impatiently(py, move || between(&a, &b, &sample, |declared| over(&laid, declared)))??;
     let found = told(py, &distance)?;
     found.set_item("compared", compared)?;
@@ -159,7 +163,7 @@ impl PyMatrix {
         method: Option<&str>,
         start: Option<usize>,
         end: Option<usize>,
-        seed: u64,
+        seed: Whole,
         target_step: Option<f64>,
     ) -> Result<Bound<'py, PyAny>> {
         let matrix = &self.0;
@@ -167,7 +171,7 @@ impl PyMatrix {
         let options = OrderOptions {
             first: start,
             last: end,
-            seed,
+            seed: seed.0,
             target_step,
         };
         let shared = Arc::clone(matrix);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use driftworld::documents::{self, Kind};
 use driftworld::{scenarios, tasks};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyOverflowError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
 use serde_json::Value;
@@ -46,6 +46,25 @@ pub(crate) fn told<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyRes
 pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     let text: String = value.py().import("json")?.call_method1("dumps", (value,))?.extract()?;
     serde_json::from_str(&text).map_err(|error| PyValueError::new_err(format!("found {text}: {error}")))
+}
+
+/// A whole number from 0 on, such as a seed.
+#[derive(Clone, Copy)]
+pub(crate) struct Whole(pub(crate) u64);
+
+impl<'py> FromPyObject<'_, 'py> for Whole {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        // What is no whole number at all is a mistake of type; -1 and 2^64 are ones of value.
+        value.extract().map(Self).map_err(|error| {
+            if error.is_instance_of::<PyOverflowError>(value.py()) {
+                PyValueError::new_err(format!("found {}, expected a whole number in 0..{}", &*value, u64::MAX))
+            } else {
+                error
+            }
+        })
+    }
 }
 
 /// What a document was taken for, its problems, its warnings, and the error to raise.

@@ -5,7 +5,7 @@ use driftworld_spec::{DriftSchedule, DriftSwitch};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::document::from_python;
+use crate::document::{Whole, from_python};
 use crate::errors::Result;
 use crate::task::PyVariant;
 
@@ -19,13 +19,13 @@ pub(crate) struct PyDrift(Drift);
 #[pymethods]
 impl PyDrift {
     #[new]
-    #[pyo3(signature = (from_, to, *, schedule=None, switch="at_point", seed=0))]
+    #[pyo3(signature = (from_, to, *, schedule=None, switch="at_point", seed=Whole(0)))]
     fn new(
         from_: &Bound<'_, PyVariant>,
         to: &Bound<'_, PyVariant>,
         schedule: Option<&Bound<'_, PyAny>>,
         switch: &str,
-        seed: u64,
+        seed: Whole,
     ) -> Result<Self> {
         let wrong = |option: &str, found: &str, expected: &str| {
             PyValueError::new_err(format!("drift, {option}: found {found}, expected {expected}"))
@@ -45,7 +45,7 @@ impl PyDrift {
         };
         let switch = match serde_json::from_value(switch.into()) {
             Ok(DriftSwitch::AtPoint) => Switch::AtPoint,
-            Ok(DriftSwitch::Mixture) => Switch::Mixture { seed },
+            Ok(DriftSwitch::Mixture) => Switch::Mixture { seed: seed.0 },
             Err(_) => return Err(wrong("switch", &format!("{switch:?}"), "\"at_point\" or \"mixture\"").into()),
         };
         let drift = Drift::new(from_.get().0.clone(), to.get().0.clone())?;
@@ -53,12 +53,12 @@ impl PyDrift {
     }
 
     /// The variant when ``progress``, 0..=1, has passed; ``index`` is the number of the world, which only mixtures look at.
-    #[pyo3(signature = (progress, index=0))]
-    fn at(&self, progress: f64, index: u64) -> Result<PyVariant> {
+    #[pyo3(signature = (progress, index=Whole(0)))]
+    fn at(&self, progress: f64, index: Whole) -> Result<PyVariant> {
         if !(0.0..=1.0).contains(&progress) {
             let message = format!("drift, progress: found {progress}, expected a number in 0..1");
             return Err(PyValueError::new_err(message).into());
         }
-        Ok(PyVariant(self.0.at(progress, index)?))
+        Ok(PyVariant(self.0.at(progress, index.0)?))
     }
 }

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use serde_json::{Map, Value, json};
 
-use crate::document::{from_python, to_python, told};
+use crate::document::{Whole, from_python, to_python, told};
 use crate::errors::Result;
 
 /// An open log.
@@ -47,8 +47,8 @@ impl PyLogFile {
     )]
     fn write(
         &mut self,
-        block_num: u64,
-        exp_num: u64,
+        block_num: Whole,
+        exp_num: Whole,
         block_type: &str,
         block_subtype: &str,
         task_name: &str,
@@ -71,9 +71,15 @@ impl PyLogFile {
             block_subtype: block_subtype.parse()?,
             exp_status: exp_status.parse()?,
             metrics: metrics.into_iter().collect(),
-            ..Record::new(block_num, exp_num, block_type.parse::<BlockType>()?, task_name, now()?)
-                .with_task_params(TaskParams::new(params))
-                .with_worker(worker_id)
+            ..Record::new(
+                block_num.0,
+                exp_num.0,
+                block_type.parse::<BlockType>()?,
+                task_name,
+                now()?,
+            )
+            .with_task_params(TaskParams::new(params))
+            .with_worker(worker_id)
         };
         Ok(writer.write(&record)?)
     }

@@ -15,7 +15,7 @@ use pyo3::types::{PyDict, PyList};
 use rayon::prelude::*;
 
 use crate::distances::element;
-use crate::document::{from_python, to_python, told};
+use crate::document::{Whole, from_python, to_python, told};
 use crate::errors::Result;
 use crate::patience::{impatiently, patiently};
 
@@ -119,8 +119,14 @@ impl PyTask {
     }
 
     /// World number ``index`` of a variant under a seed, as a dictionary.
-    #[pyo3(signature = (variant=None, seed=0, index=0))]
-    fn sample<'py>(&self, py: Python<'py>, variant: Option<&str>, seed: u64, index: u64) -> Result<Bound<'py, PyAny>> {
+    #[pyo3(signature = (variant=None, seed=Whole(0), index=Whole(0)))]
+    fn sample<'py>(
+        &self,
+        py: Python<'py>,
+        variant: Option<&str>,
+        seed: Whole,
+        index: Whole,
+    ) -> Result<Bound<'py, PyAny>> {
         self.variant(variant)?.sample(py, seed, index)
     }
 
@@ -237,50 +243,50 @@ impl PyVariant {
     }
 
     /// World number ``index`` under a seed, as a dictionary.
-    #[pyo3(signature = (seed=0, index=0))]
-    fn sample<'py>(&self, py: Python<'py>, seed: u64, index: u64) -> Result<Bound<'py, PyAny>> {
-        let world = py.detach(|| driftworld_generator::sample(&self.0, seed, index))?;
+    #[pyo3(signature = (seed=Whole(0), index=Whole(0)))]
+    fn sample<'py>(&self, py: Python<'py>, seed: Whole, index: Whole) -> Result<Bound<'py, PyAny>> {
+        let world = py.detach(|| driftworld_generator::sample(&self.0, seed.0, index.0))?;
         Ok(told(py, &world)?)
     }
 
     /// The same as one line of JSON.
-    #[pyo3(signature = (seed=0, index=0))]
-    fn sample_json(&self, py: Python<'_>, seed: u64, index: u64) -> Result<String> {
-        let world = py.detach(|| driftworld_generator::sample(&self.0, seed, index))?;
+    #[pyo3(signature = (seed=Whole(0), index=Whole(0)))]
+    fn sample_json(&self, py: Python<'_>, seed: Whole, index: Whole) -> Result<String> {
+        let world = py.detach(|| driftworld_generator::sample(&self.0, seed.0, index.0))?;
         Ok(world.to_json())
     }
 
     /// ``count`` worlds from number ``start`` on, as dictionaries, drawn by several threads: 0 for one on each processor.
-    #[pyo3(signature = (count, *, seed=0, start=0, threads=0))]
+    #[pyo3(signature = (count, *, seed=Whole(0), start=Whole(0), threads=0))]
     fn sample_many<'py>(
         &self,
         py: Python<'py>,
-        count: u64,
-        seed: u64,
-        start: u64,
+        count: Whole,
+        seed: Whole,
+        start: Whole,
         threads: usize,
     ) -> Result<Bound<'py, PyList>> {
         let drawn = PyList::empty(py);
         let value = |world: World| serde_json::to_value(&world).unwrap_or_default();
-        self.draw(py, seed, numbers(start, count)?, threads, value, |value| {
+        self.draw(py, seed.0, numbers(start.0, count.0)?, threads, value, |value| {
             drawn.append(to_python(py, &value)?)
         })?;
         Ok(drawn)
     }
 
     /// The same, each world as one line of JSON.
-    #[pyo3(signature = (count, *, seed=0, start=0, threads=0))]
+    #[pyo3(signature = (count, *, seed=Whole(0), start=Whole(0), threads=0))]
     fn sample_many_json<'py>(
         &self,
         py: Python<'py>,
-        count: u64,
-        seed: u64,
-        start: u64,
+        count: Whole,
+        seed: Whole,
+        start: Whole,
         threads: usize,
     ) -> Result<Bound<'py, PyList>> {
         let drawn = PyList::empty(py);
         let text = |world: World| world.to_json();
-        self.draw(py, seed, numbers(start, count)?, threads, text, |text| {
+        self.draw(py, seed.0, numbers(start.0, count.0)?, threads, text, |text| {
             drawn.append(text)
         })?;
         Ok(drawn)

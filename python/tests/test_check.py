@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import driftworld
+import gymnasium
 import numpy as np
 import pytest
 from driftworld import check as checks
 from driftworld._equality import first_difference
+from driftworld.check import __main__ as command
 from driftworld.envs import DriftworldEnv, DriftworldVectorEnv
 
 
@@ -64,7 +66,7 @@ def test_a_seed_that_is_not_kept_is_found(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_a_final_observation_that_is_the_next_first_one_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    if not hasattr(checks.gymnasium.vector, "AutoresetMode"):
+    if not hasattr(gymnasium.vector, "AutoresetMode"):
         pytest.skip("Gymnasium 1.0 has no final observations to compare with")
     from driftworld.envs.members import Members
 
@@ -95,10 +97,10 @@ def test_the_command_prints_a_table_or_json_and_ends_with_0(capsys: pytest.Captu
         "--option",
         "depth=float32",
     ]
-    assert checks.main(arguments) == 0
+    assert command.main(arguments) == 0
     printed = capsys.readouterr().out
     assert "find_objects#red\n  passed   Gymnasium's check_env" in printed
-    assert checks.main([*arguments, "--json"]) == 0
+    assert command.main([*arguments, "--json"]) == 0
     (report,) = json.loads(capsys.readouterr().out)
     assert (report["ok"], report["task"]) == (True, "find_objects#red")
     assert report["versions"]["driftworld"] == driftworld.__version__
@@ -118,7 +120,7 @@ def test_the_command_prints_a_table_or_json_and_ends_with_0(capsys: pytest.Captu
 def test_what_cannot_be_made_is_a_failure_with_its_reason(
     arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert checks.main(arguments) == 1
+    assert command.main(arguments) == 1
     printed = capsys.readouterr().out
     assert "failed   can be made" in printed
     assert message in printed
@@ -131,7 +133,7 @@ def test_what_cannot_be_made_is_a_failure_with_its_reason(
 )
 def test_arguments_that_are_none_end_with_2(arguments: list[str]) -> None:
     with pytest.raises(SystemExit) as ended:
-        checks.main(arguments)
+        command.main(arguments)
     assert ended.value.code == 2
 
 

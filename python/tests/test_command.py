@@ -55,7 +55,9 @@ def test_the_errors_of_python_say_what_the_command_says() -> None:
 
 def test_it_ends_quietly_when_its_reader_goes() -> None:
     child = subprocess.Popen(
-        command("sample", "find_objects", "--count", "100000", "--jsonl"), stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        command("sample", "find_objects", "--count", "100000", "--jsonl"),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
     )
     assert child.stdout is not None and child.stderr is not None
     child.stdout.readline()
@@ -66,7 +68,9 @@ def test_it_ends_quietly_when_its_reader_goes() -> None:
 
 def test_an_interrupt_ends_it() -> None:
     child = subprocess.Popen(
-        command("sample", "find_objects", "--count", "100000000", "--jsonl"), stdout=subprocess.PIPE, stderr=subprocess.PIPE
+        command("sample", "find_objects", "--count", "100000000", "--jsonl"),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
     )
     assert child.stdout is not None
     child.stdout.readline()

@@ -26,7 +26,12 @@ def commanded(*argv: str) -> Any:
     ("a", "b", "options", "flags"),
     [
         ("find_objects#blue", "find_objects#dusk", {}, []),
-        ("find_objects#blue", "find_objects#dusk", {"weights": {"R": 2, "observation": 0.5}}, ["--weight", "R=2", "--weight", "O=0.5"]),
+        (
+            "find_objects#blue",
+            "find_objects#dusk",
+            {"weights": {"R": 2, "observation": 0.5}},
+            ["--weight", "R=2", "--weight", "O=0.5"],
+        ),
         ("find_objects#blue", "get_to_goal#plain", {"worlds": 3, "seed": 4}, ["--worlds", "3", "--seed", "4"]),
     ],
 )
@@ -48,7 +53,12 @@ def test_worlds_are_compared_as_they_are(tmp_path: Path) -> None:
         path.write_text(json.dumps(world), encoding="utf-8")
     expected = commanded("distance", *map(str, paths))["total"]
     assert expected > 0
-    assert distance(*worlds).total == distance(*paths).total == distance(json.dumps(worlds[0]), worlds[1]).total == expected
+    assert (
+        distance(*worlds).total
+        == distance(*paths).total
+        == distance(json.dumps(worlds[0]), worlds[1]).total
+        == expected
+    )
     assert distance(worlds[0], worlds[0]) == 0
     assert distance(variant, worlds[0]).compared == "mean of 16 worlds of each, drawn under seed 0"
 
@@ -56,7 +66,10 @@ def test_worlds_are_compared_as_they_are(tmp_path: Path) -> None:
 def test_a_distance_is_a_number_where_one_is_wanted() -> None:
     near, far = distance(SOME[0], SOME[1]), distance(SOME[0], SOME[3])
     assert near < far and max(near, far) is far and near < 0.9 and near != far and near == near.total
-    assert np.asarray([float(near), float(far)]).sum() == near.total + far.total
+    assert np.asarray([near, far]).sum() == near + far == near.total + far.total
+    again = pickle.loads(pickle.dumps(far))
+    assert again == far and again.parts == far.parts and again.elements == far.elements
+    assert str(near) == str(near.total) and f"{near:.3f}" == f"{near.total:.3f}" and repr(near).startswith("Distance(0.0")
 
 
 def test_a_distance_explains_itself() -> None:

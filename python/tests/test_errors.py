@@ -72,8 +72,8 @@ CASES: list[tuple[Callable[[], Any], type[DriftworldError], type[Exception], str
     (no_place, driftworld.GeneratorError, Exception, "generator/no-place"),
     (other_task, driftworld.GeneratorError, Exception, "generator/different-tasks"),
     (no_method, driftworld.SimilarityError, Exception, "similarity/unknown-method"),
-    (no_action, driftworld.EnvError, Exception, "env/episode-over"),
-    (no_log, driftworld.MetricsError, Exception, "metrics/missing-file"),
+    (no_action, driftworld.EnvError, Exception, "env/ended"),
+    (no_log, driftworld.MetricsError, Exception, "metrics/not-a-directory"),
     (no_experience, driftworld.CurriculumError, Exception, "curriculum/no-such-experience"),
 ]
 
@@ -103,7 +103,9 @@ def test_an_error_survives_being_copied(
 
 
 def test_every_class_has_a_case() -> None:
-    classes = {value for value in vars(driftworld).values() if isinstance(value, type) and issubclass(value, DriftworldError)}
+    classes = {
+        value for value in vars(driftworld).values() if isinstance(value, type) and issubclass(value, DriftworldError)
+    }
     assert classes - {DriftworldError} == {kind for _, kind, _, _ in CASES}
 
 
@@ -122,7 +124,11 @@ def test_a_document_is_refused_with_pointer_line_and_column() -> None:
 def test_all_problems_come_at_once_in_the_order_of_places() -> None:
     with pytest.raises(driftworld.SpecError) as refused:
         TaskSpec.from_json("mine.json", '{ "name": "x", "b": 1,\n "a": 2, "world": { "c": 3 } }')
-    assert [(problem["pointer"], problem["line"]) for problem in refused.value.problems] == [("/b", 1), ("/a", 2), ("/world/c", 2)]
+    assert [(problem["pointer"], problem["line"]) for problem in refused.value.problems] == [
+        ("/b", 1),
+        ("/a", 2),
+        ("/world/c", 2),
+    ]
     assert len(str(refused.value).splitlines()) == 3
 
 
@@ -130,7 +136,7 @@ def test_a_message_is_the_commands(tmp_path: Path) -> None:
     path = tmp_path / "wrong.json"
     path.write_text('{ "name": "x", "paramters": {} }', encoding="utf-8")
     for call, argv in [
-        (lambda: TaskSpec.load(path), ["tasks", str(path)]),
+        (lambda: TaskSpec.load(path), ["sample", str(path)]),
         (lambda: driftworld.variant("find_objects#rde"), ["sample", "find_objects#rde"]),
         (lambda: TaskSpec.load("find_object"), ["sample", "find_object"]),
         (lambda: driftworld.read_log(tmp_path / "x"), ["metrics", str(tmp_path / "x")]),

@@ -445,10 +445,10 @@ def test_rendering_for_people_wraps_pictures(monkeypatch: pytest.MonkeyPatch) ->
 def test_videos_are_recorded(tmp_path: Path) -> None:
     pytest.importorskip("moviepy", reason="RecordVideo writes through moviepy")
     env = gym.make(FIND, render_mode="rgb_array", size=40, render_size=(48, 64), max_episode_steps=4)
-    env = gym.wrappers.RecordVideo(env, str(tmp_path), disable_logger=True)
+    env = gym.wrappers.RecordVideo(env, str(tmp_path / "videos"), disable_logger=True)
     env.reset(seed=0)
     truncated = False
     while not truncated:
         *_, truncated, _ = env.step(env.action_space.sample())
     env.close()
-    assert list(tmp_path.glob("*.mp4"))
+    assert list((tmp_path / "videos").glob("*.mp4"))

@@ -34,7 +34,9 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
     assert log["block_num"].tolist() == [0, 0, 1] and log["exp_num"].dtype == np.int64
     assert log["block_type"].tolist() == ["train", "train", "test"]
     assert log["task_params"].tolist() == [{"seed": 7}] * 3
-    assert log["timestamp"].dtype == np.dtype("datetime64[us]") and (np.diff(log["timestamp"]) >= np.timedelta64(0)).all()
+    assert (
+        log["timestamp"].dtype == np.dtype("datetime64[us]") and (np.diff(log["timestamp"]) >= np.timedelta64(0)).all()
+    )
     assert log.scenario_info == {"scenario_type": "alternating", "author": "nobody"}
     assert log.logger_info["metrics_columns"] == ["reward"]
 
@@ -49,7 +51,19 @@ def test_a_log_is_written_as_the_format_says(tmp_path: Path) -> None:
     folder = written(tmp_path / "log", [1.0])
     lines = (folder / "worker-default" / "0-train" / "data-log.tsv").read_text(encoding="utf-8").splitlines()
     assert lines[0].split("\t") == (
-        "block_num exp_num worker_id block_type block_subtype task_name task_params exp_status timestamp reward steps".split()
+        [
+            "block_num",
+            "exp_num",
+            "worker_id",
+            "block_type",
+            "block_subtype",
+            "task_name",
+            "task_params",
+            "exp_status",
+            "timestamp",
+            "reward",
+            "steps",
+        ]
     )
     assert validate_log(folder)["valid"] and validate_log(folder)["rows"] == 1
 

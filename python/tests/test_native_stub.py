@@ -59,24 +59,33 @@ def functions() -> list[tuple[str, ast.FunctionDef, Any]]:
         elif isinstance(node, ast.ClassDef):
             for member in node.body:
                 is_property = isinstance(member, ast.FunctionDef) and any(
-                    isinstance(decorator, ast.Name) and decorator.id == "property" for decorator in member.decorator_list
+                    isinstance(decorator, ast.Name) and decorator.id == "property"
+                    for decorator in member.decorator_list
                 )
                 if isinstance(member, ast.FunctionDef) and not is_property and not member.name.startswith("__"):
-                    found.append((f"{node.name}.{member.name}", member, getattr(getattr(_native, node.name), member.name)))
+                    found.append(
+                        (f"{node.name}.{member.name}", member, getattr(getattr(_native, node.name), member.name))
+                    )
     return found
 
 
-@pytest.mark.parametrize(("name", "described", "real"), functions(), ids=lambda value: value if isinstance(value, str) else "")
+@pytest.mark.parametrize(
+    ("name", "described", "real"), functions(), ids=lambda value: value if isinstance(value, str) else ""
+)
 def test_the_stub_has_the_parameters_and_which_of_them_have_defaults(
     name: str, described: ast.FunctionDef, real: Any
 ) -> None:
     arguments = described.args
     positional = [argument.arg for argument in (*arguments.posonlyargs, *arguments.args)]
     with_defaults = positional[len(positional) - len(arguments.defaults) :]
-    with_defaults += [arg.arg for arg, default in zip(arguments.kwonlyargs, arguments.kw_defaults) if default is not None]
+    with_defaults += [
+        arg.arg for arg, default in zip(arguments.kwonlyargs, arguments.kw_defaults) if default is not None
+    ]
     expected = [name for name in positional + [arg.arg for arg in arguments.kwonlyargs] if name not in ("self", "cls")]
     signature = inspect.signature(real).parameters.values()
-    plain = [parameter for parameter in signature if parameter.kind not in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL)]
+    plain = [
+        parameter for parameter in signature if parameter.kind not in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL)
+    ]
     found = [parameter.name for parameter in plain if parameter.name not in ("self", "cls", "slf")]
     assert found == expected
     assert [p.name for p in plain if p.default is not p.empty] == with_defaults

@@ -69,7 +69,7 @@ def test_options_do_what_they_do_for_the_command(logs: list[Path], tmp_path: Pat
         noise=(0.0, 0.5),
         noise_seed=3,
     )
-    flags = "-t both -m both -g none -x -N 0.0 0.5 --noise-seed 3".split()
+    flags = ["-t", "both", "-m", "both", "-g", "none", "-x", "-N", "0.0", "0.5", "--noise-seed", "3"]
     expected = commanded("metrics", logs[0], "--ste", *experts, *flags, "-d", ranges)
     assert found.lifetimes == [expected]
     assert found["ste_rel_perf"] is not None and "forward_transfer_contrast" in found.lifetime

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import driftworld
+import numpy as np
 import pytest
 from driftworld import Drift, SpecError, TaskError, TaskSpec, Variant, validate
 
@@ -53,9 +54,9 @@ def test_a_task_is_loaded_by_its_name_or_its_path(tmp_path: Path, lamps: TaskSpe
     path.write_text(json.dumps(LAMPS), encoding="utf-8")
     assert TaskSpec.load(path) == TaskSpec.load(str(path)) == lamps
     assert driftworld.variant(f"{path}#dusk") == lamps.variant("dusk")
-    assert [label for label, _ in driftworld.variants("find_objects#red", f"{path}#light", lamps.variant("day"))][0] == (
-        "find_objects#red"
-    )
+    found = driftworld.variants("find_objects#red", f"{path}#light", lamps.variant("day"), f"{path}#light")
+    members = [f"{path}#{name}" for name in lamps.families["light"]]
+    assert [label for label, _ in found] == ["find_objects#red", *members, "lamps#day"]
     assert {TaskSpec.load(name).name for name in driftworld.built_in_tasks()} >= {"find_objects", "scavenger_hunt"}
 
 
@@ -117,13 +118,24 @@ def test_many_worlds_are_the_single_ones(lamps: TaskSpec, threads: int) -> None:
     variant = lamps.variant("dusk")
     many = variant.sample_many(600, seed=2, start=10, threads=threads)
     assert many == [variant.sample(2, index) for index in range(10, 610)]
-    assert variant.sample_many_json(3, seed=2, start=10, threads=threads) == [variant.sample_json(2, k) for k in (10, 11, 12)]
+    assert variant.sample_many_json(3, seed=2, start=10, threads=threads) == [
+        variant.sample_json(2, k) for k in (10, 11, 12)
+    ]
     assert variant.sample_many(0) == []
 
 
 def test_a_number_of_worlds_that_there_are_not_is_refused(lamps: TaskSpec) -> None:
     with pytest.raises(ValueError, match="room for 2 worlds"):
         lamps.variant("day").sample_many(2, start=2**64 - 1)
+
+
+@pytest.mark.parametrize("seed", [-1, 2**64])
+def test_a_seed_is_a_whole_number(lamps: TaskSpec, seed: int) -> None:
+    with pytest.raises(ValueError, match=f"found {seed}, expected a whole number in 0..18446744073709551615"):
+        lamps.variant("day").sample(seed)
+    with pytest.raises(TypeError, match="seed"):
+        lamps.variant("day").sample(1.5)  # type: ignore[arg-type]
+    assert lamps.variant("day").sample(np.int64(3)) == lamps.variant("day").sample(3)  # type: ignore[arg-type]
 
 
 def test_a_drift_leads_from_one_variant_to_the_other(lamps: TaskSpec) -> None:

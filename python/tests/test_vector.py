@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import copy
+import gc
 import pickle
 import warnings
+from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
@@ -190,6 +192,24 @@ def test_views_outlive_their_environment() -> None:
     env.close()
     del env
     assert np.array_equal(observations, before)
+
+
+def test_threads_and_files_go_with_their_environment() -> None:
+    tasks, files = Path("/proc/self/task"), Path("/proc/self/fd")
+    if not tasks.is_dir():
+        pytest.skip("threads are counted in /proc")
+
+    def held() -> tuple[int, int]:
+        gc.collect()
+        return len(list(tasks.iterdir())), len(list(files.iterdir()))
+
+    before = held()
+    for _ in range(20):
+        envs = native(FIND, 4, modalities="state", size=16, num_threads=3)
+        envs.reset(seed=0)
+        envs.close()
+        del envs
+    assert held() == before
 
 
 def test_observations_go_to_other_libraries_without_a_copy() -> None:

@@ -1,7 +1,7 @@
 //! The command asked by a program instead of run by a person: what it has to say is handed back, nothing is shown.
 
 use std::ffi::OsString;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use clap::Parser;
 
@@ -45,8 +45,7 @@ pub struct Refusal {
 /// # Ok::<(), driftworld::commands::Refusal>(())
 /// ```
 pub fn ask(args: impl IntoIterator<Item = OsString>) -> Result<Answer, Refusal> {
-    static QUESTION: Mutex<()> = Mutex::new(());
-    let _one_at_a_time = QUESTION.lock().unwrap_or_else(PoisonError::into_inner);
+    let _one_at_a_time = alone();
     let command =
         Command::try_parse_from(std::iter::once("driftworld".into()).chain(args)).map_err(|error| Refusal {
             message: plain(&error.to_string()),
@@ -62,6 +61,12 @@ pub fn ask(args: impl IntoIterator<Item = OsString>) -> Result<Answer, Refusal> 
             notes: answer.notes,
         }),
     }
+}
+
+/// One command at a time: what another says meanwhile would be taken for its answer.
+pub(super) fn alone() -> MutexGuard<'static, ()> {
+    static BUSY: Mutex<()> = Mutex::new(());
+    BUSY.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// What the parser of arguments says, without the word that it begins with and the advice to read the help that it ends with.

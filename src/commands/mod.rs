@@ -51,6 +51,7 @@ pub use ask::{Answer, Refusal, ask};
 /// Returns the exit code: 0 when all went well, 1 when the input or the place for the output is wrong, 2 when the arguments are.
 /// When the reader of the output goes away, as with `| head`, the process ends.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
+    let _one_at_a_time = ask::alone();
     quiet_on_closed_pipe();
     match Command::try_parse_from(args) {
         Ok(command) => command.run().map_or_else(|failure| failure.report(), |()| 0),

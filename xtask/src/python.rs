@@ -33,7 +33,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
         };
     // Before anything is built: these take seconds.
     let project = workspace.root.join("python");
-    for arguments in [&["-m", "ruff", "check", "."][..], &["-m", "mypy"]] {
+    for arguments in [&["-m", "ruff", "check", ".", "../examples/python"][..], &["-m", "mypy"]] {
         let mut check = newest.python(arguments);
         check.current_dir(&project);
         run(check)?;

@@ -31,14 +31,14 @@ trait Whole {
 }
 
 impl Whole for u8 {
-    #[inline(always)]
+    #[inline]
     fn lowest(word: u32) -> Self {
         word as Self
     }
 }
 
 impl Whole for u16 {
-    #[inline(always)]
+    #[inline]
     fn lowest(word: u32) -> Self {
         word as Self
     }
@@ -75,6 +75,10 @@ fn scaled_avx2<T: Whole>(depth: &[f32], scale: f32, most: f32, out: &mut [T]) {
     scaled_here(depth, scale, most, out);
 }
 
+#[expect(
+    clippy::inline_always,
+    reason = "it is to be compiled for each caller's instructions"
+)]
 #[inline(always)]
 fn scaled_here<T: Whole>(depth: &[f32], scale: f32, most: f32, out: &mut [T]) {
     for (out, metres) in out.iter_mut().zip(depth) {

@@ -65,19 +65,17 @@ pub fn category_color(category: u8) -> [u8; 3] {
 
 /// Depth as L2Explorer shows it: black at the camera, white at 100 m and beyond.
 pub fn depth_to_gray(depth: &[f32]) -> Vec<u8> {
-    depth.iter().map(|metres| gray_of_metres(*metres)).collect()
+    let gray = |metres: &f32| rounded(metres * GRAY_PER_METRE, 255.0) as u8;
+    depth.iter().map(gray).collect()
 }
 
-/// The grey of one distance in metres.
-#[inline]
-pub(crate) fn gray_of_metres(metres: f32) -> u8 {
-    rounded(metres * 2.55, 255.0) as u8
-}
+/// Steps of grey per metre: 255 at 100 m.
+pub(crate) const GRAY_PER_METRE: f32 = 2.55;
 
 /// The whole number nearest to `number`, halves upwards, within 0..=`most`, which is below 2²³.
 ///
 /// A sum with 2²³ has no room for a fraction: its last bits are the whole number. Compilers make vectors of that, but not of a cast
-/// that watches for what does not fit: 2.7 instead of 6.6 µs for 84 × 84 pixels with SSE2.
+/// that watches for what does not fit: a third of the time with SSE2.
 #[inline]
 pub(crate) fn rounded(number: f32, most: f32) -> u32 {
     const SHIFT: f32 = 8_388_608.0;

@@ -19,6 +19,8 @@ def ask(
     arguments: Iterable[str | os.PathLike[str]],
     options: Mapping[str, Any],
     refused: type[DriftworldError],
+    *,
+    stacklevel: int = 3,
 ) -> str:
     """What a subcommand prints. Its warnings become Python's.
 
@@ -28,6 +30,7 @@ def ask(
         options: By name, with ``_`` for ``-``: ``None`` and ``False`` are left out, ``True`` is the bare flag, a list is several
             values, a tuple is one value with commas.
         refused: What is raised when the command fails, with the command's message.
+        stacklevel: Whose line warnings name: 3 for that of whoever called the caller.
     """
     argv = [subcommand, *(os.fspath(argument) for argument in arguments)]
     for name, value in options.items():
@@ -45,7 +48,7 @@ def ask(
     output, notes, message = _native.ask(argv)
     for note in notes:
         if note.startswith("warning: "):
-            warnings.warn(note.removeprefix("warning: "), stacklevel=3)
+            warnings.warn(note.removeprefix("warning: "), stacklevel=stacklevel)
     if message is not None:
         raise refused(message)
     return output

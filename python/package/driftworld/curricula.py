@@ -118,14 +118,15 @@ class Curriculum(Sequence[Block]):
     Args:
         text: The scenario, as JSON text; ours, or one of L2Explorer's.
         path: What messages call it; tasks and worlds that it names by paths are looked for from its folder first.
-        stand_in: Let the world file with the nearest name stand in for one that is nowhere.
+        stand_in: Let the world file with the nearest name stand in for one that is nowhere; if not given, in L2Explorer's
+            scenarios only, as ``driftworld run`` does.
 
     Raises:
         SpecError: If the scenario is wrong, with pointer, line and column.
         CurriculumError: If something that it names cannot be had.
     """
 
-    def __init__(self, text: str, path: PathLike = "scenario", *, stand_in: bool = False) -> None:
+    def __init__(self, text: str, path: PathLike = "scenario", *, stand_in: bool | None = None) -> None:
         self._text, self._path, self._stand_in = text, Path(path), stand_in
         self._plan = self._new_plan()
         for warning in self._plan.warnings:
@@ -144,7 +145,7 @@ class Curriculum(Sequence[Block]):
         return _native.Plan(self._path, self._text, self._stand_in)
 
     @classmethod
-    def load(cls, path: PathLike, *, stand_in: bool = False) -> Curriculum:
+    def load(cls, path: PathLike, *, stand_in: bool | None = None) -> Curriculum:
         """Reads a scenario file.
 
         Raises:
@@ -348,7 +349,7 @@ class Curriculum(Sequence[Block]):
         return (_curriculum_again, (self._text, str(self._path), self._stand_in))
 
 
-def _curriculum_again(text: str, path: str, stand_in: bool) -> Curriculum:
+def _curriculum_again(text: str, path: str, stand_in: bool | None) -> Curriculum:
     """A curriculum in another process."""
     return Curriculum(text, path, stand_in=stand_in)
 
@@ -357,9 +358,9 @@ def _designed(options: dict[str, Any]) -> str:
     """What the command prints of a design: the scenario, or a line for each of several."""
     tasks = options.pop("tasks")
     if not all(isinstance(task, str) for task in tasks):
-        raise TypeError("tasks: expected names such as \"find_objects#red\": a scenario calls tasks by their names")
+        raise TypeError('tasks: expected names such as "find_objects#red": a scenario calls tasks by their names')
     # First, so that what is wrong with a task is raised with its place.
     variants(*tasks)
     if options.get("evaluate_after") is not None:
         options["evaluate_after"] = tuple(options["evaluate_after"])
-    return ask("curriculum", tasks, options, CurriculumError)
+    return ask("curriculum", tasks, options, CurriculumError, stacklevel=4)

@@ -9,10 +9,9 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import total_ordering
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -21,6 +20,9 @@ from driftworld import _native
 from driftworld._files import write_whole
 from driftworld.specs import TaskSpec, Variant, document_text, variant, variants
 
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
 #: The elements of the decision process, by letter.
 ELEMENTS = {"S": "state", "A": "action", "T": "transition", "R": "reward", "O": "observation"}
 
@@ -28,13 +30,10 @@ Weights = Mapping[str, float]
 Named = str | Variant | TaskSpec
 
 
-@total_ordering
-@dataclass(frozen=True, eq=False)
-class Distance:
-    """How far apart two are. A number wherever one is wanted: ``float(d)``, ``d < 0.3``, ``max(distances)``.
+class Distance(float):
+    """How far apart two are: a number, with what it is made of.
 
     Attributes:
-        total: All elements together, in 0..=1.
         elements: The distance in each element of the decision process, by letter: ``S``, ``A``, ``T``, ``R``, ``O``; ``None``
             where nothing could differ.
         parts: What was compared: dictionaries with ``name``, ``element``, ``measure``, ``how`` (for distributions), ``raw``,
@@ -42,26 +41,31 @@ class Distance:
         compared: How the two were compared, in words.
     """
 
-    total: float
     elements: dict[str, float | None]
-    parts: list[dict[str, Any]] = field(repr=False)
+    parts: list[dict[str, Any]]
     compared: str
 
-    def __float__(self) -> float:
-        return self.total
+    def __new__(
+        cls, total: float, elements: Mapping[str, float | None], parts: Iterable[dict[str, Any]], compared: str
+    ) -> Self:
+        """A distance of all elements together, in 0..=1, and what it is made of."""
+        distance = super().__new__(cls, total)
+        distance.elements, distance.parts, distance.compared = dict(elements), list(parts), compared
+        return distance
 
-    def __eq__(self, other: object) -> bool:
-        if isinstance(other, (int, float, Distance)):
-            return self.total == float(other)
-        return NotImplemented
+    @property
+    def total(self) -> float:
+        """All elements together, in 0..=1, as a plain number."""
+        return float(self)
 
-    def __lt__(self, other: object) -> bool:
-        if isinstance(other, (int, float, Distance)):
-            return self.total < float(other)
-        return NotImplemented
+    def __repr__(self) -> str:
+        return f"Distance({self.total!r}, {self.compared!r})"
 
-    def __hash__(self) -> int:
-        return hash(self.total)
+    def __str__(self) -> str:
+        return str(self.total)
+
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        return (self.total, self.elements, self.parts, self.compared)
 
     def explain(self) -> str:
         """What the distance is made of, as a table in plain text."""
@@ -74,7 +78,9 @@ class Distance:
             rows.append((part["name"], part["element"], part["measure"], _words(part.get("how")), *numbers))
         widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
         for row in rows:
-            cells = [f"{cell:<{width}}" if k < 4 else f"{cell:>{width}}" for k, (cell, width) in enumerate(zip(row, widths))]
+            cells = [
+                f"{cell:<{width}}" if k < 4 else f"{cell:>{width}}" for k, (cell, width) in enumerate(zip(row, widths))
+            ]
             lines.append("  ".join(cells).rstrip())
         return "\n".join(lines)
 
@@ -196,7 +202,9 @@ class DistanceMatrix:
                 write_whole(path, self._native.to_json().encode())
             case _:
                 write_whole(path, self._native.to_npy())
-                write_whole(path.with_suffix(".labels.json"), json.dumps(self.labels, indent=2, ensure_ascii=False).encode())
+                write_whole(
+                    path.with_suffix(".labels.json"), json.dumps(self.labels, indent=2, ensure_ascii=False).encode()
+                )
 
     @property
     def labels(self) -> list[str]:
@@ -241,7 +249,9 @@ class DistanceMatrix:
         target_step: float | None = None,
     ) -> Order:
         """The items in an order; see :func:`order`."""
-        ends = [None if label is None else self._index(option, label) for option, label in (("start", start), ("end", end))]
+        ends = [
+            None if label is None else self._index(option, label) for option, label in (("start", start), ("end", end))
+        ]
         return Order(**self._native.order(method, ends[0], ends[1], seed, target_step))
 
     def _index(self, option: str, label: str) -> int:

@@ -97,7 +97,9 @@ class Summary:
             numbers = (str(regime["experiences"]), f"{regime['mean_reward']:.1f}", f"{regime['success_rate']:.0%}")
             rows.append((str(regime["block"]), regime["kind"], regime["variant"], *numbers))
         widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
-        lines = ["  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+        lines = [
+            "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
+        ]
         return "\n".join(lines)
 
 
@@ -131,7 +133,7 @@ class Lifetime:
         self._resume = resume
         # What is saved lies beside the log: a log holds rows, nothing else.
         self._saves = None if self._log is None else self._log.with_name(f"{self._log.name}.agent")
-        self._frozen: bool | None = None
+        self._block: int | None = None
 
     def live(self, experience: Callable[[int], Experience]) -> Summary:
         """Lives it from the first experience that is not in the log to the last; ``experience`` finds one by its number."""
@@ -158,9 +160,9 @@ class Lifetime:
 
     def _live_one(self, env: gymnasium.Env[Any, Any], now: Experience) -> tuple[float, bool, int, float, bool]:
         """One experience: reward, success, steps, seconds and whether a limit cut it off."""
-        if self._frozen is not (not now.learning):
-            self._frozen = not now.learning
-            self._agent.freeze(self._frozen)
+        if self._block != now.block:
+            self._block = now.block
+            self._agent.freeze(not now.learning)
         begin = getattr(self._agent, "begin", None)
         if begin is not None:
             begin(None if now.label is None else now.label["name"], now.chance)

@@ -198,12 +198,14 @@ def metrics(
         return _metrics(folders, options)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "data_range.json"
-        file.write_text(json.dumps({task: dict(limits) for task, limits in (data_range or {}).items()}), encoding="utf-8")
+        file.write_text(
+            json.dumps({task: dict(limits) for task, limits in (data_range or {}).items()}), encoding="utf-8"
+        )
         return _metrics(folders, {**options, "data_range_file": file})
 
 
 def _metrics(folders: tuple[str, ...], options: dict[str, Any]) -> Metrics:
-    said = json.loads(ask("metrics", folders, {**options, "json": True}, MetricsError))
+    said = json.loads(ask("metrics", folders, {**options, "json": True}, MetricsError, stacklevel=4))
     if "lifetimes" not in said:
         said = {"lifetimes": [said]}
     return Metrics(**said, _asked=(folders, options))

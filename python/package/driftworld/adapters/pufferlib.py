@@ -33,13 +33,13 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
     """Environments that step together and begin anew by themselves, as PufferLib's native ones.
 
     Infos come when episodes end, one each: ``episode_return``, ``episode_length``, ``is_success`` (0.0 or 1.0), to be averaged as
-    PufferLib does; what they were episodes of is in ``variant_id``.
+    PufferLib does.
 
     Args:
         env_id: Such as ``"driftworld/FindObjects-v0"``.
         num_envs: How many agents, from 1.
         buf: PufferLib's buffers; ``None`` makes some.
-        seed: PufferLib's first seed, for a reset that is given none.
+        seed: For the first reset, if that is given none.
         **options: Options of the environment, such as ``variant`` or ``size``; a ``Dict`` of modalities is refused.
 
     Raises:
@@ -74,7 +74,7 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
 
     def reset(self, seed: int | None = None) -> tuple[npt.NDArray[Any], list[dict[str, Any]]]:
         """Begins new episodes everywhere, environment ``i`` under ``seed + i``."""
-        seed = self._seed if seed is None else seed
+        seed, self._seed = self._seed if seed is None else seed, None
         self.observations[:], _ = self.envs.reset(seed=seed)
         self.rewards[:] = 0
         self.terminals[:] = False
@@ -88,7 +88,7 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
         self, actions: npt.NDArray[Any]
     ) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], list[dict[str, Any]]]:
         """One step of all; the arrays are PufferLib's buffers."""
-        observations, rewards, terminated, truncated, told = self.envs.step(np.asarray(actions))
+        observations, rewards, terminated, truncated, told = self.envs.step(np.asarray(actions).reshape(self.envs.action_space.shape))
         self.observations[:] = observations
         self.rewards[:] = rewards
         self.terminals[:] = terminated

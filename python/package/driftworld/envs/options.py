@@ -16,7 +16,7 @@ from driftworld.errors import SpecError
 
 #: What an observation may hold.
 MODALITIES = ("rgb", "depth", "segmentation", "class", "instance", "state")
-DEFAULT_MODALITIES = ("rgb", "depth", "segmentation", "state")
+DEFAULT_MODALITIES: tuple[str, ...] = ("rgb", "depth", "segmentation", "state")
 DEPTHS = ("uint8", "uint16", "float32")
 RENDERERS = ("cpu", "gpu", "auto")
 LABELS = ("none", "info", "obs")
@@ -68,7 +68,7 @@ class Options:
             ValueError: For a value that is not among those that an option knows; it says which there are.
         """
         is_dict = not isinstance(modalities, str)
-        kinds = tuple(modalities) if is_dict else (modalities,)
+        kinds: tuple[str, ...] = (modalities,) if isinstance(modalities, str) else tuple(modalities)
         for kind in kinds:
             _one_of("modalities", kind, MODALITIES)
         if not kinds or len(set(kinds)) < len(kinds):
@@ -191,7 +191,7 @@ def _one_of(option: str, found: Any, known: Sequence[str]) -> None:
 def _whole(option: str, found: Any) -> int | None:
     if found is None:
         return None
-    if isinstance(found, bool) or not isinstance(found, numbers.Integral) or not 0 <= found < 2**32:
+    if isinstance(found, bool) or not isinstance(found, numbers.Integral) or not 0 <= int(found) < 2**32:
         raise ValueError(f"{option}: found {found!r}, expected a whole number")
     return int(found)
 

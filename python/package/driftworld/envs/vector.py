@@ -126,7 +126,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         self._nothing = np.empty(num_envs, dtype=object)
         self._nothing.fill(())
 
-    @property
+    @property  # type: ignore[misc]
     def np_random(self) -> tuple[np.random.Generator, ...]:  # type: ignore[override]
         """The random generator of each environment; it is only asked where an environment never had a seed."""
         return tuple(self._generator(env) for env in range(self.num_envs))

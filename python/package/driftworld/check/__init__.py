@@ -1,0 +1,86 @@
+"""A contract that every environment of ours has to keep, and a check that holds any task of a user's against it.
+
+``python -m driftworld.check find_objects#red my_task.json my_world.json`` prints a table of what passed and what failed, with what to
+do; :func:`check` is the same from a program. Nothing is trained here, and nothing is timed.
+"""
+
+from __future__ import annotations
+
+import json
+import platform
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+
+import driftworld
+from driftworld.check.case import Case
+from driftworld.check.report import Finding, Report
+from driftworld.check.rules import RULES, equal_in_processes
+
+__all__ = ["Finding", "Report", "check", "versions"]
+
+
+def check(
+    task: str,
+    *,
+    num_envs: int = 3,
+    steps: int = 60,
+    seed: int = 0,
+    processes: bool = True,
+    **options: Any,
+) -> Report:
+    """Holds a task against the contract.
+
+    Args:
+        task: A built-in task or a path, with ``#variant`` or without; the path of a world; or the id of an environment.
+        num_envs: How many environments the vector ones have, from 1.
+        steps: How many steps of random actions each comparison takes, from 1; episodes are cut to 9 steps, so that 60 hold many
+            ends.
+        seed: Of worlds and actions.
+        processes: Whether to compare with ``AsyncVectorEnv`` as well, which starts a process for each environment.
+        **options: Options of the environment, such as ``modalities="rgb"``.
+
+    Returns:
+        A :class:`Report`; a rule that is broken is a finding in it, never an exception.
+
+    Raises:
+        driftworld.DriftworldError: The task does not exist, or its spec is wrong: there is nothing to check then.
+        ValueError: ``num_envs`` or ``steps`` is below 1.
+    """
+    if num_envs < 1 or steps < 1:
+        raise ValueError(f"num_envs, steps: found {num_envs} and {steps}, expected at least 1 of each")
+    env_id, more = _environment_of(task)
+    case = Case(env_id, {**more, **options}, num_envs, steps, seed)
+    # Whatever cannot be made at all says so here, in its own words.
+    case.single().close()
+    rules = [rule for rule in RULES if processes or rule.check is not equal_in_processes]
+    findings = tuple(rule.look(case) for rule in rules)
+    return Report(task, findings, versions())
+
+
+def _environment_of(task: str) -> tuple[str, dict[str, Any]]:
+    """The id and the options by which Gymnasium makes the environment of a task, a world, or an id."""
+    if task.startswith("driftworld/"):
+        return task, {}
+    path = Path(task)
+    if path.suffix == ".json" and path.is_file():
+        try:
+            document = json.loads(path.read_text(encoding="utf-8"))
+        except ValueError:
+            document = {}
+        # A task spec declares parameters around a template; whatever is wrong with it, its own reader says.
+        if isinstance(document, dict) and not {"template", "parameters", "variants"} & document.keys():
+            return "driftworld/World-v0", {"world": task}
+    return "driftworld/Task-v0", {"task": task}
+
+
+def versions() -> dict[str, str]:
+    """Of what a report depends on."""
+    return {
+        "python": platform.python_version(),
+        "driftworld": driftworld.__version__,
+        "gymnasium": gymnasium.__version__,
+        "numpy": np.__version__,
+    }

@@ -1,0 +1,395 @@
+"""Curricula from Python: designed, read, iterated and lived, with the log that the command would write."""
+
+from __future__ import annotations
+
+import json
+import pickle
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import driftworld
+import numpy as np
+import pytest
+from driftworld import Agent, Curriculum, CurriculumError, SpecError, Transition, read_log, validate_log
+
+#: Columns of which an agent cannot change a thing.
+OF_THE_PLAN = [
+    "block_num",
+    "exp_num",
+    "worker_id",
+    "block_type",
+    "block_subtype",
+    "task_name",
+    "task_params",
+    "exp_status",
+    "progress",
+    "world_index",
+    "distance",
+    "distance_state",
+    "distance_action",
+    "distance_transition",
+    "distance_reward",
+    "distance_observation",
+]
+
+
+class Circler:
+    """Goes round in circles, and counts what it is told."""
+
+    name = "circler"
+
+    def __init__(self) -> None:
+        self.learned: list[float] = []
+        self.frozen: list[bool] = []
+        self.begun: list[tuple[str | None, int]] = []
+        self.seen: list[Any] = []
+
+    def act(self, observation: Any, info: dict[str, Any]) -> Any:
+        self.seen.append((observation, info))
+        return np.array([5, 45, 0], dtype=np.float32)
+
+    def learn(self, transition: Transition) -> None:
+        assert not self.frozen[-1]
+        self.learned.append(transition.reward)
+
+    def freeze(self, frozen: bool) -> None:
+        self.frozen.append(frozen)
+
+    def begin(self, label: str | None, seed: int) -> None:
+        self.begun.append((label, seed))
+
+
+class Pupil(Circler):
+    """One whose every action depends on all that it learned, and that can be kept."""
+
+    name = "pupil"
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.knowledge = 0.0
+        self.chance = 0
+
+    def act(self, observation: Any, info: dict[str, Any]) -> Any:
+        turn = (self.knowledge * 37 + self.chance % 1000) % 180 - 90
+        return np.array([8, turn, 0], dtype=np.float32)
+
+    def learn(self, transition: Transition) -> None:
+        super().learn(transition)
+        self.knowledge = (self.knowledge * 3 + transition.reward + float(transition.next_observation.mean())) % 1000
+
+    def begin(self, label: str | None, seed: int) -> None:
+        super().begin(label, seed)
+        self.chance = seed
+
+    def save(self, path: Path) -> None:
+        path.mkdir()
+        (path / "knowledge.json").write_text(json.dumps(self.knowledge), encoding="utf-8")
+
+    def load(self, path: Path) -> None:
+        self.knowledge = json.loads((path / "knowledge.json").read_text(encoding="utf-8"))
+
+
+#: Small and quick, with a limit of steps.
+SMALL: dict[str, Any] = {"modalities": "rgb", "size": 8, "actions": "continuous"}
+
+
+def small(max_steps: int = 40) -> Curriculum:
+    """Blocks of all kinds: before deployment, a drift, evaluations."""
+
+    def regime(variant: str, count: int, seed: int, **more: Any) -> dict[str, Any]:
+        return {
+            "task": "find_objects",
+            "variant": variant,
+            "count": count,
+            "seed": seed,
+            "max_steps": max_steps,
+            **more,
+        }
+
+    def evaluation() -> dict[str, Any]:
+        return {"type": "evaluation", "regimes": [regime("blue", 2, 1), regime("red", 1, 1)]}
+
+    return Curriculum.from_dict(
+        {
+            "name": "small",
+            "blocks": [
+                {"type": "learning", "phase": "pre_deployment", "regimes": [regime("blue", 2, 5)]},
+                evaluation(),
+                {"type": "learning", "regimes": [regime("blue", 2, 2), regime("red", 3, 2, drift={"to": "dusk"})]},
+                evaluation(),
+                {"type": "learning", "regimes": [regime("red", 3, 3)]},
+                evaluation(),
+            ],
+        }
+    )
+
+
+def rows(log: Path, columns: list[str] | None = None) -> dict[str, list[str]]:
+    """A log's columns as texts, which tell numbers apart to the last bit, and NaN from none."""
+    read = read_log(log).columns
+    return {name: [repr(cell) for cell in read[name].tolist()] for name in columns or sorted(set(read) - {"timestamp"})}
+
+
+def test_a_design_is_the_commands(tmp_path: Path) -> None:
+    curriculum = Curriculum.design(
+        "find_objects#blue", "find_objects#red", "find_objects#dusk", learn=3, eval_episodes=1, evaluate="ends", seed=4
+    )
+    path = tmp_path / "s.json"
+    flags = ["--learn", "3", "--eval-episodes", "1", "--evaluate", "ends", "--seed", "4"]
+    tasks = ["find_objects#blue", "find_objects#red", "find_objects#dusk"]
+    subprocess.run(
+        [sys.executable, "-m", "driftworld", "curriculum", *tasks, *flags, "-o", path], check=True, capture_output=True
+    )
+    assert curriculum.to_dict() == json.loads(path.read_text(encoding="utf-8")) == Curriculum.load(path).scenario
+    curriculum.save(tmp_path / "mine.json")
+    assert (tmp_path / "mine.json").read_bytes() == path.read_bytes()
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"probe": "reward", "order": "gradual", "variants": 4},
+        {"probe": "observation", "step_distance": 0.1, "steps": 2},
+        {"form": "alternating", "blocks": 4, "drift": "cosine"},
+        {"evaluate_after": [0, 2], "task_label": "info", "method": "nearest"},
+        {"form": "permuted", "mix": False, "pre_deployment": 2},
+    ],
+)
+def test_every_choice_of_the_command_can_be_made(options: dict[str, Any]) -> None:
+    tasks = ["find_objects#blue", "find_objects#dusk"] if "form" in options else ["find_objects"]
+    curriculum = Curriculum.design(*tasks, learn=2, eval_episodes=1, **options)
+    assert sum(len(block) for block in curriculum) == curriculum.num_experiences > 0
+
+
+def test_controls_are_written_beside_the_design(tmp_path: Path) -> None:
+    Curriculum.design(
+        "find_objects#blue", "find_objects#red", "find_objects#dusk", controls=tmp_path, plot=tmp_path / "p.png"
+    )
+    names = sorted(path.name for path in tmp_path.iterdir())
+    assert len([name for name in names if name.endswith(".json")]) == 3 and "p.png" in names
+
+
+def test_experts_and_lifetimes_are_several() -> None:
+    experts = Curriculum.experts("find_objects#blue", "find_objects#red", learn=2)
+    assert [expert.name for expert in experts] == ["curriculum-blue", "curriculum-red"]
+    assert {experience.variant for block in experts[1] for experience in block if block.kind == "learning"} == {
+        "find_objects#red"
+    }
+    lives = Curriculum.lifetimes(3, "find_objects#blue", "find_objects#red", "find_objects#dusk", learn=1, seed=2)
+    assert [life.name for life in lives] == ["curriculum-1", "curriculum-2", "curriculum-3"]
+    assert all(life.num_experiences == lives[0].num_experiences for life in lives)
+
+
+def test_blocks_and_experiences_are_iterated() -> None:
+    curriculum = small()
+    assert [(block.kind, block.phase, len(block)) for block in curriculum] == [
+        ("learning", "pre_deployment", 2),
+        ("evaluation", "deployment", 3),
+        ("learning", "deployment", 5),
+        ("evaluation", "deployment", 3),
+        ("learning", "deployment", 3),
+        ("evaluation", "deployment", 3),
+    ]
+    everything = [experience for block in curriculum for experience in block]
+    assert (
+        [experience.number for experience in everything] == list(range(19)) == list(range(curriculum.num_experiences))
+    )
+    drifting = [experience for experience in curriculum[2] if experience.progress > 0]
+    assert [experience.progress for experience in drifting] == [0.5, 1.0] and drifting[
+        0
+    ].variant == "find_objects#red..dusk"
+    second = curriculum.blocks[1][1]
+    assert (second.task, second.variant, second.seed, second.index, second.learning) == (
+        "find_objects", "find_objects#blue", 1, 1, False
+    )  # fmt: skip
+    expected = driftworld.variant("find_objects#blue").sample(1, 1)
+    assert second.world() == {**expected, "max_steps": 40}
+    assert curriculum[1][-1] == curriculum[1][2] == curriculum[1][2:][0]
+    with pytest.raises(IndexError, match="expected one of 3"):
+        curriculum[1][3]
+
+
+def test_the_log_is_the_one_that_the_command_writes(tmp_path: Path) -> None:
+    curriculum, script = small(), tmp_path / "circle.txt"
+    script.write_text("step 1 5 45 0\nrepeat\n", encoding="utf-8")
+    curriculum.save(tmp_path / "s.json")
+    argv = ["run", str(tmp_path / "s.json"), "--agent", f"scripted:{script}", "--logs", str(tmp_path / "theirs")]
+    subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
+    agent = Circler()
+    summary = curriculum.run(agent, tmp_path / "mine", **SMALL)
+    assert rows(tmp_path / "mine") == rows(tmp_path / "theirs")
+    assert validate_log(tmp_path / "mine")["valid"]
+    infos = [
+        json.loads((tmp_path / log / "logger_info.json").read_text(encoding="utf-8")) for log in ("mine", "theirs")
+    ]
+    assert infos[0] == infos[1]
+    assert summary.finished and summary.experiences == 19 and summary.log == tmp_path / "mine"
+    assert summary.steps == sum(read_log(tmp_path / "mine")["episode_step_count"])
+    assert driftworld.metrics(tmp_path / "mine").lifetime == driftworld.metrics(tmp_path / "theirs").lifetime
+
+
+def test_a_random_agents_log_has_the_form_of_the_commands(tmp_path: Path) -> None:
+    curriculum = small(max_steps=10)
+    curriculum.save(tmp_path / "s.json")
+    argv = ["run", str(tmp_path / "s.json"), "--agent", "random", "--logs", str(tmp_path / "theirs")]
+    subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
+    space = curriculum.environment(**SMALL).action_space
+
+    class Random(Circler):
+        def act(self, observation: Any, info: dict[str, Any]) -> Any:
+            return space.sample()
+
+    curriculum.run(Random(), tmp_path / "mine", **SMALL)
+    assert rows(tmp_path / "mine", OF_THE_PLAN) == rows(tmp_path / "theirs", OF_THE_PLAN)
+
+
+def test_an_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
+    agent = Circler()
+    assert isinstance(agent, Agent)
+    small(max_steps=7).run(agent, **SMALL)
+    assert agent.frozen == [False, True, False, True, False, True]
+    assert len(agent.learned) == 7 * (2 + 5 + 3) and len(agent.begun) == 19
+    assert {label for label, _ in agent.begun} == {None}
+    # Every evaluation of a world has the same chance, learning one of its own.
+    chances = [seed for _, seed in agent.begun]
+    assert chances[2:5] == chances[10:13] == chances[16:19] and len(set(chances)) == 19 - 6
+
+
+def test_a_transition_is_what_a_step_said() -> None:
+    transitions: list[Transition] = []
+
+    class Watcher(Circler):
+        def learn(self, transition: Transition) -> None:
+            transitions.append(transition)
+
+    watcher = Watcher()
+    small(max_steps=5).run(watcher, **SMALL)
+    first = transitions[:5]
+    assert [transition.truncated for transition in first] == [False] * 4 + [True]
+    for before, after in pairwise(first):
+        assert before.next_observation is after.observation
+    assert first[0].observation is watcher.seen[0][0] and first[0].action.tolist() == [5, 45, 0]
+    assert set(first[0].info) >= {"events", "is_success"}
+
+
+@pytest.mark.parametrize("kept", [1, 4, 6, 9, 12, 16])
+def test_a_run_that_stopped_goes_on_as_if_it_had_not(tmp_path: Path, kept: int) -> None:
+    curriculum, undisturbed = small(), Pupil()
+    curriculum.run(undisturbed, tmp_path / "whole", **SMALL)
+    first, second = Pupil(), Pupil()
+    stopped = curriculum.run(
+        first, tmp_path / "log", watch=lambda experience, reward: experience.number + 1 < kept, **SMALL
+    )
+    assert (stopped.experiences, stopped.finished) == (kept, False)
+    whole = curriculum.run(second, tmp_path / "log", **SMALL)
+    assert whole.finished and whole.regimes == curriculum.run(Pupil(), tmp_path / "whole", **SMALL).regimes
+    assert rows(tmp_path / "log") == rows(tmp_path / "whole")
+    assert second.knowledge == undisturbed.knowledge != 0
+    assert [path.name for path in (tmp_path / "log.agent").iterdir()] == ["00000016"]
+
+
+def test_an_interrupt_leaves_a_log_that_goes_on(tmp_path: Path) -> None:
+    class Tired(Circler):
+        def act(self, observation: Any, info: dict[str, Any]) -> Any:
+            if len(self.begun) == 6:
+                raise KeyboardInterrupt
+            return super().act(observation, info)
+
+    curriculum = small()
+    with pytest.raises(KeyboardInterrupt):
+        curriculum.run(Tired(), tmp_path / "log", **SMALL)
+    assert len(read_log(tmp_path / "log")) == 5
+    assert curriculum.run(Circler(), tmp_path / "log", **SMALL).finished
+    assert len(read_log(tmp_path / "log")) == 19
+
+
+def test_a_log_is_taken_up_only_by_what_it_was_begun_with(tmp_path: Path) -> None:
+    log = tmp_path / "log"
+    small(max_steps=3).run(Circler(), log, **SMALL)
+    with pytest.raises(CurriculumError, match="/made_from/environment/size"):
+        small(max_steps=3).run(Circler(), log, **{**SMALL, "size": 16})
+    with pytest.raises(CurriculumError, match="max_steps"):
+        small(max_steps=4).run(Circler(), log, **SMALL)
+    with pytest.raises(CurriculumError, match="/agent"):
+        small(max_steps=3).run(Pupil(), log, **SMALL)
+    with pytest.raises(CurriculumError) as refused:
+        small(max_steps=3).run(Circler(), log, resume=False, **SMALL)
+    assert refused.value.code == "metrics/log-exists"
+
+
+@pytest.mark.parametrize("told", ["info", "observation"])
+def test_a_label_is_told_where_the_scenario_says_so(told: str) -> None:
+    curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=1, eval_episodes=1, task_label=told)
+    agent = Circler()
+    options = {**SMALL, "modalities": ["rgb"], "max_steps": 2}
+    env = curriculum.environment(**options)
+    curriculum.run(agent, **options)
+    assert {label for label, _ in agent.begun} == {"find_objects#blue", "find_objects#red"}
+    numbers = {"find_objects#blue": 0, "find_objects#red": 1}
+    expected = [numbers[label or ""] for label, _ in agent.begun for _ in range(2)]
+    if told == "info":
+        assert [info["task_label"] for _, info in agent.seen] == expected
+        assert "task" not in env.observation_space.spaces
+    else:
+        assert [int(observation["task"].argmax()) for observation, _ in agent.seen] == expected
+        assert env.observation_space["task"].shape == (2,)
+        assert all(env.observation_space.contains(observation) for observation, _ in agent.seen)
+        with pytest.raises(ValueError, match="expected a list"):
+            curriculum.run(agent, **SMALL)
+
+
+def test_tasks_and_worlds_are_found_from_the_scenarios_folder(tmp_path: Path) -> None:
+    world = driftworld.variant("find_objects#red").sample(3)
+    (tmp_path / "yard.json").write_text(json.dumps(world), encoding="utf-8")
+    document = {"name": "files", "blocks": [{"type": "evaluation", "regimes": [
+        {"task": "find_objects", "variant": "yard", "count": 2, "world": "yard.json", "max_steps": 4}]}]}  # fmt: skip
+    (tmp_path / "s.json").write_text(json.dumps(document), encoding="utf-8")
+    for curriculum in (Curriculum.load(tmp_path / "s.json"), Curriculum.from_dict(document, folder=tmp_path)):
+        experience = curriculum.experience(1)
+        assert (experience.seed, experience.index) == (None, None)
+        assert experience.world() == {**world, "max_steps": 4}
+    with pytest.raises(CurriculumError, match="expected a world file"):
+        Curriculum.from_dict(document, folder=tmp_path / "elsewhere")
+    document["blocks"][0]["regimes"][0]["world"] = "yrad.json"  # type: ignore[index]
+    with pytest.warns(UserWarning, match="yard.json stood in for it"):
+        Curriculum(json.dumps(document), tmp_path / "s.json", stand_in=True)
+
+
+def test_a_curriculum_pickles() -> None:
+    again = pickle.loads(pickle.dumps(small()))
+    assert again.scenario == small().scenario and again[2][4].world() == small()[2][4].world()
+
+
+def test_what_is_no_curriculum_says_where() -> None:
+    regime = {"task": "find_objects", "variant": "rde", "count": 1}
+    with pytest.raises(SpecError, match='did you mean "red"') as refused:
+        Curriculum.from_dict({"name": "s", "blocks": [{"type": "learning", "regimes": [regime]}]})
+    assert refused.value.pointer == "/blocks/0/regimes/0/variant"
+    with pytest.raises(SpecError, match='did you mean "blue"'):
+        Curriculum.design("find_objects#bleu")
+    with pytest.raises(CurriculumError, match="expected state, action"):
+        Curriculum.design("find_objects", probe="rewrd")
+    with pytest.raises(TypeError, match="a scenario calls tasks by their names"):
+        Curriculum.design(driftworld.variant("find_objects#red"))  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="without act, learn, freeze"):
+        small().run(object())  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="variant: found it among the options"):
+        small().run(Circler(), variant="red")
+
+
+def test_a_scenario_of_the_originals_is_lived_as_the_command_lives_it(tmp_path: Path) -> None:
+    theirs, maps = tmp_path / "theirs.json", tmp_path / "theirs-maps"
+    small(max_steps=5).save(tmp_path / "ours.json")
+    argv = ["convert", str(tmp_path / "ours.json"), "--to", "l2explorer", "-o", str(theirs)]
+    subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
+    # A map that is nowhere: another stands in for it, as the original's own scenario needs it.
+    sorted(maps.iterdir())[0].unlink()
+    with pytest.warns(UserWarning, match="stood in for it"):
+        curriculum = Curriculum.load(theirs)
+    summary = curriculum.run(Circler(), tmp_path / "log", **SMALL)
+    assert summary.finished and summary.experiences == curriculum.num_experiences == small().num_experiences
+    with pytest.raises(CurriculumError, match="expected a world file"):
+        Curriculum.load(theirs, stand_in=False)

@@ -1,0 +1,80 @@
+"""What is in the wheel, as installed: types, stubs, the command, and no need of anything but NumPy and Gymnasium."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import importlib.metadata
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import driftworld
+import pytest
+
+#: At run time these and the standard library; what else is imported stands inside functions, or in adapters.
+ALLOWED = {"driftworld", "gymnasium", "numpy"}
+
+
+def distribution() -> importlib.metadata.Distribution:
+    try:
+        return importlib.metadata.distribution("driftworld")
+    except importlib.metadata.PackageNotFoundError:
+        pytest.skip("the package is on the path and not installed, so that it has no metadata")
+
+
+def test_types_come_with_the_package(package: Path) -> None:
+    assert (package / "py.typed").is_file()
+    assert (package / "_native.pyi").is_file()
+
+
+def test_only_numpy_and_gymnasium_are_needed() -> None:
+    needed = [line for line in distribution().requires or [] if "extra ==" not in line]
+    assert sorted(re.split(r"[<>=!~ ]", line)[0] for line in needed) == ["gymnasium", "numpy"]
+
+
+def test_the_extras_are_those_of_the_guide() -> None:
+    guide = (Path(__file__).parents[2] / "docs" / "python.md").read_text(encoding="utf-8")
+    told = set(re.findall(r"^\| `driftworld\[(\w+)\]`", guide, re.MULTILINE))
+    assert told == set(distribution().metadata.get_all("Provides-Extra") or [])
+
+
+def test_the_version_is_the_same_everywhere() -> None:
+    assert distribution().version == driftworld.__version__
+    done = subprocess.run([sys.executable, "-m", "driftworld", "--version"], capture_output=True, text=True, check=True)
+    assert driftworld.__version__ in done.stdout
+
+
+def test_nothing_else_is_imported_where_modules_begin(package: Path) -> None:
+    known = ALLOWED | set(sys.stdlib_module_names)
+    found = []
+    for path in sorted(package.rglob("*.py")):
+        if "adapters" in path.parts:
+            continue
+        for statement in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(statement, ast.Import):
+                names = [alias.name for alias in statement.names]
+            elif isinstance(statement, ast.ImportFrom):
+                names = [statement.module or ""]
+            else:
+                continue
+            found.extend(f"{path.name}: {name}" for name in names if name.partition(".")[0] not in known)
+    assert found == []
+
+
+def test_every_file_opens_with_what_lives_there(package: Path) -> None:
+    wrong = [
+        path.name
+        for path in package.rglob("*.py")
+        if not ast.get_docstring(ast.parse(path.read_text(encoding="utf-8")))
+    ]
+    assert wrong == []
+
+
+def test_every_public_name_is_there_and_explained() -> None:
+    assert sorted(driftworld.__all__) == driftworld.__all__
+    for name in driftworld.__all__:
+        value = getattr(driftworld, name)
+        if name != "__version__":
+            assert value.__doc__, name
