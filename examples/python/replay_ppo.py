@@ -81,7 +81,10 @@ class ReplayLearner(Learner):
     def replay_loss(
         self, old: dict[str, torch.Tensor], policy_cloning: float = 0.1, value_cloning: float = 0.05
     ) -> torch.Tensor:
-        """The loss on old experience; means over the steps that count."""
+        """The loss on old experience; means over the steps that count.
+
+        The weights of cloning are not the paper's, whose losses are sums and whose learner is not PPO.
+        """
         length, count = old["rewards"].shape
         log_policy, values = self.network(old["images"].flatten(0, 1))
         log_policy, values = log_policy.view(length + 1, count, -1)[:-1], values.view(length + 1, count)
