@@ -36,7 +36,7 @@ def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--variant", default="blue", help="variant of find_objects (default: blue)")
     parser.add_argument("--seed", type=int, default=1, help="of the network, the actions and the worlds (default: 1)")
-    parser.add_argument("--steps", type=int, default=300_000, help="steps of learning, over all environments")
+    parser.add_argument("--steps", type=int, default=250_000, help="steps of learning, over all environments")
     parser.add_argument("--num-envs", type=int, default=32)
     parser.add_argument("--rollout", type=int, default=64, help="steps of each environment between updates")
     parser.add_argument("--threads", type=int, default=2, help="of PyTorch")
