@@ -386,7 +386,7 @@ def test_a_scenario_of_the_originals_is_lived_as_the_command_lives_it(tmp_path: 
     argv = ["convert", str(tmp_path / "ours.json"), "--to", "l2explorer", "-o", str(theirs)]
     subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
     # A map that is nowhere: another stands in for it, as the original's own scenario needs it.
-    sorted(maps.iterdir())[0].unlink()
+    min(maps.iterdir()).unlink()
     with pytest.warns(UserWarning, match="stood in for it"):
         curriculum = Curriculum.load(theirs)
     summary = curriculum.run(Circler(), tmp_path / "log", **SMALL)

@@ -69,7 +69,9 @@ def test_a_distance_is_a_number_where_one_is_wanted() -> None:
     assert np.asarray([near, far]).sum() == near + far == near.total + far.total
     again = pickle.loads(pickle.dumps(far))
     assert again == far and again.parts == far.parts and again.elements == far.elements
-    assert str(near) == str(near.total) and f"{near:.3f}" == f"{near.total:.3f}" and repr(near).startswith("Distance(0.0")
+    assert (
+        str(near) == str(near.total) and f"{near:.3f}" == f"{near.total:.3f}" and repr(near).startswith("Distance(0.0")
+    )
 
 
 def test_a_distance_explains_itself() -> None:

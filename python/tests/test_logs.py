@@ -98,6 +98,16 @@ def test_a_row_that_breaks_a_rule_is_not_written(tmp_path: Path, wrong: dict[str
     assert read_log(tmp_path / "log")["exp_num"].tolist() == [3, 5]
 
 
+def test_one_column_may_be_a_name_alone(tmp_path: Path) -> None:
+    LogWriter(tmp_path / "log", "performance").close()
+    with LogWriter(tmp_path / "log", resume=True) as log:
+        row: dict[str, Any] = {"block_num": 0, "exp_num": 0, "block_type": "train", "task_name": "find_red"}
+        with pytest.raises(MetricsError, match="also performance"):
+            log.write(**row, reward=1.0)
+        log.write(**row, performance=1.0)
+    assert read_log(tmp_path / "log").logger_info["metrics_columns"] == ["performance"]
+
+
 def test_a_closed_log_takes_no_rows(tmp_path: Path) -> None:
     log = LogWriter(tmp_path / "log")
     log.close()

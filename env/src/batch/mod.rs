@@ -7,6 +7,7 @@ mod images;
 mod outputs;
 mod slot;
 
+use std::num::NonZeroUsize;
 use std::sync::Arc;
 
 use driftworld_spec::World;
@@ -57,7 +58,7 @@ pub type WorldSource = Arc<dyn Fn(Episode) -> Result<World, String> + Send + Syn
 pub struct BatchOptions {
     /// When episodes that have ended are followed by the next.
     pub autoreset: Autoreset,
-    /// Threads that step and draw; 0 is one for each processor.
+    /// Threads that step and draw, never more than there are environments; 0 is one for each processor.
     pub num_threads: usize,
     /// What draws: the processor, each environment by itself; or a graphics card, all environments at once.
     pub renderer: RendererKind,
@@ -159,7 +160,12 @@ impl Batch {
             });
         }
         let graphics = Some(Renderer::new(options.renderer)?).filter(|renderer| renderer.kind() == RendererKind::Gpu);
-        let pool = match options.num_threads {
+        // More threads than environments would have nothing to do.
+        let wanted = match options.num_threads {
+            0 => std::thread::available_parallelism().map_or(1, NonZeroUsize::get),
+            wanted => wanted,
+        };
+        let pool = match wanted.min(num_envs) {
             1 if graphics.is_none() => None,
             wanted => {
                 let pool = rayon::ThreadPoolBuilder::new()

@@ -32,7 +32,7 @@ class LogWriter:
 
     Args:
         path: A new or empty folder; with ``resume`` that of a log which was interrupted.
-        columns: The metrics that every row has.
+        columns: The metrics that every row has: a name, or several.
         scenario_info: What the run is about, written into ``scenario_info.json``: ``complexity``, ``difficulty`` and
             ``scenario_type`` (``condensed``, ``dispersed``, ``permuted``, ``alternating``, ``ste``, ``custom``) are words of the
             format, anything else is kept as it is.
@@ -45,16 +45,17 @@ class LogWriter:
     def __init__(
         self,
         path: str | os.PathLike[str],
-        columns: Iterable[str] = ("reward",),
+        columns: str | Iterable[str] = "reward",
         *,
         scenario_info: Mapping[str, Any] | None = None,
         resume: bool = False,
     ) -> None:
         self.path = Path(path)
+        names = [columns] if isinstance(columns, str) else list(columns)
         if resume:
             self._file = _native.LogFile.resume(self.path)
         else:
-            self._file = _native.LogFile.create(self.path, list(columns), dict(scenario_info or {}))
+            self._file = _native.LogFile.create(self.path, names, dict(scenario_info or {}))
 
     def write(
         self,
