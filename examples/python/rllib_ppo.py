@@ -110,7 +110,11 @@ def main() -> None:
     else:
         # Runners and the learner take turns: a processor for each runner is enough, though Ray asks for one more.
         ray.init(
-            num_cpus=arguments.runners + 1, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR
+            "local",
+            num_cpus=arguments.runners + 1,
+            include_dashboard=False,
+            log_to_driver=False,
+            logging_level=logging.ERROR,
         )
     algorithm = configuration(arguments).build_algo()
     for iteration in range(arguments.iterations):
