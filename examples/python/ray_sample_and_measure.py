@@ -159,7 +159,8 @@ def main() -> None:
             f"of each. The digest, `{answer['digest']}`, is the same whatever the number of workers.",
             settings={**vars(arguments), "ranges": RANGES, "answer": answer},
             variants=[f"{TASK}#blue"], seeds=[arguments.seed],
-            curve=[{"distance": (bin + 0.5) / BINS, "variants": count} for bin, count in enumerate(histogram)],
+            # Beyond the farthest there is nothing to draw.
+            curve=[{"distance": (bin + 0.5) / BINS, "variants": count} for bin, count in enumerate(histogram) if count],
             seconds=watch.seconds, load_before=watch.load, axes=("distance", "variants"), labels=("distance from blue", "variants in 0.05 of distance"),
             table=[{
                 "variants": answer["variants"], "seconds": round(seconds, 1), "variants a second": round(answer["variants"] / seconds),
