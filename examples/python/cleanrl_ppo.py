@@ -19,12 +19,13 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
-import driftworld  # noqa: F401  (registers the environments)
 import gymnasium as gym
 import numpy as np
 import torch
 from record import Record, Watch, folder_of
 from torch import nn
+
+import driftworld  # noqa: F401  (registers the environments)
 
 # Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]
@@ -35,7 +36,7 @@ def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--variant", default="blue", help="variant of find_objects (default: blue)")
     parser.add_argument("--seed", type=int, default=1, help="of the network, the actions and the worlds (default: 1)")
-    parser.add_argument("--steps", type=int, default=300_000, help="steps of learning, over all environments")
+    parser.add_argument("--steps", type=int, default=250_000, help="steps of learning, over all environments")
     parser.add_argument("--num-envs", type=int, default=32)
     parser.add_argument("--rollout", type=int, default=64, help="steps of each environment between updates")
     parser.add_argument("--threads", type=int, default=2, help="of PyTorch")

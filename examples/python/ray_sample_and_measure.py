@@ -7,7 +7,8 @@ are brought together in their own order: the numbers and the digest are the same
     python examples/python/ray_sample_and_measure.py --variants 1000000 --address auto    # on the cluster that this machine is in
     python examples/python/ray_sample_and_measure.py --quick                       # does it run?
 
-Needs `pip install "driftworld[ray]"`, on every machine of the cluster.
+Needs `pip install "driftworld[ray]"`, on every machine of the cluster. A cluster that asks for a token (Ray's documentation says
+how it is handed out) asks for it here, too.
 """
 
 from __future__ import annotations
@@ -21,11 +22,12 @@ import time
 from functools import partial
 from typing import Any
 
-import driftworld
 import numpy as np
 import ray
 import ray.data
 from record import Record, Watch, folder_of
+
+import driftworld
 
 TASK = "find_objects"
 # What varies: the parameters' whole ranges. The rest stays as the first variant has it.
@@ -114,7 +116,7 @@ def connect(address: str | None, workers: int) -> None:
     if address is not None:
         ray.init(address=address, log_to_driver=False, logging_level=logging.ERROR)
         return
-    ray.init(num_cpus=workers, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
+    ray.init("local", num_cpus=workers, include_dashboard=False, log_to_driver=False, logging_level=logging.ERROR)
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -157,7 +159,8 @@ def main() -> None:
             f"of each. The digest, `{answer['digest']}`, is the same whatever the number of workers.",
             settings={**vars(arguments), "ranges": RANGES, "answer": answer},
             variants=[f"{TASK}#blue"], seeds=[arguments.seed],
-            curve=[{"distance": (bin + 0.5) / BINS, "variants": count} for bin, count in enumerate(histogram)],
+            # Beyond the farthest there is nothing to draw.
+            curve=[{"distance": (bin + 0.5) / BINS, "variants": count} for bin, count in enumerate(histogram) if count],
             seconds=watch.seconds, load_before=watch.load, axes=("distance", "variants"), labels=("distance from blue", "variants in 0.05 of distance"),
             table=[{
                 "variants": answer["variants"], "seconds": round(seconds, 1), "variants a second": round(answer["variants"] / seconds),

@@ -159,7 +159,8 @@ class Record:
             axes.axhline(level, color="0.35", linestyle=style, linewidth=1.1, label=f"{name} ({level:g})")
         axes.set_xlabel(self.labels[0])
         axes.set_ylabel(self.labels[1])
-        axes.xaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:,.0f}"))
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_formatter(lambda value, _: f"{value:,.0f}" if float(value).is_integer() else f"{value:g}")
         axes.set_xlim(left=0)
         axes.grid(alpha=0.25)
         axes.spines[["top", "right"]].set_visible(False)
@@ -215,8 +216,9 @@ def _processor() -> str:
 
 def _hashes(variant: str, seeds: Sequence[int]) -> dict[str, Any]:
     """The hash of a variant, and of its first world under each seed."""
-    import driftworld
     import gymnasium
+
+    import driftworld
 
     task, _, name = variant.partition("#")
     env = gymnasium.make("driftworld/Task-v0", task=variant)

@@ -14,7 +14,6 @@ Needs PyTorch (`pip install torch`).
 
 from __future__ import annotations
 
-import driftworld
 import numpy as np
 import torch
 from experts_and_sequential_ppo import (
@@ -33,6 +32,8 @@ from experts_and_sequential_ppo import (
     show,
 )
 from record import Record
+
+import driftworld
 
 
 class Reservoir:
@@ -80,7 +81,10 @@ class ReplayLearner(Learner):
     def replay_loss(
         self, old: dict[str, torch.Tensor], policy_cloning: float = 0.1, value_cloning: float = 0.05
     ) -> torch.Tensor:
-        """The loss on old experience; means over the steps that count."""
+        """The loss on old experience; means over the steps that count.
+
+        The weights of cloning are not the paper's, whose losses are sums and whose learner is not PPO.
+        """
         length, count = old["rewards"].shape
         log_policy, values = self.network(old["images"].flatten(0, 1))
         log_policy, values = log_policy.view(length + 1, count, -1)[:-1], values.view(length + 1, count)
