@@ -70,6 +70,8 @@ class Options:
             ValueError: For a value that is not among those that an option knows; it says which there are.
         """
         is_dict = not isinstance(modalities, str)
+        if not isinstance(modalities, Sequence):
+            raise ValueError(f"modalities: found {modalities!r}, expected one of {', '.join(MODALITIES)}, or a list")
         kinds: tuple[str, ...] = (modalities,) if isinstance(modalities, str) else tuple(modalities)
         for kind in kinds:
             _one_of("modalities", kind, MODALITIES)
