@@ -11,10 +11,9 @@ import argparse
 import os
 from typing import Any
 
+import driftworld  # noqa: F401 - registers the environments
 import gymnasium
 import numpy as np
-
-import driftworld  # noqa: F401 - registers the environments
 
 KEYS = "W forward, S back, A left, D right, space acts, Esc ends"
 

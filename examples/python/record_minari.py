@@ -11,9 +11,8 @@ import argparse
 import os
 import tempfile
 
-import gymnasium
-
 import driftworld  # noqa: F401 - registers the environments
+import gymnasium
 
 
 def main() -> None:
@@ -49,7 +48,6 @@ def record(dataset_id: str, *, episodes: int, seed: int, max_steps: int) -> None
     """Writes a data set of random actions and prints what it says of its episodes."""
     # Minari looks for its folder when it is imported.
     import minari
-
     from driftworld.adapters.minari import collect
 
     env = gymnasium.make(

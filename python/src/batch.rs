@@ -3,6 +3,7 @@
 //! Spaces, infos and Gymnasium's rules are in `package/driftworld/envs/`.
 #![expect(unsafe_code, reason = "arrays are views on the buffers of the batch that keeps them")]
 
+use std::num::NonZeroU32;
 use std::str::FromStr;
 use std::sync::Arc;
 
@@ -45,7 +46,7 @@ type Stepped<'py> = (
 impl PyBatch {
     /// One environment for each stream, at the start of world 0 under seed 0.
     #[new]
-    #[pyo3(signature = (streams, dress, autoreset, num_threads, renderer, depth, libraries))]
+    #[pyo3(signature = (streams, dress, autoreset, num_threads, renderer, depth, libraries, max_episode_steps=None))]
     #[expect(clippy::too_many_arguments, reason = "called from one place, by name")]
     fn new(
         py: Python<'_>,
@@ -56,6 +57,7 @@ impl PyBatch {
         renderer: &str,
         depth: &str,
         libraries: Vec<Vec<u8>>,
+        max_episode_steps: Option<NonZeroU32>,
     ) -> Result<Self> {
         let dress = Arc::new(dress_of(dress)?);
         let supply = |stream: &Bound<'_, PyStream>| Arc::new(Supply::new(stream.get().0.clone(), Arc::clone(&dress)));
@@ -65,6 +67,7 @@ impl PyBatch {
             num_threads,
             renderer: RendererKind::from_str(renderer)?,
             depth: depth_of(depth)?,
+            max_episode_steps,
         };
         let batch = py.detach(|| {
             let mut catalogue = Catalogue::default();
@@ -125,6 +128,18 @@ impl PyBatch {
         Ok(())
     }
 
+    /// Steps of the episode that an environment is in, as the limit beside the worlds counts them.
+    fn episode_steps(&self, env: usize) -> Result<u32> {
+        let num_envs = self.supplies.len();
+        let steps = self.batch.episode_steps(env);
+        steps.ok_or_else(|| EnvError::NoSuchEnv { found: env, num_envs }.into())
+    }
+
+    /// Counts on from so many.
+    fn set_episode_steps(&mut self, env: usize, steps: u32) -> Result<()> {
+        Ok(self.batch.set_episode_steps(env, steps)?)
+    }
+
     /// Begins the next episode in all environments, or in those that `mask` says true for.
     #[pyo3(signature = (mask=None))]
     fn reset(&mut self, py: Python<'_>, mask: Option<PyReadonlyArray1<'_, bool>>) -> Result<()> {
@@ -176,6 +191,7 @@ impl PyBatch {
 
     /// Repeats the last step's actions so often without coming back to Python: what the batch can do by itself.
     fn repeat(&mut self, py: Python<'_>, steps: u64) -> Result<()> {
+        self.expect_own_process()?;
         let mut left = steps;
         while left > 0 {
             let (batch, actions, now) = (&mut self.batch, &self.actions, left.min(256));

@@ -15,8 +15,6 @@ pub(crate) struct Dress {
     interact: Option<bool>,
     frame_skip: Option<u32>,
     max_steps: Option<u32>,
-    /// A limit beside that of the world: the smaller one holds.
-    most_steps: Option<u32>,
     supersampling: Option<u32>,
 }
 
@@ -38,11 +36,6 @@ impl Dress {
         lay(&mut agent.frame_skip, self.frame_skip);
         lay(&mut agent.supersampling, self.supersampling);
         lay(&mut world.max_steps, self.max_steps);
-        if let Some(most) = self.most_steps
-            && (world.max_steps == 0 || most < world.max_steps)
-        {
-            world.max_steps = most;
-        }
     }
 
     /// Whether a world is sound with these options, and what an environment of it looks like from outside.
@@ -74,6 +67,7 @@ fn layout(world: &World) -> Value {
         "state_len": agent.state_len(),
         "max_steps": world.max_steps,
         "seconds_per_step": agent.time_step * f64::from(agent.frame_skip.max(1)),
+        "action_model": agent.action_model,
         "action": action(agent, world.environment_params.arena_size()),
     })
 }

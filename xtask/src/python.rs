@@ -18,6 +18,9 @@ const REQUIRE_LEARNERS: &str = "DRIFTWORLD_REQUIRE_LEARNERS";
 const NO_INTERPRETER: &str =
     "no Python from 3.10 on with venv and pip (Debian: apt install python3-venv), or name one in DRIFTWORLD_PYTHON";
 
+/// The environment that holds what a newcomer installed, and nothing else.
+const NEWCOMER: &str = "newcomer";
+
 /// The tests that hold whatever version of Gymnasium there is: run once more with the oldest.
 const ANY_GYMNASIUM: [&str; 3] = ["tests/test_gymnasium.py", "tests/test_vector.py", "tests/test_check.py"];
 
@@ -51,7 +54,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
     ))
 }
 
-/// Tests with PyTorch, Stable-Baselines3, Minari and Ray; they are gigabytes, so who cannot install them is not held up.
+/// Tests with torch, Stable-Baselines3, Minari and Ray; they are gigabytes, so who cannot install them is not held up.
 pub(crate) fn learners(workspace: &Workspace) -> Result<Outcome, XtaskError> {
     let Some(interpreter) = interpreter() else {
         return missing(REQUIRE_LEARNERS, NO_INTERPRETER.to_owned());
@@ -61,8 +64,9 @@ pub(crate) fn learners(workspace: &Workspace) -> Result<Outcome, XtaskError> {
         Ok(environment) => environment,
         Err(error) => return missing(REQUIRE_LEARNERS, error.to_string()),
     };
-    let wheel = build(workspace, &environment)?;
-    install(&environment, &wheel)?;
+    // By the interpreter that built it before, so that Cargo finds nothing to do.
+    let builder = VirtualEnvironment::kept(workspace, &interpreter, NEWCOMER)?;
+    install(&environment, &build(workspace, &builder)?)?;
     pytest(workspace, &environment, &["-m", "learners"])?;
     Ok(Outcome::Passed)
 }
@@ -70,7 +74,7 @@ pub(crate) fn learners(workspace: &Workspace) -> Result<Outcome, XtaskError> {
 /// What somebody does who has just read the README: an empty environment, the README's command, its example, the command of the
 /// console. Returns the same wheel as a file.
 fn newcomer(workspace: &Workspace, interpreter: &Path) -> Result<PathBuf, XtaskError> {
-    let newcomer = VirtualEnvironment::empty(workspace, interpreter, "newcomer")?;
+    let newcomer = VirtualEnvironment::empty(workspace, interpreter, NEWCOMER)?;
     let mut by_the_readme = newcomer.pip(&["install", "--quiet", "./python"]);
     by_the_readme.current_dir(&workspace.root);
     run(by_the_readme)?;

@@ -94,7 +94,7 @@ impl Stage {
             Self::Schemas => "schemas/*.json equal what the Rust types generate",
             Self::Documents => "a second validator, in Python, judges tests/documents by the schemas as ours does",
             Self::Python => "`pip install ./python` does what the README says, and its tests pass",
-            Self::Learners => "the Python tests that need PyTorch, Stable-Baselines3, Minari and Ray pass",
+            Self::Learners => "the Python tests that need torch, Stable-Baselines3, Minari and Ray pass",
             Self::Deny => "licences, advisories and sources of dependencies are as deny.toml allows",
         }
     }

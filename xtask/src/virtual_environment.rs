@@ -70,6 +70,17 @@ impl VirtualEnvironment {
         Ok(this)
     }
 
+    /// The one of that name as it is, or a new one with nothing in it.
+    pub(crate) fn kept(workspace: &Workspace, interpreter: &Path, name: &str) -> Result<Self, XtaskError> {
+        let this = Self {
+            folder: folder(workspace, name),
+        };
+        if works(this.python(&["-m", "pip", "--version"])) {
+            return Ok(this);
+        }
+        Self::empty(workspace, interpreter, name)
+    }
+
     /// A new one of that name with nothing in it; what was there before goes.
     pub(crate) fn empty(workspace: &Workspace, interpreter: &Path, name: &str) -> Result<Self, XtaskError> {
         let folder = folder(workspace, name);

@@ -7,7 +7,7 @@ mod images;
 mod outputs;
 mod slot;
 
-use std::num::NonZeroUsize;
+use std::num::{NonZeroU32, NonZeroUsize};
 use std::sync::Arc;
 
 use driftworld_spec::World;
@@ -64,6 +64,9 @@ pub struct BatchOptions {
     pub renderer: RendererKind,
     /// The numbers of depth images.
     pub depth: DepthForm,
+    /// A limit of steps beside that of the worlds, which know nothing of it: an episode of so many steps is truncated, whatever
+    /// else it is. As Gymnasium's `TimeLimit` does.
+    pub max_episode_steps: Option<NonZeroU32>,
 }
 
 /// `num_envs` environments that step together.
@@ -182,7 +185,7 @@ impl Batch {
         let mut slots = Vec::with_capacity(num_envs);
         for env in 0..num_envs {
             let layout = slots.first().map(|first: &Slot| &first.layout);
-            slots.push(Slot::new(env, Arc::clone(&source), layout, catalogue)?);
+            slots.push(Slot::new(env, Arc::clone(&source), layout, catalogue, options.max_episode_steps)?);
         }
         let layout = ImageLayout::clone(&slots[0].layout);
         let state = slots[0].environment.world().agent_params.state_len();
@@ -231,6 +234,22 @@ impl Batch {
     /// Which episode an environment is in.
     pub fn episode(&self, env: usize) -> Option<Episode> {
         self.slots.get(env).map(Slot::episode)
+    }
+
+    /// Steps of the episode that an environment is in, as [`BatchOptions::max_episode_steps`] counts them.
+    pub fn episode_steps(&self, env: usize) -> Option<u32> {
+        self.slots.get(env).map(Slot::lived)
+    }
+
+    /// Counts on from so many steps, for an episode that began elsewhere.
+    ///
+    /// # Errors
+    /// [`EnvError::NoSuchEnv`].
+    pub fn set_episode_steps(&mut self, env: usize, steps: u32) -> Result<(), EnvError> {
+        let num_envs = self.slots.len();
+        let slot = self.slots.get_mut(env);
+        slot.ok_or(EnvError::NoSuchEnv { found: env, num_envs })?.set_lived(steps);
+        Ok(())
     }
 
     /// Gives one environment another source of worlds: another task, say. It holds from its next episode on; with `restart`

@@ -1,5 +1,6 @@
 //! One environment of a batch: where its worlds come from, and what a step does when an episode has ended.
 
+use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use super::images::ImageLayout;
@@ -22,6 +23,9 @@ pub(super) struct Slot {
     next: u64,
     /// Whether the next episode must begin before anything else happens.
     pub(super) is_over: bool,
+    /// Steps of the episode that runs, and how many it may have.
+    lived: u32,
+    limit: Option<NonZeroU32>,
 }
 
 impl Slot {
@@ -31,6 +35,7 @@ impl Slot {
         source: WorldSource,
         layout: Option<&Arc<ImageLayout>>,
         catalogue: &Catalogue,
+        limit: Option<NonZeroU32>,
     ) -> Result<Self, EnvError> {
         let episode = Episode { env, index: 0 };
         let world = source(episode).map_err(|reason| EnvError::BatchWorld {
@@ -49,6 +54,8 @@ impl Slot {
             current: 0,
             next: 1,
             is_over: false,
+            lived: 0,
+            limit,
         })
     }
 
@@ -57,6 +64,16 @@ impl Slot {
             env: self.env,
             index: self.current,
         }
+    }
+
+    pub(super) fn lived(&self) -> u32 {
+        self.lived
+    }
+
+    /// Counts on from so many steps; that may be the last.
+    pub(super) fn set_lived(&mut self, lived: u32) {
+        self.lived = lived;
+        self.is_over |= self.limit.is_some_and(|limit| lived >= limit.get());
     }
 
     pub(super) fn set_source(&mut self, source: WorldSource, restart: Option<u64>) {
@@ -120,6 +137,8 @@ impl Slot {
             return self.reset(index, outputs, renderer);
         }
         self.environment.step_into(action, &mut self.step)?;
+        self.lived = self.lived.saturating_add(1);
+        self.step.truncated |= self.limit.is_some_and(|limit| self.lived >= limit.get());
         outputs.note(index, &self.step);
         self.is_over = self.step.ended();
         if let (true, Autoreset::SameStep, Some(finals)) = (self.is_over, autoreset, finals) {
@@ -151,6 +170,7 @@ impl Slot {
         self.next = self.next.saturating_add(1);
         // A world that was written down after its end has nothing left to live.
         self.is_over = self.environment.ended();
+        self.lived = 0;
         Ok(())
     }
 

@@ -88,7 +88,9 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
         self, actions: npt.NDArray[Any]
     ) -> tuple[npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], npt.NDArray[Any], list[dict[str, Any]]]:
         """One step of all; the arrays are PufferLib's buffers."""
-        observations, rewards, terminated, truncated, told = self.envs.step(np.asarray(actions).reshape(self.envs.action_space.shape))
+        observations, rewards, terminated, truncated, told = self.envs.step(
+            np.asarray(actions).reshape(self.envs.action_space.shape)
+        )
         self.observations[:] = observations
         self.rewards[:] = rewards
         self.terminals[:] = terminated

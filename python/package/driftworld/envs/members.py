@@ -5,9 +5,9 @@ Single and vector environments are both made of it; what Gymnasium wants of each
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from math import gcd
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from gymnasium import spaces
@@ -24,6 +24,15 @@ Source = tuple[str, Any]
 Stepped = tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_], list[int]]
 
 
+class Prepared(NamedTuple):
+    """What a reset asks for: sources and streams, one for each environment, indices, and a world with its name."""
+
+    sources: list[Source] | None
+    streams: list[_native.Stream] | None
+    indices: list[int] | None
+    world: tuple[str, str] | None
+
+
 class Members:
     """The environments of a batch.
 
@@ -31,11 +40,13 @@ class Members:
         num_envs: How many there are.
         task: A task, as environments take it.
         world: Or a world.
-        variants: The variant that each begins with; ``None`` for the one that the task's name says.
+        variant: The variant that all begin with; ``None`` for the one that the task's name says.
+        variants: Or the variant that each begins with.
         drift: Or the way to another variant.
         options: What is laid over the worlds.
         autoreset: ``"next_step"``, ``"same_step"`` or ``"disabled"``.
         num_threads: Threads that step and draw; 0 is one for each processor.
+        max_episode_steps: A limit of steps that the worlds know nothing of.
     """
 
     def __init__(
@@ -43,29 +54,37 @@ class Members:
         num_envs: int,
         task: Any,
         world: Any,
-        variants: Sequence[Any],
+        variant: Any,
+        variants: Sequence[Any] | None,
         drift: Mapping[str, Any] | None,
         options: Options,
         autoreset: str,
         num_threads: int,
+        max_episode_steps: int | None = None,
     ) -> None:
         self.num_envs = num_envs
         self._options = options
-        own = next((name for name in variants if name is not None), None)
-        self._home = Home(task, world, own if isinstance(own, str) and "#" not in own else None)
+        self._home = Home(task, world, variant)
         self.layout = options.layout(self._home)
         self._checked: set[str] = set()
         kept = ("home", None) if drift is None else ("drift", drift)
         self._sources: list[Source] = [
-            kept if name is None or drift is not None else ("variants", [name]) for name in variants
+            kept if name is None else ("variants", [name]) for name in variants or [None] * num_envs
         ]
         streams = [self._stream(source) for source in self._sources]
-        self._labels = [variant.id for variant in self._home.task.all_variants()] if self._home.task else []
+        self._labels = self._home.labels()
         self.label_in_info = options.task_label == "info"
         self.observation_space = observation_space(options, self.layout, len(self._labels))
         self.action_space = action_space(self.layout)
         self.batch = _native.Batch(
-            streams, options.dress, autoreset, num_threads, options.renderer, options.depth, list(options.libraries)
+            streams,
+            options.dress,
+            autoreset,
+            num_threads,
+            options.renderer,
+            options.depth,
+            list(options.libraries),
+            max_episode_steps,
         )
         self._is_discrete = isinstance(self.action_space, spaces.Discrete)
         self._views = self._arranged(self.batch.buffers())
@@ -106,36 +125,45 @@ class Members:
         for layout in self._options.layouts(stream):
             expect_same_spaces(self.layout, layout)
 
-    def take_options(self, options: Mapping[str, Any], chosen: Callable[[int], bool], *, many: bool) -> None:
-        """Does what the options of a reset ask for; nothing is changed if one of them is wrong.
+    def checked(self, options: Mapping[str, Any], *, many: bool) -> Prepared:
+        """What the options of a reset ask for, looked through before anything is changed.
 
         Args:
             options: As users hand them to ``reset``.
-            chosen: Which environments they are for.
-            many: Whether there may be one variant, index or share of the queue for each environment.
+            many: Whether there may be one variant for each environment.
         """
-        known = ["variant", "index", "world", "queue", *(["variants", "reset_mask"] if many else [])]
+        known = ["variant", "index", "world", "queue", *(["variants"] if many else [])]
         unknown = [key for key in options if key not in known]
         if unknown:
-            raise ValueError(f"options: found {unknown[0]!r}, expected some of {', '.join(known)}")
-        if sum(key in options for key in ("variant", "variants", "queue")) > 1:
+            also = ", reset_mask" if many else ""
+            raise ValueError(f"options: found {unknown[0]!r}, expected some of {', '.join(known)}{also}")
+        if sum(options.get(key) is not None for key in ("variant", "variants", "queue")) > 1:
             raise ValueError("options: found several of variant, variants and queue, expected one of them")
         sources = self._new_sources(options)
-        if sources is not None:
-            # All are made before the first is set, so that a wrong one changes nothing.
-            for source in sources:
-                self._stream(source)
-        indices = self._indices(options.get("index"))
+        streams = None if sources is None else self._streams(sources)
         world = world_text(options["world"]) if options.get("world") is not None else None
         if world is not None:
             self._check(_native.Stream.world(*world))
-        for env in filter(chosen, range(self.num_envs)):
-            if sources is not None:
-                self._set_source(env, sources[env])
-            if indices is not None:
-                self.batch.index(env, indices[env])
-            if world is not None:
-                self.batch.give(env, *world)
+        return Prepared(sources, streams, self._indices(options.get("index")), world)
+
+    def _streams(self, sources: list[Source]) -> list[_native.Stream]:
+        # Where all have the same, it is one object, and looked at once.
+        made = {id(source): self._stream(source) for source in {id(source): source for source in sources}.values()}
+        return [made[id(source)] for source in sources]
+
+    def take(self, prepared: Prepared, env: int, seed: int | None) -> None:
+        """Lets one environment do what was asked for with its next episode; with a seed, under it."""
+        if prepared.sources is not None and prepared.streams is not None:
+            self.batch.stream(env, prepared.streams[env])
+            self._sources[env] = prepared.sources[env]
+        index = None if prepared.indices is None else prepared.indices[env]
+        if seed is not None:
+            self.batch.seed(env, seed, index or 0)
+            self.has_seed[env] = True
+        elif index is not None:
+            self.batch.index(env, index)
+        if prepared.world is not None:
+            self.batch.give(env, *prepared.world)
 
     def _new_sources(self, options: Mapping[str, Any]) -> list[Source] | None:
         if options.get("variant") is not None:
@@ -157,12 +185,6 @@ class Members:
                 raise ValueError(f"index: found {len(index)}, expected {self.num_envs}, one for each environment")
             return [seed_in_range(one, "index") for one in index]
         return [seed_in_range(index, "index")] * self.num_envs
-
-    def seed(self, env: int, seed: Any, options: Mapping[str, Any] | None) -> None:
-        """Lets an environment draw under a seed, from world 0 on or from the one that the options say."""
-        indices = self._indices((options or {}).get("index"))
-        self.batch.seed(env, seed_in_range(seed), 0 if indices is None else indices[env])
-        self.has_seed[env] = True
 
     def reset_info(self, env: int) -> dict[str, Any]:
         """What a reset says of an environment; notes in which variant it is."""
@@ -254,6 +276,7 @@ class Members:
         envs = range(self.num_envs)
         return {
             "states": [self.batch.state(env) for env in envs],
+            "steps": [self.batch.episode_steps(env) for env in envs],
             "places": [self.batch.place(env) for env in envs],
             "sources": list(self._sources),
             "has_seed": list(self.has_seed),
@@ -269,6 +292,8 @@ class Members:
             self.batch.give(env, "state", written["states"][env])
         self.batch.reset()
         self.has_seed = written["has_seed"]
+        for env, steps in enumerate(written["steps"]):
+            self.batch.set_episode_steps(env, steps)
         for env, name in enumerate(written["names"]):
             self._name(env, name)
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+import math
 import numbers
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from driftworld import _native
 from driftworld.envs.origin import Home
@@ -56,7 +59,6 @@ class Options:
         interact: bool | None = None,
         frame_skip: int | None = None,
         max_steps: int | None = None,
-        most_steps: int | None = None,
         supersampling: int | None = None,
         renderer: str = "cpu",
         task_label: str = "none",
@@ -84,11 +86,10 @@ class Options:
             "modalities": [kind for kind in kinds if kind != "state"],
             "size": _size(size),
             "actions": _actions(actions),
-            "interact": interact,
-            "frame_skip": _whole("frame_skip", frame_skip),
-            "max_steps": _whole("max_steps", max_steps),
-            "most_steps": _whole("max_episode_steps", most_steps),
-            "supersampling": _whole("supersampling", supersampling),
+            "interact": _flag("interact", interact),
+            "frame_skip": whole("frame_skip", frame_skip),
+            "max_steps": whole("max_steps", max_steps),
+            "supersampling": whole("supersampling", supersampling),
         }
         return cls(
             modalities=kinds,
@@ -168,19 +169,17 @@ def expect_same_spaces(ours: dict[str, Any], theirs: dict[str, Any]) -> None:
                 f"variant: found {key} {theirs[key]}, expected {ours[key]} as the environment was made with; give option size, "
                 "or make an environment of its own"
             )
-    shapes = [
-        ("n", layout["action"]["n"]) if "n" in layout["action"] else ("numbers", len(layout["action"]["bounds"]))
-        for layout in (ours, theirs)
-    ]
-    if shapes[0] != shapes[1]:
+    if ours["action"] != theirs["action"]:
         raise ValueError(
-            f"variant: found actions of {shapes[1][1]} {_words(shapes[1][0])}, expected {shapes[0][1]} {_words(shapes[0][0])} as the "
-            "environment was made with; give options actions and interact, or make an environment of its own"
+            f"variant: found actions of {_words(theirs['action'])}, expected {_words(ours['action'])} as the environment was made "
+            "with; give options actions and interact, or make an environment of its own"
         )
 
 
-def _words(kind: str) -> str:
-    return "rows" if kind == "n" else "numbers"
+def _words(action: dict[str, Any]) -> str:
+    if "n" in action:
+        return f"{action['n']} rows"
+    return "numbers in " + ", ".join(f"{low:g}..{high:g}" for low, high in action["bounds"])
 
 
 def _one_of(option: str, found: Any, known: Sequence[str]) -> None:
@@ -188,21 +187,32 @@ def _one_of(option: str, found: Any, known: Sequence[str]) -> None:
         raise ValueError(f"{option}: found {found!r}, expected one of {', '.join(known)}")
 
 
-def _whole(option: str, found: Any) -> int | None:
+def whole(option: str, found: Any) -> int | None:
+    """A whole number that fits into 32 bits, or ``None``.
+
+    Raises:
+        ValueError: For anything else.
+    """
     if found is None:
         return None
     if isinstance(found, bool) or not isinstance(found, numbers.Integral) or not 0 <= int(found) < 2**32:
-        raise ValueError(f"{option}: found {found!r}, expected a whole number")
+        raise ValueError(f"{option}: found {found!r}, expected a whole number in 0..{2**32 - 1}")
     return int(found)
+
+
+def _flag(option: str, found: Any) -> bool | None:
+    if found is None or isinstance(found, (bool, np.bool_)):
+        return None if found is None else bool(found)
+    raise ValueError(f"{option}: found {found!r}, expected True, False or None")
 
 
 def _size(size: Any) -> list[int] | None:
     if size is None:
         return None
-    sides = [size, size] if isinstance(size, numbers.Integral) else list(size)
-    if len(sides) != 2:
+    sides = list(size) if isinstance(size, (tuple, list)) else [size, size]
+    if len(sides) != 2 or any(isinstance(side, bool) or not isinstance(side, numbers.Integral) for side in sides):
         raise ValueError(f"size: found {size!r}, expected pixels, or (height, width)")
-    return [_whole("size", side) or 0 for side in sides]
+    return [whole("size", side) or 0 for side in sides]
 
 
 def _actions(actions: Any) -> Any:
@@ -213,9 +223,9 @@ def _actions(actions: Any) -> Any:
         return ACTIONS[actions]
     try:
         table = [[float(number) for number in row] for row in actions]
-    except TypeError:
+    except (TypeError, ValueError):
         table = []
-    if not table or any(len(row) != 3 for row in table):
+    if not table or any(len(row) != 3 or not all(map(math.isfinite, row)) for row in table):
         raise ValueError(
             f"actions: found {actions!r}, expected one of {', '.join(ACTIONS)}, or a table of rows of three numbers, as in "
             "[[10, 0, 0], [0, 90, 0]]"
@@ -224,5 +234,5 @@ def _actions(actions: Any) -> Any:
 
 
 def _libraries(assets: Any) -> tuple[bytes, ...]:
-    paths = [assets] if isinstance(assets, (str, PathLike)) else list(assets)
+    paths = [assets] if isinstance(assets, (str, PathLike)) else list(assets or ())
     return tuple(Path(path).read_bytes() for path in paths)

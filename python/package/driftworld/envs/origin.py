@@ -6,6 +6,7 @@ Which options stand over the worlds is in ``options.py``.
 from __future__ import annotations
 
 import json
+import numbers
 import os
 from collections.abc import Mapping
 from pathlib import Path
@@ -23,10 +24,10 @@ class Home:
     Args:
         task: A built-in name or a path, with or without ``#variant``; a task spec or a variant.
         world: The path of a world, its JSON, or a dictionary, in place of a task.
-        variant: The name of the variant to begin with, in place of the one behind ``#``.
+        variant: The variant to begin with, in place of the one behind ``#``: its name, or a handle.
     """
 
-    def __init__(self, task: Any, world: Any, variant: str | None) -> None:
+    def __init__(self, task: Any, world: Any, variant: Any) -> None:
         if (task is None) == (world is None):
             found = "neither" if task is None else "both"
             raise ValueError(
@@ -41,10 +42,16 @@ class Home:
             self.world = world_text(world)
             return
         self.task, named = _task(task)
-        if variant is None and named is not None:
-            self.first = named
-        else:
-            self.first = self.task.variant(variant)
+        self.first = named or self.task.variant()
+        if variant is not None:
+            self.first = self.variant(variant, "variant")
+
+    def labels(self) -> list[str]:
+        """The ids of the variants that an agent may be told: those of the task, and the first if it is none of them."""
+        if self.task is None or self.first is None:
+            return []
+        ids = [variant.id for variant in self.task.all_variants()]
+        return ids if self.first.id in ids else [*ids, self.first.id]
 
     def stream(self) -> _native.Stream:
         """The worlds that the environment begins with."""
@@ -71,6 +78,8 @@ class Home:
 
     def drift(self, drift: Mapping[str, Any]) -> _native.Stream:
         """The worlds on the way from the first variant to another."""
+        if not isinstance(drift, Mapping):
+            raise ValueError(f'drift: found {drift!r}, expected a dictionary, as in {{"to": "dusk", "episodes": 500}}')
         known = {"to", "episodes", "schedule", "switch"}
         unknown = sorted(set(drift) - known)
         if unknown or "to" not in drift or "episodes" not in drift:
@@ -88,9 +97,9 @@ class Home:
 
 
 def _episodes(found: Any) -> int:
-    if isinstance(found, bool) or not isinstance(found, int) or found < 1:
+    if isinstance(found, bool) or not isinstance(found, numbers.Integral) or found < 1:
         raise ValueError(f"drift.episodes: found {found!r}, expected a whole number from 1 on")
-    return found
+    return int(found)
 
 
 def _handle(value: Any) -> _native.Variant | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import numbers
 from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike
 from typing import Any
@@ -13,12 +14,13 @@ from numpy.typing import NDArray
 
 from driftworld.envs.members import Members
 from driftworld.envs.options import DEFAULT_MODALITIES, Options
+from driftworld.envs.origin import MAX_SEED
 from driftworld.envs.picture import Camera
 from driftworld.envs.window import Window
 
 
 class DriftworldEnv(gymnasium.Env[Any, Any]):
-    """A first-person world of a task.
+    """A first-person world of a task. It belongs to one thread at a time.
 
     Args:
         task: A built-in name or a path, with or without ``#variant``; a task spec or a variant.
@@ -57,7 +59,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         task: Any = None,
         *,
         world: Any = None,
-        variant: str | None = None,
+        variant: Any = None,
         modalities: str | Sequence[str] = DEFAULT_MODALITIES,
         size: int | tuple[int, int] | None = None,
         depth: str = "uint8",
@@ -92,7 +94,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
             task_label=task_label,
             assets=assets,
         )
-        self._members = Members(1, task, world, [variant], drift, options, "disabled", num_threads=1)
+        self._members = Members(1, task, world, variant, None, drift, options, "disabled", num_threads=1)
         self.observation_space = self._members.observation_space
         self.action_space = self._members.action_space
         fps = 1.0 / self._members.layout["seconds_per_step"]
@@ -113,13 +115,14 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
             The first observation, and the info: ``task_id``, ``variant_id``, ``seed``, ``index``, ``world_hash`` (of the world as it
             was drawn, before options were laid over it), ``events`` and ``is_success``.
         """
-        super().reset(seed=seed)
         members = self._members
-        members.take_options(options or {}, lambda env: True, many=False)
-        if seed is not None:
-            members.seed(0, seed, options)
-        elif not members.has_seed[0]:
-            members.seed(0, int(self.np_random.integers(2**32)), options)
+        prepared = members.checked(options or {}, many=False)
+        if isinstance(seed, numbers.Integral) and seed > MAX_SEED:
+            raise ValueError(f"seed: found {seed}, expected a whole number in 0..{MAX_SEED}")
+        super().reset(seed=seed)
+        if seed is None and not members.has_seed[0]:
+            seed = int(self.np_random.integers(2**32))
+        members.take(prepared, 0, seed)
         members.batch.reset()
         info = members.reset_info(0)
         if self.render_mode == "human":
@@ -181,8 +184,11 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
             ValueError: Unless actions are ``"normalized"`` or ``"continuous"``: a table has no row for doing nothing.
         """
         space = self.action_space
-        if not isinstance(space, gymnasium.spaces.Box):
-            raise ValueError('get_keys_to_action: found discrete actions, expected actions="normalized"')
+        if not isinstance(space, gymnasium.spaces.Box) or self._members.layout["action_model"] == "bywaypoint":
+            raise ValueError(
+                'get_keys_to_action: found actions that are rows or places, expected speeds: actions="normalized" in a variant '
+                "that goes by velocity"
+            )
         moves = {"w": (0, 1.0), "s": (0, -0.5), "a": (1, -1.0), "d": (1, 1.0), " ": (2, 1.0)}
         keys: dict[tuple[str, ...], Any] = {}
         for along in ((), ("w",), ("s",)):

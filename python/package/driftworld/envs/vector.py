@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from driftworld.envs.autoreset import AutoresetMode, autoreset_mode_of
 from driftworld.envs.members import Members
-from driftworld.envs.options import DEFAULT_MODALITIES, Options
+from driftworld.envs.options import DEFAULT_MODALITIES, Options, whole
+from driftworld.envs.origin import seed_in_range
 from driftworld.envs.picture import Camera
 
 #: As many as a native batch holds.
@@ -38,7 +39,9 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             one of Gymnasium's ``AutoresetMode``.
         copy: Whether observations are the caller's own.
         num_threads: Threads that step and draw; 0 is one for each processor.
-        max_episode_steps: A limit of steps beside that of the worlds; Gymnasium's ``make_vec`` hands it over.
+        max_episode_steps: A limit of steps that the worlds know nothing of, as ``TimeLimit`` sets one; ``make_vec`` hands it over.
+
+    It belongs to one thread at a time.
     """
 
     metadata: dict[str, Any] = {
@@ -53,7 +56,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         num_envs: int = 1,
         *,
         world: Any = None,
-        variant: str | None = None,
+        variant: Any = None,
         variants: Sequence[Any] | None = None,
         modalities: str | Sequence[str] = DEFAULT_MODALITIES,
         size: int | tuple[int, int] | None = None,
@@ -84,9 +87,10 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             raise ValueError("variants: found variant beside it, expected one of them")
         if variants is not None and drift is not None:
             raise ValueError("variants: found drift beside it, expected one of them")
-        each = [variant] * num_envs if variants is None else list(variants)
-        if len(each) != num_envs:
-            raise ValueError(f"variants: found {len(each)}, expected {num_envs}, one for each environment")
+        if variants is not None and (isinstance(variants, str) or len(variants) != num_envs):
+            raise ValueError(f"variants: found {variants!r}, expected a list of {num_envs}, one for each environment")
+        if whole("num_envs", num_envs) == 0:
+            raise ValueError("num_envs: found 0, expected at least 1")
         mode = autoreset_mode_of(autoreset_mode)
         options = Options.read(
             modalities=modalities,
@@ -96,7 +100,6 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             interact=interact,
             frame_skip=frame_skip,
             max_steps=max_steps,
-            most_steps=max_episode_steps,
             supersampling=supersampling,
             renderer=renderer,
             task_label=task_label,
@@ -107,7 +110,18 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             AutoresetMode.SAME_STEP: "same_step",
             AutoresetMode.DISABLED: "disabled",
         }[mode]
-        self._members = Members(num_envs, task, world, each, drift, options, name, num_threads)
+        self._members = Members(
+            num_envs,
+            task,
+            world,
+            variant,
+            variants,
+            drift,
+            options,
+            name,
+            whole("num_threads", num_threads) or 0,
+            _limit(max_episode_steps),
+        )
         self._mode = mode
         self._copy = copy
         self._camera = Camera(camera, render_size)
@@ -169,15 +183,15 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         mask = self._mask(options.pop("reset_mask", None))
         seeds = self._seeds(seed)
         members = self._members
-        members.take_options(options, lambda env: mask is None or bool(mask[env]), many=True)
+        prepared = members.checked(options, many=True)
         chosen = range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist()
         for env in chosen:
             own = seeds[env]
             if own is not None:
                 self._generators[env], self._generator_seeds[env] = seeding.np_random(own)
-                members.seed(env, own, options)
             elif not members.has_seed[env]:
-                members.seed(env, int(self._generator(env).integers(2**32)), options)
+                own = int(self._generator(env).integers(2**32))
+            members.take(prepared, env, own)
         members.batch.reset(mask)
         self._ended[chosen] = False
         infos: dict[str, Any] = {}
@@ -203,11 +217,13 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         if seed is None:
             return [None] * self.num_envs
         if isinstance(seed, (int, np.integer)):
-            return [int(seed) + env for env in range(self.num_envs)]
+            return [seed_in_range(int(seed) + env) for env in range(self.num_envs)]
+        if isinstance(seed, str) or not isinstance(seed, Iterable):
+            raise ValueError(f"seed: found {seed!r}, expected a whole number, or a list of them")
         seeds = list(seed)
         if len(seeds) != self.num_envs:
             raise ValueError(f"seed: found {len(seeds)} seeds, expected {self.num_envs}, one for each environment")
-        return [None if one is None else int(one) for one in seeds]
+        return [None if one is None else seed_in_range(one) for one in seeds]
 
     def step(
         self, actions: Any
@@ -287,11 +303,14 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
 
     def state(self, env: int) -> dict[str, Any]:
         """The world of an environment as it is now, as a document."""
+        if not 0 <= env < self.num_envs:
+            raise IndexError(f"state: found environment {env}, expected 0 to {self.num_envs - 1}")
         state: dict[str, Any] = json.loads(self._members.batch.state(env))
         return state
 
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:
         """What each environment answers: ``state`` and ``warnings`` one by one, anything else is the same for all."""
+        name = {"observation_space": "single_observation_space", "action_space": "single_action_space"}.get(name, name)
         if name == "state":
             return tuple(self.state(env) for env in range(self.num_envs))
         if name == "warnings":
@@ -314,6 +333,16 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         type(self).__init__(self, **kept["_made_with"])  # type: ignore[misc]
         self.__dict__.update(kept)
         self._members.take_up(state["members"])
+
+
+def _limit(steps: Any) -> int | None:
+    """A limit of steps as Gymnasium's ``TimeLimit`` takes it; −1 is none, as for ``gymnasium.make``."""
+    if steps is None or steps == -1:
+        return None
+    found = whole("max_episode_steps", steps)
+    if not found:
+        raise ValueError(f"max_episode_steps: found {steps!r}, expected a whole number from 1 on, or -1 for no limit")
+    return found
 
 
 #: What a step says, and so what the last step of an episode ends with.

@@ -17,6 +17,8 @@ class Window:
         gymnasium.error.DependencyNotInstalled: Without pygame.
     """
 
+    _open = 0
+
     def __init__(self, title: str, fps: int) -> None:
         try:
             import pygame
@@ -27,6 +29,7 @@ class Window:
                 'render_mode "human": found no pygame, expected it installed: pip install "driftworld[human]"'
             ) from error
         self._pygame = pygame
+        Window._open += 1
         self._fps = fps
         # Only what shows pictures: sound would look for devices.
         pygame.display.init()
@@ -47,4 +50,7 @@ class Window:
 
     def close(self) -> None:
         """Takes it off the screen."""
-        self._pygame.display.quit()
+        Window._open -= 1
+        # pygame has one screen for all windows.
+        if Window._open == 0:
+            self._pygame.display.quit()
