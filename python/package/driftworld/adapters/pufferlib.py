@@ -33,7 +33,7 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
     """Environments that step together and begin anew by themselves, as PufferLib's native ones.
 
     Infos come when episodes end, one each: ``episode_return``, ``episode_length``, ``is_success`` (0.0 or 1.0), to be averaged as
-    PufferLib does.
+    PufferLib does; and ``variant_id``, which variant it was.
 
     Args:
         env_id: Such as ``"driftworld/FindObjects-v0"``.
@@ -64,6 +64,7 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
         self.single_action_space = self.envs.single_action_space
         self.num_agents = num_envs
         self._seed = seed
+        self._variants: list[str] = []
         self._returns = np.zeros(num_envs)
         self._lengths = np.zeros(num_envs, dtype=np.int64)
         if not isinstance(self.single_observation_space, gymnasium.spaces.Box):
@@ -75,7 +76,8 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
     def reset(self, seed: int | None = None) -> tuple[npt.NDArray[Any], list[dict[str, Any]]]:
         """Begins new episodes everywhere, environment ``i`` under ``seed + i``."""
         seed, self._seed = self._seed if seed is None else seed, None
-        self.observations[:], _ = self.envs.reset(seed=seed)
+        self.observations[:], told = self.envs.reset(seed=seed)
+        self._variants = list(told["variant_id"])
         self.rewards[:] = 0
         self.terminals[:] = False
         self.truncations[:] = False
@@ -97,17 +99,19 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
         self.truncations[:] = truncated
         self._returns += rewards
         self._lengths += 1
-        infos = [self._closed(int(index), told["final_info"]) for index in np.flatnonzero(terminated | truncated)]
+        infos = [self._closed(int(index), told) for index in np.flatnonzero(terminated | truncated)]
         return self.observations, self.rewards, self.terminals, self.truncations, infos
 
-    def _closed(self, index: int, last: Any) -> dict[str, Any]:
+    def _closed(self, index: int, told: Any) -> dict[str, Any]:
         info = {
+            "variant_id": self._variants[index],
             "episode_return": float(self._returns[index]),
             "episode_length": int(self._lengths[index]),
-            "is_success": float(last["is_success"][index]),
+            "is_success": float(told["final_info"]["is_success"][index]),
         }
         self._returns[index] = 0
         self._lengths[index] = 0
+        self._variants[index] = told["variant_id"][index]
         return info
 
     def render(self) -> Any:
@@ -116,5 +120,5 @@ class DriftworldPuffer(PufferEnv):  # type: ignore[misc, unused-ignore] # Any wh
         return None if pictures is None else pictures[0]
 
     def close(self) -> None:
-        """Frees the environments."""
+        """Marks them as closed; their memory goes when nothing refers to them any more."""
         self.envs.close()

@@ -97,18 +97,21 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
             The first observations, ``(num_envs, …)``.
         """
         observations: Any = None
-        for options, mask in self._groups():
-            seeds = [seed if is_in else None for seed, is_in in zip(self._seeds, mask, strict=True)]
-            asked: dict[str, Any] = dict(options)
-            if not mask.all():
-                asked["reset_mask"] = mask
-            observations, told = self.envs.reset(
-                seed=seeds if any(seed is not None for seed in seeds) else None, options=asked
-            )
-            for index in np.flatnonzero(mask):
-                self.reset_infos[index] = _of_one(told, int(index))
-        self._reset_seeds()
-        self._reset_options()
+        try:
+            for options, mask in self._groups():
+                seeds = [seed if is_in else None for seed, is_in in zip(self._seeds, mask, strict=True)]
+                asked: dict[str, Any] = dict(options)
+                if not mask.all():
+                    asked["reset_mask"] = mask
+                observations, told = self.envs.reset(
+                    seed=seeds if any(seed is not None for seed in seeds) else None, options=asked
+                )
+                for index in np.flatnonzero(mask):
+                    self.reset_infos[index] = _of_one(told, int(index))
+        finally:
+            # Wrong ones are not asked for again.
+            self._reset_seeds()
+            self._reset_options()
         return observations
 
     def _groups(self) -> list[tuple[dict[str, Any], npt.NDArray[np.bool_]]]:
@@ -146,7 +149,7 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         return observations, np.asarray(rewards, dtype=np.float32), dones, infos
 
     def close(self) -> None:
-        """Frees the environments; may be called again."""
+        """Marks them as closed; may be called again. Their memory goes when nothing refers to them any more."""
         self.envs.close()
 
     def get_images(self) -> Sequence[npt.NDArray[np.uint8] | None]:
@@ -183,13 +186,14 @@ class DriftworldVecEnv(VecEnv):  # type: ignore[misc, unused-ignore] # Any where
         indices: int | Iterable[int] | None = None,
         **method_kwargs: Any,
     ) -> list[Any]:
-        """A method of the environments: ``"state"`` and ``"render"`` for each of ``indices``, any other once for all of them.
+        """A method of the environments: ``"state"``, ``"warnings"`` and ``"render"`` for each of ``indices``, any other once for all.
 
         Raises:
             AttributeError: There is none of that name.
         """
-        if method_name == "state":
-            return [self.envs.state(index) for index in self._get_indices(indices)]
+        if method_name in ("state", "warnings"):
+            every = self.envs.unwrapped.call(method_name)
+            return [every[index] for index in self._get_indices(indices)]
         if method_name == "render":
             pictures = self.get_images()
             return [pictures[index] for index in self._get_indices(indices)]
