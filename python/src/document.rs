@@ -42,7 +42,7 @@ pub(crate) fn told<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyRes
     to_python(py, &value)
 }
 
-/// The JSON value of Python's, NumPy's numbers among them.
+/// The JSON value of Python's, numbers of `NumPy` among them.
 pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     let py = value.py();
     let options = PyDict::new(py);
