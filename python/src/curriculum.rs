@@ -3,15 +3,17 @@
 
 use std::path::{Path, PathBuf};
 
-use driftworld::scenarios::{Missing, ScenarioFile};
-use driftworld_curriculum::{Experience, Journal, MOST_STEPS, Plan};
+use driftworld::scenarios::{Missing, ScenarioFile, task_from};
+use driftworld::tasks::TaskError;
+use driftworld_curriculum::{CurriculumError, Experience, Journal, MOST_STEPS, Plan};
 use driftworld_spec::BlockKind;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 use serde_json::json;
 
 use crate::document::{Whole, from_python, to_python, told};
-use crate::errors::Result;
+use crate::errors::{Error, Result};
 use crate::logs::now;
 
 /// A scenario with everything that it names.
@@ -19,6 +21,8 @@ use crate::logs::now;
 pub(crate) struct PyPlan {
     plan: Plan,
     warnings: Vec<String>,
+    /// What it was made from.
+    made: (PathBuf, String, Option<bool>),
 }
 
 #[pymethods]
@@ -36,9 +40,18 @@ impl PyPlan {
             } else {
                 Missing::Refused
             };
-            Ok::<_, crate::errors::Error>(file.plan(missing, &mut warn)?)
+            file.plan(missing, &mut warn).map_err(|error| because(&path, error))
         })?;
-        Ok(Self { plan, warnings })
+        Ok(Self {
+            plan,
+            warnings,
+            made: (path, text.to_owned(), stand_in),
+        })
+    }
+
+    /// The plan in another process.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (PathBuf, String, Option<bool>)) {
+        (slf.get_type(), slf.borrow().made.clone())
     }
 
     /// What was odd about it.
@@ -76,13 +89,15 @@ impl PyPlan {
         Ok(to_python(py, &told)?)
     }
 
-    /// The JSON of the world of experience `number`, and its time step in seconds; a world without a limit of steps has one here.
-    fn world(&self, py: Python<'_>, number: Whole) -> Result<(String, f64)> {
+    /// The JSON of the world of experience `number`, its time step in seconds, and for how many of these each action is held; a world
+    /// without a limit of steps has one here.
+    fn world(&self, py: Python<'_>, number: Whole) -> Result<(String, f64, u32)> {
         let mut world = py.detach(|| self.plan.world(number.0))?;
         if world.max_steps == 0 {
             world.max_steps = MOST_STEPS;
         }
-        Ok((world.to_json(), world.agent_params.time_step))
+        let agent = &world.agent_params;
+        Ok((world.to_json(), agent.time_step, agent.frame_skip.max(1)))
     }
 
     /// Notes what else its lifetime depends on: a log is taken up only if it is the same.
@@ -90,6 +105,16 @@ impl PyPlan {
         self.plan.made_from(what, from_python(print)?);
         Ok(())
     }
+}
+
+/// A plan's error, with what is wrong with the document of the task where that is why.
+fn because(scenario: &Path, error: CurriculumError) -> Error {
+    if let CurriculumError::Unknown { task, .. } = &error
+        && let Err(TaskError::Spec(source)) = task_from(scenario, task)
+    {
+        return Error::InScenario(error, source);
+    }
+    error.into()
 }
 
 /// The log that a lifetime is lived into.

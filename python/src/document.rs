@@ -42,9 +42,13 @@ pub(crate) fn told<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyRes
     to_python(py, &value)
 }
 
-/// The JSON value of Python's.
+/// The JSON value of Python's, numbers of `NumPy` among them.
 pub(crate) fn from_python(value: &Bound<'_, PyAny>) -> PyResult<Value> {
-    let text: String = value.py().import("json")?.call_method1("dumps", (value,))?.extract()?;
+    let py = value.py();
+    let options = PyDict::new(py);
+    options.set_item("default", py.import("driftworld._plain")?.getattr("plain")?)?;
+    let text = py.import("json")?.call_method("dumps", (value,), Some(&options))?;
+    let text: String = text.extract()?;
     serde_json::from_str(&text).map_err(|error| PyValueError::new_err(format!("found {text}: {error}")))
 }
 

@@ -14,7 +14,13 @@ use crate::task::PyVariant;
 /// ``schedule`` is ``"linear"``, ``"cosine"``, ``{"steps": n}`` or ``{"sawtooth": n}``; ``switch`` says when values with nothing
 /// in between change: ``"at_point"``, or by chance under ``seed``, more likely as the drift goes on, with ``"mixture"``.
 #[pyclass(name = "Drift", module = "driftworld._native", frozen)]
-pub(crate) struct PyDrift(Drift);
+pub(crate) struct PyDrift {
+    drift: Drift,
+    made: Made,
+}
+
+/// What a drift was made from: both ends, schedule (as JSON), switch and seed.
+type Made = (PyVariant, PyVariant, Option<String>, String, u64);
 
 #[pymethods]
 impl PyDrift {
@@ -30,10 +36,12 @@ impl PyDrift {
         let wrong = |option: &str, found: &str, expected: &str| {
             PyValueError::new_err(format!("drift, {option}: found {found}, expected {expected}"))
         };
+        let mut written = None;
         let schedule = match schedule {
             None => DriftSchedule::default(),
             Some(said) => {
                 let json = from_python(said)?;
+                written = Some(json.to_string());
                 let sound = serde_json::from_value(json.clone())
                     .ok()
                     .filter(|schedule| !matches!(schedule, DriftSchedule::Steps(0) | DriftSchedule::Sawtooth(0)));
@@ -43,13 +51,27 @@ impl PyDrift {
                 })?
             }
         };
-        let switch = match serde_json::from_value(switch.into()) {
+        let switched = match serde_json::from_value(switch.into()) {
             Ok(DriftSwitch::AtPoint) => Switch::AtPoint,
             Ok(DriftSwitch::Mixture) => Switch::Mixture { seed: seed.0 },
             Err(_) => return Err(wrong("switch", &format!("{switch:?}"), "\"at_point\" or \"mixture\"").into()),
         };
         let drift = Drift::new(from_.get().0.clone(), to.get().0.clone())?;
-        Ok(Self(drift.with_schedule(Schedule::from(schedule)).with_switch(switch)))
+        Ok(Self {
+            drift: drift.with_schedule(Schedule::from(schedule)).with_switch(switched),
+            made: (
+                from_.get().clone(),
+                to.get().clone(),
+                written,
+                switch.to_owned(),
+                seed.0,
+            ),
+        })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Made)> {
+        let again = py.import("driftworld.specs")?.getattr("_drift_again")?;
+        Ok((again, self.made.clone()))
     }
 
     /// The variant when ``progress``, 0..=1, has passed; ``index`` is the number of the world, which only mixtures look at.
@@ -59,6 +81,6 @@ impl PyDrift {
             let message = format!("drift, progress: found {progress}, expected a number in 0..1");
             return Err(PyValueError::new_err(message).into());
         }
-        Ok(PyVariant(self.0.at(progress, index.0)?))
+        Ok(PyVariant(self.drift.at(progress, index.0)?))
     }
 }

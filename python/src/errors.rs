@@ -1,6 +1,7 @@
 //! Rust's errors as Python's: one `match` for each crate's. The classes themselves are in `driftworld/errors.py`.
 
 use driftworld::distances::DistancesError;
+use driftworld::documents::DocumentError;
 use driftworld::tasks::TaskError;
 use driftworld_curriculum::CurriculumError;
 use driftworld_env::EnvError;
@@ -22,6 +23,8 @@ pub(crate) enum Error {
     Env(EnvError),
     Metrics(MetricsError),
     Curriculum(CurriculumError),
+    /// A scenario names a task whose document is wrong: what the scenario's error says, and what is wrong with the document.
+    InScenario(CurriculumError, SpecError),
     /// Already one of Python's.
     Python(PyErr),
 }
@@ -45,9 +48,17 @@ from!(
     Similarity(SimilarityError),
     Env(EnvError),
     Metrics(MetricsError),
-    Curriculum(CurriculumError),
     Python(PyErr),
 );
+
+impl From<CurriculumError> for Error {
+    fn from(source: CurriculumError) -> Self {
+        match source {
+            CurriculumError::Log(source) => Self::Metrics(source),
+            source => Self::Curriculum(source),
+        }
+    }
+}
 
 impl From<TaskError> for Error {
     fn from(source: TaskError) -> Self {
@@ -85,7 +96,7 @@ impl Error {
             Self::Similarity(source) => ("SimilarityError", source.to_string()),
             Self::Env(source) => ("EnvError", source.to_string()),
             Self::Metrics(source) => ("MetricsError", source.to_string()),
-            Self::Curriculum(source) => ("CurriculumError", source.to_string()),
+            Self::Curriculum(source) | Self::InScenario(source, _) => ("CurriculumError", source.to_string()),
             Self::Python(source) => return Ok(source.clone_ref(py)),
         };
         let class = py.import("driftworld.errors")?.getattr(class)?;
@@ -105,7 +116,7 @@ impl Error {
                 }
                 details.set_item("code", source.code())?;
             }
-            Self::Task(_) => details.set_item("code", "task/unknown")?,
+            Self::Task(source) => details.set_item("code", of_task(source))?,
             Self::Similarity(source) => details.set_item("code", source.code())?,
             Self::Env(source) => {
                 if let EnvError::BadScript { line, .. } = source {
@@ -113,11 +124,57 @@ impl Error {
                 }
                 details.set_item("code", source.code())?;
             }
-            Self::Metrics(source) | Self::Curriculum(CurriculumError::Log(source)) => of_metrics(&details, source)?,
+            Self::Metrics(source) => of_metrics(&details, source)?,
             Self::Curriculum(source) => details.set_item("code", source.code())?,
+            Self::InScenario(source, because) => {
+                of_spec(&details, because)?;
+                details.set_item("code", source.code())?;
+            }
             Self::Python(_) => {}
         }
         Ok(details)
+    }
+}
+
+/// What an error that a command failed with knows beside its text.
+pub(crate) fn cause_details<'py>(
+    py: Python<'py>,
+    cause: &(dyn std::error::Error + 'static),
+) -> PyResult<Bound<'py, PyDict>> {
+    let details = PyDict::new(py);
+    let code = if let Some(source) = cause.downcast_ref::<SpecError>() {
+        return of_spec(&details, source).map(|()| details);
+    } else if let Some(source) = cause.downcast_ref::<MetricsError>() {
+        return of_metrics(&details, source).map(|()| details);
+    } else if let Some(source) = cause.downcast_ref::<TaskError>() {
+        if let TaskError::Spec(source) = source {
+            return cause_details(py, source);
+        }
+        of_task(source)
+    } else if let Some(source) = cause.downcast_ref::<CurriculumError>() {
+        if let CurriculumError::Log(source) = source {
+            return cause_details(py, source);
+        }
+        source.code()
+    } else if let Some(DocumentError::Spec(source)) = cause.downcast_ref::<DocumentError>() {
+        return cause_details(py, source);
+    } else if let Some(source) = cause.downcast_ref::<GeneratorError>() {
+        source.code()
+    } else if let Some(source) = cause.downcast_ref::<SimilarityError>() {
+        source.code()
+    } else if let Some(source) = cause.downcast_ref::<EnvError>() {
+        source.code()
+    } else {
+        return Ok(details);
+    };
+    details.set_item("code", code)?;
+    Ok(details)
+}
+
+fn of_task(source: &TaskError) -> &'static str {
+    match source {
+        TaskError::Unreadable { .. } => "task/unreadable",
+        _ => "task/unknown",
     }
 }
 

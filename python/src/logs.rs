@@ -154,8 +154,14 @@ fn scenario_info(said: Value) -> Result<ScenarioInfo> {
         let message = format!("scenario_info: found {said}, expected a dictionary");
         return Err(PyValueError::new_err(message).into());
     };
-    let mut word = |key: &str| extra.shift_remove(key).and_then(|word| Some(word.as_str()?.to_owned()));
-    let (complexity, difficulty, form) = (word("complexity"), word("difficulty"), word("scenario_type"));
+    let mut word = |key: &str| match extra.shift_remove(key) {
+        None | Some(Value::Null) => Ok(None),
+        Some(Value::String(word)) => Ok(Some(word)),
+        Some(other) => Err(PyValueError::new_err(format!(
+            "scenario_info, {key}: found {other}, expected a word of the format; what is no word goes under another name"
+        ))),
+    };
+    let (complexity, difficulty, form) = (word("complexity")?, word("difficulty")?, word("scenario_type")?);
     Ok(ScenarioInfo {
         complexity: complexity.map(|word| word.parse()).transpose()?,
         difficulty: difficulty.map(|word| word.parse()).transpose()?,

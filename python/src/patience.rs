@@ -1,27 +1,51 @@
-//! Long work that Ctrl-C ends: done on a thread of its own while the interpreter is asked for signals.
+//! Long work that Ctrl-C ends: done on a thread of its own while the interpreter is asked for signals, with threads beside it that
+//! are this process's own.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
-use std::sync::{Mutex, PoisonError};
-use std::thread;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
+use std::{mem, process, thread};
 
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// How often signals are looked for.
 const LOOK: Duration = Duration::from_millis(50);
 
+/// The threads that work is shared among, one for each processor. Not rayon's common ones: those are made once, and in a process that
+/// was forked after that there are none of them, so that all work waits for ever.
+pub(crate) fn workers(_held: Python<'_>) -> PyResult<Arc<ThreadPool>> {
+    static WORKERS: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+    // Only ever locked with the interpreter's lock held, as whoever forks holds it: never locked in the middle of a fork.
+    let mut workers = WORKERS.lock().unwrap_or_else(PoisonError::into_inner);
+    let here = process::id();
+    if let Some((process, pool)) = &*workers
+        && *process == here
+    {
+        return Ok(Arc::clone(pool));
+    }
+    let pool = ThreadPoolBuilder::new()
+        .build()
+        .map_err(|error| PyRuntimeError::new_err(format!("threads: found none to be had: {error}")))?;
+    let pool = Arc::new(pool);
+    // The parent's threads are not in this process: nothing that is left of them may be touched.
+    mem::forget(workers.replace((here, Arc::clone(&pool))));
+    Ok(pool)
+}
+
 /// Does work without the interpreter's lock. On Ctrl-C the flag that the work is handed becomes true, and the interrupt is raised
 /// once the work has ended.
 pub(crate) fn patiently<T: Send>(py: Python<'_>, work: impl FnOnce(&AtomicBool) -> T + Send) -> PyResult<T> {
-    let stop = AtomicBool::new(false);
+    let (stop, pool) = (AtomicBool::new(false), workers(py)?);
     let (done, ended) = mpsc::channel();
     thread::scope(|scope| {
         let stop = &stop;
         let worker = scope.spawn(move || {
             // Dropped with the thread, however it ends.
             let _done: mpsc::Sender<()> = done;
-            work(stop)
+            pool.install(|| work(stop))
         });
         let interrupt = wait(py, &Mutex::new(ended));
         if interrupt.is_err() {
@@ -35,6 +59,12 @@ pub(crate) fn patiently<T: Send>(py: Python<'_>, work: impl FnOnce(&AtomicBool) 
 
 /// Does work that cannot be ended from outside: after Ctrl-C it is left to itself, and what it comes to is dropped.
 pub(crate) fn impatiently<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
+    let pool = workers(py)?;
+    apart(py, move || pool.install(work))
+}
+
+/// The same on one thread, which is not among the workers.
+pub(crate) fn apart<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
     let (done, ended) = mpsc::channel();
     let worker = thread::spawn(move || {
         let _done: mpsc::Sender<()> = done;

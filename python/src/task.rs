@@ -197,8 +197,11 @@ impl PyVariant {
     fn with_values(&self, name: &str, changes: Option<&Bound<'_, PyDict>>) -> Result<Self> {
         let mut values: Vec<(String, Value)> = Vec::new();
         for (parameter, value) in changes.into_iter().flatten() {
-            values.push((parameter.extract()?, value_of(&value)?));
+            let parameter: String = parameter.extract()?;
+            let value = value_of(&parameter, &value)?;
+            values.push((parameter, value));
         }
+        sound_name(name)?;
         Ok(Self(self.0.with(name, values)?))
     }
 
@@ -220,6 +223,7 @@ impl PyVariant {
                 return Err(PyValueError::new_err(message).into());
             }
         }
+        sound_name(name)?;
         let (subject, element) = match subject.extract::<String>() {
             Ok(word) => {
                 let element = element(&word)?;
@@ -327,8 +331,8 @@ impl PyVariant {
         make: impl Fn(World) -> T + Sync,
         mut take: impl FnMut(T) -> PyResult<()>,
     ) -> Result<()> {
-        let (sampler, pool) = py.detach(|| (Sampler::new(&self.0, seed), pool(threads)));
-        let pool = pool?;
+        let pool = pool(threads)?;
+        let sampler = py.detach(|| Sampler::new(&self.0, seed));
         while !numbers.is_empty() {
             let portion = numbers.start..numbers.end.min(numbers.start + PORTION);
             numbers.start = portion.end;
@@ -348,6 +352,8 @@ impl PyVariant {
                     None => all(),
                 }
             };
+            // Before a portion that is quickly drawn ends, nobody has looked.
+            py.check_signals()?;
             for made in patiently(py, draw)??.into_iter().flatten() {
                 take(made)?;
             }
@@ -409,10 +415,27 @@ fn name_of(name_or_path: &Bound<'_, PyAny>) -> PyResult<String> {
 }
 
 /// A value of a parameter, as a task spec writes it.
-fn value_of(value: &Bound<'_, PyAny>) -> PyResult<Value> {
-    let json = from_python(value)?;
-    serde_json::from_value(json.clone())
-        .map_err(|_| PyValueError::new_err(format!("found {json}, expected a value as a task spec writes it")))
+fn value_of(parameter: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
+    let expected =
+        "expected a value as a task spec writes it: a finite number, a word, a truth value, a list or a dictionary";
+    let wrong = || format!("{parameter}: found {value}, {expected}");
+    let json = from_python(value).map_err(|error| {
+        if error.is_instance_of::<PyTypeError>(value.py()) {
+            PyTypeError::new_err(wrong())
+        } else {
+            PyValueError::new_err(wrong())
+        }
+    })?;
+    serde_json::from_value(json).map_err(|_| PyValueError::new_err(wrong()))
+}
+
+/// Checks the name of a variant that is made: it stands behind the `#` of its id.
+fn sound_name(name: &str) -> PyResult<()> {
+    if name.is_empty() || name.contains('#') {
+        let message = format!("name: found {name:?}, expected a variant's name of at least one letter, without #");
+        return Err(PyValueError::new_err(message));
+    }
+    Ok(())
 }
 
 fn numbers(start: u64, count: u64) -> PyResult<Range<u64>> {
@@ -424,10 +447,18 @@ fn numbers(start: u64, count: u64) -> PyResult<Range<u64>> {
     Ok(start..end)
 }
 
-/// Threads to draw by; none where the common ones are meant.
+/// The most threads that may be asked for.
+const MOST_THREADS: usize = 1024;
+
+/// Threads to draw by; none where those of all long work are meant.
 fn pool(threads: usize) -> PyResult<Option<rayon::ThreadPool>> {
     if threads == 0 {
         return Ok(None);
+    }
+    if threads > MOST_THREADS {
+        return Err(PyValueError::new_err(format!(
+            "threads: found {threads}, expected at most {MOST_THREADS}; 0 for one on each processor"
+        )));
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.map(Some)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import pickle
+import shutil
 import subprocess
 import sys
 from itertools import pairwise
@@ -13,7 +15,7 @@ from typing import Any
 import driftworld
 import numpy as np
 import pytest
-from driftworld import Agent, Curriculum, CurriculumError, SpecError, Transition, read_log, validate_log
+from driftworld import Agent, Curriculum, CurriculumError, SpecError, TaskSpec, Transition, read_log, validate_log
 
 #: Columns of which an agent cannot change a thing.
 OF_THE_PLAN = [
@@ -288,7 +290,7 @@ def test_a_run_that_stopped_goes_on_as_if_it_had_not(tmp_path: Path, kept: int) 
     assert whole.finished and whole.regimes == curriculum.run(Pupil(), tmp_path / "whole", **SMALL).regimes
     assert rows(tmp_path / "log") == rows(tmp_path / "whole")
     assert second.knowledge == undisturbed.knowledge != 0
-    assert [path.name for path in (tmp_path / "log.agent").iterdir()] == ["00000016"]
+    assert sorted(path.name for path in (tmp_path / "log.agent").iterdir()) == ["00000016", "lifetime.json"]
 
 
 def test_an_interrupt_leaves_a_log_that_goes_on(tmp_path: Path) -> None:
@@ -315,7 +317,7 @@ def test_a_log_is_taken_up_only_by_what_it_was_begun_with(tmp_path: Path) -> Non
         small(max_steps=4).run(Circler(), log, **SMALL)
     with pytest.raises(CurriculumError, match="/agent"):
         small(max_steps=3).run(Pupil(), log, **SMALL)
-    with pytest.raises(CurriculumError) as refused:
+    with pytest.raises(driftworld.MetricsError) as refused:
         small(max_steps=3).run(Circler(), log, resume=False, **SMALL)
     assert refused.value.code == "metrics/log-exists"
 
@@ -393,3 +395,99 @@ def test_a_scenario_of_the_originals_is_lived_as_the_command_lives_it(tmp_path: 
     assert summary.finished and summary.experiences == curriculum.num_experiences == small().num_experiences
     with pytest.raises(CurriculumError, match="expected a world file"):
         Curriculum.load(theirs, stand_in=False)
+
+
+@pytest.mark.parametrize("log_is", ["deleted", "replaced"])
+def test_what_an_agent_saved_in_another_lifetime_is_not_loaded(tmp_path: Path, log_is: str) -> None:
+    log, regime = tmp_path / "log", {"task": "find_objects", "variant": "red", "count": 5, "seed": 9, "max_steps": 10}
+    other = Curriculum.from_dict({"name": "other", "blocks": [{"type": "learning", "regimes": [regime]}]})
+    small().run(Pupil(), log, watch=lambda experience, reward: experience.number < 1, **SMALL)
+    assert (tmp_path / "log.agent" / "00000002").is_dir()
+    shutil.rmtree(log)
+    begun = log if log_is == "deleted" else tmp_path / "elsewhere"
+    other.run(Pupil(), begun, watch=lambda experience, reward: experience.number < 2, **SMALL)
+    begun.rename(log)
+    pupil, undisturbed = Pupil(), Pupil()
+    other.run(pupil, log, **SMALL)
+    other.run(undisturbed, **SMALL)
+    assert pupil.knowledge == undisturbed.knowledge != 0
+
+
+def test_time_counts_every_step_that_an_action_is_held_for(tmp_path: Path) -> None:
+    task = json.loads((Path(__file__).parents[2] / "examples/tasks/get_to_goal.json").read_text(encoding="utf-8"))
+    task["world"].setdefault("agent_params", {})["frame_skip"] = 4
+    (tmp_path / "mine.json").write_text(json.dumps(task), encoding="utf-8")
+    name = TaskSpec.from_dict(task).variant_names()[0]
+    regime = {"task": "mine.json", "variant": name, "count": 1, "max_steps": 20}
+    document = {"name": "s", "blocks": [{"type": "evaluation", "regimes": [regime]}]}
+    (tmp_path / "s.json").write_text(json.dumps(document), encoding="utf-8")
+    script = tmp_path / "circle.txt"
+    script.write_text("step 1 5 45 0\nrepeat\n", encoding="utf-8")
+    argv = ["run", str(tmp_path / "s.json"), "--agent", f"scripted:{script}", "--logs", str(tmp_path / "theirs")]
+    subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
+    curriculum = Curriculum.load(tmp_path / "s.json")
+    curriculum.run(Circler(), tmp_path / "mine", **SMALL)
+    curriculum.run(Circler(), tmp_path / "twice", frame_skip=2, **SMALL)
+    for log, seconds in (("theirs", 0.4), ("mine", 0.4), ("twice", 0.2)):
+        read = read_log(tmp_path / log)
+        assert read["time_to_completion"].tolist() == pytest.approx(list(seconds * read["episode_step_count"])), log
+        assert read["episode_step_count"].tolist() == [20]
+
+
+def test_a_wrong_option_begins_no_log(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="size: found"):
+        small().run(Circler(), tmp_path / "log", size=-1)
+    assert not (tmp_path / "log").exists()
+    (tmp_path / "taken").mkdir()
+    (tmp_path / "taken" / "letter.txt").touch()
+    with pytest.raises(driftworld.MetricsError):
+        small().run(Circler(), tmp_path / "taken", **SMALL)
+    with pytest.raises(ValueError, match="log: found '/', expected"):
+        small().run(Circler(), "/", **SMALL)
+
+
+def test_a_log_may_be_where_one_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    assert small(max_steps=2).run(Pupil(), ".", **SMALL).finished
+    assert (tmp_path / "here.agent" / "00000016").is_dir() and len(read_log(tmp_path / "here")) == 19
+
+
+def test_the_same_options_are_the_same_however_they_are_written(tmp_path: Path) -> None:
+    curriculum, rows_of_actions = small(max_steps=2), [[3.0, 4.0, 0.0], [-3.0, 4.0, 0.0]]
+
+    class First(Circler):
+        def act(self, observation: Any, info: dict[str, Any]) -> Any:
+            return 0
+
+    curriculum.run(First(), tmp_path / "log", size=8, modalities=["rgb"], actions=rows_of_actions)
+    again = {"modalities": ("rgb",), "size": np.int64(8), "actions": np.array(rows_of_actions), "supersampling": None}
+    assert curriculum.run(First(), tmp_path / "log", **again).finished
+    with pytest.raises(CurriculumError, match="/made_from/environment/modalities"):
+        curriculum.run(First(), tmp_path / "log", **{**again, "modalities": "rgb"})
+
+
+@pytest.mark.parametrize("copied", [lambda thing: pickle.loads(pickle.dumps(thing)), copy.deepcopy])
+def test_blocks_and_experiences_survive_being_copied(copied: Any) -> None:
+    curriculum = small()
+    block = copied(curriculum[2])
+    assert block == curriculum[2] and list(block) == list(curriculum[2])
+    assert copied(block[4]).world() == curriculum[2][4].world()
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"lern": 2}, "found option 'lern', expected one of name, learn"),
+        ({"learn": True}, "learn: found True, expected a whole number"),
+        ({"learn": 2.5}, "learn: found 2.5, expected a whole number"),
+        ({"evaluate_after": 2}, "evaluate_after: found 2, expected a list"),
+        ({"evaluate_after": [1, "2"]}, "evaluate_after: found '2' in it"),
+    ],
+)
+def test_a_design_takes_only_what_it_knows(options: dict[str, Any], message: str) -> None:
+    with pytest.raises(TypeError, match=message):
+        Curriculum.experts("find_objects#red", **options)
+    if "lern" not in options:
+        with pytest.raises(TypeError, match=message):
+            Curriculum.design("find_objects#red", **options)

@@ -185,3 +185,9 @@ def test_a_map_keeps_distances_in_a_plane() -> None:
     assert matrix.embed(1).shape == (3, 1)
     with pytest.raises(ValueError, match="expected 1 or 2"):
         matrix.embed(3)
+
+
+def test_a_file_that_is_neither_a_world_nor_a_task_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "three.json").write_text("3", encoding="utf-8")
+    with pytest.raises(driftworld.SpecError, match="three.json"):
+        driftworld.distance(str(tmp_path / "three.json"), "find_objects#red")

@@ -143,11 +143,15 @@ def test_a_message_is_the_commands(tmp_path: Path) -> None:
     ]:
         with pytest.raises(DriftworldError) as refused:
             call()
-        _, _, message = _native.ask(argv)
+        _, _, refusal = _native.ask(argv)
+        assert refusal is not None
+        message, details = refusal
         if argv[0] != "metrics":
             assert message == str(refused.value)
+            assert details["code"] == refused.value.code
+            assert details.get("problems", []) == refused.value.problems
         else:
-            assert message is not None and str(tmp_path / "x") in message and str(tmp_path / "x") in str(refused.value)
+            assert str(tmp_path / "x") in message and str(tmp_path / "x") in str(refused.value)
 
 
 def test_a_drift_through_what_cannot_be_says_what_is_wrong_there() -> None:
@@ -171,3 +175,33 @@ def test_problems_go_into_json() -> None:
     with pytest.raises(driftworld.SpecError) as refused:
         no_key()
     assert json.loads(json.dumps(refused.value.problems)) == refused.value.problems
+
+
+def test_what_is_no_text_cannot_be_read(tmp_path: Path) -> None:
+    (tmp_path / "bytes.json").write_bytes(b"\xff\xfe")
+    for path in (tmp_path, tmp_path / "bytes.json"):
+        with pytest.raises(driftworld.TaskError, match="cannot be read") as refused:
+            TaskSpec.load(path)
+        assert refused.value.code == "task/unreadable"
+
+
+def test_what_a_command_refuses_has_code_and_place(tmp_path: Path) -> None:
+    with driftworld.LogWriter(tmp_path / "log") as log:
+        log.write(block_num=0, exp_num=0, block_type="train", task_name="find_red", reward=1.0)
+    (tmp_path / "log" / "logger_info.json").write_text('{\n  "metrics_columns": [\n', encoding="utf-8")
+    with pytest.raises(driftworld.MetricsError) as refused:
+        driftworld.metrics(tmp_path / "log")
+    assert refused.value.code == "metrics/json" and refused.value.line == 3
+    with pytest.raises(driftworld.CurriculumError) as refused_design:
+        Curriculum.design("find_objects#red", evaluate_after=[9])
+    assert refused_design.value.code == "curriculum/no-such-place"
+
+
+def test_a_broken_task_of_a_scenario_is_told_with_its_place(tmp_path: Path) -> None:
+    (tmp_path / "mine.json").write_text('{\n  "name": "mine",\n  "paramters": {}\n}', encoding="utf-8")
+    regime = {"task": "mine.json", "variant": "red", "count": 1}
+    with pytest.raises(driftworld.CurriculumError) as refused:
+        Curriculum.from_dict({"name": "s", "blocks": [{"type": "learning", "regimes": [regime]}]}, folder=tmp_path)
+    error = refused.value
+    assert (error.code, error.pointer, error.line) == ("curriculum/unknown", "/paramters", 3)
+    assert len(error.problems) == 1 and "block 0, regime 0" in str(error)

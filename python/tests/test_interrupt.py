@@ -10,6 +10,7 @@ import pytest
 #: Each call would take hours.
 CALLS = {
     "sample_many": "driftworld.variant('scavenger_hunt').sample_many_json(10**9)",
+    "portions_quickly_drawn": "driftworld.TaskSpec.from_dict({'name': 'tiny'}).variant().sample_many_json(10**9)",
     "distance_matrix": "driftworld.distance_matrix(variants)",
     "distance": "driftworld.distance('find_objects#blue', 'find_objects#red', worlds=100000)",
 }

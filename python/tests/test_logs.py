@@ -127,3 +127,18 @@ def test_what_is_wrong_with_a_log_is_named_with_its_line(tmp_path: Path) -> None
     assert not checked["valid"] and [problem["code"] for problem in checked["problems"]] == ["metrics/cell"]
     with pytest.raises(MetricsError):
         read_log(tmp_path / "nowhere")
+
+
+@pytest.mark.parametrize("key", ["complexity", "difficulty", "scenario_type"])
+def test_what_must_be_a_word_is_one(tmp_path: Path, key: str) -> None:
+    with pytest.raises(ValueError, match=f"scenario_info, {key}: found 3, expected a word"):
+        LogWriter(tmp_path / "log", scenario_info={key: 3})
+    assert not (tmp_path / "log").exists()
+
+
+def test_numbers_may_be_numpys(tmp_path: Path) -> None:
+    with LogWriter(tmp_path / "log", scenario_info={"seeds": np.arange(2)}) as log:
+        params = {"seed": np.int64(7), "light": np.float32(0.5)}
+        log.write(block_num=0, exp_num=0, block_type="train", task_name="t_v", task_params=params, reward=1.0)
+    read = read_log(tmp_path / "log")
+    assert read["task_params"].tolist() == [{"seed": 7, "light": 0.5}] and read.scenario_info == {"seeds": [0, 1]}

@@ -149,3 +149,22 @@ def test_the_page_is_the_commands(logs: list[Path], tmp_path: Path) -> None:
 def test_scores_without_a_log_of_their_own_compare_by_what_they_say(logs: list[Path]) -> None:
     assert metrics(logs[0]) == metrics(str(logs[0])) != metrics(logs[1])
     assert isinstance(metrics(logs[0]), Metrics)
+
+
+def test_scores_at_given_ranges_can_be_asked_again(logs: list[Path], tmp_path: Path) -> None:
+    pytest.importorskip("pandas", reason="data frames are pandas'")
+    found = metrics(logs[0], data_range={task: {"min": -1.0, "max": 30.0} for task in TASKS})
+    found.save(tmp_path / "results")
+    saved = json.loads((tmp_path / "results" / "one_metrics.json").read_text(encoding="utf-8"))
+    assert saved["avg_train_perf"] == found["avg_train_perf"] != metrics(logs[0])["avg_train_perf"]
+    assert len(found.regimes()) == 3 * 2 + 2
+
+
+def test_a_tiny_number_below_zero_is_a_number(logs: list[Path]) -> None:
+    assert metrics(logs[0], noise=(-1e-9, 1e-9), noise_seed=1).lifetimes
+
+
+def test_options_are_called_as_in_python(logs: list[Path]) -> None:
+    with pytest.raises(MetricsError, match="transfer_method") as refused:
+        metrics(logs[0], transfer_method="ratoi")
+    assert "--" not in str(refused.value)

@@ -228,3 +228,51 @@ def test_variants_and_tasks_are_compared_by_what_they_are(lamps: TaskSpec) -> No
     assert lamps.variant("day") == TaskSpec.from_dict(LAMPS).variant("day") != "lamps#day"
     assert len({lamps.variant("day"), TaskSpec.from_dict(LAMPS).variant("day")}) == 1
     assert isinstance(lamps.variant("day"), Variant)
+
+
+def test_two_that_differ_cannot_be_called_the_same(lamps: TaskSpec) -> None:
+    day = lamps.variant("day")
+    near, _ = day.at_distance(0.1, "observation")
+    far, _ = day.at_distance(0.2, "observation")
+    with pytest.raises(ValueError, match="two called 'lamps#found' that differ.*name="):
+        driftworld.distance_matrix([day, near, far])
+    edited = TaskSpec.from_dict({**LAMPS, "variants": {"day": {"light": 3}}})
+    with pytest.raises(ValueError, match="'lamps#day'"):
+        driftworld.variants(lamps, edited)
+    assert len(driftworld.distance_matrix([day, near, near, lamps.variant("day")])) == 2
+
+
+@pytest.mark.parametrize("name", ["", "a#b"])
+def test_a_variant_that_is_made_has_a_name(lamps: TaskSpec, name: str) -> None:
+    with pytest.raises(ValueError, match="name: found"):
+        lamps.variant("day").with_values(name, light=1)
+    with pytest.raises(ValueError, match="name: found"):
+        lamps.variant("day").at_distance(0.1, "O", name=name)
+
+
+def test_a_value_may_be_numpys_and_must_be_finite(lamps: TaskSpec) -> None:
+    day = lamps.variant("day")
+    made = day.with_values("made", light=np.float32(0.5), far=np.int64(3))
+    assert made == day.with_values("made", light=0.5, far=3)
+    with pytest.raises(ValueError, match="light: found nan, expected .* a finite number"):
+        day.with_values("wrong", light=float("nan"))
+    with pytest.raises(TypeError, match="light: found <object"):
+        day.with_values("wrong", light=object())
+
+
+def test_more_threads_than_there_are_to_be_had_are_refused(lamps: TaskSpec) -> None:
+    with pytest.raises(ValueError, match="threads: found 5000, expected at most 1024"):
+        lamps.variant("day").sample_many(4, threads=5000)
+
+
+@pytest.mark.parametrize("copied", [lambda thing: pickle.loads(pickle.dumps(thing)), copy.deepcopy])
+@pytest.mark.parametrize("schedule", [None, "cosine", {"steps": 3}])
+def test_a_drift_survives_being_copied(lamps: TaskSpec, copied: Any, schedule: Any) -> None:
+    drift = Drift(lamps.variant("day"), lamps.variant("dusk"), schedule=schedule, switch="mixture", seed=4)
+    again = copied(drift)
+    assert [again.at(progress, 3) for progress in (0.0, 0.4, 1.0)] == [drift.at(x, 3) for x in (0.0, 0.4, 1.0)]
+
+
+def test_what_is_odd_about_a_document_is_warned_of() -> None:
+    with pytest.warns(UserWarning, match='the key "oddity" has no meaning here'):
+        assert validate({"environment_params": {}, "oddity": 1}, kind="l2explorer-world") == []

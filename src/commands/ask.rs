@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use clap::Parser;
 
-use super::{Command, output};
+use super::{Cause, Command, output};
 
 /// What the command said.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub struct Answer {
 }
 
 /// What the command refused to do, and why.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 #[error("{message}")]
 pub struct Refusal {
     /// What it would have printed as its error.
@@ -26,6 +26,8 @@ pub struct Refusal {
     pub in_arguments: bool,
     /// Warnings that came before.
     pub notes: Vec<String>,
+    /// The error behind it, where there is one: of one of the crates, with its code and its place.
+    pub cause: Option<Cause>,
 }
 
 /// Asks the command: runs it, keeps what it would print, and prints nothing. `args` does not begin with the program's name.
@@ -51,6 +53,7 @@ pub fn ask(args: impl IntoIterator<Item = OsString>) -> Result<Answer, Refusal> 
             message: plain(&error.to_string()),
             in_arguments: true,
             notes: Vec::new(),
+            cause: None,
         })?;
     let (done, answer) = output::kept(|| command.run());
     match done {
@@ -59,6 +62,7 @@ pub fn ask(args: impl IntoIterator<Item = OsString>) -> Result<Answer, Refusal> 
             message: failure.text().to_owned(),
             in_arguments: matches!(failure, super::Failure::Usage(_)),
             notes: answer.notes,
+            cause: failure.cause(),
         }),
     }
 }
@@ -103,5 +107,13 @@ mod tests {
         let found = refused(&["order", "find_objects", "--method", "nearby"]);
         assert!(found.message.starts_with("invalid value 'nearby'") && found.in_arguments);
         assert!(!found.message.contains("--help"), "{}", found.message);
+        assert!(found.cause.is_none());
+    }
+
+    #[test]
+    fn a_refusal_carries_the_error_behind_it() {
+        let refused = asked(&["sample", "find_object"]).expect_err("it is wrong");
+        let cause = refused.cause.expect("a task's error is behind it");
+        assert!(cause.downcast_ref::<crate::tasks::TaskError>().is_some());
     }
 }

@@ -40,7 +40,9 @@ mod vary;
 mod weights;
 mod who;
 
+use std::error::Error;
 use std::ffi::OsString;
+use std::sync::Arc;
 
 use clap::Parser;
 
@@ -122,11 +124,14 @@ impl Command {
     }
 }
 
+/// The error behind a failure, for programs that ask it more than its text.
+pub type Cause = Arc<dyn Error + Send + Sync>;
+
 /// Why a subcommand failed; decides the exit code.
 #[derive(Debug)]
 pub(crate) enum Failure {
     /// The input, or the place for the output, is wrong: exit code 1.
-    Input(String),
+    Input(String, Option<Cause>),
     /// The arguments contradict each other: exit code 2.
     Usage(String),
 }
@@ -139,7 +144,7 @@ impl Failure {
     )]
     fn report(&self) -> u8 {
         let (text, code) = match self {
-            Self::Input(text) => (text, 1),
+            Self::Input(text, _) => (text, 1),
             Self::Usage(text) => (text, 2),
         };
         eprintln!("error: {text}");
@@ -149,7 +154,15 @@ impl Failure {
     /// What it says.
     pub(crate) fn text(&self) -> &str {
         match self {
-            Self::Input(text) | Self::Usage(text) => text,
+            Self::Input(text, _) | Self::Usage(text) => text,
+        }
+    }
+
+    /// The error behind it, where there is one.
+    fn cause(&self) -> Option<Cause> {
+        match self {
+            Self::Input(_, cause) => cause.clone(),
+            Self::Usage(_) => None,
         }
     }
 
@@ -158,13 +171,13 @@ impl Failure {
     }
 
     pub(crate) fn input(text: impl Into<String>) -> Self {
-        Self::Input(text.into())
+        Self::Input(text.into(), None)
     }
 }
 
-impl<E: std::error::Error> From<E> for Failure {
+impl<E: Error + Send + Sync + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
-        Self::Input(error.to_string())
+        Self::Input(error.to_string(), Some(Arc::new(error)))
     }
 }
 

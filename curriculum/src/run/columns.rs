@@ -12,7 +12,8 @@ use super::plan::Planned;
 /// - `reward`: what all its steps paid.
 /// - `success`: 1 if the world's success condition ended it, else 0.
 /// - `episode_step_count`: its steps.
-/// - `time_to_completion`: the seconds of the world's time that it took, which is steps times time step.
+/// - `time_to_completion`: the seconds of the world's time that it took, which is steps times time step times
+///   `frame_skip`.
 /// - `truncated`: 1 if a limit of steps cut it off, 0 if what happened in it ended it.
 /// - `world_index`: the number of its world among those of its variant and seed; `nan` for a world from a file.
 /// - `progress`: how far on its way a drift is, 0..=1; 0 where nothing drifts.

@@ -22,7 +22,7 @@ pub struct Experience {
     pub success: bool,
     /// Its steps.
     pub steps: u32,
-    /// The seconds of the world's time that it took: steps times time step.
+    /// The seconds of the world's time that it took: steps times time step times `frame_skip`.
     pub seconds: f64,
     /// Cut off by a limit of steps, not ended by what happened.
     pub truncated: bool,
@@ -57,11 +57,12 @@ pub(super) fn live(
         }
     }
     let steps = environment.num_steps();
+    let params = &environment.world().agent_params;
     Ok(Experience {
         reward: environment.episode_return(),
         success: last.success,
         steps,
-        seconds: f64::from(steps) * environment.world().agent_params.time_step,
+        seconds: f64::from(steps) * params.time_step * f64::from(params.frame_skip.max(1)),
         truncated: last.truncated,
     })
 }

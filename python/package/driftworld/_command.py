@@ -6,9 +6,12 @@ Running it as a program is in ``__main__.py``.
 from __future__ import annotations
 
 import os
+import re
 import warnings
 from collections.abc import Iterable, Mapping
 from typing import Any
+
+import numpy as np
 
 from driftworld import _native
 from driftworld.errors import DriftworldError
@@ -29,7 +32,8 @@ def ask(
         arguments: Those without a name.
         options: By name, with ``_`` for ``-``: ``None`` and ``False`` are left out, ``True`` is the bare flag, a list is several
             values, a tuple is one value with commas.
-        refused: What is raised when the command fails, with the command's message.
+        refused: What is raised when the command fails, with the command's message, in which options are called as in Python, and
+            with code, place and problems where the error behind it has them.
         stacklevel: Whose line warnings name: 3 for that of whoever called the caller.
     """
     argv = [subcommand, *(os.fspath(argument) for argument in arguments)]
@@ -45,14 +49,25 @@ def ask(
             argv.append(f"{flag}={','.join(_word(item) for item in value)}")
         else:
             argv.append(f"{flag}={_word(value)}")
-    output, notes, message = _native.ask(argv)
+    output, notes, refusal = _native.ask(argv)
     for note in notes:
         if note.startswith("warning: "):
-            warnings.warn(note.removeprefix("warning: "), stacklevel=stacklevel)
-    if message is not None:
-        raise refused(message)
+            warnings.warn(_in_python(note.removeprefix("warning: ")), stacklevel=stacklevel)
+    if refusal is not None:
+        message, details = refusal
+        raise refused(_in_python(message), **details)
     return output
 
 
 def _word(value: Any) -> str:
-    return os.fspath(value) if isinstance(value, (str, os.PathLike)) else str(value)
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
+    if isinstance(value, (float, np.floating)):
+        # In full: the command takes -1e-09 for an option.
+        return np.format_float_positional(value, trim="-")
+    return str(value)
+
+
+def _in_python(text: str) -> str:
+    """A text of the command, with ``--some-option`` called ``some_option``; within paths and names it stays."""
+    return re.sub(r"(?<![\w./\\-])--([a-z][a-z0-9-]*)", lambda option: option[1].replace("-", "_"), text)

@@ -58,7 +58,7 @@ class Batch:
 # -- command.rs --------------------------------------------------------------------------------------------------------
 
 def main(argv: Sequence[str]) -> int: ...
-def ask(argv: Sequence[str]) -> tuple[str, list[str], str | None]: ...
+def ask(argv: Sequence[str]) -> tuple[str, list[str], tuple[str, dict[str, Any]] | None]: ...
 
 # -- curriculum.rs -----------------------------------------------------------------------------------------------------
 
@@ -73,7 +73,7 @@ class Plan:
     def text(self) -> str: ...
     def __len__(self) -> int: ...
     def due(self, number: int) -> dict[str, Any]: ...
-    def world(self, number: int) -> tuple[str, float]: ...
+    def world(self, number: int) -> tuple[str, float, int]: ...
     def made_from(self, what: str, print: Any) -> None: ...
 
 @final
@@ -313,6 +313,7 @@ class Variant:
 
         Raises:
             SpecError: With every parameter that cannot have its value.
+            ValueError: For a name that is empty or has a ``#``, or a number that is not finite.
         """
 
     def at_distance(
@@ -329,6 +330,7 @@ class Variant:
 
         Raises:
             GeneratorError: If nothing can change, or no variant is as far; with the nearest.
+            ValueError: For a name that is empty or has a ``#``.
         """
 
     def sample(self, seed: int = 0, index: int = 0) -> dict[str, Any]:
@@ -342,7 +344,7 @@ class Variant:
         """The same as one line of JSON."""
 
     def sample_many(self, count: int, *, seed: int = 0, start: int = 0, threads: int = 0) -> list[dict[str, Any]]:
-        """``count`` worlds from number ``start`` on, drawn by several threads: 0 for one on each processor."""
+        """``count`` worlds from number ``start`` on, drawn by several threads, at most 1024: 0 for one on each processor."""
 
     def sample_many_json(self, count: int, *, seed: int = 0, start: int = 0, threads: int = 0) -> list[str]:
         """The same, each world as one line of JSON."""

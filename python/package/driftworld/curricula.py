@@ -6,11 +6,13 @@ A curriculum is a scenario, the document that ``driftworld curriculum`` writes a
 
 from __future__ import annotations
 
+import inspect
 import json
+import numbers
 import os
 import tempfile
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -225,6 +227,7 @@ class Curriculum(Sequence[Block]):
         Raises:
             SpecError, TaskError: If a task is wrong or nowhere.
             CurriculumError: If the design cannot be.
+            TypeError: For a number that is none.
         """
         options = dict(locals())
         del options["cls"]
@@ -236,9 +239,12 @@ class Curriculum(Sequence[Block]):
 
         Args:
             tasks: As for :meth:`design`.
-            options: As for :meth:`design`.
+            options: As for :meth:`design`, which also says what is raised; without ``form``.
+
+        Raises:
+            TypeError: For an option that there is not.
         """
-        return cls._several({**options, "tasks": tasks, "form": "expert"})
+        return cls._several("experts", options, {"tasks": tasks, "form": "expert"})
 
     @classmethod
     def lifetimes(cls, count: int, *tasks: str, **options: Any) -> list[Curriculum]:
@@ -247,12 +253,20 @@ class Curriculum(Sequence[Block]):
         Args:
             count: How many, 1 to 10,000.
             tasks: As for :meth:`design`.
-            options: As for :meth:`design`.
+            options: As for :meth:`design`, which also says what is raised; without ``form``.
+
+        Raises:
+            TypeError: For an option that there is not.
         """
-        return cls._several({**options, "tasks": tasks, "form": "permuted", "lifetimes": count})
+        return cls._several("lifetimes", options, {"tasks": tasks, "form": "permuted", "lifetimes": count})
 
     @classmethod
-    def _several(cls, options: dict[str, Any]) -> list[Curriculum]:
+    def _several(cls, maker: str, options: dict[str, Any], fixed: dict[str, Any]) -> list[Curriculum]:
+        known = [name for name in inspect.signature(cls.design).parameters if name not in ("tasks", "form")]
+        for name in options:
+            if name not in known:
+                raise TypeError(f"{maker}: found option {name!r}, expected one of {', '.join(known)}")
+        options = {**options, **fixed}
         with tempfile.TemporaryDirectory() as folder:
             said = _designed({**options, "output": folder})
             names = [line.removeprefix(folder + os.sep).partition(".json: ")[0] for line in said.splitlines()]
@@ -325,9 +339,10 @@ class Curriculum(Sequence[Block]):
 
         Raises:
             CurriculumError: If the log is of another curriculum, agent or environment, or a world cannot be drawn.
-            MetricsError: If the log cannot be written.
+            MetricsError: If the log cannot be read or written, or the folder holds something else.
             EnvError: If an action is none.
             TypeError: If the agent lacks a method.
+            ValueError: If an option is wrong; then no log is begun.
         """
         plan = self._new_plan()
         lifetime = Lifetime(plan, agent, options, log, resume, watch)
@@ -354,6 +369,14 @@ def _curriculum_again(text: str, path: str, stand_in: bool | None) -> Curriculum
     return Curriculum(text, path, stand_in=stand_in)
 
 
+#: Options of a design that are whole numbers.
+_WHOLE = ("learn", "eval_episodes", "pre_deployment", "blocks", "variants", "steps", "seed", "lifetimes")
+
+
+def _is_whole(value: Any) -> bool:
+    return isinstance(value, numbers.Integral) and not isinstance(value, bool)
+
+
 def _designed(options: dict[str, Any]) -> str:
     """What the command prints of a design: the scenario, or a line for each of several."""
     tasks = options.pop("tasks")
@@ -361,6 +384,15 @@ def _designed(options: dict[str, Any]) -> str:
         raise TypeError('tasks: expected names such as "find_objects#red": a scenario calls tasks by their names')
     # First, so that what is wrong with a task is raised with its place.
     variants(*tasks)
-    if options.get("evaluate_after") is not None:
-        options["evaluate_after"] = tuple(options["evaluate_after"])
+    for name in _WHOLE:
+        if options.get(name) is not None and not _is_whole(options[name]):
+            raise TypeError(f"{name}: found {options[name]!r}, expected a whole number")
+    after = options.get("evaluate_after")
+    if after is not None:
+        if isinstance(after, str) or not isinstance(after, Iterable):
+            raise TypeError(f"evaluate_after: found {after!r}, expected a list of whole numbers, such as [0, 2]")
+        options["evaluate_after"] = tuple(after)
+        wrong = [place for place in options["evaluate_after"] if not _is_whole(place)]
+        if wrong:
+            raise TypeError(f"evaluate_after: found {wrong[0]!r} in it, expected whole numbers")
     return ask("curriculum", tasks, options, CurriculumError, stacklevel=4)

@@ -146,7 +146,7 @@ def _is_world_file(name: str) -> bool:
         document = json.loads(Path(name).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return False
-    return not any(key in document for key in ("name", "parameters", "groups"))
+    return isinstance(document, dict) and not any(key in document for key in ("name", "parameters", "groups"))
 
 
 class DistanceMatrix:
@@ -341,6 +341,7 @@ def distance_matrix(items: Named | Iterable[Named], weights: Weights | None = No
 
     Raises:
         SpecError, TaskError, GeneratorError, SimilarityError: As :func:`distance`; SimilarityError also for more than 20,000.
+        ValueError: If two that differ are called the same.
     """
     found = _variants(items)
     laid = None if weights is None else dict(weights)

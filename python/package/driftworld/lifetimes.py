@@ -5,10 +5,12 @@ Which experiences there are is said by ``curricula.py``, what a log holds by the
 
 from __future__ import annotations
 
+import json
+import os
 import re
 import shutil
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from os import PathLike
@@ -19,10 +21,16 @@ import gymnasium
 import numpy as np
 
 from driftworld import _native
+from driftworld._files import write_whole
+from driftworld._plain import plain
 from driftworld.envs import DriftworldEnv
 
 if TYPE_CHECKING:
     from driftworld.curricula import Experience
+
+
+#: The file among an agent's saves that says which lifetime they are of.
+WHOSE = "lifetime.json"
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,20 +140,24 @@ class Lifetime:
         self._log = None if log is None else Path(log)
         self._resume = resume
         # What is saved lies beside the log: a log holds rows, nothing else.
-        self._saves = None if self._log is None else self._log.with_name(f"{self._log.name}.agent")
+        self._saves = None if self._log is None else _beside(self._log)
+        self._whose = ""
         self._block: int | None = None
 
     def live(self, experience: Callable[[int], Experience]) -> Summary:
         """Lives it from the first experience that is not in the log to the last; ``experience`` finds one by its number."""
         with ExitStack() as stack:
             folder = self._log or Path(stack.enter_context(tempfile.TemporaryDirectory())) / "log"
-            self._plan.made_from("environment", {name: repr(value) for name, value in sorted(self._options.items())})
+            # First: where an option is wrong no log is begun.
+            env = environment(self._plan, self._options)
+            stack.callback(env.close)
+            made_with = _told(self._options)
+            self._plan.made_from("environment", made_with)
             name = str(getattr(self._agent, "name", type(self._agent).__name__))
             journal = _native.Journal(folder, self._plan, name, self._resume)
             stack.callback(journal.close)
-            env = environment(self._plan, self._options)
-            stack.callback(env.close)
             done, total = len(journal), len(self._plan)
+            self._own_saves(done, {"scenario": self._plan.scenario(), "agent": name, "environment": made_with})
             self._take_up(env, experience, done)
             for number in range(done, total):
                 now = experience(number)
@@ -166,7 +178,8 @@ class Lifetime:
         begin = getattr(self._agent, "begin", None)
         if begin is not None:
             begin(None if now.label is None else now.label["name"], now.chance)
-        world, time_step = self._plan.world(now.number)
+        world, time_step, skip = self._plan.world(now.number)
+        seconds_per_step = time_step * (self._options.get("frame_skip") or skip)
         observation, info = env.reset(options={"world": world, "label": now.label})
         earned, steps, terminated, truncated = 0.0, 0, False, False
         while not (terminated or truncated):
@@ -179,13 +192,25 @@ class Lifetime:
                     Transition(observation, action, float(reward), terminated, truncated, following, info)
                 )
             observation = following
-        return earned, bool(info["is_success"]), steps, steps * time_step, truncated and not terminated
+        return earned, bool(info["is_success"]), steps, steps * seconds_per_step, truncated and not terminated
+
+    def _own_saves(self, done: int, lifetime: dict[str, Any]) -> None:
+        """Sees to it that what is saved beside the log is of this lifetime: what another one left there goes."""
+        if self._saves is None:
+            return
+        self._whose = json.dumps(lifetime, sort_keys=True, indent=2)
+        file = self._saves / WHOSE
+        if done > 0 and file.is_file() and file.read_text(encoding="utf-8") == self._whose:
+            return
+        for place in [file, self._saves / "unfinished", *(place for _, place in self._saved())]:
+            _remove(place)
 
     def _save(self, done: int) -> None:
         """Lets the agent save itself after so many experiences; then what was saved before goes."""
         if self._saves is None or not hasattr(self._agent, "save"):
             return
         self._saves.mkdir(parents=True, exist_ok=True)
+        write_whole(self._saves / WHOSE, self._whose.encode())
         # Renamed when it is whole: what lies under a number was saved to the end.
         unfinished = self._saves / "unfinished"
         _remove(unfinished)
@@ -275,6 +300,28 @@ class Labelled(gymnasium.Wrapper[Any, Any, Any, Any]):
             one_hot[self._label["number"]] = 1.0
             return {**observation, "task": one_hot}, info
         return observation, {**info, "task_label": self._label["number"]}
+
+
+def _beside(log: Path) -> Path:
+    """The folder beside a log that its agent is saved into."""
+    whole = Path(os.path.abspath(log))
+    if not whole.name:
+        raise ValueError(f"log: found {str(log)!r}, expected the path of a folder of its own")
+    return whole.with_name(f"{whole.name}.agent")
+
+
+def _told(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options of an environment as they are written down: the same however they were written; left out where none is given."""
+    told: dict[str, Any] = json.loads(json.dumps(options, default=_said, sort_keys=True))
+    return {name: value for name, value in told.items() if value is not None}
+
+
+def _said(value: Any) -> Any:
+    try:
+        return plain(value)
+    except TypeError:
+        # Never its address: it would be another in every process.
+        return list(value) if isinstance(value, Iterable) else type(value).__qualname__
 
 
 def _remove(place: Path) -> None:

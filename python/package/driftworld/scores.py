@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from driftworld._command import ask
+from driftworld._plain import plain
 from driftworld.errors import MetricsError
 from driftworld.logs import _pandas
 
@@ -124,7 +125,7 @@ class Metrics:
             name: The log's, or ``ll_metrics`` for several, if not given.
         """
         logs, options = self._asked
-        ask("metrics", logs, {**options, "output_dir": Path(folder), "output": name}, MetricsError)
+        _ask(logs, {**options, "output_dir": Path(folder), "output": name})
 
 
 def metrics(
@@ -194,21 +195,24 @@ def metrics(
     for name in ("ste", "against"):
         options[name] = None if options[name] is None else list(_paths(options[name]))
     options["noise"] = None if noise is None else list(noise)
-    if options.pop("data_range") is None:
-        return _metrics(folders, options)
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "data_range.json"
-        file.write_text(
-            json.dumps({task: dict(limits) for task, limits in (data_range or {}).items()}), encoding="utf-8"
-        )
-        return _metrics(folders, {**options, "data_range_file": file})
-
-
-def _metrics(folders: tuple[str, ...], options: dict[str, Any]) -> Metrics:
-    said = json.loads(ask("metrics", folders, {**options, "json": True}, MetricsError, stacklevel=4))
+    if data_range is not None:
+        options["data_range"] = {task: dict(limits) for task, limits in data_range.items()}
+    said = json.loads(_ask(folders, {**options, "json": True}))
     if "lifetimes" not in said:
         said = {"lifetimes": [said]}
     return Metrics(**said, _asked=(folders, options))
+
+
+def _ask(folders: tuple[str, ...], options: Mapping[str, Any]) -> str:
+    """What the command says of logs. It reads ranges from a file, which is there while it is asked."""
+    options = dict(options)
+    ranges = options.pop("data_range", None)
+    if ranges is None:
+        return ask("metrics", folders, options, MetricsError, stacklevel=4)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "data_range.json"
+        file.write_text(json.dumps(ranges, default=plain), encoding="utf-8")
+        return ask("metrics", folders, {**options, "data_range_file": file}, MetricsError, stacklevel=4)
 
 
 def report(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -46,11 +47,16 @@ def variants(*names: str | Variant | TaskSpec) -> list[tuple[str, Variant]]:
     Raises:
         TaskError: If there is no such task or file.
         SpecError: If a document is wrong, or has no such variant.
+        ValueError: If two that differ are called the same.
     """
     found: dict[str, Variant] = {}
     for name in names:
         for label, member in _named(name):
-            found.setdefault(label, member)
+            if found.setdefault(label, member) != member:
+                raise ValueError(
+                    f"variants: found two called {label!r} that differ, expected a name for each; give one another with "
+                    "with_values(name, ...) or at_distance(..., name=...), or an edited task spec a name of its own"
+                )
     return list(found.items())
 
 
@@ -80,6 +86,8 @@ def validate(
             the document's keys if not given, as ``driftworld validate`` does.
         check: Raise what is wrong instead of handing it back.
 
+    What is odd about it, without being wrong, is warned of.
+
     Returns:
         Dictionaries with ``code``, ``pointer``, ``line``, ``column`` (from 1; of a dictionary as it is written without line
         breaks), ``found``, ``expected``, ``advice`` and ``message``. What is not JSON at all has no ``found`` and ``expected``.
@@ -90,7 +98,9 @@ def validate(
         ValueError: If there is no such kind.
     """
     name, text = document_text(document)
-    _, problems, _, error = _native.check(name, text, kind)
+    _, problems, notes, error = _native.check(name, text, kind)
+    for note in notes:
+        warnings.warn(note, stacklevel=2)
     if check and error is not None:
         raise error
     return problems
@@ -127,3 +137,8 @@ def _task_again(name: str, text: str) -> TaskSpec:
 def _variant_again(task: TaskSpec, name: str, values: str) -> Variant:
     """A variant in another process."""
     return _native.variant_again(task, name, values)
+
+
+def _drift_again(from_: Variant, to: Variant, schedule: str | None, switch: Any, seed: int) -> Drift:
+    """A drift in another process."""
+    return Drift(from_, to, schedule=None if schedule is None else json.loads(schedule), switch=switch, seed=seed)

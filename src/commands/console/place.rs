@@ -17,7 +17,7 @@ impl Folder {
     pub(super) fn write(&self, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, String> {
         let path = self.inside(name, ending)?;
         output::write(&path, bytes).map_err(|failure| match failure {
-            Failure::Input(text) | Failure::Usage(text) => text,
+            Failure::Input(text, _) | Failure::Usage(text) => text,
         })?;
         Ok(path)
     }

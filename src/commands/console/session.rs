@@ -44,7 +44,7 @@ pub(super) enum Reply {
 /// A refusal in one sentence.
 pub(super) fn said(failure: Failure) -> String {
     match failure {
-        Failure::Input(text) | Failure::Usage(text) => text,
+        Failure::Input(text, _) | Failure::Usage(text) => text,
     }
 }
 

@@ -63,7 +63,8 @@ fn missing_numbers(log: &Log, column: &str) -> Option<String> {
         .then(|| format!("{missing} of {complete} complete rows have no number in column {column} and are left out"))
 }
 
-/// Reads and scores many logs and keeps of each what `keep` makes of it; where several cannot be scored, every one is told.
+/// Reads and scores many logs and keeps of each what `keep` makes of it; where several cannot be scored, every one is told, and the first is the
+/// cause.
 pub(crate) fn each_lived<T: Send>(
     logs: &[PathBuf],
     experts: &Experts,
@@ -76,14 +77,12 @@ pub(crate) fn each_lived<T: Send>(
         keep(Lived::read(log, name, experts, options)?)
     };
     let kept: Vec<_> = logs.par_iter().zip(&names).map(read).collect();
-    let failures: Vec<&str> = kept
-        .iter()
-        .filter_map(|kept| Some(kept.as_ref().err()?.text()))
-        .collect();
-    if failures.is_empty() {
+    let failures: Vec<&Failure> = kept.iter().filter_map(|kept| kept.as_ref().err()).collect();
+    let Some(first) = failures.first() else {
         return kept.into_iter().collect();
-    }
-    Err(Failure::input(failures.join("\n")))
+    };
+    let texts: Vec<&str> = failures.iter().map(|failure| failure.text()).collect();
+    Err(Failure::Input(texts.join("\n"), first.cause()))
 }
 
 /// The scores of many logs.
