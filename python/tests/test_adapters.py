@@ -250,7 +250,7 @@ def test_puffers_buffers_hold_what_the_environments_say(puffer: Any) -> None:
         told.extend(found[4])
     assert len(told) == 6
     assert {info["episode_length"] for info in told} == {5}
-    assert set(told[0]) == {"episode_return", "episode_length", "is_success"}
+    assert set(told[0]) == {"variant_id", "episode_return", "episode_length", "is_success"}
     assert puffer(FIND, 1, seed=2).reset()[0].shape[0] == 1
 
 

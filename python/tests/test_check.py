@@ -95,7 +95,7 @@ def test_the_command_prints_a_table_or_json_and_ends_with_0(capsys: pytest.Captu
         "--option",
         "size=40",
         "--option",
-        "depth=float32",
+        "depth=uint8",
     ]
     assert command.main(arguments) == 0
     printed = capsys.readouterr().out
