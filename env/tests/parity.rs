@@ -219,6 +219,7 @@ fn stepped(autoreset: Autoreset, num_threads: usize, renderer: RendererKind) -> 
         autoreset,
         num_threads,
         renderer,
+        ..BatchOptions::default()
     };
     let mut batch = Batch::new(6, source, options).expect("the worlds are sound");
     for _ in 0..5 {

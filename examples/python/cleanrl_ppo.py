@@ -19,13 +19,12 @@ from __future__ import annotations
 import argparse
 from typing import Any
 
+import driftworld  # noqa: F401  (registers the environments)
 import gymnasium as gym
 import numpy as np
 import torch
 from record import Record, Watch, folder_of
 from torch import nn
-
-import driftworld  # noqa: F401  (registers the environments)
 
 # Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]

@@ -21,13 +21,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import driftworld
 import gymnasium as gym
 import numpy as np
 import torch
 from record import Record, Watch, folder_of
 from torch import nn
-
-import driftworld
 
 TASK = os.path.relpath(Path(__file__).with_name("two_skies.json"))
 VARIANTS = ("day", "evening")

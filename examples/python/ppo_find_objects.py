@@ -16,18 +16,17 @@ import argparse
 import time
 from typing import Any
 
+import driftworld
 import gymnasium as gym
 import numpy as np
 import torch
+from driftworld.adapters.sb3 import make_vec_env
 from record import Record, Watch, folder_of
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.torch_layers import BaseFeaturesExtractor
 from stable_baselines3.common.vec_env import VecNormalize
 from torch import nn
-
-import driftworld
-from driftworld.adapters.sb3 import make_vec_env
 
 ID = "driftworld/FindObjects-v0"
 # Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.

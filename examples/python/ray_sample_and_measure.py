@@ -22,12 +22,11 @@ import time
 from functools import partial
 from typing import Any
 
+import driftworld
 import numpy as np
 import ray
 import ray.data
 from record import Record, Watch, folder_of
-
-import driftworld
 
 TASK = "find_objects"
 # What varies: the parameters' whole ranges. The rest stays as the first variant has it.

@@ -216,9 +216,8 @@ def _processor() -> str:
 
 def _hashes(variant: str, seeds: Sequence[int]) -> dict[str, Any]:
     """The hash of a variant, and of its first world under each seed."""
-    import gymnasium
-
     import driftworld
+    import gymnasium
 
     task, _, name = variant.partition("#")
     env = gymnasium.make("driftworld/Task-v0", task=variant)

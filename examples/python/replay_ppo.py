@@ -14,6 +14,7 @@ Needs PyTorch (`pip install torch`).
 
 from __future__ import annotations
 
+import driftworld
 import numpy as np
 import torch
 from experts_and_sequential_ppo import (
@@ -32,8 +33,6 @@ from experts_and_sequential_ppo import (
     show,
 )
 from record import Record
-
-import driftworld
 
 
 class Reservoir:

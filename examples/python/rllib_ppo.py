@@ -17,11 +17,10 @@ from typing import Any
 import gymnasium as gym
 import numpy as np
 import ray
+from driftworld.envs import DriftworldVectorEnv
 from ray.rllib.algorithms.ppo import PPOConfig
 from ray.rllib.core.rl_module.default_model_config import DefaultModelConfig
 from ray.tune.registry import register_env
-
-from driftworld.envs import DriftworldVectorEnv
 
 # Speed in m/s, turn rate in degrees per second, interact: ahead, two bends, two turns nearly on the spot.
 ACTIONS = [[10, 0, 0], [10, 27, 0], [10, -27, 0], [3, 90, 0], [3, -90, 0]]

@@ -185,7 +185,13 @@ impl Batch {
         let mut slots = Vec::with_capacity(num_envs);
         for env in 0..num_envs {
             let layout = slots.first().map(|first: &Slot| &first.layout);
-            slots.push(Slot::new(env, Arc::clone(&source), layout, catalogue, options.max_episode_steps)?);
+            slots.push(Slot::new(
+                env,
+                Arc::clone(&source),
+                layout,
+                catalogue,
+                options.max_episode_steps,
+            )?);
         }
         let layout = ImageLayout::clone(&slots[0].layout);
         let state = slots[0].environment.world().agent_params.state_len();
@@ -248,7 +254,8 @@ impl Batch {
     pub fn set_episode_steps(&mut self, env: usize, steps: u32) -> Result<(), EnvError> {
         let num_envs = self.slots.len();
         let slot = self.slots.get_mut(env);
-        slot.ok_or(EnvError::NoSuchEnv { found: env, num_envs })?.set_lived(steps);
+        slot.ok_or(EnvError::NoSuchEnv { found: env, num_envs })?
+            .set_lived(steps);
         Ok(())
     }
 

@@ -24,10 +24,9 @@
 import tempfile
 from pathlib import Path
 
+import driftworld
 import numpy as np
 from matplotlib import pyplot as plt
-
-import driftworld
 
 HERE = Path(__file__).parent if "__file__" in globals() else Path.cwd()
 SPEC = str(HERE.parent / "two_skies.json")

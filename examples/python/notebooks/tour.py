@@ -19,11 +19,10 @@
 # Needs `pip install driftworld matplotlib`.
 
 # %%
+import driftworld
 import gymnasium as gym
 import numpy as np
 from matplotlib import pyplot as plt
-
-import driftworld
 
 # %% [markdown]
 # ## A spec and its variants
