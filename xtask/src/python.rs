@@ -22,7 +22,12 @@ const NO_INTERPRETER: &str =
 const NEWCOMER: &str = "newcomer";
 
 /// The tests that hold whatever version of Gymnasium there is: run once more with the oldest.
-const ANY_GYMNASIUM: [&str; 3] = ["tests/test_gymnasium.py", "tests/test_vector.py", "tests/test_check.py"];
+const ANY_GYMNASIUM: [&str; 4] = [
+    "tests/test_gymnasium.py",
+    "tests/test_vector.py",
+    "tests/test_options.py",
+    "tests/test_check.py",
+];
 
 /// Builds and installs the wheel as the README says, and tests it with the packages that are quick to install.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
