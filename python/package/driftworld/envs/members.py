@@ -65,13 +65,13 @@ class Members:
         self.num_envs = num_envs
         self._options = options
         self._home = Home(task, world, variant)
-        self.layout = options.layout(self._home)
+        self.layout = options.layouts(self._home.stream())[0]
         self._checked: set[str] = set()
         kept = ("home", None) if drift is None else ("drift", drift)
         self._sources: list[Source] = [
             kept if name is None else ("variants", [name]) for name in variants or [None] * num_envs
         ]
-        streams = [self._stream(source) for source in self._sources]
+        streams = self._streams(self._sources)
         self._labels = self._home.labels()
         self.label_in_info = options.task_label == "info"
         self.observation_space = observation_space(options, self.layout, len(self._labels))

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from driftworld import _native
-from driftworld.envs.origin import Home
 from driftworld.errors import SpecError
 
 #: What an observation may hold.
@@ -113,19 +112,6 @@ class Options:
             return [json.loads(text) for text in stream.layouts(self.dress)]
         except SpecError as error:
             raise _as_options(error) from None
-
-    def layout(self, home: Home, stream: Any = None) -> dict[str, Any]:
-        """What environments of these worlds look like: picture size, state features, actions.
-
-        Raises:
-            SpecError: If an option is out of range, or does not go with the worlds.
-            ValueError: If variants of the stream differ in their actions.
-        """
-        layouts = self.layouts(stream or home.stream())
-        for other in layouts[1:]:
-            expect_same_spaces(layouts[0], other)
-        layout: dict[str, Any] = layouts[0]
-        return layout
 
 
 #: The option behind each value that options lay over a world.

@@ -105,11 +105,6 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             task_label=task_label,
             assets=assets,
         )
-        name = {
-            AutoresetMode.NEXT_STEP: "next_step",
-            AutoresetMode.SAME_STEP: "same_step",
-            AutoresetMode.DISABLED: "disabled",
-        }[mode]
         self._members = Members(
             num_envs,
             task,
@@ -118,7 +113,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             variants,
             drift,
             options,
-            name,
+            mode.name.lower(),
             whole("num_threads", num_threads) or 0,
             _limit(max_episode_steps),
         )
