@@ -18,7 +18,10 @@ fn main() -> ExitCode {
         Ok((Request::Help, _)) => println!("{HELP}"),
         Ok((Request::Version, _)) => println!("{MARK}, {}", env!("CARGO_PKG_VERSION")),
         Ok((Request::Run(options), remarks)) => {
-            let ending = Journal::open(options.log.as_deref()).and_then(|mut journal| {
+            // Without a log file there is the terminal still.
+            let journal = Journal::open(options.log.as_deref())
+                .inspect_err(|error| eprintln!("driftworld-unity: -logFile {error}"));
+            let ending = journal.and_then(|mut journal| {
                 for remark in remarks {
                     journal.note(&remark);
                 }
