@@ -99,7 +99,7 @@ class Client:
         self.env.reset()
         return self.moment()
 
-    def step(self, action: Sequence[float] = REST) -> Moment:
+    def step(self, action: Sequence[float] | npt.NDArray[Any] = REST) -> Moment:
         self.act(np.array([action], dtype=np.float32))
         self.env.step()
         return self.moment()

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from channels import Channels
+
+from channels import Channels, RawChannel
 from clients import Client, Launcher
 from worlds import AHEAD, thing, world
 
@@ -80,7 +81,7 @@ def test_an_object_that_came_in_mid_episode_is_gone_in_the_next(client: Client, 
         ("state", "object_create", thing(0, 5), "expected it on the Reset channel"),
         ("debug", "reset_environment", world(), "expected it on the Reset channel"),
         ("reset", "get_observers", None, "expected it on the State channel"),
-        ("state", "set_active_observers", {"state": ["agent"]}, 'did you mean "agent_params"?'),
+        ("state", "set_active_observers", {"state": ["agent_param"]}, 'did you mean "agent_params"?'),
         ("state", "set_active_observers", None, "state"),
         ("debug", "set_debug_categories", [{"category": "agent"}], "active"),
         ("debug", "save_screenshot", {"filename": 3}, "filename"),
@@ -214,10 +215,9 @@ def test_the_originals_example_messages_are_understood(client: Client, channels:
 
 
 def test_messages_on_channels_that_nobody_knows_are_ignored_and_remarked_once(launcher: Launcher) -> None:
-    from channels import RawChannel
-
     stranger = RawChannel("0a1b2c3d-0000-1111-2222-333344445555")
     client = launcher.start("-logFile", "remarks.log", channels=[stranger])
+    client.reset()
     for _ in range(3):
         stranger.send_bytes(b"hello")
         client.step()

@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from channels import Channels
-from clients import Client, Launcher
 from mlagents_envs.side_channel.engine_configuration_channel import EngineConfigurationChannel
 from mlagents_envs.side_channel.environment_parameters_channel import EnvironmentParametersChannel
 from mlagents_envs.side_channel.float_properties_channel import FloatPropertiesChannel
+from mlagents_envs.side_channel.side_channel import OutgoingMessage
+
+from channels import Channels
+from clients import Client, Launcher
 from worlds import AHEAD, thing, world
 
 
@@ -25,6 +27,16 @@ def client(launcher: Launcher, channels: Channels, parameters: EnvironmentParame
     channels.reset.say("reset_environment", world(thing(0, 15)))
     client.reset()
     return client
+
+
+def sampler(name: str) -> OutgoingMessage:
+    """A parameter that is to be drawn from a uniform distribution, as newer clients say it."""
+    message = OutgoingMessage()
+    message.write_string(name)
+    for number in (1, 7, 0):
+        message.write_int32(number)
+    message.write_float32_list([0.1, 0.2])
+    return message
 
 
 def log() -> str:
@@ -91,7 +103,7 @@ def test_nonsense_is_ignored_and_remarked_once(client: Client, parameters: Envir
             ("", 1.0),
         ]:
             parameters.set_float_parameter(name, value)
-        parameters.set_uniform_sampler_parameters("time_step", 0.1, 0.2, 7)
+        parameters.queue_message_to_send(sampler("time_step"))
         after = client.reset().now
     assert after.equals(before)
     assert client.step(AHEAD).now.vector[2] == pytest.approx(1)
@@ -127,7 +139,7 @@ def test_float_properties_do_the_same(launcher: Launcher, channels: Channels) ->
     client.reset()
     assert client.step((5.0, 0.0, 0.0)).now.vector[2] == pytest.approx(1.5)
     assert client.close() == 0
-    assert "float property: \"gravity\" = 1: ignored" in log()
+    assert 'float property: "gravity" = 1: ignored' in log()
 
 
 def test_the_engines_configuration_changes_nothing_and_is_remarked(launcher: Launcher, channels: Channels) -> None:

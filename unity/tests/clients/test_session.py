@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from channels import Channels
 from clients import BEHAVIOR, GENERATION, REST, Launcher
 from worlds import AHEAD, GRAB, thing, world
