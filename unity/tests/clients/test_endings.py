@@ -24,7 +24,7 @@ from mlagents_envs.exception import (
 from mlagents_envs.rpc_communicator import RpcCommunicator
 
 from channels import Channels
-from clients import PATIENCE_SECS, Client, Launcher, free_port, said, told_version
+from clients import GENERATION, PATIENCE_SECS, Client, Launcher, free_port, said, told_version
 from worlds import AHEAD, thing, world
 
 
@@ -291,6 +291,14 @@ def test_a_log_file_holds_what_is_said_and_unitys_options_do_no_harm(launcher: L
         assert log.count(expected) == 1, (expected, log)
     for unexpected in ["nographics", "batchmode", "screen-width", "640", "x.bin", "force-opengl"]:
         assert unexpected not in log
+
+
+@pytest.mark.skipif(GENERATION < (0, 28), reason="older clients have no log_folder")
+def test_newer_clients_have_the_log_file_in_a_folder_of_theirs(launcher: Launcher, tmp_path: Path) -> None:
+    client = launcher.start(log_folder=str(tmp_path))
+    client.reset()
+    assert client.close() == 0
+    assert "a client at" in (tmp_path / "Player-0.log").read_text(encoding="utf-8")
 
 
 def test_a_log_file_that_cannot_be_written_is_an_error(launcher: Launcher) -> None:

@@ -91,9 +91,9 @@ def live(client: Client, environment: Any) -> tuple[int, list[float]]:
     return episodes, rewards
 
 
-def environment(world: str) -> Any:
+def environment(world: str, **options: Any) -> Any:
     modalities = ["depth", "rgb", "segmentation", "state"]
-    return gym.make("driftworld/World-v0", world=world, modalities=modalities, actions="continuous")
+    return gym.make("driftworld/World-v0", world=world, modalities=modalities, actions="continuous", **options)
 
 
 def test_in_an_example_of_the_originals(launcher: Launcher, channels: Channels, reference: Path) -> None:
@@ -136,4 +136,21 @@ def test_after_an_object_came_in_mid_episode(launcher: Launcher, channels: Chann
         seen = client.step(action).now
         check(seen, observation)
         assert seen.reward == np.float32(reward)
+    twin.close()
+
+
+def test_in_floats_depth_is_that_of_the_environment_in_metres(launcher: Launcher, channels: Channels) -> None:
+    path = Path("own.json")
+    path.write_text(json.dumps(OWN), encoding="utf-8")
+    client = launcher.start("--raw-observations", channels=channels.all)
+    channels.reset.say("reset_environment", OWN)
+    twin = environment(converted(path), depth="float32")
+    observation, _ = twin.reset(seed=0)
+    seen = client.reset().now
+    for action in list(actions())[:100]:
+        white_at_100_m = np.clip(observation["depth"] / np.float32(100), 0, 1)
+        assert (seen.depth == white_at_100_m).all() and white_at_100_m.dtype == np.float32
+        assert (seen.rgb == observation["rgb"] / np.float32(255)).all()
+        observation, *_ = twin.step(action)
+        seen = client.step(action).now
     twin.close()

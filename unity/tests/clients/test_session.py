@@ -138,6 +138,22 @@ def test_the_last_step_brings_the_end_and_the_start_of_the_next_episode(launcher
     assert [each and each.agent_id for each in ends] == [None, None, 2, None, None, 3]
 
 
+def test_an_end_by_the_worlds_own_rules_is_no_truncation(launcher: Launcher) -> None:
+    target = {"class": "geometric", "coordinates": [0, 3], "reward": 7, "reward_stimulus": ["AgentCollide"]}
+    own = {
+        "version": 1,
+        "max_steps": 100,
+        "rules": {"success": [{"return_at_least": 7}]},
+        "objects": [target],
+    }
+    Path("own.json").write_text(json.dumps(own), encoding="utf-8")
+    client = launcher.start("--world", "own.json")
+    start = client.reset().now
+    ends = [end for end in (client.step(AHEAD).end for _ in range(10)) if end]
+    assert ends and not any(end.truncated for end in ends)
+    assert (ends[0].agent_id, ends[0].reward, ends[0].vector[0]) == (start.agent_id, 7, 1)
+
+
 def test_the_reward_of_the_last_step_is_in_its_end(launcher: Launcher, channels: Channels) -> None:
     client = launcher.start(channels=channels.all)
     target = thing(0, 1.8, 7.0, reward_stimulus=["AgentCollide"])
