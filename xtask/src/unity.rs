@@ -81,7 +81,8 @@ fn environment(workspace: &Workspace, interpreter: &Path, client: &str) -> Resul
 
 /// Runs the tests with a client, on the optimised executable.
 fn pytest(workspace: &Workspace, environment: &VirtualEnvironment) -> Result<(), XtaskError> {
-    let mut pytest = environment.python(&["-m", "pytest", "--quiet", TESTS]);
+    // What these old packages are warned of is no news.
+    let mut pytest = environment.python(&["-m", "pytest", "--quiet", "--disable-warnings", TESTS]);
     let name = format!("driftworld-unity{}", std::env::consts::EXE_SUFFIX);
     pytest
         .current_dir(workspace.root.join(FOLDER))

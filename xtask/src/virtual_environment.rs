@@ -73,7 +73,7 @@ impl VirtualEnvironment {
         requirements: &Path,
         unwilling: Option<&Path>,
     ) -> Result<Self, XtaskError> {
-        let mut made_from = interpreter.display().to_string();
+        let mut made_from = identity(interpreter);
         for file in [Some(requirements), unwilling].into_iter().flatten() {
             let path = workspace.root.join(file);
             let text = fs::read_to_string(&path).map_err(|source| XtaskError::File { path, source })?;
@@ -151,6 +151,15 @@ impl VirtualEnvironment {
     }
 }
 
+/// Which Python an interpreter is, whatever name it goes by: `python3` may be another tomorrow, and the same by another path.
+fn identity(interpreter: &Path) -> String {
+    let asked = with(interpreter, &["-c", "import sys; print(sys.base_prefix, sys.version)"]).output();
+    asked.map_or_else(
+        |_| interpreter.display().to_string(),
+        |said| String::from_utf8_lossy(&said.stdout).trim().to_owned(),
+    )
+}
+
 /// Where the environment of that name is.
 fn folder(workspace: &Workspace, name: &str) -> PathBuf {
     workspace.target.join("python").join(name)
@@ -181,6 +190,19 @@ mod tests {
         assert!(program.starts_with("target/python/newest"), "{program:?}");
         let removed = command.get_envs().filter(|(_, value)| value.is_none()).count();
         assert_eq!(removed, 3, "{command:?}");
+    }
+
+    #[test]
+    fn an_interpreter_is_known_by_what_it_is_not_by_its_name() {
+        if let Some(python) = interpreter() {
+            let whole_path = with(&python, &["-c", "import sys; print(sys.executable)"])
+                .output()
+                .unwrap();
+            let whole_path = String::from_utf8(whole_path.stdout).unwrap();
+            assert_eq!(identity(&python), identity(Path::new(whole_path.trim())));
+            assert!(identity(&python).contains(" 3."), "{}", identity(&python));
+        }
+        assert_eq!(identity(Path::new("no-such-python")), "no-such-python");
     }
 
     #[test]
