@@ -87,6 +87,52 @@ fn every_message_of_the_original_is_understood() {
     assert!((y - 10.1).abs() < 1e-5, "1 m/s for 0.1 s from 10: {y}");
 }
 
+/// The original's client looks up `payload` in whatever comes on the State channel, and fails where it is missing.
+#[test]
+fn answers_have_every_key_that_clients_look_up() {
+    let (mut environment, mut channels) = start();
+    let watch = json!({ "action": "set_active_observers", "payload": { "state": ["agent_params"] } });
+    let answer = &ask(&mut environment, &mut channels, &watch)[0];
+    let read: Value = serde_json::from_str(&answer.to_json()).expect("messages are JSON");
+    let keys: Vec<&str> = read
+        .as_object()
+        .expect("an object")
+        .keys()
+        .map(String::as_str)
+        .collect();
+    assert_eq!(keys, ["token", "req_token", "msg_time", "action", "payload"]);
+    assert_eq!(read["payload"], Value::Null);
+    assert_eq!(
+        read["req_token"], "00000000-0000-0000-0000-000000000000",
+        "the question had no token"
+    );
+}
+
+#[test]
+fn objects_that_are_told_are_there_and_have_names() {
+    let (mut environment, mut channels) = start();
+    for _ in 0..2 {
+        let spawn = json!({ "action": "object_create", "payload": { "class": "rock", "coordinates": [9, 9] } });
+        ask(&mut environment, &mut channels, &spawn);
+    }
+    environment.destroy(1).expect("the first rock is there");
+    let watch = json!({ "action": "set_active_observers", "payload": { "state": ["objects", "game_mode"] } });
+    ask(&mut environment, &mut channels, &watch);
+    let step = environment
+        .step(Action::Continuous([0.0; 3]))
+        .expect("the world goes on");
+    let told = channels.after_step(&environment, &step, NOW);
+    let state = told[0].payload.as_ref().expect("a state has its parts");
+    assert_eq!(state["game_mode"], "learn");
+    let names: Vec<&str> = state["objects"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .filter_map(|object| object["unique_name"].as_str())
+        .collect();
+    assert_eq!(names, ["oak", "object-2"]);
+}
+
 /// A message that must be answered by an error, and change nothing.
 #[track_caller]
 fn check(channel: Channel, text: &str, expected: &str) {
@@ -257,7 +303,7 @@ fn tokens_look_like_uuids_never_repeat_and_are_the_same_each_time() {
         );
     }
     assert!(
-        first[0].contains(r#""req_token":"x""#) && !first[2].contains("req_token"),
+        first[0].contains(r#""req_token":"x""#) && first[2].contains(r#""req_token":"00000000-"#),
         "{first:?}"
     );
 }

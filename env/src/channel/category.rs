@@ -38,7 +38,7 @@ impl Category {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
     /// Good to know.
-    Info,
+    Log,
     /// Not as somebody may think.
     Warning,
     /// Refused.
@@ -49,7 +49,7 @@ impl Level {
     /// Its name in messages.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Info => "info",
+            Self::Log => "log",
             Self::Warning => "warning",
             Self::Error => "error",
         }

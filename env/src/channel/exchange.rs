@@ -92,7 +92,7 @@ impl Channels {
                 let said = format!("{} received {:.40}", channel.name(), message.action);
                 received
                     .messages
-                    .extend(self.remark(Category::Communications, Level::Info, said, time));
+                    .extend(self.remark(Category::Communications, Level::Log, said, time));
                 let done = self.carry_out(environment, channel, &message, time, &mut received);
                 (message.token, done)
             }
@@ -119,6 +119,12 @@ impl Channels {
         received
     }
 
+    /// The answer to what should have been a message, and could not be read as a text.
+    pub fn refuse(&mut self, channel: Channel, reason: &str, time: &str) -> Outgoing {
+        let payload = Some(json!([format!("message: {reason}")]));
+        self.message(channel, "error", payload, None, time)
+    }
+
     /// The answer to a message that asked for a picture, when it has been written, or why it was not.
     pub fn answer_screenshot(&mut self, screenshot: &Screenshot, written: Result<(), String>, time: &str) -> Outgoing {
         let token = screenshot.token.clone();
@@ -138,7 +144,7 @@ impl Channels {
                 "{:?} object {} ({}), reward {}{gone}",
                 event.stimulus, event.object, object.class, event.reward
             );
-            messages.extend(self.remark(Category::Agent, Level::Info, said, time));
+            messages.extend(self.remark(Category::Agent, Level::Log, said, time));
         }
         if step.ended() {
             let how = match (step.success, step.terminated) {
@@ -148,7 +154,7 @@ impl Channels {
             };
             let (steps, earned) = (environment.num_steps(), environment.episode_return());
             let said = format!("the episode ended {how} after {steps} steps, return {earned}");
-            messages.extend(self.remark(Category::Academy, Level::Info, said, time));
+            messages.extend(self.remark(Category::Academy, Level::Log, said, time));
         }
         if !self.watched.is_empty() {
             let payload = Some(self.state(environment));
@@ -196,7 +202,7 @@ impl Channels {
                 let said = format!("a new episode of world {:.12}", self.world);
                 received
                     .messages
-                    .extend(self.remark(Category::Academy, Level::Info, said, time));
+                    .extend(self.remark(Category::Academy, Level::Log, said, time));
                 for said in remarks {
                     received
                         .messages
@@ -209,7 +215,7 @@ impl Channels {
                 let said = format!("object {index} is a {}", environment.world().objects[index].class);
                 received
                     .messages
-                    .extend(self.remark(Category::Worldmaker, Level::Info, said, time));
+                    .extend(self.remark(Category::Worldmaker, Level::Log, said, time));
                 for said in remarks {
                     received
                         .messages
@@ -224,9 +230,8 @@ impl Channels {
             }
             "save_screenshot" => screenshot(environment, message).map(Answer::Picture),
             "get_debug_categories" => {
-                let all = Category::ALL
-                    .map(|category| json!({ "category": category.name(), "active": self.is_active(category) }));
-                Ok(Answer::Say("debug_categories", Some(json!(all))))
+                let names = Category::ALL.map(Category::name);
+                Ok(Answer::Say("debug_categories", Some(json!(names))))
             }
             "set_debug_categories" => {
                 for (category, active) in categories(message)? {
@@ -252,15 +257,19 @@ impl Channels {
         Ok(warnings.iter().map(remark_of).chain(own).collect())
     }
 
-    /// The parts of the world that are watched, as they are now. Objects that are gone are left out.
+    /// The parts of the world that are watched, as they are now. Objects that are gone are left out, and those without a name
+    /// have one made of their number.
     fn state(&self, environment: &Environment) -> Value {
-        let mut world = environment.state();
-        let mut present = environment.objects().iter().map(|object| object.present);
-        world.objects.retain(|_| present.next().unwrap_or(true));
-        let all = serde_json::to_value(&world).expect("a world has string keys only, which always serialise");
+        let world = environment.world();
+        let part = |part: &str| match part {
+            "agent_params" => json!(environment.agent_now()),
+            "environment_params" => json!(world.environment_params),
+            "objects" => objects_now(environment),
+            _ => json!(world.game_mode),
+        };
         self.watched
             .iter()
-            .map(|part| ((*part).to_owned(), all[*part].clone()))
+            .map(|name| ((*name).to_owned(), part(name)))
             .collect()
     }
 
@@ -292,4 +301,16 @@ impl Channels {
             time: time.to_owned(),
         }
     }
+}
+
+/// The objects that are there, as they are now, each with a name.
+fn objects_now(environment: &Environment) -> Value {
+    let states = environment.objects().iter().enumerate();
+    let present = states.filter(|(_, state)| state.present);
+    let named = present.map(|(index, _)| {
+        let mut object = environment.object_now(index);
+        object.unique_name.get_or_insert_with(|| format!("object-{index}"));
+        json!(object)
+    });
+    Value::Array(named.collect())
 }

@@ -11,6 +11,9 @@ pub const MAX_MESSAGE_BYTES: usize = driftworld_spec::MAX_BYTES;
 /// The longest token, in characters; a UUID has 36.
 const LONGEST_TOKEN: usize = 100;
 
+/// The token of no message.
+const NO_TOKEN: &str = "00000000-0000-0000-0000-000000000000";
+
 /// The most texts in the payload of one error.
 const MOST_TEXTS: usize = 20;
 
@@ -32,19 +35,18 @@ pub struct Outgoing {
 }
 
 impl Outgoing {
-    /// The message as one line of JSON.
+    /// The message as one line of JSON, with every key: clients of the original index them without asking.
+    ///
+    /// What answers nobody has a `req_token` of zeros, what has no payload one that is `null`.
     pub fn to_json(&self) -> String {
-        let mut message = Map::new();
-        message.insert("token".into(), json!(self.token));
-        message.insert("msg_time".into(), json!(self.time));
-        message.insert("action".into(), json!(self.action));
-        if let Some(token) = &self.req_token {
-            message.insert("req_token".into(), json!(token));
-        }
-        if let Some(payload) = &self.payload {
-            message.insert("payload".into(), payload.clone());
-        }
-        Value::Object(message).to_string()
+        json!({
+            "token": self.token,
+            "req_token": self.req_token.as_deref().unwrap_or(NO_TOKEN),
+            "msg_time": self.time,
+            "action": self.action,
+            "payload": self.payload,
+        })
+        .to_string()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use driftworld_spec::{Object, ObjectProgress, Origin, Progress, World};
+use driftworld_spec::{AgentParams, Object, ObjectProgress, Origin, Progress, World};
 
 use super::environment::Environment;
 use super::episode::wrapped;
@@ -37,18 +37,14 @@ impl Environment {
     pub fn state(&self) -> World {
         let mut world = (*self.world).clone();
         let agent = self.episode.agent;
-        let start = &mut world.agent_params;
-        let stands = start.coordinates.map(|metres| metres as f32) == agent.position
-            && wrapped(start.heading as f32) == agent.heading_deg;
-        let origin = (!stands).then_some(Origin {
+        let start = &world.agent_params;
+        let now = self.agent_now();
+        let origin = (now.coordinates != start.coordinates || now.heading != start.heading).then_some(Origin {
             coordinates: start.coordinates,
             heading: start.heading,
             reward: 0.0,
         });
-        if !stands {
-            start.coordinates = agent.position.map(f64::from);
-            start.heading = f64::from(agent.heading_deg);
-        }
+        world.agent_params = now;
         let objects = world
             .objects
             .iter_mut()
@@ -74,8 +70,28 @@ impl Environment {
         world
     }
 
-    /// How far an object has come; the object is put where it is now.
-    fn note_object(&self, index: usize, object: &mut Object) -> ObjectProgress {
+    /// The agent of the world, where it is now: to the bit where it started if it is there.
+    pub(crate) fn agent_now(&self) -> AgentParams {
+        let agent = self.episode.agent;
+        let mut now = self.world.agent_params.clone();
+        let stands = now.coordinates.map(|metres| metres as f32) == agent.position
+            && wrapped(now.heading as f32) == agent.heading_deg;
+        if !stands {
+            now.coordinates = agent.position.map(f64::from);
+            now.heading = f64::from(agent.heading_deg);
+        }
+        now
+    }
+
+    /// An object of the world, where it is now and with what is left of its reward.
+    pub(crate) fn object_now(&self, index: usize) -> Object {
+        let mut now = self.world.objects[index].clone();
+        self.put_where_it_is(index, &mut now);
+        now
+    }
+
+    /// Puts an object where it is now; hands back where it was if that is elsewhere.
+    fn put_where_it_is(&self, index: usize, object: &mut Object) -> Option<Origin> {
         let state = &self.episode.objects[index];
         let item = &self.scene.items[index];
         let stands = object.coordinates.map(|metres| metres as f32) == item.position
@@ -91,6 +107,13 @@ impl Environment {
             object.heading = f64::from(item.heading_deg);
             object.reward = state.reward;
         }
+        origin
+    }
+
+    /// How far an object has come; the object is put where it is now.
+    fn note_object(&self, index: usize, object: &mut Object) -> ObjectProgress {
+        let state = &self.episode.objects[index];
+        let origin = self.put_where_it_is(index, object);
         let mover = self.episode.movers.iter().find(|mover| mover.object == index);
         let pushed = self.episode.pushed.iter().find(|body| body.object == index);
         let returns = self.episode.returning.iter().find(|(other, _)| *other == index);

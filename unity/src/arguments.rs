@@ -1,0 +1,272 @@
+//! The arguments: ours, and those that clients give to any Unity executable, which must do no harm. What they lead to is in
+//! `serve.rs`.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use driftworld_spec::nearest;
+
+use crate::error::UnityError;
+use crate::observation::PictureForm;
+
+/// What this executable is, in words by which `driftworld unity install` knows it from a real Unity build.
+pub const MARK: &str = "driftworld-unity: a stand-in for the L2Explorer executable";
+
+/// What `--help` prints.
+pub const HELP: &str = "\
+Runs Driftworld's worlds in place of L2Explorer's Unity executable, for clients that speak the ML-Agents protocol.
+
+Usage: driftworld-unity [OPTIONS] [UNITY'S OPTIONS]
+
+A client that was given this file as its executable starts it by itself:
+  eval \"$(driftworld unity install ~/l2explorer)\"
+To meet a client that waits by itself (`file_name=None`, the \"editor mode\"), start it by hand, without options.
+
+Options:
+  --mlagents-port PORT    where the client listens [default: 5004, the port of the editor mode]
+  --host NAME             the client's machine [default: 127.0.0.1]; what is said is not encrypted
+  --wait SECONDS          how long to look for a client [default: 60]
+  --world FILE            the world until the client resets to one of its own: ours, or a reset file of L2Explorer
+  --maps FILE             layouts of predefined maps in place of the built-in ones
+  --screenshots DIR       the folder that screenshots are written into, and nowhere else [default: screenshots]
+  --raw-observations      pictures as floats instead of PNG: depth keeps its fractions, messages are ten times as long
+  -logFile FILE           where to write what is said on the terminal otherwise; - is the terminal
+  --help, --version
+
+-nographics, -batchmode and what else Unity knows are accepted and mean nothing: no display and no graphics card are needed.
+Exit codes: 0 the client is done, 1 an error, 2 arguments that contradict, 3 no client came.";
+
+/// What the arguments ask for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// A session with a client.
+    Run(Options),
+    /// [`HELP`].
+    Help,
+    /// The version.
+    Version,
+}
+
+/// How a session is to be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// The client's machine.
+    pub host: String,
+    /// The client's port.
+    pub port: u16,
+    /// How long to look for a client.
+    pub wait: Duration,
+    /// The world at the start, if not the default one.
+    pub world: Option<PathBuf>,
+    /// Layouts of predefined maps, if not the built-in ones.
+    pub maps: Option<PathBuf>,
+    /// The folder for screenshots.
+    pub screenshots: PathBuf,
+    /// The form of pictures.
+    pub pictures: PictureForm,
+    /// The file that remarks go to; the terminal if absent.
+    pub log: Option<PathBuf>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            host: "127.0.0.1".to_owned(),
+            port: 5004,
+            wait: Duration::from_mins(1),
+            world: None,
+            maps: None,
+            screenshots: PathBuf::from("screenshots"),
+            pictures: PictureForm::Png,
+            log: None,
+        }
+    }
+}
+
+/// Options of ours.
+const OURS: [&str; 9] = [
+    "--mlagents-port",
+    "--host",
+    "--wait",
+    "--world",
+    "--maps",
+    "--screenshots",
+    "--raw-observations",
+    "--help",
+    "--version",
+];
+
+/// Options of Unity's that clients are known to give, in lower case, without meaning here.
+const UNITYS: [&str; 9] = [
+    "-nographics",
+    "-batchmode",
+    "-quit",
+    "-screen-width",
+    "-screen-height",
+    "-screen-fullscreen",
+    "-screen-quality",
+    "-force-opengl",
+    "-force-vulkan",
+];
+
+/// The longest wait: a day.
+const LONGEST_WAIT_SECS: f64 = 86_400.0;
+
+impl Request {
+    /// Reads the arguments, without the program's name; hands back remarks on those that mean nothing here.
+    ///
+    /// # Errors
+    /// [`UnityError::Arguments`] where an option of ours has no value, or none that can be.
+    pub fn parse(arguments: &[String]) -> Result<(Self, Vec<String>), UnityError> {
+        let mut options = Options::default();
+        let mut remarks = Vec::new();
+        // A word behind an option that we do not know is its value, as far as we can know.
+        let mut after_foreign = false;
+        let mut rest = arguments.iter();
+        while let Some(argument) = rest.next() {
+            let (name, inline) = match argument.split_once('=') {
+                Some((name, value)) if name.starts_with("--") => (name, Some(value.to_owned())),
+                _ => (argument.as_str(), None),
+            };
+            let mut value = |expected: &str| {
+                let found = inline.clone().or_else(|| rest.next().cloned());
+                let missing = || UnityError::arguments(format!("{name}: found no value, expected {expected}"));
+                found.filter(|value| !value.is_empty()).ok_or_else(missing)
+            };
+            let mut is_foreign = false;
+            match name {
+                "--help" | "-h" => return Ok((Self::Help, remarks)),
+                "--version" | "-V" => return Ok((Self::Version, remarks)),
+                "--mlagents-port" => options.port = port(&value("a port")?)?,
+                "--host" => options.host = value("the name or address of a machine")?,
+                "--wait" => options.wait = wait(&value("a number of seconds")?)?,
+                "--world" => options.world = Some(value("a file")?.into()),
+                "--maps" => options.maps = Some(value("a file")?.into()),
+                "--screenshots" => options.screenshots = value("a folder")?.into(),
+                "--raw-observations" => options.pictures = PictureForm::Floats,
+                other if other.eq_ignore_ascii_case("-logfile") => {
+                    options.log = Some(value("a file, or - for the terminal")?)
+                        .filter(|file| file != "-")
+                        .map(PathBuf::from);
+                }
+                other if other.starts_with('-') => {
+                    is_foreign = true;
+                    if !UNITYS.contains(&other.to_lowercase().as_str()) {
+                        let near =
+                            nearest(other, OURS).map_or_else(String::new, |near| format!("; did you mean {near}?"));
+                        remarks.push(format!("{other:?} is not known here and ignored{near}"));
+                    }
+                }
+                other if !after_foreign => remarks.push(format!("{other:?} belongs to no option and is ignored")),
+                _ => {}
+            }
+            after_foreign = is_foreign;
+        }
+        Ok((Self::Run(options), remarks))
+    }
+}
+
+fn port(text: &str) -> Result<u16, UnityError> {
+    let number = text.parse().ok().filter(|port| *port > 0);
+    number.ok_or_else(|| {
+        UnityError::arguments(format!(
+            "--mlagents-port: found {text:?}, expected a port from 1 to 65535"
+        ))
+    })
+}
+
+fn wait(text: &str) -> Result<Duration, UnityError> {
+    let seconds: Option<f64> = text.parse().ok();
+    let seconds = seconds.filter(|seconds| (0.0..=LONGEST_WAIT_SECS).contains(seconds));
+    seconds.map(Duration::from_secs_f64).ok_or_else(|| {
+        UnityError::arguments(format!(
+            "--wait: found {text:?}, expected seconds from 0 to {LONGEST_WAIT_SECS}"
+        ))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<(Request, Vec<String>), UnityError> {
+        let words: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
+        Request::parse(&words)
+    }
+
+    fn options(text: &str) -> (Options, Vec<String>) {
+        match parse(text).expect("the arguments are sound") {
+            (Request::Run(options), remarks) => (options, remarks),
+            (other, _) => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn clients_say_the_port_among_unitys_options() {
+        let (found, remarks) = options("-nographics -batchmode --mlagents-port 5007 -logFile a.log");
+        assert_eq!(found.port, 5007);
+        assert_eq!(found.log, Some(PathBuf::from("a.log")));
+        assert!(remarks.is_empty(), "{remarks:?}");
+        assert_eq!(options("").0.port, 5004);
+        assert_eq!(options("-logfile -").0.log, None);
+    }
+
+    #[test]
+    fn what_is_not_known_is_ignored_with_a_remark() {
+        let (found, remarks) = options("-screen-width 640 -popupwindow --mlagents-scene-name A --screenshot b c d");
+        assert_eq!(found, Options::default());
+        assert_eq!(
+            remarks,
+            [
+                "\"-popupwindow\" is not known here and ignored",
+                "\"--mlagents-scene-name\" is not known here and ignored",
+                "\"--screenshot\" is not known here and ignored; did you mean --screenshots?",
+                "\"c\" belongs to no option and is ignored",
+                "\"d\" belongs to no option and is ignored",
+            ]
+        );
+    }
+
+    #[test]
+    fn ours_take_their_values_either_way() {
+        let (found, _) = options("--screenshots=out --world w.json --wait 2.5 --raw-observations --maps=m --host ::1");
+        let expected = Options {
+            host: "::1".to_owned(),
+            wait: Duration::from_millis(2500),
+            world: Some("w.json".into()),
+            maps: Some("m".into()),
+            screenshots: "out".into(),
+            pictures: PictureForm::Floats,
+            ..Options::default()
+        };
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn values_that_cannot_be_are_refused() {
+        let check = |text: &str, expected: &str| {
+            let error = parse(text).expect_err("the value cannot be");
+            assert_eq!(error.to_string(), expected);
+            assert_eq!(error.exit_code(), 2);
+        };
+        check("--mlagents-port", "--mlagents-port: found no value, expected a port");
+        check(
+            "--mlagents-port 65536",
+            "--mlagents-port: found \"65536\", expected a port from 1 to 65535",
+        );
+        check(
+            "--mlagents-port 0",
+            "--mlagents-port: found \"0\", expected a port from 1 to 65535",
+        );
+        check("--wait NaN", "--wait: found \"NaN\", expected seconds from 0 to 86400");
+        check("--world=", "--world: found no value, expected a file");
+    }
+
+    #[test]
+    fn help_names_every_option() {
+        for option in OURS {
+            assert!(HELP.contains(option), "{option}");
+        }
+        assert_eq!(parse("--wait 1 -h").expect("help is always there").0, Request::Help);
+    }
+}

@@ -1,0 +1,77 @@
+//! [`Client`]: what a client says of itself, and what that means for how it is spoken to.
+
+use crate::error::UnityError;
+use crate::protocol::UnityRlInitializationInputProto;
+
+/// Which of the protocol's ways a client understands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Client {
+    /// Continuous numbers have a list of their own, and behaviours an `action_spec` (from 1.3 of the protocol on).
+    pub(crate) hybrid_actions: bool,
+    /// Pictures are (channels, height, width) instead of (height, width, channels). The protocol has no flag for it: packages
+    /// from 1.0 on expect it.
+    pub(crate) channels_first: bool,
+}
+
+impl Client {
+    /// Reads what a client says of itself.
+    ///
+    /// # Errors
+    /// [`UnityError::ClientVersion`] unless it speaks version 1 of the protocol.
+    pub(crate) fn new(said: &UnityRlInitializationInputProto) -> Result<Self, UnityError> {
+        if major(&said.communication_version) != Some(1) {
+            return Err(UnityError::ClientVersion {
+                found: said.communication_version.chars().take(40).collect(),
+            });
+        }
+        let capabilities = said.capabilities.unwrap_or_default();
+        Ok(Self {
+            hybrid_actions: capabilities.hybrid_actions,
+            channels_first: major(&said.package_version).is_some_and(|major| major >= 1),
+        })
+    }
+}
+
+/// The first number of a version.
+fn major(version: &str) -> Option<u32> {
+    version.split('.').next()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::protocol::UnityRlCapabilitiesProto;
+
+    fn said(communication: &str, package: &str, hybrid: bool) -> UnityRlInitializationInputProto {
+        UnityRlInitializationInputProto {
+            seed: 0,
+            communication_version: communication.to_owned(),
+            package_version: package.to_owned(),
+            capabilities: Some(UnityRlCapabilitiesProto {
+                hybrid_actions: hybrid,
+                ..UnityRlCapabilitiesProto::default()
+            }),
+        }
+    }
+
+    #[test]
+    fn each_generation_of_clients_is_spoken_to_in_its_own_way() {
+        let check = |communication: &str, package: &str, hybrid: bool, expected: (bool, bool)| {
+            let client = Client::new(&said(communication, package, hybrid)).expect("the client is of version 1");
+            assert_eq!((client.hybrid_actions, client.channels_first), expected, "{package}");
+        };
+        check("1.0.0", "0.16.0", false, (false, false));
+        check("1.5.0", "0.28.0", true, (true, false));
+        check("1.5.0", "1.1.0", true, (true, true));
+        check("1.5.0", "2.0.0.dev0", true, (true, true));
+        check("1.0.0", "", false, (false, false));
+    }
+
+    #[test]
+    fn other_major_versions_are_refused() {
+        for version in ["0.15.0", "2.0.0", "", "API-12"] {
+            let error = Client::new(&said(version, "0.15.0", false)).expect_err("the version is another");
+            assert_eq!(error.code(), "unity/client-version");
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! [`Connection`]: one client's gRPC server, called again and again. What is said is decided in `session.rs`.
+
+use std::time::Duration;
+
+use tokio::time::{Instant, sleep, timeout_at};
+use tonic::transport::{Channel, Endpoint};
+use tonic::{Code, Status};
+
+use crate::error::UnityError;
+use crate::protocol::UnityMessageProto;
+use crate::protocol::unity_to_external_proto_client::UnityToExternalProtoClient;
+
+/// The longest message that is read, in bytes. A world of a hundred thousand objects has about 30 MB.
+pub const MAX_INCOMING_BYTES: usize = 48 << 20;
+
+/// The longest message that is sent, in bytes: what gRPC servers accept where nobody says otherwise.
+pub(crate) const MAX_OUTGOING_BYTES: usize = 4 << 20;
+
+/// How long to wait before looking again for a client that is not there yet.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
+
+/// A client, found.
+pub(crate) struct Connection {
+    client: UnityToExternalProtoClient<Channel>,
+    address: String,
+}
+
+/// What comes of a call.
+pub(crate) enum Reply {
+    /// The client's next message.
+    Message(Box<UnityMessageProto>),
+    /// It is gone, with what the network says.
+    Gone(String),
+}
+
+impl Connection {
+    /// Looks for a client until the deadline.
+    pub(crate) async fn open(host: &str, port: u16, wait: Duration, deadline: Instant) -> Result<Self, UnityError> {
+        let host = if host.contains(':') {
+            format!("[{host}]")
+        } else {
+            host.to_owned()
+        };
+        let address = format!("{host}:{port}");
+        let no_address = |_| UnityError::NoAddress {
+            address: address.clone(),
+        };
+        let endpoint = Endpoint::from_shared(format!("http://{address}"))
+            .map_err(no_address)?
+            .tcp_nodelay(true);
+        loop {
+            match timeout_at(deadline, endpoint.connect()).await {
+                Ok(Ok(channel)) => {
+                    let client = UnityToExternalProtoClient::new(channel).max_decoding_message_size(MAX_INCOMING_BYTES);
+                    return Ok(Self { client, address });
+                }
+                Ok(Err(_)) if Instant::now() + BETWEEN_LOOKS < deadline => sleep(BETWEEN_LOOKS).await,
+                _ => {
+                    let seconds = wait.as_secs_f64();
+                    return Err(UnityError::NoClient { address, seconds });
+                }
+            }
+        }
+    }
+
+    /// Machine and port.
+    pub(crate) fn address(&self) -> &str {
+        &self.address
+    }
+
+    /// The first call, by which a stranger is known: whoever listens there has until the deadline to answer as a client does.
+    pub(crate) async fn greet(
+        &mut self,
+        greeting: UnityMessageProto,
+        wait: Duration,
+        deadline: Instant,
+    ) -> Result<Reply, UnityError> {
+        let address = self.address.clone();
+        match timeout_at(deadline, self.client.exchange(greeting)).await {
+            Err(_) => {
+                let reason = format!("silence for {} s", wait.as_secs_f64());
+                Err(UnityError::NotAClient { address, reason })
+            }
+            Ok(Err(status)) if status.code() == Code::Unimplemented || is_transport(&status) => {
+                let reason = reason(&status);
+                Err(UnityError::NotAClient { address, reason })
+            }
+            Ok(answer) => reply(answer.map(tonic::Response::into_inner)),
+        }
+    }
+
+    /// Says something, and waits for the answer: as long as the client likes.
+    pub(crate) async fn exchange(&mut self, message: UnityMessageProto) -> Result<Reply, UnityError> {
+        reply(self.client.exchange(message).await.map(tonic::Response::into_inner))
+    }
+}
+
+fn reply(answer: Result<UnityMessageProto, Status>) -> Result<Reply, UnityError> {
+    match answer {
+        Ok(message) => Ok(Reply::Message(Box::new(message))),
+        // Our reading of a message failed: it is too long, or no protobuf.
+        Err(status)
+            if matches!(status.code(), Code::OutOfRange | Code::Internal | Code::DataLoss)
+                && !is_transport(&status) =>
+        {
+            Err(UnityError::Unreadable {
+                reason: status.message().to_owned(),
+                limit: MAX_INCOMING_BYTES,
+            })
+        }
+        // A client that closes cancels the call, one that is killed breaks the connection, and one that ends within its handler
+        // says that this failed: all of them are gone.
+        Err(status) => Ok(Reply::Gone(reason(&status))),
+    }
+}
+
+/// Whether the network failed rather than somebody answered.
+fn is_transport(status: &Status) -> bool {
+    std::error::Error::source(status).is_some()
+}
+
+/// A status in words, with the innermost cause.
+fn reason(status: &Status) -> String {
+    let mut cause: &dyn std::error::Error = status;
+    while let Some(inner) = cause.source() {
+        cause = inner;
+    }
+    if std::ptr::addr_eq(cause, status) {
+        format!("{:?}: {}", status.code(), status.message())
+    } else {
+        cause.to_string()
+    }
+}

@@ -1,0 +1,157 @@
+//! What can go wrong with a client or before one came. What a single message is refused for is answered, and is no error here.
+
+use std::path::PathBuf;
+
+use driftworld_env::EnvError;
+use driftworld_spec::SpecError;
+
+/// Everything that ends a session before its client does.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum UnityError {
+    /// Arguments that cannot be.
+    #[error("{text}")]
+    Arguments {
+        /// What was found where, and what was expected.
+        text: String,
+    },
+    /// A file that cannot be read or written.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// Its path.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A world or a maps file with problems.
+    #[error(transparent)]
+    Document(#[from] SpecError),
+    /// Nobody listens where the client should be.
+    #[error(
+        "{address}: no client within {seconds} s; start it first, or name its port by --mlagents-port (5004 in editor mode, else 5005 + worker id)"
+    )]
+    NoClient {
+        /// Machine and port.
+        address: String,
+        /// How long was waited.
+        seconds: f64,
+    },
+    /// Machine and port that make no address.
+    #[error("{address}: expected the name or address of a machine, such as 127.0.0.1")]
+    NoAddress {
+        /// Machine and port.
+        address: String,
+    },
+    /// Something listens that does not speak the protocol.
+    #[error("{address}: what listens there does not answer as an ML-Agents client does: {reason}")]
+    NotAClient {
+        /// Machine and port.
+        address: String,
+        /// What it did.
+        reason: String,
+    },
+    /// A client of another major version of the protocol.
+    #[error("client: found version {found:?} of the protocol, expected 1.x; mlagents-envs from 0.16.0 on speaks it")]
+    ClientVersion {
+        /// The version that it says.
+        found: String,
+    },
+    /// A message that is no message of the protocol, or too long.
+    #[error("client: a message cannot be read: {reason}; messages may have {limit} bytes")]
+    Unreadable {
+        /// Why.
+        reason: String,
+        /// The most bytes of a message.
+        limit: usize,
+    },
+    /// A message without what it has to say.
+    #[error("client: found a message without {missing}, expected one")]
+    Incomplete {
+        /// What is missing.
+        missing: &'static str,
+    },
+    /// A command that there is not.
+    #[error("client: found command {found}, expected 0 (step), 1 (reset) or 2 (quit)")]
+    UnknownCommand {
+        /// The command's number.
+        found: i32,
+    },
+    /// The client says that it has failed.
+    #[error("client: it ended with status {status}: {text}")]
+    ClientFailed {
+        /// Its status.
+        status: i32,
+        /// Its words.
+        text: String,
+    },
+    /// Actions for other agents than the one there is.
+    #[error("actions: found {found} of behaviour {behavior:?}, expected one of \"L2Explorer?team=0\"")]
+    WrongAgent {
+        /// The behaviour that they are for.
+        behavior: String,
+        /// How many there are.
+        found: usize,
+    },
+    /// An action of another length.
+    #[error("action: found {found} numbers, expected 3")]
+    ActionLength {
+        /// How many numbers it has.
+        found: usize,
+    },
+    /// An answer that is longer than clients accept.
+    #[error(
+        "observation: {found} bytes in a message, of which clients accept {limit}; reset to a smaller observation_size, or leave out --raw-observations"
+    )]
+    TooLarge {
+        /// How long it is.
+        found: usize,
+        /// The most that gRPC accepts where nobody says otherwise.
+        limit: usize,
+    },
+    /// A picture that cannot be made into a file.
+    #[error("picture: {reason}")]
+    Picture {
+        /// Why.
+        reason: String,
+    },
+    /// What the world says.
+    #[error(transparent)]
+    Env(#[from] EnvError),
+}
+
+impl UnityError {
+    pub(crate) fn arguments(text: String) -> Self {
+        Self::Arguments { text }
+    }
+
+    /// A name for programs, which stays as it is.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Arguments { .. } => "unity/arguments",
+            Self::File { .. } => "unity/file",
+            Self::Document(_) => "unity/document",
+            Self::NoClient { .. } => "unity/no-client",
+            Self::NoAddress { .. } => "unity/no-address",
+            Self::NotAClient { .. } => "unity/not-a-client",
+            Self::ClientVersion { .. } => "unity/client-version",
+            Self::Unreadable { .. } => "unity/unreadable",
+            Self::Incomplete { .. } => "unity/incomplete",
+            Self::UnknownCommand { .. } => "unity/unknown-command",
+            Self::ClientFailed { .. } => "unity/client-failed",
+            Self::WrongAgent { .. } => "unity/wrong-agent",
+            Self::ActionLength { .. } => "unity/action-length",
+            Self::TooLarge { .. } => "unity/too-large",
+            Self::Picture { .. } => "unity/picture",
+            Self::Env(_) => "unity/env",
+        }
+    }
+
+    /// The exit status of the executable.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Arguments { .. } => 2,
+            Self::NoClient { .. } => 3,
+            _ => 1,
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! [`Journal`]: remarks, line by line, on the terminal or in a file. What is remarked is decided elsewhere.
+
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::path::Path;
+
+use crate::error::UnityError;
+
+/// Where remarks go.
+#[derive(Debug)]
+pub struct Journal {
+    file: Option<File>,
+}
+
+impl Journal {
+    /// A journal at the end of a file, or on the terminal.
+    ///
+    /// # Errors
+    /// [`UnityError::File`] where the file cannot be opened for writing.
+    pub fn open(path: Option<&Path>) -> Result<Self, UnityError> {
+        let open = |path: &Path| {
+            let file = OpenOptions::new().create(true).append(true).open(path);
+            file.map_err(|source| UnityError::File {
+                path: path.to_owned(),
+                source,
+            })
+        };
+        Ok(Self {
+            file: path.map(open).transpose()?,
+        })
+    }
+
+    /// Notes one remark. A file that cannot be written any more is left for the terminal.
+    pub fn note(&mut self, remark: &str) {
+        let written = self
+            .file
+            .as_mut()
+            .map(|file| writeln!(file, "driftworld-unity: {remark}"));
+        if !matches!(written, Some(Ok(()))) {
+            self.file = None;
+            // A terminal that is gone is no reason to end.
+            let _ = writeln!(std::io::stderr(), "driftworld-unity: {remark}");
+        }
+    }
+}

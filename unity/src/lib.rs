@@ -1,0 +1,40 @@
+//! Takes the place of L2Explorer's Unity executable: runs worlds for clients that speak the ML-Agents protocol.
+//!
+//! A [`Session`] turns what a client says into what a world answers, without network or clock; [`run`] carries it over gRPC. What
+//! messages of L2Explorer do is decided in `driftworld-env`.
+
+mod arguments;
+mod behavior;
+mod client;
+mod connection;
+mod error;
+mod journal;
+mod observation;
+mod outbox;
+mod parameters;
+mod remarks;
+mod screenshots;
+mod serve;
+mod session;
+mod side_channel;
+
+/// The protocol's messages and its one call, made of the files in `proto/`.
+pub mod protocol {
+    #![expect(
+        clippy::pedantic,
+        clippy::allow_attributes,
+        clippy::missing_errors_doc,
+        reason = "generated"
+    )]
+    tonic::include_proto!("communicator_objects");
+}
+
+pub use arguments::{HELP, MARK, Options, Request};
+pub use behavior::BEHAVIOR;
+pub use connection::MAX_INCOMING_BYTES;
+pub use error::UnityError;
+pub use journal::Journal;
+pub use observation::PictureForm;
+pub use screenshots::Screenshots;
+pub use serve::run;
+pub use session::{Session, Setup, Turn};

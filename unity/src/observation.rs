@@ -1,0 +1,139 @@
+//! What an agent sees, as clients understand it: depth, colours, segmentation, then a list of numbers. What there is to see is
+//! drawn by `driftworld-env`.
+
+use driftworld_env::{FAR_DEPTH, Frame, category_color, depth_to_gray};
+
+use crate::client::Client;
+use crate::error::UnityError;
+use crate::protocol::observation_proto::{FloatData, ObservationData};
+use crate::protocol::{CompressionTypeProto, ObservationProto};
+
+/// How pictures travel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PictureForm {
+    /// As PNG files, as Unity sends them.
+    #[default]
+    Png,
+    /// As floats in 0..1.
+    Floats,
+}
+
+/// What a dimension means to clients from 1.5 of the protocol on.
+const NO_NEIGHBOURS: i32 = 1;
+const NEIGHBOURS: i32 = 2;
+
+/// The channels of a picture: red, green, blue.
+const CHANNELS: usize = 3;
+
+/// The observations of a frame and a state, in the original's order.
+///
+/// `state` is what goes behind the number of the object that was collected.
+pub(crate) fn observations(
+    frame: &Frame,
+    state: Vec<f32>,
+    form: PictureForm,
+    client: Client,
+) -> Result<Vec<ObservationProto>, UnityError> {
+    let picture = |name: &str, rgb: &dyn Fn() -> Vec<u8>, floats: &dyn Fn() -> Vec<f32>| {
+        let data = match form {
+            PictureForm::Png => ObservationData::CompressedData(png([frame.width, frame.height], &rgb())?),
+            PictureForm::Floats => ObservationData::FloatData(FloatData {
+                data: ordered(floats(), client),
+            }),
+        };
+        Ok::<_, UnityError>(visual(name, frame, data, client))
+    };
+    let shares = |bytes: Vec<u8>| {
+        bytes
+            .into_iter()
+            .map(|byte| f32::from(byte) / 255.0)
+            .collect::<Vec<f32>>()
+    };
+    let gray = || tripled(&depth_to_gray(&frame.depth));
+    let depth = || {
+        tripled(
+            &frame
+                .depth
+                .iter()
+                .map(|metres| (metres / FAR_DEPTH).clamp(0.0, 1.0))
+                .collect::<Vec<_>>(),
+        )
+    };
+    let categories = || {
+        frame
+            .category
+            .iter()
+            .flat_map(|category| category_color(*category))
+            .collect()
+    };
+    Ok(vec![
+        picture("depth", &gray, &depth)?,
+        picture("rgb", &|| frame.rgb.clone(), &|| shares(frame.rgb.clone()))?,
+        picture("segmentation", &categories, &|| shares(categories()))?,
+        vector(state),
+    ])
+}
+
+/// A picture of one channel as one of three.
+fn tripled<T: Copy>(values: &[T]) -> Vec<T> {
+    values.iter().flat_map(|value| [*value; CHANNELS]).collect()
+}
+
+/// Floats row by row as the client wants them: channels last, or first.
+fn ordered(floats: Vec<f32>, client: Client) -> Vec<f32> {
+    if !client.channels_first {
+        return floats;
+    }
+    (0..CHANNELS)
+        .flat_map(|channel| floats.iter().skip(channel).step_by(CHANNELS).copied())
+        .collect()
+}
+
+fn visual(name: &str, frame: &Frame, data: ObservationData, client: Client) -> ObservationProto {
+    let [height, width, channels] = [frame.height as i32, frame.width as i32, CHANNELS as i32];
+    let (shape, dimension_properties) = if client.channels_first {
+        ([channels, height, width], [NO_NEIGHBOURS, NEIGHBOURS, NEIGHBOURS])
+    } else {
+        ([height, width, channels], [NEIGHBOURS, NEIGHBOURS, NO_NEIGHBOURS])
+    };
+    let compression_type = match data {
+        ObservationData::CompressedData(_) => CompressionTypeProto::Png,
+        ObservationData::FloatData(_) => CompressionTypeProto::None,
+    };
+    ObservationProto {
+        shape: shape.to_vec(),
+        compression_type: compression_type.into(),
+        compressed_channel_mapping: Vec::new(),
+        dimension_properties: dimension_properties.to_vec(),
+        observation_type: 0,
+        name: name.to_owned(),
+        observation_data: Some(data),
+    }
+}
+
+fn vector(state: Vec<f32>) -> ObservationProto {
+    ObservationProto {
+        shape: vec![state.len() as i32],
+        compression_type: CompressionTypeProto::None.into(),
+        compressed_channel_mapping: Vec::new(),
+        dimension_properties: vec![NO_NEIGHBOURS],
+        observation_type: 0,
+        name: "state".to_owned(),
+        observation_data: Some(ObservationData::FloatData(FloatData { data: state })),
+    }
+}
+
+/// A PNG file of 8-bit RGB, made in a hurry: it lives for a millisecond.
+pub(crate) fn png([width, height]: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, UnityError> {
+    let failed = |error: png::EncodingError| UnityError::Picture {
+        reason: error.to_string(),
+    };
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::Fastest);
+    let mut writer = encoder.write_header().map_err(failed)?;
+    writer.write_image_data(rgb).map_err(failed)?;
+    writer.finish().map_err(failed)?;
+    Ok(bytes)
+}

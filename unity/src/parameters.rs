@@ -1,0 +1,142 @@
+//! [`Parameters`]: numbers that clients set by name, laid over each world at its reset. How they arrive is in `side_channel`.
+
+use std::collections::BTreeMap;
+
+use driftworld_spec::{World, nearest};
+
+use crate::side_channel::Setting;
+
+/// What can be set: what L2Explorer's reset files cannot say, or what a client may want to change beside them.
+const KNOWN: [&str; 8] = [
+    "time_step",
+    "frame_skip",
+    "max_steps",
+    "field_of_view",
+    "supersampling",
+    "light_intensity",
+    "max_linear_speed",
+    "max_angular_speed",
+];
+
+/// The numbers that are set.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Parameters(BTreeMap<&'static str, f64>);
+
+impl Parameters {
+    /// Takes a number over, from the next reset on.
+    ///
+    /// # Errors
+    /// Why it means nothing, or cannot be; what was set before stays.
+    pub(crate) fn set(&mut self, setting: &Setting) -> Result<(), String> {
+        let Setting { key, value } = setting;
+        let Some(known) = KNOWN.into_iter().find(|known| known.eq_ignore_ascii_case(key)) else {
+            let near = nearest(key, KNOWN).map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
+            return Err(format!("{key:?} = {value}: ignored, it has no meaning here{near}"));
+        };
+        // By way of its digits, so that 0.1 is 0.1.
+        let number = value.to_string().parse().unwrap_or(f64::NAN);
+        let alone = Self(BTreeMap::from([(known, number)]));
+        alone
+            .try_world(World::default())
+            .map_err(|problem| format!("{known} = {value}: ignored, {problem}"))?;
+        self.0.insert(known, number);
+        Ok(())
+    }
+
+    /// Lays the numbers over a world.
+    pub(crate) fn apply(&self, world: &mut World) {
+        let agent = &mut world.agent_params;
+        for (key, number) in &self.0 {
+            match *key {
+                "time_step" => agent.time_step = *number,
+                "frame_skip" => agent.frame_skip = *number as u32,
+                "max_steps" => world.max_steps = *number as u32,
+                "field_of_view" => agent.field_of_view = *number,
+                "supersampling" => agent.supersampling = *number as u32,
+                "light_intensity" => world.environment_params.light_intensity = *number,
+                "max_linear_speed" => agent.max_linear_speed = *number,
+                "max_angular_speed" => agent.max_angular_speed = *number,
+                other => unreachable!("{other} is not among the known"),
+            }
+        }
+    }
+
+    /// Whether nothing is set.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The world with the numbers laid over it, checked as a document would be.
+    fn try_world(&self, mut world: World) -> Result<World, String> {
+        let whole = ["frame_skip", "max_steps", "supersampling"];
+        for (key, number) in &self.0 {
+            if !number.is_finite() || whole.contains(key) && (number.fract() != 0.0 || *number < 0.0) {
+                let expected = if whole.contains(key) {
+                    "a whole number"
+                } else {
+                    "a number"
+                };
+                return Err(format!("expected {expected}"));
+            }
+        }
+        self.apply(&mut world);
+        World::from_json("world", &world.to_json()).map_err(|error| {
+            let first = error.problems().first();
+            first.map_or_else(
+                || error.to_string(),
+                |problem| format!("found {}, expected {}", problem.found, problem.expected),
+            )
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn set(parameters: &mut Parameters, key: &str, value: f32) -> Result<(), String> {
+        let key = key.to_owned();
+        parameters.set(&Setting { key, value })
+    }
+
+    #[test]
+    fn every_known_number_changes_the_world_and_no_other() {
+        for key in KNOWN {
+            let mut parameters = Parameters::default();
+            let value = if key == "max_steps" { 7.0 } else { 3.0 };
+            set(&mut parameters, key, value).expect("3 is within all ranges");
+            let mut world = World::default();
+            parameters.apply(&mut world);
+            assert_ne!(world, World::default(), "{key}");
+            let changed = world.to_json();
+            assert!(changed.contains(&format!("\"{key}\":{value}")), "{key}: {changed}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_what_their_digits_say() {
+        let mut parameters = Parameters::default();
+        set(&mut parameters, "Time_Step", 0.1).expect("names are known in any case");
+        let mut world = World::default();
+        parameters.apply(&mut world);
+        assert_eq!(world.agent_params.time_step, 0.1);
+    }
+
+    #[test]
+    fn what_cannot_be_is_ignored_with_a_reason_and_changes_nothing() {
+        let mut parameters = Parameters::default();
+        set(&mut parameters, "frame_skip", 4.0).expect("4 is sound");
+        let before = parameters.clone();
+        let mut check = |key: &str, value: f32, expected: &str| {
+            let reason = set(&mut parameters, key, value).expect_err("it cannot be");
+            assert!(reason.contains(expected), "{reason}");
+        };
+        check("frame_skip", 0.0, "frame_skip = 0: ignored, ");
+        check("frame_skip", 2.5, "expected a whole number");
+        check("field_of_view", f32::NAN, "expected a number");
+        check("field_of_view", 500.0, "170");
+        check("feld_of_view", 50.0, "did you mean \"field_of_view\"?");
+        check("gravity", 9.8, "it has no meaning here");
+        assert_eq!(parameters, before);
+    }
+}

@@ -1,0 +1,151 @@
+//! [`Screenshots`]: the one folder that messages can write into. What is drawn, and who asks, is in `session.rs`.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Component, Path, PathBuf};
+
+/// The longest name of a file, in bytes.
+const LONGEST_NAME: usize = 200;
+
+/// A folder for pictures that are named by messages.
+#[derive(Clone, Debug)]
+pub struct Screenshots {
+    folder: PathBuf,
+}
+
+impl Screenshots {
+    /// Pictures go into this folder; it is made when the first one comes.
+    pub fn new(folder: impl Into<PathBuf>) -> Self {
+        Self { folder: folder.into() }
+    }
+
+    /// Writes a PNG file inside the folder, whatever path the name says, and hands back where it is.
+    ///
+    /// Folders in the name are kept where they lead further in; of a name that leads anywhere else only the last part counts. A
+    /// picture of that name is replaced; links are replaced themselves, and what they point to stays as it is.
+    ///
+    /// # Errors
+    /// Why there is no such file now: a name that is none, a folder of that name, what the system says.
+    pub(crate) fn write(&self, name: &str, png: &[u8]) -> Result<PathBuf, String> {
+        let relative = inside(name)?;
+        let path = self.folder.join(&relative);
+        let failed = |error: std::io::Error| format!("{}: {error}", path.display());
+        let mut folder = self.folder.clone();
+        fs::create_dir_all(&folder).map_err(failed)?;
+        for part in relative.parent().into_iter().flat_map(Path::components) {
+            folder.push(part);
+            if folder.symlink_metadata().is_ok_and(|found| found.is_symlink()) {
+                return Err(format!(
+                    "payload/filename: found {name:?}, which leads through a link, expected a plain folder"
+                ));
+            }
+            if !folder.is_dir() {
+                fs::create_dir(&folder).map_err(failed)?;
+            }
+        }
+        if path.symlink_metadata().is_ok_and(|found| found.is_dir()) {
+            return Err(format!(
+                "payload/filename: found {name:?}, which is a folder, expected a name for a file"
+            ));
+        }
+        let mut file = tempfile::Builder::new()
+            .prefix(".screenshot")
+            .tempfile_in(&folder)
+            .map_err(failed)?;
+        file.write_all(png).map_err(failed)?;
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            // Temporary files are their owner's alone; pictures are as any other file.
+            file.as_file()
+                .set_permissions(fs::Permissions::from_mode(0o644))
+                .map_err(failed)?;
+        }
+        file.persist(&path).map_err(|error| failed(error.error))?;
+        Ok(path)
+    }
+}
+
+/// The path inside the folder that a name stands for.
+fn inside(name: &str) -> Result<PathBuf, String> {
+    let refuse = || {
+        Err(format!(
+            "payload/filename: found {:?}, expected a name such as picture.png",
+            name.chars().take(100).collect::<String>()
+        ))
+    };
+    // Clients on Windows name paths of Windows.
+    let slashed = name.replace('\\', "/");
+    let path = Path::new(&slashed);
+    let leads_in = path.components().all(|part| matches!(part, Component::Normal(_))) && !slashed.contains(':');
+    let last = slashed.rsplit(['/', ':']).next().unwrap_or_default();
+    let mut path = if leads_in { path.to_owned() } else { PathBuf::from(last) };
+    let is_name = |part: Component| match part {
+        Component::Normal(part) => part.len() <= LONGEST_NAME && !part.to_string_lossy().contains(char::is_control),
+        _ => false,
+    };
+    if last.is_empty() || last.starts_with('.') || name.len() > 4 * LONGEST_NAME || !path.components().all(is_name) {
+        return refuse();
+    }
+    // As the original has it: another ending stays, and what is in the file is PNG all the same.
+    if path.extension().is_none() {
+        path.set_extension("png");
+    }
+    Ok(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_stays_inside() {
+        let check = |name: &str, expected: &str| assert_eq!(inside(name), Ok(PathBuf::from(expected)), "{name}");
+        check("a.png", "a.png");
+        check("a", "a.png");
+        check("a.jpg", "a.jpg");
+        check("runs/7/a.PNG", "runs/7/a.PNG");
+        check("/etc/passwd", "passwd.png");
+        check("/etc/rc.local", "rc.local");
+        check("../../a.png", "a.png");
+        check("runs/../../a.png", "a.png");
+        check("C:\\Users\\me\\a.png", "a.png");
+        check("C:a.png", "a.png");
+        for name in ["", "/", "..", ".", ".bashrc", "a/", "a\0b", "a\nb", &"x".repeat(300)] {
+            assert!(inside(name).is_err(), "{name:?}: {:?}", inside(name));
+        }
+    }
+
+    #[test]
+    fn pictures_replace_pictures_and_nothing_else() {
+        let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let screenshots = Screenshots::new(root.path().join("deep/out"));
+        let path = screenshots.write("/tmp/a.png", b"one").expect("the name is one");
+        assert_eq!(path, root.path().join("deep/out/a.png"));
+        screenshots.write("a", b"two").expect("pictures are replaced");
+        assert_eq!(fs::read(&path).expect("it was written"), b"two");
+        screenshots.write("b/c.png", b"x").expect("folders are made");
+        fs::create_dir(root.path().join("deep/out/d.png")).expect("the folder can be written");
+        let error = screenshots.write("d.png", b"x").expect_err("a folder is no picture");
+        assert!(error.contains("which is a folder"), "{error}");
+        let left = fs::read_dir(root.path().join("deep/out")).expect("the folder is there");
+        assert_eq!(left.count(), 3, "no temporary file is left");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_lead_nowhere() {
+        let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let out = root.path().join("out");
+        fs::create_dir(&out).expect("the folder can be made");
+        let outside = root.path().join("outside.png");
+        fs::write(&outside, "mine").expect("the folder can be written");
+        std::os::unix::fs::symlink(&outside, out.join("a.png")).expect("links can be made");
+        std::os::unix::fs::symlink(root.path(), out.join("up")).expect("links can be made");
+        let screenshots = Screenshots::new(&out);
+        screenshots.write("a.png", b"x").expect("the link itself is replaced");
+        assert!(screenshots.write("up/b.png", b"x").is_err());
+        assert_eq!(fs::read_to_string(&outside).expect("it is there still"), "mine");
+        assert!(!root.path().join("b.png").exists());
+    }
+}

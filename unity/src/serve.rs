@@ -1,0 +1,195 @@
+//! [`run`]: a session over a connection, from the first look for a client to its end. What is said is decided in `session.rs`.
+
+use std::path::Path;
+use std::time::Duration;
+
+use driftworld_spec::World;
+use driftworld_spec::maps::MapLibrary;
+use prost::Message;
+use tokio::runtime;
+use tokio::time::{Instant, timeout};
+
+use crate::arguments::Options;
+use crate::connection::{Connection, MAX_OUTGOING_BYTES, Reply};
+use crate::error::UnityError;
+use crate::journal::Journal;
+use crate::protocol::{HeaderProto, UnityInputProto, UnityMessageProto, UnityOutputProto};
+use crate::screenshots::Screenshots;
+use crate::session::{Session, Setup, Turn};
+
+/// The states of a sender.
+const WELL: i32 = 200;
+const END: i32 = 400;
+const FAILED: i32 = 500;
+
+/// How long a client has to hear why we end.
+const FAREWELL: Duration = Duration::from_millis(500);
+
+/// Looks for a client, and does what it says until it ends.
+///
+/// # Errors
+/// [`UnityError`] for files that cannot be used, without a client, and for a client that breaks the protocol, which is told so
+/// before. A client that ends or goes away is no error.
+pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
+    let setup = Setup {
+        world: options.world.as_deref().map_or_else(|| Ok(World::default()), world)?,
+        maps: options
+            .maps
+            .as_deref()
+            .map_or_else(|| Ok(MapLibrary::default()), maps)?,
+        pictures: options.pictures,
+    };
+    let clock = || {
+        jiff::Timestamp::now()
+            .round(jiff::Unit::Millisecond)
+            .map_or_else(|_| String::new(), |now| now.to_string())
+    };
+    let session = Session::new(setup, Screenshots::new(&options.screenshots), clock)?;
+    let runtime = runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()
+        .map_err(|source| UnityError::File {
+            path: "the network".into(),
+            source,
+        })?;
+    let ended = runtime.block_on(serve(session, options, journal));
+    // What the network still has to do for a client that is gone is not waited for.
+    runtime.shutdown_background();
+    ended
+}
+
+/// A world file, in our form or in the original's.
+fn world(path: &Path) -> Result<World, UnityError> {
+    let text = read(path)?;
+    let name = path.display().to_string();
+    // Which of the two it is meant to be is not said; where neither reads it, the complaints of ours are the stricter ones.
+    World::from_json(&name, &text).or_else(|error| {
+        let original = World::from_l2explorer(&name, &text);
+        original.map(|(world, _)| world).map_err(|_| UnityError::from(error))
+    })
+}
+
+fn maps(path: &Path) -> Result<MapLibrary, UnityError> {
+    Ok(MapLibrary::from_json(&path.display().to_string(), &read(path)?)?)
+}
+
+fn read(path: &Path) -> Result<String, UnityError> {
+    std::fs::read_to_string(path).map_err(|source| UnityError::File {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+async fn serve(mut session: Session, options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
+    let deadline = Instant::now() + options.wait;
+    let mut connection = Connection::open(&options.host, options.port, options.wait, deadline).await?;
+    let greeting = message(session.greeting());
+    let first = connection.greet(greeting, options.wait, deadline).await?;
+    let Some(who) = input(first, journal)? else {
+        return Ok(());
+    };
+    let Some(said) = who.rl_initialization_input else {
+        return Err(UnityError::Incomplete {
+            missing: "an rl_initialization_input",
+        });
+    };
+    journal.note(&format!(
+        "a client at {}: package {:?}, protocol {:?}",
+        connection.address(),
+        said.package_version,
+        said.communication_version
+    ));
+    let mut next = session.begin(&said).map(|()| UnityOutputProto::default());
+    if next.is_err() {
+        // Clients do not look at the answer to who they are; what comes before their first command is lost on them.
+        let reply = connection.exchange(message(UnityOutputProto::default())).await?;
+        if matches!(reply, Reply::Gone(_)) {
+            return next.map(drop);
+        }
+    }
+    loop {
+        let message = match next.and_then(fitting) {
+            Ok(message) => message,
+            Err(error) => {
+                farewell(&mut connection, &error).await;
+                return Err(error);
+            }
+        };
+        let reply = connection.exchange(message).await;
+        let turn = match reply.and_then(|reply| input(reply, journal)) {
+            Ok(None) => return Ok(()),
+            Ok(Some(input)) => match input.rl_input {
+                Some(command) => session.answer(&command),
+                None => Err(UnityError::Incomplete { missing: "an rl_input" }),
+            },
+            Err(error) => Err(error),
+        };
+        for remark in session.take_remarks() {
+            journal.note(&remark);
+        }
+        next = match turn {
+            Ok(Turn::Output(output)) => Ok(*output),
+            Ok(Turn::Quit) => return Ok(()),
+            Err(error) => Err(error),
+        };
+    }
+}
+
+/// What the client says, or nothing at its end.
+fn input(reply: Reply, journal: &mut Journal) -> Result<Option<UnityInputProto>, UnityError> {
+    let message = match reply {
+        Reply::Message(message) => message,
+        Reply::Gone(reason) => {
+            journal.note(&format!("the client is gone ({reason})"));
+            return Ok(None);
+        }
+    };
+    match message.header {
+        Some(HeaderProto { status: WELL, .. }) => {
+            let missing = UnityError::Incomplete {
+                missing: "a unity_input",
+            };
+            message.unity_input.map(Some).ok_or(missing)
+        }
+        Some(HeaderProto { status: END, .. }) => Ok(None),
+        Some(HeaderProto { status, message }) => Err(UnityError::ClientFailed {
+            status,
+            text: message.chars().take(200).collect(),
+        }),
+        None => Err(UnityError::Incomplete { missing: "a header" }),
+    }
+}
+
+/// An output as a message that clients accept.
+fn fitting(output: UnityOutputProto) -> Result<UnityMessageProto, UnityError> {
+    let message = message(output);
+    let found = message.encoded_len();
+    if found > MAX_OUTGOING_BYTES {
+        let limit = MAX_OUTGOING_BYTES;
+        return Err(UnityError::TooLarge { found, limit });
+    }
+    Ok(message)
+}
+
+fn message(output: UnityOutputProto) -> UnityMessageProto {
+    UnityMessageProto {
+        header: Some(HeaderProto {
+            status: WELL,
+            message: String::new(),
+        }),
+        unity_output: Some(output),
+        unity_input: None,
+    }
+}
+
+/// Tells the client why we end; whether it listens is its own affair.
+async fn farewell(connection: &mut Connection, error: &UnityError) {
+    let last = UnityMessageProto {
+        header: Some(HeaderProto {
+            status: FAILED,
+            message: error.to_string(),
+        }),
+        ..UnityMessageProto::default()
+    };
+    let _ = timeout(FAREWELL, connection.exchange(last)).await;
+}

@@ -1,0 +1,176 @@
+//! What a session does with messages beside commands. How they are packed is in `side_channel`, what L2Explorer's do in
+//! `driftworld-env`.
+
+use std::fmt::Write;
+
+use driftworld_env::{Channel, Outgoing, Received, Screenshot};
+
+use super::Session;
+use crate::error::UnityError;
+use crate::observation::png;
+use crate::side_channel::{
+    Payload, SideChannel, engine_setting, environment_parameter, float_property, guid_of, guid_text, records,
+    text_payload,
+};
+
+/// The most messages that are taken in one go.
+const MOST_MESSAGES: usize = 1000;
+
+/// A message of L2Explorer's: its channel, and its text or why there is none.
+pub(super) type Told<'a> = (Channel, Result<&'a str, String>);
+
+impl Session {
+    /// Takes the settings among the messages, and hands back the others.
+    pub(super) fn take_settings<'a>(&mut self, bytes: &'a [u8]) -> Vec<Told<'a>> {
+        let mut told = Vec::new();
+        for (number, record) in records(bytes).enumerate() {
+            if number == MOST_MESSAGES {
+                self.remarks.make(format!(
+                    "messages: found more than {MOST_MESSAGES} in one go; the others are ignored"
+                ));
+                break;
+            }
+            let record = match record {
+                Ok(record) => record,
+                Err(reason) => {
+                    self.remarks
+                        .make(format!("messages: {reason}; it is ignored, and so is what follows"));
+                    break;
+                }
+            };
+            let problem = match SideChannel::from_guid(record.guid) {
+                Some(SideChannel::L2Explorer(channel)) => {
+                    told.push((channel, Payload::new(record.payload).text()));
+                    continue;
+                }
+                Some(SideChannel::Engine) => match engine_setting(record.payload) {
+                    Ok(setting) => Some(setting.remark()),
+                    Err(reason) => Some(format!("engine configuration: {reason}; it is ignored")),
+                },
+                Some(SideChannel::Parameters) => {
+                    let set = environment_parameter(record.payload).and_then(|setting| self.parameters.set(&setting));
+                    set.err().map(|reason| format!("environment parameter: {reason}"))
+                }
+                Some(SideChannel::Properties) => {
+                    let set = float_property(record.payload).and_then(|setting| self.parameters.set(&setting));
+                    set.err().map(|reason| format!("float property: {reason}"))
+                }
+                Some(SideChannel::Analytics) => None,
+                None => Some(format!(
+                    "messages on the unknown channel {} are ignored",
+                    guid_text(record.guid)
+                )),
+            };
+            if let Some(problem) = problem {
+                self.remarks.make(problem);
+            }
+        }
+        told
+    }
+
+    /// Does what messages ask for; says whether the world is at the start of another one.
+    pub(super) fn receive(&mut self, messages: &[Told]) -> Result<bool, UnityError> {
+        let mut is_renewed = false;
+        for (channel, text) in messages {
+            let time = (self.clock)();
+            let received = match text {
+                Ok(text) => self.channels.receive(&mut self.environment, *channel, text, &time),
+                Err(reason) => Received {
+                    messages: vec![self.channels.refuse(*channel, reason, &time)],
+                    ..Received::default()
+                },
+            };
+            if received.reset {
+                self.renew()?;
+                is_renewed = true;
+            }
+            for message in &received.messages {
+                self.send(message);
+            }
+            if let Some(screenshot) = received.screenshot {
+                let written = self.draw(&screenshot);
+                if let Ok(path) = &written {
+                    self.remarks.make(format!("screenshot: {path}"));
+                }
+                let answer = self.channels.answer_screenshot(&screenshot, written.map(drop), &time);
+                self.send(&answer);
+            }
+        }
+        Ok(is_renewed)
+    }
+
+    /// Takes over the world that a message reset to, with what has been set.
+    fn renew(&mut self) -> Result<(), UnityError> {
+        self.start = self.environment.world().clone();
+        self.maps.apply(&mut self.start);
+        if !self.parameters.is_empty() || self.start != *self.environment.world() {
+            self.restart()?;
+        }
+        for warning in self.environment.warnings() {
+            self.remarks.make(format!("world: {warning}"));
+        }
+        Ok(())
+    }
+
+    /// Draws and writes a picture; hands back where it is.
+    fn draw(&mut self, screenshot: &Screenshot) -> Result<String, String> {
+        let camera = self.environment.camera();
+        let Screenshot { width, height, .. } = *screenshot;
+        let frame = self
+            .environment
+            .render(&camera, width, height)
+            .map_err(|error| error.to_string())?;
+        let png = png([width, height], &frame.rgb).map_err(|error| error.to_string())?;
+        let path = self.screenshots.write(&screenshot.filename, &png)?;
+        Ok(path.display().to_string())
+    }
+
+    /// Sends a message of L2Explorer's. What is refused is remarked, too: the original client does not look at answers.
+    pub(super) fn send(&mut self, message: &Outgoing) {
+        if let ("error", Some(texts)) = (message.action, &message.payload) {
+            let texts: Vec<&str> = texts
+                .as_array()
+                .into_iter()
+                .flatten()
+                .filter_map(|text| text.as_str())
+                .collect();
+            self.remarks.make(format!(
+                "{} channel: a message was refused: {}",
+                message.channel.name(),
+                texts.join("; ")
+            ));
+        }
+        let text = ascii(&message.to_json());
+        self.outbox.push(guid_of(message.channel.guid()), text_payload(&text));
+    }
+}
+
+/// A JSON text without letters beyond ASCII, which old clients do not decode.
+fn ascii(json: &str) -> String {
+    let mut text = String::with_capacity(json.len());
+    for letter in json.chars() {
+        if letter.is_ascii() {
+            text.push(letter);
+        } else {
+            let mut units = [0; 2];
+            for unit in letter.encode_utf16(&mut units) {
+                write!(text, "\\u{unit:04x}").expect("writing to a String does not fail");
+            }
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn json_in_ascii_says_the_same() {
+        let json = r#"{"a":"20° – 𝄞\n"}"#;
+        let text = ascii(json);
+        assert!(text.is_ascii(), "{text}");
+        let read = |text: &str| serde_json::from_str::<serde_json::Value>(text).expect("it is JSON still");
+        assert_eq!(read(&text), read(json));
+    }
+}

@@ -1,0 +1,290 @@
+//! [`Session`]: what a world answers to what a client says. How messages beside commands are taken is in `messages.rs`; how all
+//! of it travels, in `serve.rs`.
+
+mod messages;
+
+use std::collections::BTreeMap;
+
+use driftworld_env::{Action, Channels, Environment, Event, Step};
+use driftworld_spec::World;
+use driftworld_spec::maps::MapLibrary;
+use prost::Message;
+
+use crate::behavior::{ACTION_LENGTH, BEHAVIOR, behavior};
+use crate::client::Client;
+use crate::connection::MAX_OUTGOING_BYTES;
+use crate::error::UnityError;
+use crate::observation::{PictureForm, observations};
+use crate::outbox::Outbox;
+use crate::parameters::Parameters;
+use crate::protocol::unity_rl_input_proto::ListAgentActionProto;
+use crate::protocol::unity_rl_output_proto::ListAgentInfoProto;
+use crate::protocol::{
+    AgentInfoProto, BrainParametersProto, CommandProto, UnityOutputProto, UnityRlCapabilitiesProto,
+    UnityRlInitializationInputProto, UnityRlInitializationOutputProto, UnityRlInputProto, UnityRlOutputProto,
+};
+use crate::remarks::Remarks;
+use crate::screenshots::Screenshots;
+
+/// The version of the protocol: every client of version 1 accepts the first, and what newer ones can do beyond it they say.
+const COMMUNICATION_VERSION: &str = "1.0.0";
+
+/// Bytes of a message that are neither observations nor messages beside them.
+const ENVELOPE: usize = 4096;
+
+/// What a session begins with.
+#[derive(Clone, Debug, Default)]
+pub struct Setup {
+    /// The world until the client resets to one of its own.
+    pub world: World,
+    /// Layouts that take the place of the built-in ones.
+    pub maps: MapLibrary,
+    /// How pictures travel.
+    pub pictures: PictureForm,
+}
+
+/// What comes of a command.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Turn {
+    /// What happened.
+    Output(Box<UnityOutputProto>),
+    /// The client is done.
+    Quit,
+}
+
+/// One client's world.
+///
+/// # Example
+/// ```
+/// use driftworld_unity::protocol::{CommandProto, UnityRlInitializationInputProto, UnityRlInputProto};
+/// use driftworld_unity::{BEHAVIOR, Screenshots, Session, Setup, Turn};
+/// let mut session = Session::new(Setup::default(), Screenshots::new("screenshots"), || "2026-01-01T00:00:00Z".to_owned())?;
+/// session.begin(&UnityRlInitializationInputProto {
+///     communication_version: "1.0.0".to_owned(),
+///     package_version: "0.16.0".to_owned(),
+///     ..UnityRlInitializationInputProto::default()
+/// })?;
+/// let reset = UnityRlInputProto { command: CommandProto::Reset.into(), ..UnityRlInputProto::default() };
+/// let Turn::Output(output) = session.answer(&reset)? else { panic!("a reset does not end a session") };
+/// let agent = &output.rl_output.expect("there is an agent").agent_infos[BEHAVIOR].value[0];
+/// assert_eq!(agent.observations[1].shape, [84, 84, 3]);
+/// # Ok::<(), driftworld_unity::UnityError>(())
+/// ```
+pub struct Session {
+    environment: Environment,
+    channels: Channels,
+    /// What a reset begins.
+    start: World,
+    maps: MapLibrary,
+    parameters: Parameters,
+    client: Client,
+    pictures: PictureForm,
+    screenshots: Screenshots,
+    clock: Box<dyn Fn() -> String>,
+    /// Episodes since the start of the session.
+    episodes: i32,
+    outbox: Outbox,
+    remarks: Remarks,
+    /// The behaviour and the shapes of observations that the client knows.
+    told: Option<(BrainParametersProto, Vec<Vec<i32>>)>,
+}
+
+impl Session {
+    /// A session whose world is at its start. `clock` tells the time in ISO 8601, for messages.
+    ///
+    /// # Errors
+    /// [`UnityError::Env`] for a world that cannot start; none today.
+    pub fn new(
+        setup: Setup,
+        screenshots: Screenshots,
+        clock: impl Fn() -> String + 'static,
+    ) -> Result<Self, UnityError> {
+        let Setup { world, maps, pictures } = setup;
+        // A world that was written down while it ran is taken back to its start: clients begin episodes.
+        let mut start = Environment::new(world)?.world().clone();
+        maps.apply(&mut start);
+        Ok(Self {
+            environment: Environment::new(start.clone())?,
+            channels: Channels::new(&start),
+            start,
+            maps,
+            parameters: Parameters::default(),
+            client: Client::default(),
+            pictures,
+            screenshots,
+            clock: Box::new(clock),
+            episodes: 0,
+            outbox: Outbox::default(),
+            remarks: Remarks::default(),
+            told: None,
+        })
+    }
+
+    /// The first thing said to a client.
+    pub fn greeting(&self) -> UnityOutputProto {
+        UnityOutputProto {
+            rl_output: None,
+            rl_initialization_output: Some(UnityRlInitializationOutputProto {
+                name: "L2Explorer".to_owned(),
+                communication_version: COMMUNICATION_VERSION.to_owned(),
+                brain_parameters: Vec::new(),
+                package_version: format!("driftworld {}", env!("CARGO_PKG_VERSION")),
+                capabilities: Some(UnityRlCapabilitiesProto {
+                    base_rl_capabilities: true,
+                    hybrid_actions: true,
+                    ..UnityRlCapabilitiesProto::default()
+                }),
+            }),
+        }
+    }
+
+    /// Hears who the client is.
+    ///
+    /// # Errors
+    /// [`UnityError::ClientVersion`] for a client of another major version of the protocol.
+    pub fn begin(&mut self, said: &UnityRlInitializationInputProto) -> Result<(), UnityError> {
+        self.client = Client::new(said)?;
+        if said.seed != 0 {
+            self.remarks.make(format!(
+                "seed {}: not used, the chance of a world is its own: the same world and actions give the same episode",
+                said.seed
+            ));
+        }
+        Ok(())
+    }
+
+    /// Does what the client says.
+    ///
+    /// Settings come first, then the command RESET, then messages, then the command STEP: what is set counts for the reset beside
+    /// it, and what is put into a world goes into the new one. A STEP whose messages reset to another world shows its start; the
+    /// action was meant for the old one.
+    ///
+    /// # Errors
+    /// [`UnityError`] for commands and actions that there are not, and for actions that cannot be carried out. Messages that
+    /// cannot be understood are answered, or remarked.
+    pub fn answer(&mut self, input: &UnityRlInputProto) -> Result<Turn, UnityError> {
+        let Ok(command) = CommandProto::try_from(input.command) else {
+            return Err(UnityError::UnknownCommand { found: input.command });
+        };
+        let action = action(&input.agent_actions)?;
+        let messages = self.take_settings(&input.side_channel);
+        if command == CommandProto::Reset {
+            self.restart()?;
+        }
+        let is_renewed = self.receive(&messages)?;
+        let agents = match command {
+            CommandProto::Quit => return Ok(Turn::Quit),
+            CommandProto::Step if !is_renewed => self.step(action)?,
+            CommandProto::Step | CommandProto::Reset => {
+                self.episodes += 1;
+                vec![self.decision(0.0, 0)?]
+            }
+        };
+        Ok(Turn::Output(Box::new(self.output(agents))))
+    }
+
+    /// What the user of the executable should know since the last time, a line each.
+    pub fn take_remarks(&mut self) -> Vec<String> {
+        self.remarks.take()
+    }
+
+    /// Begins the world anew, with what has been set.
+    fn restart(&mut self) -> Result<(), UnityError> {
+        let mut world = self.start.clone();
+        self.parameters.apply(&mut world);
+        Ok(self.environment.reset(world)?)
+    }
+
+    /// Carries out an action; an episode that it ends is followed by the start of the next one, as Unity has it.
+    fn step(&mut self, action: [f64; ACTION_LENGTH]) -> Result<Vec<AgentInfoProto>, UnityError> {
+        let step = self.environment.step(Action::Continuous(action))?;
+        let time = (self.clock)();
+        for message in self.channels.after_step(&self.environment, &step, &time) {
+            self.send(&message);
+        }
+        let mut agent = self.decision(step.reward, collected(&step))?;
+        if !step.ended() {
+            return Ok(vec![agent]);
+        }
+        agent.done = true;
+        agent.max_step_reached = step.truncated;
+        self.restart()?;
+        self.episodes += 1;
+        Ok(vec![agent, self.decision(0.0, 0)?])
+    }
+
+    /// The agent as it is now, before its next action.
+    fn decision(&mut self, reward: f64, collected: usize) -> Result<AgentInfoProto, UnityError> {
+        let mut state = vec![collected as f32];
+        state.extend(self.environment.state_vector());
+        let (pictures, client) = (self.pictures, self.client);
+        Ok(AgentInfoProto {
+            // Clients take no infinity.
+            reward: (reward as f32).clamp(f32::MIN, f32::MAX),
+            done: false,
+            max_step_reached: false,
+            id: self.episodes,
+            observations: observations(self.environment.observe(), state, pictures, client)?,
+        })
+    }
+
+    fn output(&mut self, agents: Vec<AgentInfoProto>) -> UnityOutputProto {
+        let behavior = behavior(self.environment.world(), self.client);
+        let shapes = agents.last().map_or_else(Vec::new, |agent| {
+            let shapes = agent.observations.iter().map(|observation| observation.shape.clone());
+            shapes.collect()
+        });
+        let known = (behavior, shapes);
+        let news = (self.told.as_ref() != Some(&known)).then(|| UnityRlInitializationOutputProto {
+            brain_parameters: vec![known.0.clone()],
+            ..UnityRlInitializationOutputProto::default()
+        });
+        self.told = Some(known);
+        let mut rl_output = UnityRlOutputProto {
+            agent_infos: BTreeMap::from([(BEHAVIOR.to_owned(), ListAgentInfoProto { value: agents })]),
+            side_channel: Vec::new(),
+        };
+        let room = MAX_OUTGOING_BYTES.saturating_sub(rl_output.encoded_len() + ENVELOPE);
+        rl_output.side_channel = self.outbox.take(room);
+        let left_out = self.outbox.take_left_out();
+        if left_out > 0 {
+            self.remarks.make(format!(
+                "{left_out} messages were left out: they do not fit beside the observations"
+            ));
+        }
+        UnityOutputProto {
+            rl_output: Some(rl_output),
+            rl_initialization_output: news,
+        }
+    }
+}
+
+/// The one agent's action; without any, it does nothing.
+fn action(actions: &BTreeMap<String, ListAgentActionProto>) -> Result<[f64; ACTION_LENGTH], UnityError> {
+    let mut numbers = [0.0; ACTION_LENGTH];
+    for (behavior, ListAgentActionProto { value }) in actions {
+        let ([action], BEHAVIOR) = (value.as_slice(), behavior.as_str()) else {
+            return Err(UnityError::WrongAgent {
+                behavior: behavior.chars().take(60).collect(),
+                found: value.len(),
+            });
+        };
+        let found = if action.continuous_actions.is_empty() {
+            &action.vector_actions
+        } else {
+            &action.continuous_actions
+        };
+        if found.len() != ACTION_LENGTH {
+            return Err(UnityError::ActionLength { found: found.len() });
+        }
+        numbers = std::array::from_fn(|place| f64::from(found[place]));
+    }
+    Ok(numbers)
+}
+
+/// The object that a step collected, by its number from 1: the last that paid or was destroyed; 0 for none.
+fn collected(step: &Step) -> usize {
+    let is_collected = |event: &&Event| event.destroyed || event.reward != 0.0;
+    let last = step.events.iter().rfind(is_collected);
+    last.map_or(0, |event| event.object + 1)
+}
