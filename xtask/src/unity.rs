@@ -2,6 +2,7 @@
 //! What they ask of it stands in `unity/tests/clients/`.
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use crate::error::XtaskError;
 use crate::process::{cargo, output, run};
@@ -51,6 +52,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
             install_wheel(workspace, &usual, environment)?;
             // Said here: a test that misses the package would be skipped.
             run(environment.python(&["-c", "import driftworld, gymnasium"]))?;
+            installed_by_the_command(workspace, environment)?;
             python = output(environment.python(&["--version"]))?;
         }
         pytest(workspace, environment)?;
@@ -79,14 +81,30 @@ fn environment(workspace: &Workspace, interpreter: &Path, client: &str) -> Resul
     )
 }
 
+/// Has the wheel's command put the executable where the original client finds it: it has to know it for what it is.
+fn installed_by_the_command(workspace: &Workspace, environment: &VirtualEnvironment) -> Result<(), XtaskError> {
+    let mut install = Command::new(environment.program("driftworld"));
+    install
+        .args(["unity", "install"])
+        .arg(workspace.target.join("python").join("l2explorer"))
+        .arg("--executable")
+        .arg(executable(workspace));
+    run(install)
+}
+
+/// Where Cargo puts the optimised executable.
+fn executable(workspace: &Workspace) -> PathBuf {
+    let name = format!("driftworld-unity{}", std::env::consts::EXE_SUFFIX);
+    workspace.target.join("release").join(name)
+}
+
 /// Runs the tests with a client, on the optimised executable.
 fn pytest(workspace: &Workspace, environment: &VirtualEnvironment) -> Result<(), XtaskError> {
     // What these old packages are warned of is no news.
     let mut pytest = environment.python(&["-m", "pytest", "--quiet", "--disable-warnings", TESTS]);
-    let name = format!("driftworld-unity{}", std::env::consts::EXE_SUFFIX);
     pytest
         .current_dir(workspace.root.join(FOLDER))
-        .env(EXECUTABLE, workspace.target.join("release").join(name));
+        .env(EXECUTABLE, executable(workspace));
     run(pytest)
 }
 
