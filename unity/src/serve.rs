@@ -32,18 +32,18 @@ const FAREWELL: Duration = Duration::from_millis(500);
 /// before. A client that ends or goes away is no error.
 pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
     let setup = Setup {
-        world: options.world.as_deref().map_or_else(|| Ok(World::default()), world)?,
+        world: match &options.world {
+            Some(path) => world(path, journal)?,
+            None => World::default(),
+        },
         maps: options
             .maps
             .as_deref()
             .map_or_else(|| Ok(MapLibrary::default()), maps)?,
         pictures: options.pictures,
     };
-    let clock = || {
-        jiff::Timestamp::now()
-            .round(jiff::Unit::Millisecond)
-            .map_or_else(|_| String::new(), |now| now.to_string())
-    };
+    // Always with three digits of the second: readers of one fixed form do not take fewer.
+    let clock = || format!("{:.3}", jiff::Timestamp::now());
     let session = Session::new(setup, Screenshots::new(&options.screenshots), clock)?;
     let runtime = runtime::Builder::new_current_thread()
         .enable_all()
@@ -58,14 +58,18 @@ pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
     ended
 }
 
-/// A world file, in our form or in the original's.
-fn world(path: &Path) -> Result<World, UnityError> {
+/// A world file, in our form or in the original's. What the original's form lets pass is remarked.
+fn world(path: &Path, journal: &mut Journal) -> Result<World, UnityError> {
     let text = read(path)?;
     let name = path.display().to_string();
     // Which of the two it is meant to be is not said; where neither reads it, the complaints of ours are the stricter ones.
     World::from_json(&name, &text).or_else(|error| {
-        let original = World::from_l2explorer(&name, &text);
-        original.map(|(world, _)| world).map_err(|_| UnityError::from(error))
+        let (world, warnings) = World::from_l2explorer(&name, &text).map_err(|_| UnityError::from(error))?;
+        journal.note(&format!("{name}: read as a reset file of L2Explorer"));
+        for warning in warnings {
+            journal.note(&warning.to_string());
+        }
+        Ok(world)
     })
 }
 
