@@ -41,9 +41,10 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
         };
     // Before anything is built: these take seconds.
     let project = workspace.root.join("python");
-    for arguments in [&["-m", "ruff", "check", ".", "../examples/python"][..], &["-m", "mypy"]] {
+    let linted = [".", "../examples/python", "../unity/tests/clients"];
+    for (arguments, folders) in [(&["-m", "ruff", "check"][..], &linted[..]), (&["-m", "mypy"], &[])] {
         let mut check = newest.python(arguments);
-        check.current_dir(&project);
+        check.args(folders).current_dir(&project);
         run(check)?;
     }
     let wheel = newcomer(workspace, &interpreter)?;
