@@ -90,13 +90,14 @@ impl<'a> Document<'a> {
     }
 
     fn error(&self, mut problems: Vec<Problem>) -> SpecError {
-        self.with_ast(|root| {
-            for problem in &mut problems {
-                let at_key = matches!(problem.code, "spec/unknown-key" | "spec/name");
-                let offset = offset_of(root, &problem.pointer, at_key);
-                (problem.line, problem.column) = line_and_column(self.text, offset);
-            }
+        let offsets = self.with_ast(|root| {
+            let at_key = |problem: &Problem| matches!(problem.code, "spec/unknown-key" | "spec/name");
+            let offset = |problem: &Problem| offset_of(root, &problem.pointer, at_key(problem));
+            problems.iter().map(offset).collect::<Vec<usize>>()
         });
+        for (problem, place) in problems.iter_mut().zip(lines_and_columns(self.text, &offsets)) {
+            (problem.line, problem.column) = place;
+        }
         problems.sort_by(|a, b| (a.line, a.column, &a.pointer).cmp(&(b.line, b.column, &b.pointer)));
         problems.dedup();
         SpecError::Document {
@@ -105,9 +106,13 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Line and column of the value of a pointer, or of its nearest parent that is there.
-    pub(crate) fn place(&self, pointer: &str) -> (usize, usize) {
-        line_and_column(self.text, self.with_ast(|root| offset_of(root, pointer, false)))
+    /// Lines and columns of the values of pointers, or of their nearest parents that are there.
+    pub(crate) fn places(&self, pointers: &[&str]) -> Vec<(usize, usize)> {
+        let offset = |root: &ast::Value, pointer: &str| offset_of(root, pointer, false);
+        let mut offsets =
+            self.with_ast(|root| pointers.iter().map(|pointer| offset(root, pointer)).collect::<Vec<_>>());
+        offsets.resize(pointers.len(), 0);
+        lines_and_columns(self.text, &offsets)
     }
 
     /// Hands over the syntax tree with ranges. The text has been parsed before, so there is one.
@@ -314,13 +319,25 @@ fn range_of(value: &ast::Value) -> Range<usize> {
     range.start..range.end
 }
 
-fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
-    let before = &text[..text.floor_char_boundary(offset)];
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-    (
-        before.matches('\n').count() + 1,
-        before[line_start..].chars().count() + 1,
-    )
+/// Lines and columns of offsets, in one walk through the text however many they are.
+fn lines_and_columns(text: &str, offsets: &[usize]) -> Vec<(usize, usize)> {
+    let mut order: Vec<usize> = (0..offsets.len()).collect();
+    order.sort_by_key(|index| offsets[*index]);
+    let mut places = vec![(1, 1); offsets.len()];
+    let (mut at, mut line, mut column) = (0, 1, 1);
+    for index in order {
+        let offset = text.floor_char_boundary(offsets[index]);
+        for letter in text[at..offset].chars() {
+            (line, column) = if letter == '\n' {
+                (line + 1, 1)
+            } else {
+                (line, column + 1)
+            };
+        }
+        at = offset;
+        places[index] = (line, column);
+    }
+    places
 }
 
 pub(crate) fn pointer_of(path: &serde_path_to_error::Path) -> String {
@@ -377,6 +394,10 @@ mod tests {
 
     #[test]
     fn columns_count_characters() {
-        assert_eq!(line_and_column("\"ä\": x", "\"ä\": ".len()), (1, 6));
+        assert_eq!(lines_and_columns("\"ä\": x", &["\"ä\": ".len()]), [(1, 6)]);
+        assert_eq!(
+            lines_and_columns("a\nbc\n\nd", &[7, 0, 3, 3, 99, 1]),
+            [(4, 2), (1, 1), (2, 2), (2, 2), (4, 2), (1, 2)]
+        );
     }
 }
