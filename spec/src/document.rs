@@ -1,5 +1,6 @@
 //! A JSON text with a memory of where each value stands. What is wrong with a value is said by `schema.rs` and the types.
 
+use std::collections::HashMap;
 use std::fmt;
 use std::ops::Range;
 
@@ -90,13 +91,15 @@ impl<'a> Document<'a> {
     }
 
     fn error(&self, mut problems: Vec<Problem>) -> SpecError {
-        self.with_ast(|root| {
-            for problem in &mut problems {
-                let at_key = matches!(problem.code, "spec/unknown-key" | "spec/name");
-                let offset = offset_of(root, &problem.pointer, at_key);
-                (problem.line, problem.column) = line_and_column(self.text, offset);
-            }
+        let offsets = self.with_ast(|root| {
+            let at_key = |problem: &Problem| matches!(problem.code, "spec/unknown-key" | "spec/name");
+            let mut offsets = Offsets::new(root);
+            let offset = |problem: &Problem| offsets.of(&problem.pointer, at_key(problem));
+            problems.iter().map(offset).collect::<Vec<usize>>()
         });
+        for (problem, place) in problems.iter_mut().zip(lines_and_columns(self.text, &offsets)) {
+            (problem.line, problem.column) = place;
+        }
         problems.sort_by(|a, b| (a.line, a.column, &a.pointer).cmp(&(b.line, b.column, &b.pointer)));
         problems.dedup();
         SpecError::Document {
@@ -105,9 +108,15 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Line and column of the value of a pointer, or of its nearest parent that is there.
-    pub(crate) fn place(&self, pointer: &str) -> (usize, usize) {
-        line_and_column(self.text, self.with_ast(|root| offset_of(root, pointer, false)))
+    /// Lines and columns of the values of pointers, or of their nearest parents that are there.
+    pub(crate) fn places(&self, pointers: &[&str]) -> Vec<(usize, usize)> {
+        let mut offsets = self.with_ast(|root| {
+            let mut offsets = Offsets::new(root);
+            let offset = |pointer: &&str| offsets.of(pointer, false);
+            pointers.iter().map(offset).collect::<Vec<usize>>()
+        });
+        offsets.resize(pointers.len(), 0);
+        lines_and_columns(self.text, &offsets)
     }
 
     /// Hands over the syntax tree with ranges. The text has been parsed before, so there is one.
@@ -275,19 +284,30 @@ fn duplicate_keys(value: &ast::Value, pointer: &mut String, problems: &mut Vec<P
     }
 }
 
-/// The byte at which the value of a pointer begins, or its key; the nearest parent if the value is absent.
-fn offset_of(root: &ast::Value, pointer: &str, at_key: bool) -> usize {
-    let mut value = root;
-    let mut offset = range_of(root).start;
-    for token in pointer.split('/').skip(1) {
-        let token = token.replace("~1", "/").replace("~0", "~");
-        let next = match value {
-            ast::Value::Object(object) => object
-                .properties
-                .iter()
-                .rev()
-                .find(|property| property.name.as_str() == token)
-                .map(|property| {
+/// The most keys of an object that are looked through one by one; those of a wider one are listed once.
+const WIDE: usize = 32;
+
+/// Where the values of pointers begin.
+struct Offsets<'r, 't> {
+    root: &'r ast::Value<'t>,
+    /// The properties of wide objects by their keys: of two of one key the last.
+    wide: HashMap<*const ast::Object<'t>, HashMap<&'r str, &'r ast::ObjectProp<'t>>>,
+}
+
+impl<'r, 't> Offsets<'r, 't> {
+    fn new(root: &'r ast::Value<'t>) -> Self {
+        let wide = HashMap::new();
+        Self { root, wide }
+    }
+
+    /// Of the value of a pointer, or of its nearest parent that is there; of the key before it if wished.
+    fn of(&mut self, pointer: &str, at_key: bool) -> usize {
+        let mut value = self.root;
+        let mut offset = range_of(value).start;
+        for token in pointer.split('/').skip(1) {
+            let token = token.replace("~1", "/").replace("~0", "~");
+            let next = match value {
+                ast::Value::Object(object) => self.property(object, &token).map(|property| {
                     let start = if at_key {
                         property.range.start
                     } else {
@@ -295,17 +315,36 @@ fn offset_of(root: &ast::Value, pointer: &str, at_key: bool) -> usize {
                     };
                     (start, &property.value)
                 }),
-            ast::Value::Array(array) => token
-                .parse::<usize>()
-                .ok()
-                .and_then(|index| array.elements.get(index))
-                .map(|element| (range_of(element).start, element)),
-            _ => None,
-        };
-        let Some(next) = next else { break };
-        (offset, value) = next;
+                ast::Value::Array(array) => token
+                    .parse::<usize>()
+                    .ok()
+                    .and_then(|index| array.elements.get(index))
+                    .map(|element| (range_of(element).start, element)),
+                _ => None,
+            };
+            let Some(next) = next else { break };
+            (offset, value) = next;
+        }
+        offset
     }
-    offset
+
+    fn property(&mut self, object: &'r ast::Object<'t>, key: &str) -> Option<&'r ast::ObjectProp<'t>> {
+        let properties = &object.properties;
+        if properties.len() <= WIDE {
+            return properties.iter().rev().find(|property| property.name.as_str() == key);
+        }
+        let listed = || {
+            properties
+                .iter()
+                .map(|property| (property.name.as_str(), property))
+                .collect()
+        };
+        self.wide
+            .entry(std::ptr::from_ref(object))
+            .or_insert_with(listed)
+            .get(key)
+            .copied()
+    }
 }
 
 fn range_of(value: &ast::Value) -> Range<usize> {
@@ -314,13 +353,25 @@ fn range_of(value: &ast::Value) -> Range<usize> {
     range.start..range.end
 }
 
-fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
-    let before = &text[..text.floor_char_boundary(offset)];
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-    (
-        before.matches('\n').count() + 1,
-        before[line_start..].chars().count() + 1,
-    )
+/// Lines and columns of offsets, in one walk through the text however many they are.
+fn lines_and_columns(text: &str, offsets: &[usize]) -> Vec<(usize, usize)> {
+    let mut order: Vec<usize> = (0..offsets.len()).collect();
+    order.sort_by_key(|index| offsets[*index]);
+    let mut places = vec![(1, 1); offsets.len()];
+    let (mut at, mut line, mut column) = (0, 1, 1);
+    for index in order {
+        let offset = text.floor_char_boundary(offsets[index]);
+        for letter in text[at..offset].chars() {
+            (line, column) = if letter == '\n' {
+                (line + 1, 1)
+            } else {
+                (line, column + 1)
+            };
+        }
+        at = offset;
+        places[index] = (line, column);
+    }
+    places
 }
 
 pub(crate) fn pointer_of(path: &serde_path_to_error::Path) -> String {
@@ -340,6 +391,21 @@ mod tests {
     fn check(text: &str, expected: &str) {
         let error = Document::parse("d.json", text).err().map(|error| error.to_string());
         assert_eq!(error.as_deref(), Some(expected), "{text}");
+    }
+
+    #[test]
+    fn keys_of_wide_objects_are_found_as_those_of_narrow_ones_are() {
+        for width in [1, WIDE, WIDE + 1, 1000] {
+            let keys: Vec<String> = (0..width).map(|key| format!("\"k{key}\": 1")).collect();
+            let text = format!("{{\n{}\n}}", keys.join(",\n"));
+            let document = Document::parse("wide.json", &text).expect("it is JSON");
+            let last = format!("/k{}", width - 1);
+            let column = format!("\"k{}\": ", width - 1).len() + 1;
+            assert_eq!(
+                document.places(&["/k0", &last, "/none"]),
+                [(2, 7), (width + 1, column), (1, 1)]
+            );
+        }
     }
 
     #[test]
@@ -377,6 +443,10 @@ mod tests {
 
     #[test]
     fn columns_count_characters() {
-        assert_eq!(line_and_column("\"ä\": x", "\"ä\": ".len()), (1, 6));
+        assert_eq!(lines_and_columns("\"ä\": x", &["\"ä\": ".len()]), [(1, 6)]);
+        assert_eq!(
+            lines_and_columns("a\nbc\n\nd", &[7, 0, 3, 3, 99, 1]),
+            [(4, 2), (1, 1), (2, 2), (2, 2), (4, 2), (1, 2)]
+        );
     }
 }

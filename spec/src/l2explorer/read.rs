@@ -74,8 +74,10 @@ impl Object {
 impl Document<'_> {
     /// What the reader remarked, in the order of the text.
     pub(super) fn warnings(&self, remarks: impl IntoIterator<Item = (String, String)>) -> Vec<Warning> {
-        let warning = |(pointer, text): (String, String)| {
-            let (line, column) = self.place(&pointer);
+        let remarks: Vec<(String, String)> = remarks.into_iter().collect();
+        let pointers: Vec<&str> = remarks.iter().map(|(pointer, _)| pointer.as_str()).collect();
+        let places = self.places(&pointers);
+        let warning = |((pointer, text), (line, column))| {
             let name = self.name.to_owned();
             Warning {
                 name,
@@ -85,7 +87,7 @@ impl Document<'_> {
                 text,
             }
         };
-        let mut warnings: Vec<Warning> = remarks.into_iter().map(warning).collect();
+        let mut warnings: Vec<Warning> = remarks.into_iter().zip(places).map(warning).collect();
         warnings.sort_by_key(|warning| (warning.line, warning.column));
         warnings
     }

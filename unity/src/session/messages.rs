@@ -16,6 +16,10 @@ use crate::side_channel::{
 /// The most messages that are taken in one go.
 const MOST_MESSAGES: usize = 1000;
 
+/// The most values in the JSON text of one message: a world of ten thousand objects has half as many. Texts of little but
+/// brackets take up to two thousand times their length in memory before they are found to say nothing.
+const MOST_VALUES: usize = 400_000;
+
 /// A message of L2Explorer's: its channel, and its text or why there is none.
 pub(super) type Told<'a> = (Channel, Result<&'a str, String>);
 
@@ -40,7 +44,7 @@ impl Session {
             };
             let problem = match SideChannel::from_guid(record.guid) {
                 Some(SideChannel::L2Explorer(channel)) => {
-                    told.push((channel, Payload::new(record.payload).text()));
+                    told.push((channel, Payload::new(record.payload).text().and_then(bounded)));
                     continue;
                 }
                 Some(SideChannel::Engine) => match engine_setting(record.payload) {
@@ -143,6 +147,15 @@ impl Session {
         let text = ascii(&message.to_json());
         self.outbox.push(guid_of(message.channel.guid()), text_payload(&text));
     }
+}
+
+/// The text, unless it has more values than messages may have. Commas and brackets within texts count, too.
+fn bounded(text: &str) -> Result<&str, String> {
+    let found = text.bytes().filter(|byte| matches!(byte, b',' | b'[' | b'{')).count();
+    if found > MOST_VALUES {
+        return Err(format!("found about {found} values, expected at most {MOST_VALUES}"));
+    }
+    Ok(text)
 }
 
 /// A JSON text without letters beyond ASCII, which old clients do not decode.

@@ -1,0 +1,75 @@
+//! Every error of this crate with its code, its exit status and its exact words. That the advice in them helps is shown where
+//! each comes about: in `executable`.
+
+use std::collections::BTreeSet;
+use std::io;
+
+use driftworld_env::EnvError;
+use driftworld_spec::World;
+use driftworld_unity::{Request, UnityError};
+
+fn errors() -> Vec<UnityError> {
+    let address = || "127.0.0.1:5005".to_owned();
+    let arguments = Request::parse(&["--wait".to_owned(), "soon".to_owned()]);
+    let document = World::from_json("world.json", "{ \"max_steps\": -3 }");
+    vec![
+        arguments.expect_err("soon is no number"),
+        UnityError::File {
+            path: "world.json".into(),
+            source: io::Error::new(io::ErrorKind::PermissionDenied, "permission denied"),
+        },
+        document.expect_err("steps are counted from 0").into(),
+        UnityError::NoClient {
+            address: address(),
+            seconds: 60.0,
+        },
+        UnityError::NoAddress {
+            address: "not a machine:5005".to_owned(),
+        },
+        UnityError::NotAClient {
+            address: address(),
+            reason: "silence for 60 s".to_owned(),
+        },
+        UnityError::ClientVersion {
+            found: "2.0.0".to_owned(),
+        },
+        UnityError::Unreadable {
+            reason: "invalid varint".to_owned(),
+            limit: 50_331_648,
+        },
+        UnityError::Incomplete { missing: "a header" },
+        UnityError::UnknownCommand { found: 7 },
+        UnityError::ClientFailed {
+            status: 500,
+            text: "words".to_owned(),
+        },
+        UnityError::WrongAgent {
+            behavior: "Walker?team=0".to_owned(),
+            found: 2,
+        },
+        UnityError::ActionLength { found: 2 },
+        UnityError::TooLarge {
+            found: 9_437_482,
+            limit: 4_194_304,
+        },
+        UnityError::Picture {
+            reason: "out of memory".to_owned(),
+        },
+        EnvError::NoSuchAction { found: 7, last: 6 }.into(),
+    ]
+}
+
+#[test]
+fn every_error_has_its_message() {
+    let errors = errors();
+    let line = |error: &UnityError| format!("{} (exit {}): {error}", error.code(), error.exit_code());
+    let said: Vec<String> = errors.iter().map(line).collect();
+    insta::assert_snapshot!(said.join("\n"));
+    let covered: BTreeSet<&str> = errors.iter().map(UnityError::code).collect();
+    let all: BTreeSet<&str> = include_str!("../src/error.rs")
+        .split('"')
+        .filter(|word| word.starts_with("unity/") && word.len() > 6)
+        .collect();
+    assert_eq!(covered, all, "every code has a case here");
+    assert_eq!(covered.len(), errors.len(), "no code stands for two");
+}

@@ -1,0 +1,266 @@
+//! What a session is told by who means harm, or by who is merely broken: it is refused within limits, and the session goes on. How
+//! long a message may be on its way is in `executable`.
+
+mod recorded;
+
+use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
+use driftworld_unity::protocol::{
+    AgentActionProto, CommandProto, UnityMessageProto, UnityOutputProto, UnityRlInputProto,
+};
+use driftworld_unity::{BEHAVIOR, Screenshots, Session, Setup, Turn, UnityError};
+use proptest::prelude::*;
+use prost::Message;
+use recorded::{RELEASES, messages};
+
+/// The Reset channel's identifier, as it travels.
+const RESET: [u8; 16] = [
+    0x70, 0x0a, 0x1f, 0x62, 0x87, 0x4f, 0xea, 0x11, 0xa6, 0xbf, 0x78, 0x4f, 0x43, 0x87, 0xd1, 0xf7,
+];
+
+/// What gRPC servers accept where nobody says otherwise.
+const MOST_ANSWERED: usize = 4 << 20;
+
+/// A session in a small world, whose screenshots go nowhere that is kept.
+fn session() -> (Session, tempfile::TempDir) {
+    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let mut setup = Setup::default();
+    setup.world.agent_params.observation_size = 8;
+    let clock = || "2026-01-01T00:00:00Z".to_owned();
+    let session = Session::new(setup, Screenshots::new(folder.path()), clock).expect("the world can start");
+    (session, folder)
+}
+
+fn record(guid: [u8; 16], length: i32, payload: &[u8]) -> Vec<u8> {
+    [guid.as_slice(), &length.to_le_bytes(), payload].concat()
+}
+
+/// A message on the Reset channel that is as long as it says.
+fn told(text: &str) -> Vec<u8> {
+    let payload = [&(text.len() as i32).to_le_bytes(), text.as_bytes()].concat();
+    record(RESET, payload.len() as i32, &payload)
+}
+
+fn step_with(side_channel: Vec<u8>) -> UnityRlInputProto {
+    UnityRlInputProto {
+        side_channel,
+        ..UnityRlInputProto::default()
+    }
+}
+
+fn answer(session: &mut Session, input: &UnityRlInputProto) -> Result<UnityOutputProto, UnityError> {
+    match session.answer(input)? {
+        Turn::Output(output) => {
+            assert!(output.encoded_len() < MOST_ANSWERED, "{} bytes", output.encoded_len());
+            Ok(*output)
+        }
+        Turn::Quit => Ok(UnityOutputProto::default()),
+    }
+}
+
+fn actions(lists: &[(&str, &[&[f32]])]) -> UnityRlInputProto {
+    let action = |numbers: &&[f32]| AgentActionProto {
+        vector_actions: numbers.to_vec(),
+        continuous_actions: Vec::new(),
+    };
+    let entry = |(behavior, agents): &(&str, &[&[f32]])| {
+        let value = agents.iter().map(action).collect();
+        ((*behavior).to_owned(), ListAgentActionProto { value })
+    };
+    UnityRlInputProto {
+        agent_actions: lists.iter().map(entry).collect(),
+        ..UnityRlInputProto::default()
+    }
+}
+
+/// The session answers a reset and a step, whatever it was told before.
+fn assert_well(session: &mut Session) {
+    let reset = UnityRlInputProto {
+        command: CommandProto::Reset.into(),
+        ..UnityRlInputProto::default()
+    };
+    for command in [reset, actions(&[(BEHAVIOR, &[&[1.0, 0.0, 0.0]])])] {
+        let output = answer(session, &command).expect("the session goes on");
+        let agents = &output.rl_output.expect("there is an agent").agent_infos[BEHAVIOR].value;
+        assert_eq!(agents.last().map(|agent| agent.observations.len()), Some(4));
+    }
+}
+
+/// What the session answers to a message beside a step, and remarks; it goes on.
+fn check(bytes: Vec<u8>) -> (String, Vec<String>) {
+    let (mut session, _folder) = session();
+    let output = answer(&mut session, &step_with(bytes)).expect("a message does not end a session");
+    let remarks = session.take_remarks();
+    let sent = output.rl_output.expect("there is an agent").side_channel;
+    assert_well(&mut session);
+    (String::from_utf8_lossy(&sent).into_owned(), remarks)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_bytes_are_survived(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+        check(bytes);
+    }
+
+    #[test]
+    fn any_text_on_a_channel_is_answered(text in ".{0,200}") {
+        let (sent, _) = check(told(&text));
+        prop_assert!(sent.contains("\"action\":\"error\""), "{sent}");
+    }
+
+    /// What is no message any more is refused by its reader; what still is one is answered or refused, and the session goes on.
+    #[test]
+    fn recorded_messages_that_were_tampered_with_are_survived(
+        release in 0..RELEASES.len(),
+        number in 1_usize..14,
+        changes in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        cut in proptest::option::of(any::<prop::sample::Index>()),
+    ) {
+        let said = messages(RELEASES[release]);
+        let mut bytes = said[number % said.len()].1.clone();
+        for (place, byte) in changes {
+            let place = place.index(bytes.len());
+            bytes[place] = byte;
+        }
+        if let Some(cut) = cut {
+            bytes.truncate(cut.index(bytes.len()) + 1);
+        }
+        if let Ok(message) = UnityMessageProto::decode(bytes.as_slice())
+            && let Some(input) = message.unity_input.and_then(|input| input.rl_input)
+        {
+            let (mut session, _folder) = session();
+            // Either is an answer.
+            let _ = answer(&mut session, &input);
+            assert_well(&mut session);
+        }
+    }
+}
+
+#[test]
+fn lengths_that_lie_are_refused_at_both_levels() {
+    for length in [-1, i32::MIN, 0x7fff_ffff, 100] {
+        let (_, remarks) = check(record(RESET, length, b"abc"));
+        assert!(
+            remarks[0].contains(&format!("claims {length} bytes, of which there are 3")),
+            "{remarks:?}"
+        );
+        let payload = [&length.to_le_bytes(), b"abc".as_slice()].concat();
+        let (sent, _) = check(record(RESET, 7, &payload));
+        assert!(
+            sent.contains(&format!("claims {length} bytes, of which there are 3")),
+            "{sent}"
+        );
+    }
+}
+
+/// Longer ones do not come through: the transport refuses what is above 48 MiB.
+#[test]
+fn a_text_of_40_megabytes_is_answered_in_a_few_words() {
+    let long = "x".repeat(40_000_000);
+    for text in [
+        long.clone(),
+        format!("{{\"action\":\"{long}\"}}"),
+        format!("{{\"token\":\"{long}\",\"action\":\"x\"}}"),
+        format!("{{\"action\":\"reset_environment\",\"payload\":\"{long}\"}}"),
+        format!("{{\"action\":\"object_create\",\"payload\":{{\"class\":\"{long}\",\"coordinates\":[0,0]}}}}"),
+    ] {
+        let (sent, remarks) = check(told(&text));
+        assert!(
+            sent.contains("\"action\":\"error\"") && sent.len() < 2000,
+            "{} bytes",
+            sent.len()
+        );
+        assert!(remarks.iter().all(|remark| remark.len() < 2000));
+    }
+}
+
+#[test]
+fn bombs_of_json_are_refused_before_they_go_off() {
+    let list = |value: &str| {
+        format!(
+            "[{}{value}]",
+            format!("{value},").repeat(40_000_000 / (value.len() + 1))
+        )
+    };
+    for value in ["[]", "{}", "1"] {
+        let bomb = list(value);
+        for text in [
+            format!("{{\"action\":\"reset_environment\",\"payload\":{bomb}}}"),
+            format!("{{\"action\":\"reset_environment\",\"payload\":{{\"objects\":{bomb}}}}}"),
+        ] {
+            let (sent, _) = check(told(&text));
+            assert!(sent.contains(" values, expected at most 400000"), "{sent}");
+        }
+    }
+}
+
+#[test]
+fn odd_json_is_refused_in_words() {
+    let reset = |payload: &str| format!("{{\"action\":\"reset_environment\",\"payload\":{payload}}}");
+    for text in [
+        "[".repeat(300_000),
+        reset(&format!("{}{}", "[".repeat(100_000), "]".repeat(100_000))),
+        reset("{\"max_steps\":1e999999}"),
+        reset(&format!("{{\"max_steps\":{}}}", "9".repeat(100_000))),
+        reset("{\"agent_params\":{\"observation_size\":1e9}}"),
+        reset("{\"environment_params\":{\"map_size\":[1e308,1e308]}}"),
+        "\u{0}".to_owned(),
+        "{\"action\":\"\\ud800\"}".to_owned(),
+    ] {
+        let (sent, _) = check(told(&text));
+        assert!(sent.contains("\"action\":\"error\""), "{:.100}: {sent}", text);
+    }
+}
+
+#[test]
+fn many_small_messages_are_cut_off_and_said_so() {
+    let (sent, remarks) = check(told("{}").repeat(5000));
+    assert_eq!(sent.matches("\"action\":\"error\"").count(), 1000);
+    let cut = "messages: found more than 1000 in one go; the others are ignored";
+    assert!(remarks.iter().any(|remark| remark == cut), "{remarks:?}");
+}
+
+#[test]
+fn answers_that_pile_up_are_told_bit_by_bit_and_have_an_end() {
+    let (mut session, _folder) = session();
+    // Each is answered by some 4 kB: more in one go than a client takes.
+    let wide = format!(
+        "{{\"action\":\"object_create\",\"payload\":{{{}\"class\":3}}}}",
+        "\"coordinates\":[1e9,\"x\"],".repeat(1)
+    );
+    let many = told(&wide).repeat(1000);
+    for _ in 0..15 {
+        answer(&mut session, &step_with(many.clone())).expect("messages do not end a session");
+    }
+    assert_well(&mut session);
+}
+
+#[test]
+fn commands_and_actions_that_cannot_be_change_nothing() {
+    let sound: &[f32] = &[0.0, 0.0, 0.0];
+    let unknown = UnityRlInputProto {
+        command: -1,
+        ..UnityRlInputProto::default()
+    };
+    for (input, code) in [
+        (unknown, "unity/unknown-command"),
+        (actions(&[("", &[sound])]), "unity/wrong-agent"),
+        (
+            actions(&[(BEHAVIOR, &[sound]), ("Walker", &[sound])]),
+            "unity/wrong-agent",
+        ),
+        (actions(&[(BEHAVIOR, &[sound, sound])]), "unity/wrong-agent"),
+        (actions(&[(BEHAVIOR, &[])]), "unity/wrong-agent"),
+        (actions(&[(BEHAVIOR, &[&[]])]), "unity/action-length"),
+        (actions(&[(BEHAVIOR, &[&[1.0, 2.0]])]), "unity/action-length"),
+        (actions(&[(BEHAVIOR, &[&[1.0, 2.0, 3.0, 4.0]])]), "unity/action-length"),
+        (actions(&[(BEHAVIOR, &[&[f32::NAN, 0.0, 0.0]])]), "unity/env"),
+        (actions(&[(BEHAVIOR, &[&[0.0, 0.0, f32::NEG_INFINITY]])]), "unity/env"),
+    ] {
+        let (mut session, _folder) = session();
+        let error = answer(&mut session, &input).expect_err("it cannot be");
+        assert_eq!(error.code(), code, "{error}");
+        assert_well(&mut session);
+    }
+}
