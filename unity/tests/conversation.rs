@@ -1,0 +1,218 @@
+//! Recorded conversations: what clients of three releases say, and all that is answered, down to pixels and texts. How the
+//! bytes travel is in `executable`.
+//!
+//! `golden/record.py` records the clients; `INSTA_UPDATE=always` writes the answers anew. Pictures count by a checksum of their
+//! pixels: the bytes of a PNG file are the encoder's affair.
+
+mod recorded;
+
+use std::fmt::Write;
+
+use driftworld_unity::protocol::observation_proto::ObservationData;
+use driftworld_unity::protocol::{
+    AgentInfoProto, BrainParametersProto, CommandProto, ObservationProto, UnityInputProto, UnityMessageProto,
+    UnityOutputProto, UnityRlInputProto,
+};
+use driftworld_unity::{BEHAVIOR, Screenshots, Session, Setup, Turn};
+use prost::Message;
+use recorded::{RELEASES, messages};
+use serde_json::Value;
+
+/// The channels of L2Explorer, as their identifiers travel.
+const CHANNELS: [([u8; 4], &str); 3] = [
+    ([0x70, 0x0a, 0x1f, 0x62], "Reset"),
+    ([0x21, 0x51, 0x71, 0x37], "State"),
+    ([0xb5, 0xa0, 0xfb, 0xc5], "Debug"),
+];
+
+fn session(folder: &std::path::Path) -> Session {
+    let clock = || "2026-01-01T00:00:00Z".to_owned();
+    Session::new(Setup::default(), Screenshots::new(folder), clock).expect("the default world can start")
+}
+
+fn input(bytes: &[u8]) -> UnityInputProto {
+    let message = UnityMessageProto::decode(bytes).expect("clients send what they say they do");
+    assert_eq!(message.header.expect("every message has a header").status, 200);
+    message.unity_input.expect("clients say something")
+}
+
+/// A checksum: 64-bit FNV-1a.
+fn checksum(bytes: &[u8]) -> u64 {
+    let mix = |sum: u64, byte: &u8| (sum ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, mix)
+}
+
+fn picture(png: &[u8]) -> String {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(png))
+        .read_info()
+        .expect("the picture is a PNG file");
+    let mut pixels = vec![0; reader.output_buffer_size().expect("the picture is small")];
+    let info = reader.next_frame(&mut pixels).expect("the picture is whole");
+    pixels.truncate(info.buffer_size());
+    let (width, height, colors) = (info.width, info.height, info.color_type);
+    format!("PNG {width} × {height} {colors:?} {:016x}", checksum(&pixels))
+}
+
+fn observation(seen: &ObservationProto) -> String {
+    let data = match seen.observation_data.as_ref().expect("every observation has data") {
+        ObservationData::CompressedData(png) => picture(png),
+        ObservationData::FloatData(floats) => format!("{:?}", floats.data),
+    };
+    format!("{} {:?} {:?} {data}", seen.name, seen.shape, seen.dimension_properties)
+}
+
+fn agent(text: &mut String, agent: &AgentInfoProto) -> std::fmt::Result {
+    let AgentInfoProto { reward, id, .. } = agent;
+    let end = match (agent.done, agent.max_step_reached) {
+        (false, false) => "",
+        (true, false) => ", over",
+        (true, true) => ", over by the last step",
+        (false, true) => ", cut off without an end",
+    };
+    writeln!(text, "  agent {id}: reward {reward}{end}")?;
+    for seen in &agent.observations {
+        writeln!(text, "    {}", observation(seen))?;
+    }
+    Ok(())
+}
+
+fn behavior(text: &mut String, known: &BrainParametersProto) -> std::fmt::Result {
+    writeln!(
+        text,
+        "  behaviour {:?}: type {}, {:?} numbers, training {}, {:?}",
+        known.brain_name,
+        known.vector_action_space_type,
+        known.vector_action_size,
+        known.is_training,
+        known.vector_action_descriptions
+    )?;
+    let Some(spec) = &known.action_spec else { return Ok(()) };
+    writeln!(
+        text,
+        "    continuous {}, discrete {} {:?}, {:?}",
+        spec.num_continuous_actions, spec.num_discrete_actions, spec.discrete_branch_sizes, spec.action_descriptions
+    )
+}
+
+/// The messages beside, each with its channel.
+fn beside(mut bytes: &[u8]) -> Vec<(&'static str, Value)> {
+    let number = |bytes: &[u8]| i32::from_le_bytes(bytes.try_into().expect("four bytes")) as usize;
+    let mut found = Vec::new();
+    while !bytes.is_empty() {
+        let (head, rest) = bytes.split_at(20);
+        let (payload, rest) = rest.split_at(number(&head[16..]));
+        let (length, text) = payload.split_at(4);
+        assert_eq!(number(length), text.len(), "a text says its length");
+        assert!(text.is_ascii(), "old clients decode ASCII only");
+        let channel = CHANNELS.iter().find(|(start, _)| head.starts_with(start));
+        let json = serde_json::from_slice(text).expect("every message is JSON");
+        found.push((channel.expect("the channel is L2Explorer's").1, json));
+        bytes = rest;
+    }
+    found
+}
+
+fn output(text: &mut String, output: &UnityOutputProto) -> std::fmt::Result {
+    for known in output
+        .rl_initialization_output
+        .iter()
+        .flat_map(|news| &news.brain_parameters)
+    {
+        behavior(text, known)?;
+    }
+    let happened = output.rl_output.as_ref().expect("something happened");
+    assert_eq!(happened.agent_infos.len(), 1, "there is one behaviour");
+    for info in &happened.agent_infos[BEHAVIOR].value {
+        agent(text, info)?;
+    }
+    for (channel, message) in beside(&happened.side_channel) {
+        writeln!(text, "  {channel}: {message}")?;
+    }
+    Ok(())
+}
+
+/// Everything that is answered to a client of a release.
+fn answers(release: &str) -> Result<String, std::fmt::Error> {
+    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let mut session = session(folder.path());
+    let mut text = String::new();
+    let said = messages(release);
+    let ((_, first), rest) = said.split_first().expect("the client says who it is");
+    let ((_, last), rest) = rest.split_last().expect("the client ends");
+    let who = input(first)
+        .rl_initialization_input
+        .expect("the first message says who");
+    session.begin(&who).expect("the client is of a version that is known");
+    for (about, bytes) in rest {
+        writeln!(text, "{about}")?;
+        let command = input(bytes).rl_input.expect("the client says what to do");
+        match session.answer(&command).expect("the client says nothing wrong") {
+            Turn::Output(answer) => output(&mut text, &answer)?,
+            Turn::Quit => panic!("nobody said so"),
+        }
+        for remark in session.take_remarks() {
+            let remark = remark.replace(&folder.path().display().to_string(), "FOLDER");
+            writeln!(text, "  remark: {remark}")?;
+        }
+    }
+    let last = UnityMessageProto::decode(last.as_slice()).expect("the end is a message");
+    assert_eq!(
+        (last.header.map(|header| header.status), last.unity_input),
+        (Some(400), None)
+    );
+    let screenshot = std::fs::read(folder.path().join("view.png")).expect("the screenshot is in its folder");
+    writeln!(text, "the screenshot: {}", picture(&screenshot))?;
+    Ok(text)
+}
+
+#[test]
+fn each_release_is_answered_as_ever() {
+    for release in RELEASES {
+        let name = format!("answers_to_{release}");
+        insta::assert_snapshot!(name, answers(release).expect("texts can be written"));
+    }
+}
+
+#[test]
+fn the_same_conversation_has_the_same_answers() {
+    assert_eq!(answers("0.16"), answers("0.16"));
+}
+
+/// Field for field: what is read of a message is all that there is in it.
+#[test]
+fn nothing_that_clients_send_is_skipped_but_the_number_of_areas() {
+    // How many copies of its scene Unity is to build: there is one world here. It is the last field of a client's first message.
+    let areas = [5 << 3, 1];
+    for release in RELEASES {
+        for (about, mut bytes) in messages(release) {
+            let message = UnityMessageProto::decode(bytes.as_slice()).expect("the message is one");
+            let mut kept = message.encode_to_vec();
+            if release != "0.16" && about == "who the client is" {
+                assert!(bytes.ends_with(&areas), "{release}");
+                bytes.truncate(bytes.len() - areas.len());
+                // The lengths around it are shorter by as much.
+                kept[6] += areas.len() as u8;
+                kept[8] += areas.len() as u8;
+            }
+            assert_eq!(kept, bytes, "{release}: {about}");
+        }
+    }
+}
+
+#[test]
+fn quit_ends_a_session_and_what_came_with_it_is_done() {
+    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let mut session = session(folder.path());
+    let asks = |(about, _): &(String, Vec<u8>)| about.contains("screenshot");
+    let (_, bytes) = messages("1.1")
+        .into_iter()
+        .find(asks)
+        .expect("one asks for a screenshot");
+    let asked = input(&bytes).rl_input.expect("it is a command");
+    let quit = UnityRlInputProto {
+        command: CommandProto::Quit.into(),
+        ..asked
+    };
+    assert_eq!(session.answer(&quit).expect("anybody may quit"), Turn::Quit);
+    assert!(folder.path().join("view.png").exists());
+}

@@ -1,0 +1,258 @@
+//! What the executable is told when it starts, and what it says of it.
+
+use std::fs;
+use std::path::Path;
+
+use driftworld_spec::World;
+use driftworld_unity::protocol::CommandProto;
+use driftworld_unity::protocol::observation_proto::ObservationData;
+use driftworld_unity::{BEHAVIOR, HELP, MARK};
+use prost::Message;
+
+use crate::played::{Client, command, who};
+use crate::process::{Ended, Executable};
+use crate::start;
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("the machine has a folder for temporary files")
+}
+
+fn run(arguments: &[&str]) -> Ended {
+    Executable::start(arguments, folder().path()).ended()
+}
+
+/// What a client sees of a world at its start.
+#[derive(Debug, PartialEq)]
+struct Seen {
+    shape: Vec<i32>,
+    picture: Vec<u8>,
+    state: Vec<f32>,
+}
+
+/// A client that looks at a world once, and quits.
+fn look(arguments: &[&str], folder: &Path) -> (Ended, Option<Seen>) {
+    let client = Client::new([who("1.0.0"), command(CommandProto::Reset), command(CommandProto::Quit)]);
+    let ended = start(&client, arguments, folder).ended();
+    let output = client.calls().pop().and_then(|call| call.unity_output?.rl_output);
+    let seen = output.map(|output| {
+        let seen = &output.agent_infos[BEHAVIOR].value[0].observations;
+        let bytes = |data: &ObservationData| match data {
+            ObservationData::CompressedData(bytes) => bytes.clone(),
+            ObservationData::FloatData(floats) => floats.encode_to_vec(),
+        };
+        let Some(ObservationData::FloatData(state)) = &seen[3].observation_data else {
+            panic!("the state is a list of numbers")
+        };
+        Seen {
+            shape: seen[1].shape.clone(),
+            picture: seen[1].observation_data.as_ref().map(bytes).unwrap_or_default(),
+            state: state.data.clone(),
+        }
+    });
+    (ended, seen)
+}
+
+#[test]
+fn help_and_version_go_to_standard_output() {
+    for option in ["--help", "-h"] {
+        let help = run(&["--wait", "1", option]);
+        assert_eq!(
+            (help.code, help.stdout, help.stderr),
+            (Some(0), format!("{HELP}\n"), String::new())
+        );
+    }
+    let version = run(&["--version"]);
+    assert_eq!(version.stdout, format!("{MARK}, {}\n", env!("CARGO_PKG_VERSION")));
+    assert_eq!((version.code, version.stderr), (Some(0), String::new()));
+}
+
+#[test]
+fn values_that_cannot_be_end_it_with_2_and_help() {
+    for (arguments, expected) in [
+        (
+            ["--mlagents-port", "65536"].as_slice(),
+            "--mlagents-port: found \"65536\", expected a port from 1 to 65535",
+        ),
+        (
+            &["--wait", "soon"],
+            "--wait: found \"soon\", expected seconds from 0 to 86400",
+        ),
+        (&["--world"], "--world: found no value, expected a file"),
+    ] {
+        let ended = run(arguments);
+        assert_eq!(ended.code, Some(2), "{ended:?}");
+        assert_eq!(ended.stderr, format!("driftworld-unity: {expected}\n\n{HELP}\n"));
+        assert_eq!(ended.stdout, "");
+    }
+}
+
+#[test]
+fn options_of_unitys_do_no_harm_and_unknown_ones_are_remarked() {
+    let folder = folder();
+    let arguments = [
+        "-nographics",
+        "-batchmode",
+        "-screen-width",
+        "84",
+        "-adapter",
+        "1",
+        "--raw-observation",
+    ];
+    let (ended, seen) = look(&arguments, folder.path());
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    assert_eq!(seen.expect("there is a world").shape, [84, 84, 3]);
+    let lines: Vec<&str> = ended.stderr.lines().collect();
+    assert_eq!(
+        lines[..2],
+        [
+            "driftworld-unity: \"-adapter\" is not known here and ignored",
+            "driftworld-unity: \"--raw-observation\" is not known here and ignored; did you mean --raw-observations?",
+        ]
+    );
+    // The advice, taken.
+    let (ended, _) = look(&["--raw-observations"], folder.path());
+    assert!(!ended.stderr.contains("not known"), "{ended:?}");
+}
+
+#[test]
+fn a_world_file_of_either_kind_is_the_world_at_the_start() {
+    let folder = folder();
+    let mut ours = World::default();
+    ours.agent_params.observation_size = 16;
+    ours.agent_params.coordinates = [3.0, 4.0];
+    fs::write(folder.path().join("ours.json"), ours.to_json()).expect("the folder can be written");
+    let theirs = r#"{
+        "game_mode": "Learn", "max_steps": "100",
+        "environment_params": { "bounding_wall_color": [0, 100, 255], "predefined_map": "0" },
+        "agent_params": { "action_model": "ByVelocity", "observation_size": 16, "initial_coordinates": [3, 4] }
+    }"#;
+    assert!(
+        World::from_json("theirs", theirs).is_err(),
+        "it is in the original's form only"
+    );
+    fs::write(folder.path().join("theirs.json"), theirs).expect("the folder can be written");
+    for file in ["ours.json", "theirs.json"] {
+        let (ended, seen) = look(&["--world", file], folder.path());
+        assert_eq!(ended.code, Some(0), "{ended:?}");
+        let seen = seen.expect("there is a world");
+        assert_eq!(
+            (seen.shape, seen.state),
+            (vec![16, 16, 3], vec![0.0, 3.0, 4.0, 0.0, 0.0, 0.0]),
+            "{file}"
+        );
+    }
+}
+
+#[test]
+fn files_that_cannot_be_used_are_named_with_the_place_and_no_client_is_looked_for() {
+    let folder = folder();
+    let broken = "{\n  \"max_steps\": -3\n}";
+    fs::write(folder.path().join("broken.json"), broken).expect("the folder can be written");
+    for (arguments, expected) in [
+        (
+            ["--world", "none.json"],
+            "driftworld-unity: none.json: No such file or directory (os error 2)\n",
+        ),
+        (
+            ["--maps", "none.json"],
+            "driftworld-unity: none.json: No such file or directory (os error 2)\n",
+        ),
+        (
+            ["--world", "broken.json"],
+            "driftworld-unity: broken.json:2:16 (/max_steps): found -3, expected at least 0\n",
+        ),
+        (["--maps", "broken.json"], "driftworld-unity: broken.json:"),
+    ] {
+        let ended = Executable::start(&arguments, folder.path()).ended();
+        assert_eq!(ended.code, Some(1), "{ended:?}");
+        assert!(ended.stderr.starts_with(expected), "{ended:?}");
+    }
+}
+
+#[test]
+fn a_key_that_only_the_original_lets_pass_is_remarked() {
+    let folder = folder();
+    let broken = "{\n  \"max_stepz\": 3\n}";
+    fs::write(folder.path().join("world.json"), broken).expect("the folder can be written");
+    let (ended, _) = look(&["--world", "world.json"], folder.path());
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    let lines: Vec<&str> = ended.stderr.lines().collect();
+    assert_eq!(
+        lines[..2],
+        [
+            "driftworld-unity: world.json: read as a reset file of L2Explorer",
+            "driftworld-unity: world.json:2:16 (/max_stepz): the key \"max_stepz\" has no meaning here and is left out"
+        ]
+    );
+    fs::write(folder.path().join("world.json"), broken.replace("stepz", "steps")).expect("the folder can be written");
+    let (ended, _) = look(&["--world", "world.json"], folder.path());
+    assert!(!ended.stderr.contains("world.json"), "{ended:?}");
+}
+
+#[test]
+fn a_maps_file_takes_the_place_of_the_built_in_layouts() {
+    let folder = folder();
+    let mut world = World::default();
+    world.environment_params.predefined_map = 1;
+    fs::write(folder.path().join("world.json"), world.to_json()).expect("the folder can be written");
+    // A block right before the agent's eyes.
+    let maps = r#"{ "maps": [{ "id": 1, "name": "block", "x_limits": [-100, 100], "y_limits": [-100, 100],
+        "excluded_regions": [[[-9, 5], [9, 5], [9, 8], [-9, 8]]] }] }"#;
+    fs::write(folder.path().join("maps.json"), maps).expect("the folder can be written");
+    let (ended, built_in) = look(&["--world", "world.json"], folder.path());
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    let (ended, own) = look(&["--world=world.json", "--maps=maps.json"], folder.path());
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    let (built_in, own) = (built_in.expect("it is seen"), own.expect("it is seen"));
+    assert_eq!(built_in.state, own.state);
+    assert_ne!(built_in.picture, own.picture);
+}
+
+#[test]
+fn remarks_go_into_the_log_file_and_after_those_that_are_there() {
+    let folder = folder();
+    let log = folder.path().join("run.log");
+    fs::write(&log, "before\n").expect("the folder can be written");
+    let (ended, _) = look(&["-logFile", "run.log", "-adapter"], folder.path());
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    let said = fs::read_to_string(&log).expect("it is there");
+    let lines: Vec<&str> = said.lines().collect();
+    assert_eq!(
+        lines[..2],
+        ["before", "driftworld-unity: \"-adapter\" is not known here and ignored"]
+    );
+    assert!(
+        lines[2].starts_with("driftworld-unity: a client at 127.0.0.1:"),
+        "{said}"
+    );
+    // An error goes there, too.
+    let ended = Executable::start(&["-logFile", "run.log", "--world", "none.json"], folder.path()).ended();
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(1), ""));
+    let said = fs::read_to_string(&log).expect("it is there");
+    assert!(
+        said.ends_with("driftworld-unity: none.json: No such file or directory (os error 2)\n"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_log_file_in_a_folder_that_there_is_not_is_an_error() {
+    let ended = run(&["-logFile", "none/run.log"]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert!(
+        ended.stderr.contains("none/run.log: No such file or directory"),
+        "{ended:?}"
+    );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_a_full_disk_does_not_take_is_said_on_the_terminal() {
+    let (ended, seen) = look(&["-logFile", "/dev/full"], folder().path());
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    assert!(seen.is_some());
+    assert!(
+        ended.stderr.starts_with("driftworld-unity: a client at 127.0.0.1:"),
+        "{ended:?}"
+    );
+}

@@ -1,0 +1,189 @@
+//! Clients that break the protocol: they are told why before the end, and so is the terminal.
+
+use driftworld_spec::World;
+use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
+use driftworld_unity::protocol::{
+    AgentActionProto, CommandProto, HeaderProto, UnityInputProto, UnityMessageProto, UnityRlInputProto,
+};
+use driftworld_unity::{BEHAVIOR, MAX_INCOMING_BYTES};
+
+use crate::played::{Answer, command, says, status, who};
+use crate::session;
+
+/// A client that is sound up to its last answer is told these words, and so is the terminal.
+fn check(last: Vec<Answer>, expected: &str) {
+    let (ended, client) = session([vec![who("1.0.0")], last].concat(), &[]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    let said = ended.stderr.lines().last().unwrap_or_default();
+    assert_eq!(said, format!("driftworld-unity: {expected}"));
+    let told = client.calls().pop().expect("there was a call").header;
+    let header = HeaderProto {
+        status: 500,
+        message: expected.to_owned(),
+    };
+    assert_eq!(told, Some(header));
+}
+
+fn step(actions: &[(&str, &[&[f32]])]) -> Answer {
+    let action = |numbers: &[f32]| AgentActionProto {
+        vector_actions: numbers.to_vec(),
+        continuous_actions: Vec::new(),
+    };
+    let list = |agents: &[&[f32]]| ListAgentActionProto {
+        value: agents.iter().map(|numbers| action(numbers)).collect(),
+    };
+    says(UnityRlInputProto {
+        agent_actions: actions
+            .iter()
+            .map(|(behavior, agents)| ((*behavior).to_owned(), list(agents)))
+            .collect(),
+        ..UnityRlInputProto::default()
+    })
+}
+
+#[test]
+fn a_client_that_has_failed_is_believed() {
+    check(vec![status(500)], "client: it ended with status 500: words");
+    check(
+        vec![command(CommandProto::Reset), status(503)],
+        "client: it ended with status 503: words",
+    );
+}
+
+#[test]
+fn messages_without_what_they_have_to_say_are_refused() {
+    let check = |message: UnityMessageProto, missing: &str| {
+        check(
+            vec![message.into()],
+            &format!("client: found a message without {missing}, expected one"),
+        );
+    };
+    let header = Some(HeaderProto {
+        status: 200,
+        message: String::new(),
+    });
+    let headed = |unity_input| UnityMessageProto {
+        header: header.clone(),
+        unity_input,
+        unity_output: None,
+    };
+    check(UnityMessageProto::default(), "a header");
+    check(headed(None), "a unity_input");
+    check(headed(Some(UnityInputProto::default())), "an rl_input");
+}
+
+#[test]
+fn bytes_that_are_no_message_are_refused() {
+    check(
+        vec![Answer::Bytes(b"\x0a\xff\xff\xff".to_vec())],
+        "client: a message cannot be read: failed to decode Protobuf message: UnityMessageProto.header: invalid varint; messages may have 50331648 bytes",
+    );
+}
+
+#[test]
+fn messages_that_are_too_long_are_refused_before_they_are_read() {
+    for length in [MAX_INCOMING_BYTES + 1, 100_000_000] {
+        let expected = format!(
+            "client: a message cannot be read: Error, decoded message length too large: found {length} bytes, the limit is: 50331648 bytes; messages may have 50331648 bytes"
+        );
+        check(vec![Answer::Bytes(vec![b' '; length])], &expected);
+    }
+}
+
+#[test]
+fn a_client_of_another_version_is_told_so_when_it_listens() {
+    let expected =
+        "client: found version \"2.0.0\" of the protocol, expected 1.x; mlagents-envs from 0.16.0 on speaks it";
+    // Who is gone before its first command does not listen; the terminal knows why.
+    for (first_command, is_told) in [
+        (command(CommandProto::Reset), true),
+        (status(400), true),
+        (Answer::Fail(tonic::Status::cancelled("CANCELLED")), false),
+    ] {
+        let (ended, client) = session(vec![who("2.0.0"), first_command], &[]);
+        assert_eq!(ended.code, Some(1), "{ended:?}");
+        assert!(
+            ended.stderr.ends_with(&format!("driftworld-unity: {expected}\n")),
+            "{ended:?}"
+        );
+        let told = client.calls().pop().and_then(|call| call.header);
+        assert_eq!(
+            told.is_some_and(|told| told.status == 500 && told.message == expected),
+            is_told
+        );
+    }
+}
+
+#[test]
+fn commands_and_actions_that_there_are_not_are_refused() {
+    let unknown = says(UnityRlInputProto {
+        command: 7,
+        ..UnityRlInputProto::default()
+    });
+    check(
+        vec![unknown],
+        "client: found command 7, expected 0 (step), 1 (reset) or 2 (quit)",
+    );
+    let sound: &[f32] = &[0.0, 0.0, 0.0];
+    check(
+        vec![step(&[("Walker?team=0", &[sound])])],
+        "actions: found 1 of behaviour \"Walker?team=0\", expected one of \"L2Explorer?team=0\"",
+    );
+    check(
+        vec![step(&[(BEHAVIOR, &[sound, sound])])],
+        "actions: found 2 of behaviour \"L2Explorer?team=0\", expected one of \"L2Explorer?team=0\"",
+    );
+    check(
+        vec![command(CommandProto::Reset), step(&[(BEHAVIOR, &[&[1.0, 2.0]])])],
+        "action: found 2 numbers, expected 3",
+    );
+}
+
+#[test]
+fn actions_that_are_no_numbers_are_refused() {
+    for number in [f32::NAN, f32::INFINITY] {
+        let numbers: &[f32] = &[0.0, number, 0.0];
+        let expected = format!(
+            "action: found [0.0, {:?}, 0.0], expected three finite numbers; nothing was changed",
+            f64::from(number)
+        );
+        check(
+            vec![command(CommandProto::Reset), step(&[(BEHAVIOR, &[numbers])])],
+            &expected,
+        );
+    }
+}
+
+/// The folder with a world of a certain size of pictures in it.
+fn world(observation_size: u32) -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let file = folder.path().join("world.json");
+    let mut world = World::default();
+    world.agent_params.observation_size = observation_size;
+    std::fs::write(&file, world.to_json()).expect("the folder can be written");
+    let file = file.display().to_string();
+    (folder, file)
+}
+
+#[test]
+fn pictures_that_no_client_accepts_are_refused_and_the_advice_helps() {
+    let (_folder, large) = world(512);
+    let asks = || vec![who("1.0.0"), command(CommandProto::Reset), command(CommandProto::Quit)];
+    let (ended, client) = session(asks(), &["--raw-observations", "--world", &large]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    let said = ended.stderr.lines().last().unwrap_or_default();
+    let text = said.strip_prefix("driftworld-unity: ").unwrap_or_default();
+    assert!(text.starts_with("observation: 94") && text.contains(" bytes in a message, of which clients accept 4194304; reset to a smaller observation_size, or leave out --raw-observations"), "{ended:?}");
+    let told = client.calls().pop().and_then(|call| call.header);
+    assert_eq!(told.expect("it was told").message, text);
+
+    let (_folder, small) = world(256);
+    for arguments in [
+        ["--raw-observations", "--world", &small].as_slice(),
+        &["--world", &large],
+    ] {
+        let (ended, client) = session(asks(), arguments);
+        assert_eq!(ended.code, Some(0), "{ended:?}");
+        assert_eq!(client.calls().len(), 3);
+    }
+}

@@ -1,0 +1,131 @@
+//! Ends that are none of our making and no error: the client is done, or gone.
+
+use driftworld_unity::protocol::{CommandProto, HeaderProto, UnityInputProto, UnityMessageProto, UnityOutputProto};
+use driftworld_unity::{Screenshots, Session, Setup, Turn};
+use prost::Message;
+use tonic::Status;
+
+use crate::played::{Answer, Client, command, status, who};
+use crate::recorded::{RELEASES, messages};
+use crate::{session, start};
+
+fn input(bytes: &[u8]) -> UnityInputProto {
+    let message = UnityMessageProto::decode(bytes).expect("clients send messages");
+    message.unity_input.expect("clients say something")
+}
+
+/// The message's bytes, with the clock at its start wherever it was looked at.
+fn timeless(message: &UnityMessageProto) -> Vec<u8> {
+    let mut bytes = message.encode_to_vec();
+    let key = br#""msg_time":""#;
+    let start = b"2026-01-01T00:00:00.000Z\"";
+    for place in 0..bytes.len().saturating_sub(key.len() + start.len()) {
+        if bytes[place..].starts_with(key) {
+            bytes[place + key.len()..][..start.len()].copy_from_slice(start);
+        }
+    }
+    bytes
+}
+
+#[test]
+fn what_a_session_answers_is_what_recorded_clients_get() {
+    for release in RELEASES {
+        let said = messages(release);
+        let client = Client::new(said.iter().map(|(_, bytes)| Answer::Bytes(bytes.clone())));
+        let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let executable = start(&client, &[], folder.path());
+
+        let twin_folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let clock = || "2026-01-01T00:00:00.000Z".to_owned();
+        let twin = Session::new(Setup::default(), Screenshots::new(twin_folder.path()), clock);
+        let mut twin = twin.expect("the default world can start");
+        let greeting = client.call();
+        let well = HeaderProto {
+            status: 200,
+            message: String::new(),
+        };
+        assert_eq!(greeting.header, Some(well.clone()), "{release}");
+        assert_eq!(greeting.unity_output, Some(twin.greeting()), "{release}");
+        let who = input(&said[0].1).rl_initialization_input.expect("it says who it is");
+        twin.begin(&who).expect("the client is known");
+        assert_eq!(
+            client.call().unity_output,
+            Some(UnityOutputProto::default()),
+            "{release}"
+        );
+        for (about, bytes) in &said[1..said.len() - 1] {
+            let command = input(bytes).rl_input.expect("it says what to do");
+            let Ok(Turn::Output(expected)) = twin.answer(&command) else {
+                panic!("{release}: {about}")
+            };
+            let expected = UnityMessageProto {
+                header: Some(well.clone()),
+                unity_output: Some(*expected),
+                unity_input: None,
+            };
+            assert!(timeless(&client.call()) == timeless(&expected), "{release}: {about}");
+        }
+        let ended = executable.ended();
+        assert_eq!(ended.code, Some(0), "{ended:?}");
+        assert_eq!(ended.stdout, "");
+        assert!(
+            ended.stderr.starts_with("driftworld-unity: a client at 127.0.0.1:"),
+            "{ended:?}"
+        );
+        assert!(folder.path().join("screenshots/view.png").exists());
+        assert!(client.calls().is_empty(), "nothing is said after the end");
+    }
+}
+
+#[test]
+fn quit_ends_it() {
+    let (ended, client) = session(
+        vec![who("1.0.0"), command(CommandProto::Reset), command(CommandProto::Quit)],
+        &[],
+    );
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    assert_eq!(client.calls().len(), 3, "a quit is not answered");
+}
+
+#[test]
+fn a_client_may_end_before_its_first_command_and_before_it_said_who_it_is() {
+    for answers in [vec![status(400)], vec![who("1.0.0"), status(400)]] {
+        let (ended, _) = session(answers, &[]);
+        assert_eq!(ended.code, Some(0), "{ended:?}");
+    }
+}
+
+#[test]
+fn a_client_that_is_killed_while_it_thinks_is_remarked_and_is_no_error() {
+    for calls in 2..5 {
+        let before = [who("1.0.0"), command(CommandProto::Reset), command(CommandProto::Step)];
+        let mut client = Client::new(before.into_iter().take(calls - 1));
+        let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let executable = start(&client, &[], folder.path());
+        for _ in 0..calls {
+            client.call();
+        }
+        client.leave();
+        let ended = executable.ended();
+        assert_eq!(ended.code, Some(0), "after {calls} calls: {ended:?}");
+        let last = ended.stderr.lines().last().unwrap_or_default();
+        assert!(last.starts_with("driftworld-unity: the client is gone ("), "{ended:?}");
+    }
+}
+
+/// As Python's servers answer while they are being closed, or when somebody interrupts them.
+#[test]
+fn a_call_that_the_client_gives_up_is_its_end() {
+    for given_up in [
+        Status::cancelled("CANCELLED"),
+        Status::unknown("Exception calling application: handle is closed"),
+    ] {
+        let words = given_up.message().to_owned();
+        let (ended, _) = session(
+            vec![who("1.0.0"), command(CommandProto::Reset), Answer::Fail(given_up)],
+            &[],
+        );
+        assert_eq!(ended.code, Some(0), "{ended:?}");
+        assert!(ended.stderr.contains(&words), "{ended:?}");
+    }
+}

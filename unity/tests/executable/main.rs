@@ -1,0 +1,31 @@
+//! The built executable against clients that are played by the tests: how it begins, and how it ends. What a session answers is in
+//! `conversation.rs`; real clients are driven by `cargo xtask unity`.
+
+mod arguments;
+mod breaches;
+mod endings;
+mod played;
+mod process;
+#[path = "../recorded/mod.rs"]
+mod recorded;
+mod strangers;
+
+use std::path::Path;
+
+use played::{Answer, Client};
+use process::{Ended, Executable};
+
+/// Starts the executable for a client.
+fn start(client: &Client, arguments: &[&str], folder: &Path) -> Executable {
+    let port = client.port.to_string();
+    let all = [&["--mlagents-port", &port], arguments].concat();
+    Executable::start(&all, folder)
+}
+
+/// A whole session with a client that gives these answers, one after the other; how it ended, and the client.
+fn session(answers: Vec<Answer>, arguments: &[&str]) -> (Ended, Client) {
+    let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
+    let client = Client::new(answers);
+    let ended = start(&client, arguments, folder.path()).ended();
+    (ended, client)
+}

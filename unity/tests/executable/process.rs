@@ -1,0 +1,71 @@
+//! [`Executable`]: the built executable, running. It does not outlive the test that started it.
+
+use std::io::Read;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
+
+/// How long a process may take to end that has every reason to.
+const PATIENCE: Duration = Duration::from_mins(1);
+
+/// A running process.
+pub(crate) struct Executable {
+    child: Child,
+    stdout: Receiver<String>,
+    stderr: Receiver<String>,
+}
+
+/// What is left of a process.
+#[derive(Debug)]
+pub(crate) struct Ended {
+    pub(crate) code: Option<i32>,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
+}
+
+impl Executable {
+    /// Starts it in a folder.
+    pub(crate) fn start(arguments: &[&str], folder: &Path) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_driftworld-unity"))
+            .args(arguments)
+            .current_dir(folder)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the executable is built");
+        let stdout = reading(child.stdout.take().expect("it is piped"));
+        let stderr = reading(child.stderr.take().expect("it is piped"));
+        Self { child, stdout, stderr }
+    }
+
+    /// Waits for its end.
+    pub(crate) fn ended(mut self) -> Ended {
+        let stderr = self.stderr.recv_timeout(PATIENCE).expect("the process ends");
+        let stdout = self.stdout.recv_timeout(PATIENCE).expect("the process ends");
+        let code = self.child.wait().expect("the process is ours").code();
+        Ended { code, stdout, stderr }
+    }
+}
+
+impl Drop for Executable {
+    fn drop(&mut self) {
+        // One that has ended cannot be killed, and need not be.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Reads to the end, which comes with the process's.
+fn reading(mut pipe: impl Read + Send + 'static) -> Receiver<String> {
+    let (done, text) = channel();
+    std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        let read = pipe.read_to_end(&mut bytes);
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        // A test that has failed meanwhile does not listen any more.
+        let _ = done.send(read.map_or_else(|error| error.to_string(), |_| text));
+    });
+    text
+}

@@ -1,0 +1,111 @@
+//! Who listens where the client should be, and is none; and nobody.
+
+use std::io::{Read, Write};
+use std::net::TcpListener;
+
+use driftworld_unity::protocol::CommandProto;
+
+use crate::played::{Client, command, free_port, who};
+use crate::process::{Ended, Executable};
+use crate::{session, start};
+
+fn run(listener: &TcpListener, arguments: &[&str]) -> Executable {
+    let port = listener.local_addr().expect("it is bound").port().to_string();
+    let folder = std::env::temp_dir();
+    Executable::start(&[&["--mlagents-port", &port], arguments].concat(), &folder)
+}
+
+fn assert_no_client(ended: &Ended, reason: &str) {
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    let expected = "what listens there does not answer as an ML-Agents client does: ";
+    let (_, found) = ended.stderr.split_once(expected).unwrap_or_else(|| panic!("{ended:?}"));
+    assert!(found.contains(reason), "{ended:?}");
+}
+
+#[test]
+fn where_nobody_listens_the_wait_has_an_end() {
+    let listener = free_port();
+    let port = listener.local_addr().expect("it is bound").port().to_string();
+    drop(listener);
+    let ended = Executable::start(&["--wait", "0.2", "--mlagents-port", &port], &std::env::temp_dir()).ended();
+    assert_eq!(ended.code, Some(3), "{ended:?}");
+    assert_eq!(
+        ended.stderr,
+        format!(
+            "driftworld-unity: 127.0.0.1:{port}: no client within 0.2 s; start it first, or name its port by --mlagents-port (5004 in editor mode, else 5005 + worker id)\n"
+        )
+    );
+}
+
+#[test]
+fn a_client_that_comes_later_is_found() {
+    let listener = free_port();
+    let port = listener.local_addr().expect("it is bound").port();
+    drop(listener);
+    let executable = Executable::start(&["--mlagents-port", &port.to_string()], &std::env::temp_dir());
+    let listener = TcpListener::bind(("127.0.0.1", port)).expect("the port is free still");
+    let client = Client::listening(listener, [who("1.0.0"), command(CommandProto::Quit)]);
+    let ended = executable.ended();
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    assert_eq!(client.calls().len(), 2);
+}
+
+#[test]
+fn a_listener_that_never_speaks_is_no_client() {
+    let listener = free_port();
+    let ended = run(&listener, &["--wait", "0.5"]).ended();
+    assert_no_client(&ended, "silence for 0.5 s");
+}
+
+#[test]
+fn a_client_that_says_nothing_at_first_is_none() {
+    let (ended, client) = session(vec![], &["--wait", "0.5"]);
+    assert_no_client(&ended, "silence for 0.5 s");
+    assert_eq!(client.calls().len(), 1, "it was asked");
+}
+
+#[test]
+fn a_server_of_another_service_is_no_client() {
+    let client = Client::of_another_kind();
+    let ended = start(&client, &[], &std::env::temp_dir()).ended();
+    assert_no_client(&ended, "Unimplemented");
+}
+
+#[test]
+fn a_web_server_is_no_client() {
+    let listener = free_port();
+    let executable = run(&listener, &[]);
+    let (mut stream, _) = listener.accept().expect("somebody calls");
+    stream.read_exact(&mut [0; 24]).expect("HTTP/2 has a preface");
+    stream
+        .write_all(b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\n\r\n")
+        .expect("somebody listens");
+    drop(stream);
+    let ended = executable.ended();
+    assert_no_client(&ended, "");
+}
+
+#[test]
+fn a_listener_that_hangs_up_is_no_client() {
+    let listener = free_port();
+    let executable = run(&listener, &[]);
+    let (mut stream, _) = listener.accept().expect("somebody calls");
+    // The call has begun.
+    stream.read_exact(&mut [0; 24]).expect("HTTP/2 has a preface");
+    drop(stream);
+    let ended = executable.ended();
+    assert_no_client(&ended, "");
+}
+
+#[test]
+fn a_host_that_is_none_is_said_so() {
+    let ended = Executable::start(&["--host", "not a machine"], &std::env::temp_dir()).ended();
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    let expected =
+        "driftworld-unity: not a machine:5004: expected the name or address of a machine, such as 127.0.0.1\n";
+    assert_eq!(ended.stderr, expected);
+    // The advice, taken.
+    let client = Client::new([who("1.0.0"), command(CommandProto::Quit)]);
+    let ended = start(&client, &["--host", "127.0.0.1"], &std::env::temp_dir()).ended();
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+}
