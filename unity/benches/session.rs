@@ -5,9 +5,7 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use driftworld_spec::{Object, World};
 use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
-use driftworld_unity::protocol::{
-    AgentActionProto, CommandProto, UnityRlInitializationInputProto, UnityRlInputProto,
-};
+use driftworld_unity::protocol::{AgentActionProto, CommandProto, UnityRlInitializationInputProto, UnityRlInputProto};
 use driftworld_unity::{BEHAVIOR, PictureForm, Screenshots, Session, Setup};
 
 /// Twenty objects in a ring, around which the agent drives in a circle.
@@ -15,7 +13,10 @@ fn ring() -> World {
     let kinds = ["tree", "barrel", "chair", "rock", "geometric"];
     let object = |number: u32| {
         let angle = f64::from(number) * std::f64::consts::TAU / 20.0;
-        Object::new(kinds[number as usize % kinds.len()], [12.0 * angle.cos(), 12.0 * angle.sin()])
+        Object::new(
+            kinds[number as usize % kinds.len()],
+            [12.0 * angle.cos(), 12.0 * angle.sin()],
+        )
     };
     World {
         objects: (0..20).map(object).collect(),

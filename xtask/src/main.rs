@@ -22,6 +22,7 @@ mod schemas;
 mod side_by_side;
 mod stage;
 mod tidy;
+mod unity;
 mod virtual_environment;
 mod workspace;
 

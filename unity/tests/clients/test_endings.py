@@ -303,7 +303,7 @@ def test_newer_clients_have_the_log_file_in_a_folder_of_theirs(launcher: Launche
 
 def test_a_log_file_that_cannot_be_written_is_an_error(launcher: Launcher) -> None:
     code, errors = said(launcher.run("-logFile", "missing/folder/a.log"))
-    assert code == 1 and errors.startswith("driftworld-unity: missing/folder/a.log: No such file"), errors
+    assert code == 1 and errors.startswith("driftworld-unity: -logFile missing/folder/a.log: No such file"), errors
 
 
 @pytest.mark.parametrize(

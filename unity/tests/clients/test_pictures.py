@@ -67,8 +67,7 @@ def test_pictures_that_would_not_fit_at_the_end_of_an_episode_are_refused_at_its
 ) -> None:
     client = launcher.meet("--raw-observations", channels=channels.all)
     channels.reset.say("reset_environment", world(agent={"observation_size": 250}))
-    client.reset()
-    assert client.step(AHEAD).now.rgb.shape == (250, 250, 3), "an episode without an end has one picture at a time"
+    assert client.reset().now.rgb.shape == (250, 250, 3), "an episode without an end has one picture at a time"
     channels.reset.say("reset_environment", world(max_steps=2, agent={"observation_size": 250}))
     with pytest.raises(UnityCommunicatorStoppedException):
         client.reset()
