@@ -124,7 +124,9 @@ def main() -> None:
         env.close()
     version = importlib.metadata.version("mlagents-envs")
     form = "floats" if options.raw else "PNG"
-    print(f"mlagents-envs {version}, three pictures of {options.size} x {options.size} as {form}, {options.steps} steps")
+    print(
+        f"mlagents-envs {version}, three pictures of {options.size} x {options.size} as {form}, {options.steps} steps"
+    )
     print(f"{options.steps / wall:.0f} steps/s on one core: {1e6 * wall / options.steps:.0f} us a step, of which")
     print(f"  {1e6 * ours / options.steps:6.0f} us driftworld-unity")
     print(f"  {1e6 * client / options.steps:6.0f} us the client in Python")
