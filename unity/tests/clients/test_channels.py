@@ -124,6 +124,21 @@ def test_a_text_that_is_not_as_long_as_it_says_is_answered_by_an_error(
     assert answer["action"] == "error" and "message: found" in answer["payload"][0]
 
 
+def test_a_flood_of_messages_is_taken_up_to_a_thousand_and_each_is_answered(client: Client, channels: Channels) -> None:
+    tokens = [channels.reset.say("object_create", thing(number % 38 - 19, -15)) for number in range(1500)]
+    channels.state.say("set_active_observers", {"state": ["objects"]})
+    client.step()
+    answers = channels.reset.take()
+    assert [answer["req_token"] for answer in answers[:1000]] == tokens[:1000]
+    assert [answer["action"] for answer in answers] == ["ok"] * 1000 + ["error"] * 500
+    assert "more than 1000 in one go" in answers[-1]["payload"][0]
+    (refused,) = channels.state.take()
+    assert refused["action"] == "error"
+    channels.state.say("set_active_observers", {"state": ["objects"]})
+    client.step()
+    assert len(channels.state.take()[-1]["payload"]["objects"]) == 1000
+
+
 def test_answers_are_ascii_whatever_the_message_has(client: Client, channels: Channels) -> None:
     channels.reset.send_text(json.dumps({"action": "öffne_𝄞", "token": "schlüssel"}, ensure_ascii=False))
     spawn = {"action": "object_create", "unique_name": "Bäume", "payload": thing(0, 5)}

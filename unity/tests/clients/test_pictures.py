@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 from mlagents_envs.exception import UnityCommunicatorStoppedException
@@ -57,3 +60,29 @@ def test_pictures_larger_than_a_message_may_be_end_the_session_clearly(launcher:
         client.reset()
     code, errors = said(client.process)
     assert code == 1 and "leave out --raw-observations" in errors
+
+
+def test_pictures_that_would_not_fit_at_the_end_of_an_episode_are_refused_at_its_start(
+    launcher: Launcher, channels: Channels
+) -> None:
+    client = launcher.meet("--raw-observations", channels=channels.all)
+    channels.reset.say("reset_environment", world(agent={"observation_size": 250}))
+    assert client.reset().now.rgb.shape == (250, 250, 3), "an episode without an end has one picture at a time"
+    channels.reset.say("reset_environment", world(max_steps=2, agent={"observation_size": 250}))
+    with pytest.raises(UnityCommunicatorStoppedException):
+        client.reset()
+    code, errors = said(client.process)
+    assert code == 1 and "reset to a smaller observation_size" in errors
+
+
+def test_pictures_need_not_be_square(launcher: Launcher) -> None:
+    size = {"observation_width": 40, "observation_size": 24}
+    own = {"version": 1, "agent_params": size, "objects": list(THINGS)}
+    Path("own.json").write_text(json.dumps(own), encoding="utf-8")
+    png, floats = (
+        launcher.start("--world", "own.json", *options).reset().now for options in ([], ["--raw-observations"])
+    )
+    for seen in (png, floats):
+        assert [picture.shape for picture in seen.pictures] == [(24, 40, 3)] * 3
+    assert (png.rgb == floats.rgb).all() and (png.segmentation == floats.segmentation).all()
+    assert (png.segmentation[0] == 0).all() and (png.segmentation[-1] == 1).all(), "row 0 is on top: the sky"

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from channels import Channels
@@ -58,12 +59,16 @@ def converted(original: Path) -> str:
     return subprocess.run(command, check=True, capture_output=True, encoding="utf-8").stdout
 
 
+def shares(levels: npt.NDArray[np.uint8]) -> Floats:
+    """Levels of 8 bits as clients have them."""
+    return levels.astype(np.float32) / np.float32(255)
+
+
 def check(seen: Seen, observation: dict[str, Any]) -> None:
     """All four observations are the same, to the last bit."""
-    scale = np.float32(255)
-    assert (seen.depth == observation["depth"].repeat(3, axis=2) / scale).all()
-    assert (seen.rgb == observation["rgb"] / scale).all()
-    assert (seen.segmentation == COLORS[observation["segmentation"][..., 0]] / scale).all()
+    assert (seen.depth == shares(observation["depth"].repeat(3, axis=2))).all()
+    assert (seen.rgb == shares(observation["rgb"])).all()
+    assert (seen.segmentation == shares(COLORS[observation["segmentation"][..., 0]])).all()
     assert seen.vector.dtype == np.float32 and (seen.vector[1:] == observation["state"]).all()
 
 
@@ -150,7 +155,7 @@ def test_in_floats_depth_is_that_of_the_environment_in_metres(launcher: Launcher
     for action in list(actions())[:100]:
         white_at_100_m = np.clip(observation["depth"] / np.float32(100), 0, 1)
         assert (seen.depth == white_at_100_m).all() and white_at_100_m.dtype == np.float32
-        assert (seen.rgb == observation["rgb"] / np.float32(255)).all()
+        assert (seen.rgb == shares(observation["rgb"])).all()
         observation, *_ = twin.step(action)
         seen = client.step(action).now
     twin.close()
