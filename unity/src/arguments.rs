@@ -109,7 +109,8 @@ const UNITYS: [&str; 9] = [
     "-force-vulkan",
 ];
 
-/// The longest wait: a day.
+/// The shortest wait, in which a client that is there can be met, and the longest: a day.
+const SHORTEST_WAIT_SECS: f64 = 0.1;
 const LONGEST_WAIT_SECS: f64 = 86_400.0;
 
 impl Request {
@@ -177,10 +178,10 @@ fn port(text: &str) -> Result<u16, UnityError> {
 
 fn wait(text: &str) -> Result<Duration, UnityError> {
     let seconds: Option<f64> = text.parse().ok();
-    let seconds = seconds.filter(|seconds| (0.0..=LONGEST_WAIT_SECS).contains(seconds));
+    let seconds = seconds.filter(|seconds| (SHORTEST_WAIT_SECS..=LONGEST_WAIT_SECS).contains(seconds));
     seconds.map(Duration::from_secs_f64).ok_or_else(|| {
         UnityError::arguments(format!(
-            "--wait: found {text:?}, expected seconds from 0 to {LONGEST_WAIT_SECS}"
+            "--wait: found {text:?}, expected seconds from {SHORTEST_WAIT_SECS} to {LONGEST_WAIT_SECS}"
         ))
     })
 }
@@ -258,7 +259,10 @@ mod tests {
             "--mlagents-port 0",
             "--mlagents-port: found \"0\", expected a port from 1 to 65535",
         );
-        check("--wait NaN", "--wait: found \"NaN\", expected seconds from 0 to 86400");
+        check(
+            "--wait NaN",
+            "--wait: found \"NaN\", expected seconds from 0.1 to 86400",
+        );
         check("--world=", "--world: found no value, expected a file");
     }
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use tokio::time::{Instant, sleep, timeout_at};
+use tokio::time::{Instant, sleep, timeout, timeout_at};
 use tonic::transport::{Channel, Endpoint};
 use tonic::{Code, Status};
 
@@ -68,15 +68,10 @@ impl Connection {
         &self.address
     }
 
-    /// The first call, by which a stranger is known: whoever listens there has until the deadline to answer as a client does.
-    pub(crate) async fn greet(
-        &mut self,
-        greeting: UnityMessageProto,
-        wait: Duration,
-        deadline: Instant,
-    ) -> Result<Reply, UnityError> {
+    /// The first call, by which a stranger is known: whoever listens there has as long again to answer as a client does.
+    pub(crate) async fn greet(&mut self, greeting: UnityMessageProto, wait: Duration) -> Result<Reply, UnityError> {
         let address = self.address.clone();
-        match timeout_at(deadline, self.client.exchange(greeting)).await {
+        match timeout(wait, self.client.exchange(greeting)).await {
             Err(_) => {
                 let reason = format!("silence for {} s", wait.as_secs_f64());
                 Err(UnityError::NotAClient { address, reason })

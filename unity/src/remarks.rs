@@ -2,24 +2,31 @@
 
 use std::collections::BTreeSet;
 
-/// The most remarks of a session: who sends rubbish at each step does not fill a disk.
-const MOST: usize = 200;
-
 /// Remarks that were not taken yet, and which there have been.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Remarks {
+    most: usize,
     made: BTreeSet<String>,
     waiting: Vec<String>,
 }
 
 impl Remarks {
+    /// No remarks yet, and never more than that many: who sends rubbish at each step does not fill a disk.
+    pub(crate) fn at_most(most: usize) -> Self {
+        Self {
+            most,
+            made: BTreeSet::new(),
+            waiting: Vec::new(),
+        }
+    }
+
     /// Makes a remark, unless it was made before.
     pub(crate) fn make(&mut self, remark: String) {
-        if self.made.len() > MOST || self.made.contains(&remark) {
+        if self.made.len() > self.most || self.made.contains(&remark) {
             return;
         }
         self.made.insert(remark.clone());
-        let is_last = self.made.len() > MOST;
+        let is_last = self.made.len() > self.most;
         self.waiting.push(if is_last {
             "further remarks are left out".to_owned()
         } else {
@@ -39,7 +46,7 @@ mod tests {
 
     #[test]
     fn each_remark_is_made_once_and_there_is_an_end() {
-        let mut remarks = Remarks::default();
+        let mut remarks = Remarks::at_most(200);
         remarks.make("a".to_owned());
         remarks.make("a".to_owned());
         assert_eq!(remarks.take(), ["a"]);
@@ -47,7 +54,7 @@ mod tests {
             remarks.make(number.to_string());
         }
         let taken = remarks.take();
-        assert_eq!(taken.len(), MOST);
+        assert_eq!(taken.len(), 200);
         assert_eq!(taken.last().map(String::as_str), Some("further remarks are left out"));
         assert!(remarks.take().is_empty());
     }

@@ -97,7 +97,7 @@ async fn serve(mut session: Session, options: &Options, journal: &mut Journal) -
     let deadline = Instant::now() + options.wait;
     let mut connection = Connection::open(&options.host, options.port, options.wait, deadline).await?;
     let greeting = message(session.greeting());
-    let first = connection.greet(greeting, options.wait, deadline).await?;
+    let first = connection.greet(greeting, options.wait).await?;
     let Some(who) = input(first, journal)? else {
         return Ok(());
     };

@@ -216,8 +216,9 @@ fn odd_json_is_refused_in_words() {
 #[test]
 fn many_small_messages_are_cut_off_and_said_so() {
     let (sent, remarks) = check(told("{}").repeat(5000));
-    assert_eq!(sent.matches("\"action\":\"error\"").count(), 1000);
-    let cut = "messages: found more than 1000 in one go; the others are ignored";
+    assert_eq!(sent.matches("\"action\":\"error\"").count(), 5000);
+    assert_eq!(sent.matches("found more than 1000 in one go").count(), 4000);
+    let cut = "messages: found more than 1000 in one go; the others are refused";
     assert!(remarks.iter().any(|remark| remark == cut), "{remarks:?}");
 }
 

@@ -48,6 +48,9 @@ pub struct Received {
     pub screenshot: Option<Screenshot>,
     /// Whether the environment is at the start of a new world.
     pub reset: bool,
+    /// What was made of a new world or object that its author may not have meant: keys that mean nothing, assets that are not
+    /// known. The Debug channel has the same for who listens to `worldmaker`.
+    pub remarks: Vec<String>,
 }
 
 /// What a message that was understood leads to.
@@ -203,11 +206,7 @@ impl Channels {
                 received
                     .messages
                     .extend(self.remark(Category::Academy, Level::Log, said, time));
-                for said in remarks {
-                    received
-                        .messages
-                        .extend(self.remark(Category::Worldmaker, Level::Warning, said, time));
-                }
+                self.warn(remarks, time, received);
                 Ok(OK)
             }
             "object_create" => {
@@ -216,11 +215,7 @@ impl Channels {
                 received
                     .messages
                     .extend(self.remark(Category::Worldmaker, Level::Log, said, time));
-                for said in remarks {
-                    received
-                        .messages
-                        .extend(self.remark(Category::Worldmaker, Level::Warning, said, time));
-                }
+                self.warn(remarks, time, received);
                 Ok(OK)
             }
             "get_observers" => Ok(Answer::Say("observer_list", Some(json!({ "state": PARTS })))),
@@ -240,6 +235,15 @@ impl Channels {
                 Ok(OK)
             }
             other => Err(unknown("action", other, channel.actions())),
+        }
+    }
+
+    /// Remarks on a new world or object, for the caller and for who listens.
+    fn warn(&mut self, remarks: Vec<String>, time: &str, received: &mut Received) {
+        for said in remarks {
+            received.remarks.push(said.clone());
+            let remark = self.remark(Category::Worldmaker, Level::Warning, said, time);
+            received.messages.extend(remark);
         }
     }
 

@@ -98,6 +98,9 @@ impl Session {
                     ..Received::default()
                 },
             };
+            for remark in &received.remarks {
+                self.world_remarks.make(format!("{} channel: {remark}", channel.name()));
+            }
             if received.reset {
                 self.renew()?;
                 is_renewed = true;
@@ -123,9 +126,6 @@ impl Session {
         self.maps.apply(&mut self.start);
         if !self.parameters.is_empty() || self.start != *self.environment.world() {
             self.restart()?;
-        }
-        for warning in self.environment.warnings() {
-            self.remarks.make(format!("world: {warning}"));
         }
         Ok(())
     }

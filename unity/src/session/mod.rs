@@ -85,6 +85,8 @@ pub struct Session {
     episodes: i32,
     outbox: Outbox,
     remarks: Remarks,
+    /// Those on worlds and objects, which may differ in each: they must not crowd out the others.
+    world_remarks: Remarks,
     /// The behaviour and the shapes of observations that the client knows.
     told: Option<(BrainParametersProto, Vec<Vec<i32>>)>,
 }
@@ -115,7 +117,8 @@ impl Session {
             clock: Box::new(clock),
             episodes: 0,
             outbox: Outbox::default(),
-            remarks: Remarks::default(),
+            remarks: Remarks::at_most(200),
+            world_remarks: Remarks::at_most(50),
             told: None,
         })
     }
@@ -187,7 +190,9 @@ impl Session {
 
     /// What the user of the executable should know since the last time, a line each.
     pub fn take_remarks(&mut self) -> Vec<String> {
-        self.remarks.take()
+        let mut remarks = self.world_remarks.take();
+        remarks.extend(self.remarks.take());
+        remarks
     }
 
     /// Begins the world anew, with what has been set.

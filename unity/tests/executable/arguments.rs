@@ -75,7 +75,7 @@ fn values_that_cannot_be_end_it_with_2_and_help() {
         ),
         (
             &["--wait", "soon"],
-            "--wait: found \"soon\", expected seconds from 0 to 86400",
+            "--wait: found \"soon\", expected seconds from 0.1 to 86400",
         ),
         (&["--world"], "--world: found no value, expected a file"),
     ] {
