@@ -35,6 +35,7 @@ mod sheet;
 mod table;
 mod tasks;
 mod transfer_report;
+mod unity;
 mod validate;
 mod vary;
 mod weights;
@@ -90,6 +91,7 @@ enum Command {
     Report(report::Report),
     TransferReport(transfer_report::TransferReport),
     Schema(schema::Schema),
+    Unity(unity::Unity),
     Bench(bench::Bench),
     Doctor(doctor::Doctor),
 }
@@ -118,6 +120,7 @@ impl Command {
             Self::Report(command) => command.run(),
             Self::TransferReport(command) => command.run(),
             Self::Schema(command) => command.run(),
+            Self::Unity(command) => command.run(),
             Self::Bench(command) => command.run(),
             Self::Doctor(command) => command.run(),
         }

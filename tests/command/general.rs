@@ -28,6 +28,7 @@ fn every_subcommand_has_help_with_an_example() {
         "report",
         "transfer-report",
         "schema",
+        "unity",
         "bench",
         "doctor",
     ] {

@@ -12,3 +12,4 @@ mod report;
 mod run;
 mod terminal;
 mod transfer_report;
+mod unity;

@@ -18,18 +18,15 @@ fn main() -> ExitCode {
         Ok((Request::Help, _)) => println!("{HELP}"),
         Ok((Request::Version, _)) => println!("{MARK}, {}", env!("CARGO_PKG_VERSION")),
         Ok((Request::Run(options), remarks)) => {
-            let ending = match Journal::open(options.log.as_deref()) {
-                Ok(mut journal) => {
-                    for remark in remarks {
-                        journal.note(&remark);
-                    }
-                    run(&options, &mut journal).inspect_err(|error| journal.note(&error.to_string()))
+            // Without a log file there is the terminal still.
+            let journal = Journal::open(options.log.as_deref())
+                .inspect_err(|error| eprintln!("driftworld-unity: -logFile {error}"));
+            let ending = journal.and_then(|mut journal| {
+                for remark in remarks {
+                    journal.note(&remark);
                 }
-                Err(error) => {
-                    eprintln!("driftworld-unity: {error}");
-                    Err(error)
-                }
-            };
+                run(&options, &mut journal).inspect_err(|error| journal.note(&error.to_string()))
+            });
             return ending.map_or_else(|error| failed(&error), |()| ExitCode::SUCCESS);
         }
         Err(error) => {

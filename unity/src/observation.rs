@@ -1,7 +1,7 @@
 //! What an agent sees, as clients understand it: depth, colours, segmentation, then a list of numbers. What there is to see is
 //! drawn by `driftworld-env`.
 
-use driftworld_env::{FAR_DEPTH, Frame, category_color, depth_to_gray};
+use driftworld_env::{Frame, category_color, depth_to_gray};
 
 use crate::client::Client;
 use crate::error::UnityError;
@@ -24,6 +24,9 @@ const NEIGHBOURS: i32 = 2;
 
 /// The channels of a picture: red, green, blue.
 const CHANNELS: usize = 3;
+
+/// Where depth is white, in metres, as [`depth_to_gray`] has it: far nearer than the sky.
+const WHITE_DEPTH: f32 = 100.0;
 
 /// The observations of a frame and a state, in the original's order.
 ///
@@ -55,7 +58,7 @@ pub(crate) fn observations(
             &frame
                 .depth
                 .iter()
-                .map(|metres| (metres / FAR_DEPTH).clamp(0.0, 1.0))
+                .map(|metres| (metres / WHITE_DEPTH).clamp(0.0, 1.0))
                 .collect::<Vec<_>>(),
         )
     };
@@ -136,4 +139,25 @@ pub(crate) fn png([width, height]: [u32; 2], rgb: &[u8]) -> Result<Vec<u8>, Unit
     writer.write_image_data(rgb).map_err(failed)?;
     writer.finish().map_err(failed)?;
     Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depth_in_floats_is_the_grey_of_png_files_with_its_fractions() {
+        let metres = vec![0.0, 0.1, 33.3, 99.9, 100.0, 1000.0];
+        let mut frame = Frame::new(metres.len() as u32, 1);
+        frame.depth.clone_from(&metres);
+        let observations =
+            observations(&frame, Vec::new(), PictureForm::Floats, Client::default()).expect("floats need no file");
+        let Some(ObservationData::FloatData(FloatData { data })) = &observations[0].observation_data else {
+            panic!("floats were asked for: {:?}", observations[0]);
+        };
+        assert_eq!(data[..9], [0.0, 0.0, 0.0, 0.001, 0.001, 0.001, 0.333, 0.333, 0.333]);
+        for (float, gray) in data.iter().step_by(CHANNELS).zip(depth_to_gray(&metres)) {
+            assert!((float * 255.0 - f32::from(gray)).abs() < 0.501, "{float}: {gray}");
+        }
+    }
 }

@@ -6,6 +6,7 @@ use std::time::Duration;
 use driftworld_spec::World;
 use driftworld_spec::maps::MapLibrary;
 use prost::Message;
+use serde_json::Value;
 use tokio::runtime;
 use tokio::time::{Instant, timeout};
 
@@ -58,19 +59,27 @@ pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
     ended
 }
 
-/// A world file, in our form or in the original's. What the original's form lets pass is remarked.
+/// A world file, in our form or in the original's. What the original's reader made sense of is noted: a misspelt key reads as one
+/// that means nothing.
 fn world(path: &Path, journal: &mut Journal) -> Result<World, UnityError> {
     let text = read(path)?;
     let name = path.display().to_string();
-    // Which of the two it is meant to be is not said; where neither reads it, the complaints of ours are the stricter ones.
-    World::from_json(&name, &text).or_else(|error| {
-        let (world, warnings) = World::from_l2explorer(&name, &text).map_err(|_| UnityError::from(error))?;
-        journal.note(&format!("{name}: read as a reset file of L2Explorer"));
-        for warning in warnings {
-            journal.note(&warning.to_string());
+    let error = match World::from_json(&name, &text) {
+        Ok(world) => return Ok(world),
+        Err(error) => error,
+    };
+    // Only ours has a version; where neither form reads, the complaints of ours are the stricter ones.
+    let is_ours = serde_json::from_str::<Value>(&text).is_ok_and(|json| json.get("version").is_some());
+    match World::from_l2explorer(&name, &text) {
+        Ok((world, warnings)) if !is_ours => {
+            journal.note(&format!("{name}: read as a reset file of L2Explorer"));
+            for warning in warnings {
+                journal.note(&warning.to_string());
+            }
+            Ok(world)
         }
-        Ok(world)
-    })
+        _ => Err(error.into()),
+    }
 }
 
 fn maps(path: &Path) -> Result<MapLibrary, UnityError> {

@@ -13,10 +13,11 @@ pub(crate) enum Suite {
     Similarity,
     Env,
     Metrics,
+    Unity,
 }
 
 impl Suite {
-    pub(crate) const ALL: [Self; 4] = [Self::Generator, Self::Similarity, Self::Env, Self::Metrics];
+    pub(crate) const ALL: [Self; 5] = [Self::Generator, Self::Similarity, Self::Env, Self::Metrics, Self::Unity];
 
     /// The word after `bench`.
     pub(crate) fn name(self) -> &'static str {
@@ -25,6 +26,7 @@ impl Suite {
             Self::Similarity => "similarity",
             Self::Env => "env",
             Self::Metrics => "metrics",
+            Self::Unity => "unity",
         }
     }
 
@@ -40,6 +42,7 @@ impl Suite {
             Self::Similarity => &["driftworld-similarity"],
             Self::Env => &["driftworld-env"],
             Self::Metrics => &["driftworld-metrics"],
+            Self::Unity => &["driftworld-unity"],
         }
     }
 }
@@ -50,14 +53,15 @@ pub(crate) fn measure(workspace: &Workspace, suites: &[Suite]) -> Result<(), Xta
         for package in suite.packages() {
             run(cargo(workspace, &["bench", "--package", package]))?;
         }
-        if *suite == Suite::Similarity {
-            side_by_side::measure(workspace)?;
-            continue;
+        match suite {
+            Suite::Similarity => side_by_side::measure(workspace)?,
+            // With a client it is measured by `unity/benches/client.py`, which wants a Python with mlagents-envs.
+            Suite::Unity => {}
+            Suite::Generator | Suite::Env | Suite::Metrics => run(cargo(
+                workspace,
+                &["run", "--release", "--quiet", "--", "bench", suite.name()],
+            ))?,
         }
-        run(cargo(
-            workspace,
-            &["run", "--release", "--quiet", "--", "bench", suite.name()],
-        ))?;
     }
     Ok(())
 }

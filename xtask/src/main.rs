@@ -22,6 +22,7 @@ mod schemas;
 mod side_by_side;
 mod stage;
 mod tidy;
+mod unity;
 mod virtual_environment;
 mod workspace;
 
@@ -40,7 +41,7 @@ Usage:
   cargo xtask STAGE                 the same as `test --only STAGE`, but for `schemas`
   cargo xtask schemas               rewrite schemas/*.json from the Rust types
   cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, similarity,
-                                    env, metrics)
+                                    env, metrics, unity)
   cargo xtask bench peers PYTHON SCRIPTS
                                     ours beside the peers that PYTHON has, by the scripts in a folder; draws the README's plot";
 

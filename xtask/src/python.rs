@@ -15,7 +15,7 @@ use crate::workspace::Workspace;
 const REQUIRE_PYTHON: &str = "DRIFTWORLD_REQUIRE_PYTHON";
 const REQUIRE_LEARNERS: &str = "DRIFTWORLD_REQUIRE_LEARNERS";
 
-const NO_INTERPRETER: &str =
+pub(crate) const NO_INTERPRETER: &str =
     "no Python from 3.10 on with venv and pip (Debian: apt install python3-venv), or name one in DRIFTWORLD_PYTHON";
 
 /// The environment that holds what a newcomer installed, and nothing else.
@@ -41,9 +41,10 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
         };
     // Before anything is built: these take seconds.
     let project = workspace.root.join("python");
-    for arguments in [&["-m", "ruff", "check", ".", "../examples/python"][..], &["-m", "mypy"]] {
+    let linted = [".", "../examples/python", "../unity/tests/clients"];
+    for (arguments, folders) in [(&["-m", "ruff", "check"][..], &linted[..]), (&["-m", "mypy"], &[])] {
         let mut check = newest.python(arguments);
-        check.current_dir(&project);
+        check.args(folders).current_dir(&project);
         run(check)?;
     }
     let wheel = newcomer(workspace, &interpreter)?;
@@ -69,11 +70,20 @@ pub(crate) fn learners(workspace: &Workspace) -> Result<Outcome, XtaskError> {
         Ok(environment) => environment,
         Err(error) => return missing(REQUIRE_LEARNERS, error.to_string()),
     };
-    // By the interpreter that built it before, so that Cargo finds nothing to do.
-    let builder = VirtualEnvironment::kept(workspace, &interpreter, NEWCOMER)?;
-    install(&environment, &build(workspace, &builder)?)?;
+    install_wheel(workspace, &interpreter, &environment)?;
     pytest(workspace, &environment, &["-m", "learners"])?;
     Ok(Outcome::Passed)
+}
+
+/// Puts the wheel into an environment; what it needs is there already. Whatever the environment's own interpreter, the wheel is built
+/// by the one that built it before, so that Cargo finds nothing to do.
+pub(crate) fn install_wheel(
+    workspace: &Workspace,
+    interpreter: &Path,
+    environment: &VirtualEnvironment,
+) -> Result<(), XtaskError> {
+    let builder = VirtualEnvironment::kept(workspace, interpreter, NEWCOMER)?;
+    install(environment, &build(workspace, &builder)?)
 }
 
 /// What somebody does who has just read the README: an empty environment, the README's command, its example, the command of the
@@ -107,7 +117,7 @@ fn build(workspace: &Workspace, environment: &VirtualEnvironment) -> Result<Path
         .ok_or_else(|| file_error(&wheels, std::io::ErrorKind::NotFound.into()))
 }
 
-/// Puts the wheel into an environment in place of the one that is there; what it needs is there already.
+/// Puts a wheel in place of the one that is there.
 fn install(environment: &VirtualEnvironment, wheel: &Path) -> Result<(), XtaskError> {
     let mut install = environment.pip(&["install", "--quiet", "--no-deps", "--force-reinstall"]);
     install.arg(wheel);
@@ -130,7 +140,7 @@ fn requirements(name: &str) -> PathBuf {
 }
 
 /// A stage without what it needs: skipped, or a failure where the variable asks for it.
-fn missing(variable: &'static str, reason: String) -> Result<Outcome, XtaskError> {
+pub(crate) fn missing(variable: &'static str, reason: String) -> Result<Outcome, XtaskError> {
     outcome(env::var_os(variable).is_some(), variable, reason)
 }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::error::XtaskError;
 use crate::process::{cargo, run};
 use crate::workspace::Workspace;
-use crate::{bench, deny, documents, examples, layers, python, runner, schemas, tidy};
+use crate::{bench, deny, documents, examples, layers, python, runner, schemas, tidy, unity};
 
 /// One step of `cargo xtask test`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,6 +25,7 @@ pub(crate) enum Stage {
     Documents,
     Python,
     Learners,
+    Unity,
     Deny,
 }
 
@@ -37,7 +38,7 @@ pub(crate) enum Outcome {
 
 impl Stage {
     /// In the order in which they run: the quick ones first, so that most mistakes show within seconds.
-    pub(crate) const ALL: [Self; 15] = [
+    pub(crate) const ALL: [Self; 16] = [
         Self::Fmt,
         Self::Layers,
         Self::Tidy,
@@ -52,6 +53,7 @@ impl Stage {
         Self::Documents,
         Self::Python,
         Self::Learners,
+        Self::Unity,
         Self::Deny,
     ];
 
@@ -72,6 +74,7 @@ impl Stage {
             Self::Documents => "documents",
             Self::Python => "python",
             Self::Learners => "learners",
+            Self::Unity => "unity",
             Self::Deny => "deny",
         }
     }
@@ -95,6 +98,9 @@ impl Stage {
             Self::Documents => "a second validator, in Python, judges tests/documents by the schemas as ours does",
             Self::Python => "`pip install ./python` does what the README says, and its tests pass",
             Self::Learners => "the Python tests that need torch, Stable-Baselines3, Minari and Ray pass",
+            Self::Unity => {
+                "Python clients of ML-Agents, old and new, drive driftworld-unity as they drive a Unity build"
+            }
             Self::Deny => "licences, advisories and sources of dependencies are as deny.toml allows",
         }
     }
@@ -134,6 +140,7 @@ impl Stage {
             Self::Documents => documents::stage(workspace),
             Self::Python => python::stage(workspace),
             Self::Learners => python::learners(workspace),
+            Self::Unity => unity::stage(workspace),
             Self::Deny => deny::stage(workspace),
         }
     }

@@ -13,28 +13,38 @@ use crate::workspace::Workspace;
 /// Names the interpreter to make them with.
 const PYTHON: &str = "DRIFTWORLD_PYTHON";
 
-/// What an interpreter has to be able to do: be new enough, and make virtual environments with pip in them.
-const FIT: &str = "import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 10))";
+/// The names that interpreters go by.
+const USUAL: [&str; 7] = [
+    "python3",
+    "python",
+    "python3.14",
+    "python3.13",
+    "python3.12",
+    "python3.11",
+    "python3.10",
+];
 
 /// The name of the file that says what an environment was made from.
 const STAMP: &str = "driftworld-made-from.txt";
 
 /// The interpreter that `DRIFTWORLD_PYTHON` names, else the first of the usual names that is fit; `None` without one.
 pub(crate) fn interpreter() -> Option<PathBuf> {
+    fit("(3, 10) <= sys.version_info")
+}
+
+/// The same below a minor version of Python 3, for packages that have not come along.
+pub(crate) fn interpreter_before(minor: u32) -> Option<PathBuf> {
+    fit(&format!("(3, 10) <= sys.version_info < (3, {minor})"))
+}
+
+/// The first interpreter of such a version that can make virtual environments with pip in them.
+fn fit(version: &str) -> Option<PathBuf> {
+    let program = format!("import sys, venv, ensurepip; sys.exit(not ({version}))");
     let named = env::var_os(PYTHON).map(PathBuf::from);
-    let usual = [
-        "python3",
-        "python",
-        "python3.14",
-        "python3.13",
-        "python3.12",
-        "python3.11",
-        "python3.10",
-    ];
     named
         .into_iter()
-        .chain(usual.map(PathBuf::from))
-        .find(|python| works(with(python, &["-c", FIT])))
+        .chain(USUAL.map(PathBuf::from))
+        .find(|python| works(with(python, &["-c", &program])))
 }
 
 /// A folder with an interpreter and packages of its own.
@@ -51,9 +61,24 @@ impl VirtualEnvironment {
         name: &str,
         requirements: &Path,
     ) -> Result<Self, XtaskError> {
-        let path = workspace.root.join(requirements);
-        let text = fs::read_to_string(&path).map_err(|source| XtaskError::File { path, source })?;
-        let made_from = format!("{}\n{text}", interpreter.display());
+        Self::with_unwilling(workspace, interpreter, name, requirements, None)
+    }
+
+    /// The same, and then the packages of a second file: without what they depend on, and whatever Python they ask for. For those that
+    /// run where their own lists say they do not.
+    pub(crate) fn with_unwilling(
+        workspace: &Workspace,
+        interpreter: &Path,
+        name: &str,
+        requirements: &Path,
+        unwilling: Option<&Path>,
+    ) -> Result<Self, XtaskError> {
+        let mut made_from = identity(interpreter);
+        for file in [Some(requirements), unwilling].into_iter().flatten() {
+            let path = workspace.root.join(file);
+            let text = fs::read_to_string(&path).map_err(|source| XtaskError::File { path, source })?;
+            made_from = format!("{made_from}\n{text}");
+        }
         let this = Self {
             folder: folder(workspace, name),
         };
@@ -66,6 +91,17 @@ impl VirtualEnvironment {
         let mut install = this.pip(&["install", "--quiet", "--requirement"]);
         install.current_dir(&workspace.root).arg(requirements);
         run(install)?;
+        if let Some(unwilling) = unwilling {
+            let mut install = this.pip(&[
+                "install",
+                "--quiet",
+                "--no-deps",
+                "--ignore-requires-python",
+                "--requirement",
+            ]);
+            install.current_dir(&workspace.root).arg(unwilling);
+            run(install)?;
+        }
         fs::write(&stamp, made_from).map_err(|source| XtaskError::File { path: stamp, source })?;
         Ok(this)
     }
@@ -115,6 +151,15 @@ impl VirtualEnvironment {
     }
 }
 
+/// Which Python an interpreter is, whatever name it goes by: `python3` may be another tomorrow, and the same by another path.
+fn identity(interpreter: &Path) -> String {
+    let asked = with(interpreter, &["-c", "import sys; print(sys.base_prefix, sys.version)"]).output();
+    asked.map_or_else(
+        |_| interpreter.display().to_string(),
+        |said| String::from_utf8_lossy(&said.stdout).trim().to_owned(),
+    )
+}
+
 /// Where the environment of that name is.
 fn folder(workspace: &Workspace, name: &str) -> PathBuf {
     workspace.target.join("python").join(name)
@@ -148,7 +193,20 @@ mod tests {
     }
 
     #[test]
+    fn an_interpreter_is_known_by_what_it_is_not_by_its_name() {
+        if let Some(python) = interpreter() {
+            let whole_path = with(&python, &["-c", "import sys; print(sys.executable)"])
+                .output()
+                .unwrap();
+            let whole_path = String::from_utf8(whole_path.stdout).unwrap();
+            assert_eq!(identity(&python), identity(Path::new(whole_path.trim())));
+            assert!(identity(&python).contains(" 3."), "{}", identity(&python));
+        }
+        assert_eq!(identity(Path::new("no-such-python")), "no-such-python");
+    }
+
+    #[test]
     fn what_does_not_start_is_not_an_interpreter() {
-        assert!(!works(with(Path::new("no-such-python"), &["-c", FIT])));
+        assert!(!works(with(Path::new("no-such-python"), &["-c", ""])));
     }
 }

@@ -130,7 +130,7 @@ impl<'a> Session<'a> {
     /// A remark, as a line of its own, if its category is on.
     fn remark(&mut self, category: Category, text: String) -> String {
         let time = self.time();
-        let remark = self.channels.remark(category, Level::Info, text, &time);
+        let remark = self.channels.remark(category, Level::Log, text, &time);
         remark.map_or_else(String::new, |message| shown(&message) + "\n")
     }
 

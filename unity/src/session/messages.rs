@@ -20,6 +20,9 @@ const MOST_MESSAGES: usize = 1000;
 /// brackets that has that many takes half a gigabyte until it is found to say nothing; one of 4 MB took 2.8.
 const MOST_VALUES: usize = 400_000;
 
+/// The most that are looked at, to refuse those beyond [`MOST_MESSAGES`].
+const MOST_LOOKED_AT: usize = 10_000;
+
 /// A message of L2Explorer's: its channel, and its text or why there is none.
 pub(super) type Told<'a> = (Channel, Result<&'a str, String>);
 
@@ -30,8 +33,10 @@ impl Session {
         for (number, record) in records(bytes).enumerate() {
             if number == MOST_MESSAGES {
                 self.remarks.make(format!(
-                    "messages: found more than {MOST_MESSAGES} in one go; the others are ignored"
+                    "messages: found more than {MOST_MESSAGES} in one go; the others are refused"
                 ));
+            }
+            if number == MOST_LOOKED_AT {
                 break;
             }
             let record = match record {
@@ -42,7 +47,16 @@ impl Session {
                     break;
                 }
             };
-            let problem = match SideChannel::from_guid(record.guid) {
+            let side_channel = SideChannel::from_guid(record.guid);
+            if number >= MOST_MESSAGES {
+                if let Some(SideChannel::L2Explorer(channel)) = side_channel {
+                    let reason =
+                        format!("found more than {MOST_MESSAGES} in one go, expected the others with later steps");
+                    told.push((channel, Err(reason)));
+                }
+                continue;
+            }
+            let problem = match side_channel {
                 Some(SideChannel::L2Explorer(channel)) => {
                     told.push((channel, Payload::new(record.payload).text().and_then(bounded)));
                     continue;

@@ -177,7 +177,9 @@ impl Session {
             CommandProto::Step if !is_renewed => self.step(action)?,
             CommandProto::Step | CommandProto::Reset => {
                 self.episodes += 1;
-                vec![self.decision(0.0, 0)?]
+                let first = self.decision(0.0, 0)?;
+                self.check_end_fits(&first)?;
+                vec![first]
             }
         };
         Ok(Turn::Output(Box::new(self.output(agents))))
@@ -211,6 +213,18 @@ impl Session {
         self.restart()?;
         self.episodes += 1;
         Ok(vec![agent, self.decision(0.0, 0)?])
+    }
+
+    /// The end of an episode and the start of the next travel in one message. Floats are always as many: where two of them will not
+    /// fit, that is said at the start, not in the midst of a training.
+    fn check_end_fits(&self, agent: &AgentInfoProto) -> Result<(), UnityError> {
+        let world = self.environment.world();
+        let can_end = world.max_steps > 0 || !world.rules.success.is_empty() || !world.rules.failure.is_empty();
+        let (found, limit) = (2 * agent.encoded_len() + ENVELOPE, MAX_OUTGOING_BYTES);
+        if self.pictures == PictureForm::Floats && can_end && found > limit {
+            return Err(UnityError::TooLarge { found, limit });
+        }
+        Ok(())
     }
 
     /// The agent as it is now, before its next action.

@@ -1,0 +1,69 @@
+//! How long a session takes for a command, without a network: a step with its pictures in both forms, a reset, a state message.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use driftworld_spec::{Object, World};
+use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
+use driftworld_unity::protocol::{AgentActionProto, CommandProto, UnityRlInitializationInputProto, UnityRlInputProto};
+use driftworld_unity::{BEHAVIOR, PictureForm, Screenshots, Session, Setup};
+
+/// Twenty objects in a ring, around which the agent drives in a circle.
+fn ring() -> World {
+    let kinds = ["tree", "barrel", "chair", "rock", "geometric"];
+    let object = |number: u32| {
+        let angle = f64::from(number) * std::f64::consts::TAU / 20.0;
+        Object::new(
+            kinds[number as usize % kinds.len()],
+            [12.0 * angle.cos(), 12.0 * angle.sin()],
+        )
+    };
+    World {
+        objects: (0..20).map(object).collect(),
+        ..World::default()
+    }
+}
+
+fn session(pictures: PictureForm) -> Session {
+    let setup = Setup {
+        world: ring(),
+        pictures,
+        ..Setup::default()
+    };
+    let clock = || "2026-01-01T00:00:00Z".to_owned();
+    let mut session = Session::new(setup, Screenshots::new("screenshots"), clock).expect("the world starts");
+    session
+        .begin(&UnityRlInitializationInputProto {
+            communication_version: "1.0.0".to_owned(),
+            ..UnityRlInitializationInputProto::default()
+        })
+        .expect("the version is 1");
+    session
+}
+
+fn commands(c: &mut Criterion) {
+    let action = AgentActionProto {
+        vector_actions: vec![5.0, 15.0, 0.0],
+        continuous_actions: Vec::new(),
+    };
+    let mut step = UnityRlInputProto::default();
+    step.agent_actions
+        .insert(BEHAVIOR.to_owned(), ListAgentActionProto { value: vec![action] });
+    let reset = UnityRlInputProto {
+        command: CommandProto::Reset.into(),
+        ..UnityRlInputProto::default()
+    };
+    for (form, name) in [(PictureForm::Png, "PNG"), (PictureForm::Floats, "floats")] {
+        let mut session = session(form);
+        c.bench_function(&format!("a step with three pictures of 84 × 84 as {name}"), |bench| {
+            bench.iter(|| black_box(session.answer(&step).expect("the world has no end")));
+        });
+    }
+    let mut session = session(PictureForm::Png);
+    c.bench_function("a reset of 20 objects with three pictures as PNG", |bench| {
+        bench.iter(|| black_box(session.answer(&reset).expect("a world can always begin anew")));
+    });
+}
+
+criterion_group!(benches, commands);
+criterion_main!(benches);

@@ -1,0 +1,78 @@
+"""L2Explorer's three side channels as a client has them: JSON out, JSON back, each answer kept.
+
+What the messages do is in the tests; how they travel is the client's.
+"""
+
+from __future__ import annotations
+
+import json
+import uuid
+from typing import Any
+
+from mlagents_envs.side_channel.side_channel import IncomingMessage, OutgoingMessage, SideChannel
+
+GUIDS = {
+    "Reset": "621f0a70-4f87-11ea-a6bf-784f4387d1f7",
+    "State": "37715121-3bce-45ff-966d-680586560a5d",
+    "Debug": "c5fba0b5-6392-4433-a95f-cdec6b0061e1",
+}
+
+
+class RawChannel(SideChannel):
+    """A channel of bytes."""
+
+    def __init__(self, guid: str) -> None:
+        super().__init__(uuid.UUID(guid))
+        #: What came, oldest first.
+        self.received: list[bytes] = []
+
+    def on_message_received(self, msg: IncomingMessage) -> None:
+        self.received.append(bytes(msg.get_raw_bytes()))
+
+    def send_bytes(self, data: bytes) -> None:
+        message = OutgoingMessage()
+        message.set_raw_bytes(bytearray(data))
+        self.queue_message_to_send(message)
+
+
+class JsonChannel(RawChannel):
+    """One of the three."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(GUIDS[name])
+
+    def say(self, action: str, payload: Any = None, **beside: Any) -> str:
+        """Queues a message for the next reset or step; hands back its token."""
+        token = str(uuid.uuid4())
+        message = {"token": token, "msg_time": "2026-01-02T03:04:05", "action": action, **beside}
+        if payload is not None:
+            message["payload"] = payload
+        self.send_text(json.dumps(message))
+        return token
+
+    def send_text(self, text: str) -> None:
+        """Queues a text, letters beyond ASCII included, which clients do not write by themselves."""
+        data = text.encode()
+        self.send_bytes(len(data).to_bytes(4, "little") + data)
+
+    def take(self) -> list[dict[str, Any]]:
+        """What has come since the last time; old clients read nothing but ASCII."""
+        texts = [data[4:].decode("ascii") for data in self.received]
+        self.received = []
+        return [json.loads(text) for text in texts]
+
+    def answer(self, token: str) -> dict[str, Any]:
+        """The one answer to a message, out of what has come since the last time."""
+        (answer,) = (message for message in self.take() if message["req_token"] == token)
+        return dict(answer)
+
+
+class Channels:
+    """The three, for one client."""
+
+    def __init__(self) -> None:
+        self.reset, self.state, self.debug = (JsonChannel(name) for name in GUIDS)
+
+    @property
+    def all(self) -> list[JsonChannel]:
+        return [self.reset, self.state, self.debug]

@@ -1,0 +1,254 @@
+"""One way to speak to the clients of every generation, and to start the executable under them.
+
+What is said on side channels is in ``channels.py``; what must be true of all of it, in the tests.
+"""
+
+from __future__ import annotations
+
+import re
+import socket
+import subprocess
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import mlagents_envs
+import numpy as np
+import numpy.typing as npt
+from mlagents_envs.environment import UnityEnvironment
+from mlagents_envs.side_channel.side_channel import SideChannel
+
+#: The generation of the client: (0, 16), (0, 28), (1, 1).
+GENERATION = tuple(int(number) for number in re.findall(r"\d+", mlagents_envs.__version__)[:2])
+
+#: The behaviour's name.
+BEHAVIOR = "L2Explorer?team=0"
+
+#: How long to wait for what comes in a moment: a bound, not a measure.
+PATIENCE_SECS = 30
+
+#: An action that does nothing.
+REST = (0.0, 0.0, 0.0)
+
+Floats = npt.NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Seen:
+    """One agent at one moment."""
+
+    agent_id: int
+    reward: float
+    #: As the client has them.
+    arrays: list[Floats]
+    #: Whether an episode ended at its last step; of an end only.
+    truncated: bool = False
+
+    @property
+    def pictures(self) -> list[Floats]:
+        """Depth, colours, segmentation as (height, width, channels), whatever the client's order."""
+        axes = (1, 2, 0) if GENERATION >= (1, 0) else (0, 1, 2)
+        return [array.transpose(axes) for array in self.arrays if array.ndim == 3]
+
+    @property
+    def depth(self) -> Floats:
+        return self.pictures[0]
+
+    @property
+    def rgb(self) -> Floats:
+        return self.pictures[1]
+
+    @property
+    def segmentation(self) -> Floats:
+        return self.pictures[2]
+
+    @property
+    def vector(self) -> Floats:
+        """The number of the object that was collected, x, y, heading, velocity x, velocity y."""
+        return self.arrays[3]
+
+    def equals(self, other: Seen) -> bool:
+        """Whether both have seen the same, to the last bit."""
+        return len(self.arrays) == len(other.arrays) and all(
+            mine.shape == theirs.shape and bool((mine == theirs).all())
+            for mine, theirs in zip(self.arrays, other.arrays)
+        )
+
+
+@dataclass(frozen=True)
+class Moment:
+    """What a reset or a step led to."""
+
+    #: The agent before its next action.
+    now: Seen
+    #: The agent at the end of its episode, if the step was the last.
+    end: Seen | None
+
+
+class Client:
+    """A client of whatever generation is installed, and the executable under it."""
+
+    def __init__(self, env: UnityEnvironment, process: subprocess.Popen[Any] | None) -> None:
+        self.env = env
+        #: The executable, whoever started it.
+        self.process: subprocess.Popen[Any] = process or (env.proc1 if GENERATION < (0, 17) else env._process)
+
+    def reset(self) -> Moment:
+        self.env.reset()
+        return self.moment()
+
+    def step(self, action: Sequence[float] | npt.NDArray[Any] = REST) -> Moment:
+        self.act(np.array([action], dtype=np.float32))
+        self.env.step()
+        return self.moment()
+
+    def act(self, actions: Floats) -> None:
+        """Sets the actions of all agents."""
+        if GENERATION < (0, 17):
+            self.env.set_actions(BEHAVIOR, actions)
+        else:
+            from mlagents_envs.base_env import ActionTuple
+
+            self.env.set_actions(BEHAVIOR, ActionTuple(continuous=actions))
+
+    def moment(self) -> Moment:
+        decisions, terminals = self.env.get_steps(BEHAVIOR)
+        ends = self._seen(terminals)
+        (now,) = self._seen(decisions)
+        assert len(ends) <= 1, "there is one agent"
+        return Moment(now, ends[0] if ends else None)
+
+    @staticmethod
+    def _seen(steps: Any) -> list[Seen]:
+        cut = getattr(steps, "interrupted", getattr(steps, "max_step", [False] * len(steps)))
+        return [
+            Seen(
+                int(steps.agent_id[place]),
+                float(steps.reward[place]),
+                [array[place].copy() for array in steps.obs],
+                bool(cut[place]),
+            )
+            for place in range(len(steps))
+        ]
+
+    def behaviors(self) -> list[str]:
+        return list(self.env.get_behavior_names() if GENERATION < (0, 17) else self.env.behavior_specs)
+
+    def spec(self) -> Any:
+        return self.env.get_behavior_spec(BEHAVIOR) if GENERATION < (0, 17) else self.env.behavior_specs[BEHAVIOR]
+
+    def shapes(self) -> list[tuple[int, ...]]:
+        """The shapes of observations as the client was told them, pictures as (height, width, channels)."""
+        spec = self.spec()
+        if GENERATION < (0, 17):
+            return list(spec.observation_shapes)
+        shapes = [tuple(each.shape) for each in spec.observation_specs]
+        return [(*shape[1:], shape[0]) if GENERATION >= (1, 0) and len(shape) == 3 else shape for shape in shapes]
+
+    def communicator(self) -> Any:
+        """What carries messages, for what the client itself never says."""
+        return self.env.communicator if GENERATION < (0, 17) else self.env._communicator
+
+    def close(self) -> int:
+        """Ends the session; the exit code of the executable."""
+        self.env.close()
+        return self.process.wait(PATIENCE_SECS)
+
+
+class Launcher:
+    """Starts clients and executables, and leaves none behind."""
+
+    def __init__(self, executable: Path, folder: Path) -> None:
+        #: The executable under its own name.
+        self.executable = executable
+        # Clients look for this ending.
+        self.file_name = folder / "l2explorer.x86_64"
+        self.file_name.symlink_to(executable)
+        self._clients: list[Client] = []
+        self._processes: list[subprocess.Popen[str]] = []
+
+    def start(
+        self,
+        *args: str,
+        channels: Sequence[SideChannel] = (),
+        port: int | None = None,
+        worker: int = 0,
+        **options: Any,
+    ) -> Client:
+        """A client that starts the executable itself, as clients do."""
+        options[ARGS] = list(args)
+        env = UnityEnvironment(
+            str(self.file_name),
+            worker_id=worker,
+            base_port=port or free_port(),
+            timeout_wait=PATIENCE_SECS,
+            side_channels=list(channels),
+            **options,
+        )
+        self._clients.append(Client(env, None))
+        return self._clients[-1]
+
+    def run(self, *args: str) -> subprocess.Popen[str]:
+        """The executable alone, started by hand; what it says can be read."""
+        process = subprocess.Popen(
+            [str(self.executable), *args], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        self._processes.append(process)
+        return process
+
+    def meet(self, *args: str, channels: Sequence[SideChannel] = ()) -> Client:
+        """A client that starts nothing (Unity's editor mode), and the executable, started by hand."""
+        port = free_port()
+        process = self.run("--mlagents-port", str(port), *args)
+        self._clients.append(Client(self.await_executable(port, channels), process))
+        return self._clients[-1]
+
+    @staticmethod
+    def await_executable(port: int, channels: Sequence[SideChannel] = ()) -> UnityEnvironment:
+        """A client in editor mode."""
+        return UnityEnvironment(None, base_port=port, timeout_wait=PATIENCE_SECS, side_channels=list(channels))
+
+    def end(self) -> None:
+        for client in self._clients:
+            if client.env._loaded:
+                client.env.close()
+        for process in [*self._processes, *(client.process for client in self._clients)]:
+            if process.poll() is None:
+                process.kill()
+            process.wait(PATIENCE_SECS)
+            for pipe in (process.stdout, process.stderr):
+                if pipe is not None:
+                    pipe.close()
+
+
+#: What the clients call further arguments for the executable.
+ARGS = "args" if GENERATION < (0, 20) else "additional_args"
+
+
+def free_port(count: int = 1) -> int:
+    """The first of that many ports in a row that nobody listens at."""
+    while True:
+        with closing(socket.create_server(("127.0.0.1", 0))) as first:
+            port = int(first.getsockname()[1])
+            try:
+                for offset in range(1, count):
+                    socket.create_server(("127.0.0.1", port + offset)).close()
+            except (OSError, OverflowError):
+                continue
+        return port
+
+
+def said(process: subprocess.Popen[str]) -> tuple[int, str]:
+    """The exit code of an executable that ends by itself, and what it said."""
+    _, errors = process.communicate(timeout=PATIENCE_SECS)
+    return process.returncode, errors
+
+
+@contextmanager
+def told_version(version: str, monkeypatch: Any) -> Iterator[None]:
+    """Clients of that version of the protocol."""
+    with monkeypatch.context() as patch:
+        patch.setattr(UnityEnvironment, "API_VERSION", version)
+        yield

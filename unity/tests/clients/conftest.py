@@ -1,0 +1,50 @@
+"""What the tests with the Python clients share: the executable, and a launcher that leaves no process behind.
+
+What must be true stands in the tests.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from channels import Channels
+from clients import Launcher
+
+
+@pytest.fixture(scope="session")
+def executable() -> Path:
+    """The executable under test."""
+    path = os.environ.get("DRIFTWORLD_UNITY")
+    if not path:
+        pytest.fail("DRIFTWORLD_UNITY: not set, expected the path of a built driftworld-unity")
+    return Path(path).resolve(strict=True)
+
+
+@pytest.fixture
+def launcher(executable: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Launcher]:
+    """Starts clients in a folder of the test's own."""
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "application"
+    folder.mkdir()
+    launcher = Launcher(executable, folder)
+    yield launcher
+    launcher.end()
+
+
+@pytest.fixture
+def channels() -> Channels:
+    """The three channels of one client."""
+    return Channels()
+
+
+@pytest.fixture(scope="session")
+def reference() -> Path:
+    """Example files of the original."""
+    folder = os.environ.get("DRIFTWORLD_REFERENCE")
+    if not folder:
+        pytest.skip("DRIFTWORLD_REFERENCE is not set: the original's example files are not here")
+    return Path(folder) / "l2explorer"
