@@ -195,6 +195,22 @@ fn bombs_of_json_are_refused_before_they_go_off() {
     }
 }
 
+/// As many as messages may have; each is remarked upon or refused, in one look at the text.
+#[test]
+fn texts_full_of_mistakes_are_looked_at_once() {
+    let keys: Vec<String> = (0..50_000).map(|key| format!("\"k{key}\":1")).collect();
+    let (sent, _) = check(told(&format!(
+        "{{\"action\":\"reset_environment\",\"payload\":{{{}}}}}",
+        keys.join(",")
+    )));
+    assert!(sent.contains("\"action\":\"ok\""), "unknown keys do no harm: {sent}");
+    let objects = format!("[{}1]", "1,".repeat(20_000));
+    let (sent, _) = check(told(&format!(
+        "{{\"action\":\"reset_environment\",\"payload\":{{\"objects\":{objects}}}}}"
+    )));
+    assert!(sent.contains("payload: and 19981 more"), "{sent}");
+}
+
 #[test]
 fn odd_json_is_refused_in_words() {
     let reset = |payload: &str| format!("{{\"action\":\"reset_environment\",\"payload\":{payload}}}");
@@ -209,7 +225,7 @@ fn odd_json_is_refused_in_words() {
         "{\"action\":\"\\ud800\"}".to_owned(),
     ] {
         let (sent, _) = check(told(&text));
-        assert!(sent.contains("\"action\":\"error\""), "{:.100}: {sent}", text);
+        assert!(sent.contains("\"action\":\"error\""), "{text:.100}: {sent}");
     }
 }
 
@@ -223,17 +239,34 @@ fn many_small_messages_are_cut_off_and_said_so() {
 }
 
 #[test]
-fn answers_that_pile_up_are_told_bit_by_bit_and_have_an_end() {
+fn answers_that_pile_up_wait_for_the_next_turn_and_have_an_end() {
+    let debug = [
+        0xb5, 0xa0, 0xfb, 0xc5, 0x92, 0x63, 0x33, 0x44, 0xa9, 0x5f, 0xcd, 0xec, 0x6b, 0x00, 0x61, 0xe1,
+    ];
     let (mut session, _folder) = session();
-    // Each is answered by some 4 kB: more in one go than a client takes.
-    let wide = format!(
-        "{{\"action\":\"object_create\",\"payload\":{{{}\"class\":3}}}}",
-        "\"coordinates\":[1e9,\"x\"],".repeat(1)
+    let listen = "{\"action\":\"set_debug_categories\",\"payload\":[{\"category\":\"worldmaker\",\"active\":true}]}";
+    let mut listen = told(listen);
+    listen[..16].copy_from_slice(&debug);
+    answer(&mut session, &step_with(listen)).expect("messages do not end a session");
+    // Each key is remarked upon, in more bytes than a client takes in one go, and more often than may wait.
+    let keys: Vec<String> = (0..12_000).map(|key| format!("\"{key:0>200}\":1")).collect();
+    let wide = told(&format!(
+        "{{\"action\":\"reset_environment\",\"payload\":{{{}}}}}",
+        keys.join(",")
+    ));
+    let output = answer(&mut session, &step_with(wide)).expect("messages do not end a session");
+    let first = output.rl_output.expect("there is an agent").side_channel.len();
+    assert!(first > MOST_ANSWERED / 2, "{first} bytes");
+    let remarks = session.take_remarks();
+    assert!(
+        remarks.iter().any(|remark| remark.contains("messages were left out")),
+        "{remarks:?}"
     );
-    let many = told(&wide).repeat(1000);
-    for _ in 0..15 {
-        answer(&mut session, &step_with(many.clone())).expect("messages do not end a session");
-    }
+    let output = answer(&mut session, &step_with(Vec::new())).expect("the session goes on");
+    assert!(
+        !output.rl_output.expect("there is an agent").side_channel.is_empty(),
+        "the rest follows"
+    );
     assert_well(&mut session);
 }
 
