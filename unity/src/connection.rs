@@ -10,7 +10,7 @@ use crate::error::UnityError;
 use crate::protocol::UnityMessageProto;
 use crate::protocol::unity_to_external_proto_client::UnityToExternalProtoClient;
 
-/// The longest message that is read, in bytes. A world of a hundred thousand objects has about 30 MB.
+/// The longest message that is read, in bytes: far more than the texts of the channels may hold in values.
 pub const MAX_INCOMING_BYTES: usize = 48 << 20;
 
 /// The longest message that is sent, in bytes: what gRPC servers accept where nobody says otherwise.
