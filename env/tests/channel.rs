@@ -163,6 +163,16 @@ fn check(channel: Channel, text: &str, expected: &str) {
 }
 
 #[test]
+fn places_in_our_own_copy_are_not_told() {
+    let (mut environment, mut channels) = start();
+    let spawn =
+        json!({ "action": "object_create", "unique_name": "", "payload": { "class": "rock", "coordinates": [9, 9] } });
+    let answers = ask(&mut environment, &mut channels, &spawn);
+    let said = answers[0].payload.as_ref().expect("an error has reasons")[0].to_string();
+    assert!(said.contains("/unique_name") && !said.contains("object:"), "{said}");
+}
+
+#[test]
 fn hostile_resets_and_objects_change_nothing() {
     check(Reset, "not JSON", "not valid JSON");
     check(Reset, "null", "found null");

@@ -1,7 +1,7 @@
 //! What can be done in a world, as clients of each generation are told: one behaviour, three continuous numbers. What they mean
 //! is the world's action model's.
 
-use driftworld_spec::{ActionModel, World};
+use driftworld_spec::{ActionModel, ActionSpace, AgentParams, World};
 
 use crate::client::Client;
 use crate::protocol::{ActionSpecProto, BrainParametersProto, SpaceTypeProto};
@@ -14,7 +14,7 @@ pub(crate) const ACTION_LENGTH: usize = 3;
 
 /// The behaviour as a client understands it.
 pub(crate) fn behavior(world: &World, client: Client) -> BrainParametersProto {
-    let words: Vec<String> = words(world.agent_params.action_model).map(str::to_owned).to_vec();
+    let words: Vec<String> = words(&world.agent_params).map(str::to_owned).to_vec();
     let action_spec = client.hybrid_actions.then(|| ActionSpecProto {
         num_continuous_actions: ACTION_LENGTH as i32,
         num_discrete_actions: 0,
@@ -32,14 +32,47 @@ pub(crate) fn behavior(world: &World, client: Client) -> BrainParametersProto {
 }
 
 /// What the numbers mean, in words.
-fn words(model: ActionModel) -> [&'static str; ACTION_LENGTH] {
-    match model {
-        ActionModel::ByVelocity => [
+fn words(agent: &AgentParams) -> [&'static str; ACTION_LENGTH] {
+    let is_normalized = agent.actions == ActionSpace::Normalized;
+    match (agent.action_model, is_normalized) {
+        (ActionModel::ByVelocity, false) => [
             "speed in m/s",
             "turn rate in degrees/s, right positive",
-            "interact above 0.5",
+            interact(agent, "interact above 0.5"),
         ],
-        ActionModel::ByWaypoint => ["x in m", "y in m", "turn rate in degrees/s, right positive"],
-        ActionModel::OnRails | ActionModel::None => ["ignored"; ACTION_LENGTH],
+        (ActionModel::ByVelocity, true) => [
+            "speed as a share of the largest, -1 to 1",
+            "turn rate as a share of the largest, right positive, -1 to 1",
+            interact(agent, "interact above 0"),
+        ],
+        (ActionModel::ByWaypoint, false) => ["x in m", "y in m", "turn rate in degrees/s, right positive"],
+        (ActionModel::ByWaypoint, true) => [
+            "x as a share of half the arena, -1 to 1",
+            "y as a share of half the arena, -1 to 1",
+            "turn rate as a share of the largest, right positive, -1 to 1",
+        ],
+        (ActionModel::OnRails | ActionModel::None, _) => ["ignored"; ACTION_LENGTH],
+    }
+}
+
+/// The third number where the agent goes by velocity.
+fn interact(agent: &AgentParams, words: &'static str) -> &'static str {
+    if agent.interact { words } else { "ignored" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_told_as_the_world_takes_them() {
+        let mut agent = AgentParams::default();
+        assert_eq!(words(&agent)[0], "speed in m/s");
+        agent.interact = false;
+        assert_eq!(words(&agent)[2], "ignored");
+        agent.actions = ActionSpace::Normalized;
+        assert_eq!(words(&agent)[0], "speed as a share of the largest, -1 to 1");
+        agent.action_model = ActionModel::OnRails;
+        assert_eq!(words(&agent), ["ignored"; 3]);
     }
 }

@@ -16,6 +16,9 @@ pub const MAX_INCOMING_BYTES: usize = 48 << 20;
 /// The longest message that is sent, in bytes: what gRPC servers accept where nobody says otherwise.
 pub(crate) const MAX_OUTGOING_BYTES: usize = 4 << 20;
 
+/// How long a connection may be silent before the network is asked whether there is somebody still.
+const KEEPALIVE: Duration = Duration::from_secs(30);
+
 /// How long to wait before looking again for a client that is not there yet.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
@@ -47,7 +50,9 @@ impl Connection {
         };
         let endpoint = Endpoint::from_shared(format!("http://{address}"))
             .map_err(no_address)?
-            .tcp_nodelay(true);
+            .tcp_nodelay(true)
+            // Another machine may lose its power without a word.
+            .tcp_keepalive(Some(KEEPALIVE));
         loop {
             match timeout_at(deadline, endpoint.connect()).await {
                 Ok(Ok(channel)) => {

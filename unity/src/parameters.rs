@@ -43,6 +43,11 @@ impl Parameters {
         Ok(())
     }
 
+    /// Whether a name means something.
+    pub(crate) fn knows(key: &str) -> bool {
+        KNOWN.iter().any(|known| known.eq_ignore_ascii_case(key))
+    }
+
     /// Lays the numbers over a world.
     pub(crate) fn apply(&self, world: &mut World) {
         let agent = &mut world.agent_params;
@@ -67,7 +72,7 @@ impl Parameters {
     }
 
     /// The world with the numbers laid over it, checked as a document would be.
-    fn try_world(&self, mut world: World) -> Result<World, String> {
+    pub(crate) fn try_world(&self, mut world: World) -> Result<World, String> {
         let whole = ["frame_skip", "max_steps", "supersampling"];
         for (key, number) in &self.0 {
             if !number.is_finite() || whole.contains(key) && (number.fract() != 0.0 || *number < 0.0) {

@@ -2,35 +2,50 @@
 
 use std::collections::BTreeSet;
 
+/// What a remark is about. Each kind has room of its own, so that none crowds out another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum About {
+    /// Settings and messages that mean nothing here.
+    Settings,
+    /// What was made of worlds and objects.
+    Worlds,
+    /// Messages that were refused, or left out.
+    Refusals,
+}
+
+/// The most remarks of a kind in a session: who sends rubbish at each step does not fill a disk.
+const MOST: usize = 100;
+
 /// Remarks that were not taken yet, and which there have been.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Remarks {
-    most: usize,
-    made: BTreeSet<String>,
+    made: BTreeSet<(About, String)>,
     waiting: Vec<String>,
 }
 
 impl Remarks {
-    /// No remarks yet, and never more than that many: who sends rubbish at each step does not fill a disk.
-    pub(crate) fn at_most(most: usize) -> Self {
-        Self {
-            most,
-            made: BTreeSet::new(),
-            waiting: Vec::new(),
-        }
+    /// Makes a remark, unless the same was made before.
+    pub(crate) fn make(&mut self, about: About, remark: String) {
+        self.make_once(about, &remark.clone(), remark);
     }
 
-    /// Makes a remark, unless it was made before.
-    pub(crate) fn make(&mut self, remark: String) {
-        if self.made.len() > self.most || self.made.contains(&remark) {
+    /// Makes a remark, unless one on the same thing was made before.
+    pub(crate) fn make_once(&mut self, about: About, thing: &str, remark: String) {
+        let key = (about, thing.to_owned());
+        let count = self.made.iter().filter(|(kind, _)| *kind == about).count();
+        if count > MOST || self.made.contains(&key) {
             return;
         }
-        self.made.insert(remark.clone());
-        let is_last = self.made.len() > self.most;
-        self.waiting.push(if is_last {
-            "further remarks are left out".to_owned()
-        } else {
+        self.made.insert(key);
+        self.waiting.push(if count < MOST {
             remark
+        } else {
+            match about {
+                About::Settings => "further remarks on settings are left out",
+                About::Worlds => "further remarks on worlds are left out",
+                About::Refusals => "further remarks on refused messages are left out",
+            }
+            .to_owned()
         });
     }
 
@@ -45,17 +60,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_remark_is_made_once_and_there_is_an_end() {
-        let mut remarks = Remarks::at_most(200);
-        remarks.make("a".to_owned());
-        remarks.make("a".to_owned());
+    fn each_remark_is_made_once_and_each_kind_has_an_end() {
+        let mut remarks = Remarks::default();
+        remarks.make(About::Worlds, "a".to_owned());
+        remarks.make(About::Worlds, "a".to_owned());
+        remarks.make_once(About::Worlds, "a", "b".to_owned());
         assert_eq!(remarks.take(), ["a"]);
         for number in 0..1000 {
-            remarks.make(number.to_string());
+            remarks.make(About::Worlds, number.to_string());
         }
         let taken = remarks.take();
-        assert_eq!(taken.len(), 200);
-        assert_eq!(taken.last().map(String::as_str), Some("further remarks are left out"));
-        assert!(remarks.take().is_empty());
+        assert_eq!(taken.len(), MOST);
+        assert_eq!(
+            taken.last().map(String::as_str),
+            Some("further remarks on worlds are left out")
+        );
+        remarks.make(About::Worlds, "c".to_owned());
+        remarks.make(About::Refusals, "c".to_owned());
+        assert_eq!(remarks.take(), ["c"], "refusals have room of their own");
     }
 }

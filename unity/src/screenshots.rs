@@ -1,11 +1,14 @@
 //! [`Screenshots`]: the one folder that messages can write into. What is drawn, and who asks, is in `session.rs`.
 
 use std::fs;
-use std::io::Write;
+use std::io::{Read, Write};
 use std::path::{Component, Path, PathBuf};
 
 /// The longest name of a file, in bytes.
 const LONGEST_NAME: usize = 200;
+
+/// The first bytes of every PNG file.
+const SIGNATURE: [u8; 8] = *b"\x89PNG\r\n\x1a\n";
 
 /// A folder for pictures that are named by messages.
 #[derive(Clone, Debug)]
@@ -48,6 +51,11 @@ impl Screenshots {
                 "payload/filename: found {name:?}, which is a folder, expected a name for a file"
             ));
         }
+        if path.is_file() && !path.is_symlink() && !is_png(&path) {
+            return Err(format!(
+                "payload/filename: found {name:?}, which is a file but no picture, expected another name"
+            ));
+        }
         let mut file = tempfile::Builder::new()
             .prefix(".screenshot")
             .tempfile_in(&folder)
@@ -66,6 +74,13 @@ impl Screenshots {
     }
 }
 
+/// Whether a file begins as PNG files do; one that cannot be read does not.
+fn is_png(path: &Path) -> bool {
+    let mut start = [0; SIGNATURE.len()];
+    let read = fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    read.is_ok() && start == SIGNATURE
+}
+
 /// The path inside the folder that a name stands for.
 fn inside(name: &str) -> Result<PathBuf, String> {
     let refuse = || {
@@ -81,10 +96,13 @@ fn inside(name: &str) -> Result<PathBuf, String> {
     let last = slashed.rsplit(['/', ':']).next().unwrap_or_default();
     let mut path = if leads_in { path.to_owned() } else { PathBuf::from(last) };
     let is_name = |part: Component| match part {
-        Component::Normal(part) => part.len() <= LONGEST_NAME && !part.to_string_lossy().contains(char::is_control),
+        Component::Normal(part) => {
+            let text = part.to_string_lossy();
+            part.len() <= LONGEST_NAME && !text.starts_with('.') && !text.contains(char::is_control)
+        }
         _ => false,
     };
-    if last.is_empty() || last.starts_with('.') || name.len() > 4 * LONGEST_NAME || !path.components().all(is_name) {
+    if last.is_empty() || name.len() > 4 * LONGEST_NAME || !path.components().all(is_name) {
         return refuse();
     }
     // As the original has it: another ending stays, and what is in the file is PNG all the same.
@@ -111,7 +129,19 @@ mod tests {
         check("runs/../../a.png", "a.png");
         check("C:\\Users\\me\\a.png", "a.png");
         check("C:a.png", "a.png");
-        for name in ["", "/", "..", ".", ".bashrc", "a/", "a\0b", "a\nb", &"x".repeat(300)] {
+        for name in [
+            "",
+            "/",
+            "..",
+            ".",
+            ".bashrc",
+            ".git/a.png",
+            "a/.ssh/b",
+            "a/",
+            "a\0b",
+            "a\nb",
+            &"x".repeat(300),
+        ] {
             assert!(inside(name).is_err(), "{name:?}: {:?}", inside(name));
         }
     }
@@ -120,16 +150,25 @@ mod tests {
     fn pictures_replace_pictures_and_nothing_else() {
         let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
         let screenshots = Screenshots::new(root.path().join("deep/out"));
-        let path = screenshots.write("/tmp/a.png", b"one").expect("the name is one");
+        let path = screenshots
+            .write("/tmp/a.png", &[&SIGNATURE[..], b"one"].concat())
+            .expect("the name is one");
         assert_eq!(path, root.path().join("deep/out/a.png"));
         screenshots.write("a", b"two").expect("pictures are replaced");
         assert_eq!(fs::read(&path).expect("it was written"), b"two");
         screenshots.write("b/c.png", b"x").expect("folders are made");
+        let mine = root.path().join("deep/out/train.py");
+        fs::write(&mine, "mine").expect("the folder can be written");
+        let error = screenshots
+            .write("train.py", b"x")
+            .expect_err("a program is no picture");
+        assert!(error.contains("no picture"), "{error}");
+        assert_eq!(fs::read_to_string(&mine).expect("it is there still"), "mine");
         fs::create_dir(root.path().join("deep/out/d.png")).expect("the folder can be written");
         let error = screenshots.write("d.png", b"x").expect_err("a folder is no picture");
         assert!(error.contains("which is a folder"), "{error}");
         let left = fs::read_dir(root.path().join("deep/out")).expect("the folder is there");
-        assert_eq!(left.count(), 3, "no temporary file is left");
+        assert_eq!(left.count(), 4, "no temporary file is left");
     }
 
     #[cfg(unix)]

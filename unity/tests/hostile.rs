@@ -238,6 +238,82 @@ fn many_small_messages_are_cut_off_and_said_so() {
     assert!(remarks.iter().any(|remark| remark == cut), "{remarks:?}");
 }
 
+/// The guids of the Debug channel and of environment parameters, as they travel.
+const DEBUG: [u8; 16] = [
+    0xb5, 0xa0, 0xfb, 0xc5, 0x92, 0x63, 0x33, 0x44, 0xa9, 0x5f, 0xcd, 0xec, 0x6b, 0x00, 0x61, 0xe1,
+];
+const PARAMETERS: [u8; 16] = [
+    0x1e, 0x89, 0x4c, 0x53, 0x0f, 0x81, 0xea, 0x11, 0xa9, 0xd0, 0x82, 0x24, 0x85, 0x86, 0x04, 0x00,
+];
+
+/// An environment parameter as it travels.
+fn parameter(name: &str, value: f32) -> Vec<u8> {
+    let number = value.to_le_bytes();
+    let payload = [&(name.len() as i32).to_le_bytes(), name.as_bytes(), &[0; 4], &number].concat();
+    record(PARAMETERS, payload.len() as i32, &payload)
+}
+
+/// While pictures are drawn, the end of a client is not seen: so there are only few in one go.
+#[test]
+fn only_so_many_large_screenshots_are_drawn_in_one_go() {
+    let text = r#"{"action":"save_screenshot","payload":{"filename":"a.png","upscale_factor":512}}"#;
+    let payload = [&(text.len() as i32).to_le_bytes(), text.as_bytes()].concat();
+    let (sent, _) = check(record(DEBUG, payload.len() as i32, &payload).repeat(5));
+    assert_eq!(sent.matches("\"action\":\"ok\"").count(), 2, "{sent}");
+    assert_eq!(
+        sent.matches("more pictures than are drawn in one go").count(),
+        3,
+        "{sent}"
+    );
+}
+
+#[test]
+fn remarks_on_settings_leave_room_for_those_on_refusals() {
+    let (mut session, _folder) = session();
+    let settings = (0..900_u16).flat_map(|number| parameter(&format!("difficulty {}", number % 300), number.into()));
+    answer(&mut session, &step_with(settings.collect())).expect("settings do not end a session");
+    let remarks = session.take_remarks();
+    assert_eq!(remarks.len(), 101, "one for each name, up to the last: {remarks:?}");
+    let refused = told(r#"{"action":"reset_environment","payload":7}"#);
+    answer(&mut session, &step_with(refused)).expect("the session goes on");
+    let remarks = session.take_remarks();
+    assert!(
+        remarks.iter().any(|remark| remark.contains("was refused")),
+        "{remarks:?}"
+    );
+}
+
+#[test]
+fn parameters_that_do_not_suit_a_world_are_left_out_for_it() {
+    let (mut session, _folder) = session();
+    let large = told(r#"{"action":"reset_environment","payload":{"agent_params":{"observation_size":2100}}}"#);
+    let input = UnityRlInputProto {
+        side_channel: [parameter("supersampling", 4.0), large].concat(),
+        command: CommandProto::Reset.into(),
+        ..UnityRlInputProto::default()
+    };
+    answer(&mut session, &input).expect("the world is one without the parameter");
+    let remarks = session.take_remarks();
+    assert!(
+        remarks.iter().any(|remark| remark.contains("do not suit")),
+        "{remarks:?}"
+    );
+}
+
+#[test]
+fn only_a_step_looks_at_actions() {
+    let (mut session, _folder) = session();
+    for command in [CommandProto::Reset, CommandProto::Quit] {
+        let input = UnityRlInputProto {
+            command: command.into(),
+            ..actions(&[(BEHAVIOR, &[&[1.0, 2.0]])])
+        };
+        answer(&mut session, &input).expect("no action is carried out");
+    }
+    let error = answer(&mut session, &actions(&[(BEHAVIOR, &[&[1.0, 2.0]])])).expect_err("a step needs three numbers");
+    assert_eq!(error.code(), "unity/action-length");
+}
+
 #[test]
 fn answers_that_pile_up_wait_for_the_next_turn_and_have_an_end() {
     let debug = [

@@ -3,13 +3,13 @@
 /// What a remark on the Debug channel is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Category {
-    /// What the agent does and meets.
+    /// What the agent meets, and what becomes of it.
     Agent,
-    /// Messages that come and go.
+    /// Messages that come, and those that are refused.
     Communications,
-    /// What is put into worlds and taken out.
+    /// What messages put into worlds.
     Worldmaker,
-    /// Episodes: their beginnings and ends.
+    /// Episodes: those that messages begin, and the ends of all.
     Academy,
 }
 

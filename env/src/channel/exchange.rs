@@ -74,11 +74,13 @@ impl Channels {
 
     /// Whether remarks of a category are wanted.
     pub fn is_active(&self, category: Category) -> bool {
+        // One place for each of `Category::ALL`, in its order, which is that of the enum.
         self.active[category as usize]
     }
 
     /// Turns the remarks of a category on or off, as `set_debug_categories` does.
     pub fn set_active(&mut self, category: Category, active: bool) {
+        // As above: one place for each category.
         self.active[category as usize] = active;
     }
 
@@ -109,6 +111,7 @@ impl Channels {
             }
             Ok(Answer::Picture(screenshot)) => received.screenshot = Some(Screenshot { token, ..screenshot }),
             Err(refusal) => {
+                // A refusal is made of one text, or of all problems where there are some.
                 let said = format!("{} refused: {}", channel.name(), refusal.texts()[0]);
                 received
                     .messages

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::category::Category;
 use super::message::{Message, Refusal, kind, unknown};
-use crate::Environment;
+use crate::{EnvError, Environment};
 
 /// The parts of a world that a client can watch.
 pub(super) const PARTS: [&str; 4] = ["agent_params", "environment_params", "objects", "game_mode"];
@@ -46,9 +46,10 @@ pub(super) fn create(environment: &mut Environment, message: &Message) -> Result
             )));
         }
     }
-    let index = environment
-        .spawn(object)
-        .map_err(|error| Refusal::new(error.to_string()))?;
+    let index = environment.spawn(object).map_err(|error| match &error {
+        EnvError::BadObject { problem } => Refusal::of_document(problem),
+        other => Refusal::new(other.to_string()),
+    })?;
     Ok((index, warnings.iter().map(remark_of).collect()))
 }
 

@@ -8,8 +8,10 @@ use driftworld_env::{Channel, Outgoing, Received, Screenshot};
 use super::Session;
 use crate::error::UnityError;
 use crate::observation::png;
+use crate::parameters::Parameters;
+use crate::remarks::About;
 use crate::side_channel::{
-    Payload, SideChannel, engine_setting, environment_parameter, float_property, guid_of, guid_text, records,
+    Payload, Setting, SideChannel, engine_setting, environment_parameter, float_property, guid_of, guid_text, records,
     text_payload,
 };
 
@@ -23,6 +25,9 @@ const MOST_VALUES: usize = 400_000;
 /// The most that are looked at, to refuse those beyond [`MOST_MESSAGES`].
 const MOST_LOOKED_AT: usize = 10_000;
 
+/// The most points of screenshots in one go, two of the largest: while they are drawn, the end of a client is not seen.
+const MOST_POINTS: u64 = 2 << 24;
+
 /// A message of L2Explorer's: its channel, and its text or why there is none.
 pub(super) type Told<'a> = (Channel, Result<&'a str, String>);
 
@@ -32,9 +37,8 @@ impl Session {
         let mut told = Vec::new();
         for (number, record) in records(bytes).enumerate() {
             if number == MOST_MESSAGES {
-                self.remarks.make(format!(
-                    "messages: found more than {MOST_MESSAGES} in one go; the others are refused"
-                ));
+                let remark = format!("messages: found more than {MOST_MESSAGES} in one go; the others are refused");
+                self.remarks.make(About::Refusals, remark);
             }
             if number == MOST_LOOKED_AT {
                 break;
@@ -42,8 +46,8 @@ impl Session {
             let record = match record {
                 Ok(record) => record,
                 Err(reason) => {
-                    self.remarks
-                        .make(format!("messages: {reason}; it is ignored, and so is what follows"));
+                    let remark = format!("messages: {reason}; it is ignored, and so is what follows");
+                    self.remarks.make(About::Refusals, remark);
                     break;
                 }
             };
@@ -56,39 +60,59 @@ impl Session {
                 }
                 continue;
             }
-            let problem = match side_channel {
+            match side_channel {
                 Some(SideChannel::L2Explorer(channel)) => {
                     told.push((channel, Payload::new(record.payload).text().and_then(bounded)));
-                    continue;
                 }
-                Some(SideChannel::Engine) => match engine_setting(record.payload) {
-                    Ok(setting) => Some(setting.remark()),
-                    Err(reason) => Some(format!("engine configuration: {reason}; it is ignored")),
-                },
+                Some(SideChannel::Engine) => self.take_engine_setting(record.payload),
                 Some(SideChannel::Parameters) => {
-                    let set = environment_parameter(record.payload).and_then(|setting| self.parameters.set(&setting));
-                    set.err().map(|reason| format!("environment parameter: {reason}"))
+                    self.take_setting("environment parameter", environment_parameter(record.payload));
                 }
-                Some(SideChannel::Properties) => {
-                    let set = float_property(record.payload).and_then(|setting| self.parameters.set(&setting));
-                    set.err().map(|reason| format!("float property: {reason}"))
+                Some(SideChannel::Properties) => self.take_setting("float property", float_property(record.payload)),
+                Some(SideChannel::Analytics) => {}
+                None => {
+                    let remark = format!("messages on the unknown channel {} are ignored", guid_text(record.guid));
+                    self.remarks.make(About::Settings, remark);
                 }
-                Some(SideChannel::Analytics) => None,
-                None => Some(format!(
-                    "messages on the unknown channel {} are ignored",
-                    guid_text(record.guid)
-                )),
-            };
-            if let Some(problem) = problem {
-                self.remarks.make(problem);
             }
         }
         told
     }
 
+    fn take_engine_setting(&mut self, payload: &[u8]) {
+        match engine_setting(payload) {
+            Ok(setting) => self
+                .remarks
+                .make_once(About::Settings, setting.name(), setting.remark()),
+            Err(reason) => {
+                let remark = format!("engine configuration: {reason}; it is ignored");
+                self.remarks.make(About::Settings, remark);
+            }
+        }
+    }
+
+    fn take_setting(&mut self, what: &str, setting: Result<Setting, String>) {
+        match setting {
+            Ok(setting) => {
+                if let Err(reason) = self.parameters.set(&setting) {
+                    let remark = format!("{what}: {reason}");
+                    // Of a name that means nothing another value is no news.
+                    let thing = if Parameters::knows(&setting.key) {
+                        remark.clone()
+                    } else {
+                        format!("{what} {}", setting.key)
+                    };
+                    self.remarks.make_once(About::Settings, &thing, remark);
+                }
+            }
+            Err(reason) => self.remarks.make(About::Settings, format!("{what}: {reason}")),
+        }
+    }
+
     /// Does what messages ask for; says whether the world is at the start of another one.
     pub(super) fn receive(&mut self, messages: &[Told]) -> Result<bool, UnityError> {
         let mut is_renewed = false;
+        let mut points = 0;
         for (channel, text) in messages {
             let time = (self.clock)();
             let received = match text {
@@ -99,7 +123,8 @@ impl Session {
                 },
             };
             for remark in &received.remarks {
-                self.world_remarks.make(format!("{} channel: {remark}", channel.name()));
+                self.remarks
+                    .make(About::Worlds, format!("{} channel: {remark}", channel.name()));
             }
             if received.reset {
                 self.renew()?;
@@ -109,9 +134,14 @@ impl Session {
                 self.send(message);
             }
             if let Some(screenshot) = received.screenshot {
-                let written = self.draw(&screenshot);
+                points += u64::from(screenshot.width) * u64::from(screenshot.height);
+                let written = if points <= MOST_POINTS {
+                    self.draw(&screenshot)
+                } else {
+                    Err("found more pictures than are drawn in one go, expected the others with later steps".to_owned())
+                };
                 if let Ok(path) = &written {
-                    self.remarks.make(format!("screenshot: {path}"));
+                    self.remarks.make(About::Settings, format!("screenshot: {path}"));
                 }
                 let answer = self.channels.answer_screenshot(&screenshot, written.map(drop), &time);
                 self.send(&answer);
@@ -132,13 +162,16 @@ impl Session {
 
     /// Draws and writes a picture; hands back where it is.
     fn draw(&mut self, screenshot: &Screenshot) -> Result<String, String> {
-        let camera = self.environment.camera();
-        let Screenshot { width, height, .. } = *screenshot;
-        let frame = self
-            .environment
-            .render(&camera, width, height)
-            .map_err(|error| error.to_string())?;
-        let png = png([width, height], &frame.rgb).map_err(|error| error.to_string())?;
+        let size = [screenshot.width, screenshot.height];
+        // At the size of observations it is one of them, as smooth as they are.
+        let png = if size == self.environment.world().agent_params.picture_size() {
+            png(size, &self.environment.observe().rgb)
+        } else {
+            let camera = self.environment.camera();
+            let drawn = self.environment.render(&camera, size[0], size[1]);
+            png(size, &drawn.map_err(|error| error.to_string())?.rgb)
+        };
+        let png = png.map_err(|error| error.to_string())?;
         let path = self.screenshots.write(&screenshot.filename, &png)?;
         Ok(path.display().to_string())
     }
@@ -152,11 +185,9 @@ impl Session {
                 .flatten()
                 .filter_map(|text| text.as_str())
                 .collect();
-            self.remarks.make(format!(
-                "{} channel: a message was refused: {}",
-                message.channel.name(),
-                texts.join("; ")
-            ));
+            let (channel, texts) = (message.channel.name(), texts.join("; "));
+            let remark = format!("{channel} channel: a message was refused: {texts}");
+            self.remarks.make(About::Refusals, remark);
         }
         let text = ascii(&message.to_json());
         self.outbox.push(guid_of(message.channel.guid()), text_payload(&text));
@@ -167,7 +198,9 @@ impl Session {
 fn bounded(text: &str) -> Result<&str, String> {
     let found = text.bytes().filter(|byte| matches!(byte, b',' | b'[' | b'{')).count();
     if found > MOST_VALUES {
-        return Err(format!("found about {found} values, expected at most {MOST_VALUES}"));
+        return Err(format!(
+            "found about {found} values, expected at most {MOST_VALUES}; larger worlds are for --world"
+        ));
     }
     Ok(text)
 }

@@ -6,8 +6,8 @@ mod messages;
 use std::collections::BTreeMap;
 
 use driftworld_env::{Action, Channels, Environment, Event, Step};
-use driftworld_spec::World;
 use driftworld_spec::maps::MapLibrary;
+use driftworld_spec::{ActionSpace, World};
 use prost::Message;
 
 use crate::behavior::{ACTION_LENGTH, BEHAVIOR, behavior};
@@ -23,7 +23,7 @@ use crate::protocol::{
     AgentInfoProto, BrainParametersProto, CommandProto, UnityOutputProto, UnityRlCapabilitiesProto,
     UnityRlInitializationInputProto, UnityRlInitializationOutputProto, UnityRlInputProto, UnityRlOutputProto,
 };
-use crate::remarks::Remarks;
+use crate::remarks::{About, Remarks};
 use crate::screenshots::Screenshots;
 
 /// The version of the protocol: every client of version 1 accepts the first, and what newer ones can do beyond it they say.
@@ -85,8 +85,6 @@ pub struct Session {
     episodes: i32,
     outbox: Outbox,
     remarks: Remarks,
-    /// Those on worlds and objects, which may differ in each: they must not crowd out the others.
-    world_remarks: Remarks,
     /// The behaviour and the shapes of observations that the client knows.
     told: Option<(BrainParametersProto, Vec<Vec<i32>>)>,
 }
@@ -117,8 +115,7 @@ impl Session {
             clock: Box::new(clock),
             episodes: 0,
             outbox: Outbox::default(),
-            remarks: Remarks::at_most(200),
-            world_remarks: Remarks::at_most(50),
+            remarks: Remarks::default(),
             told: None,
         })
     }
@@ -148,10 +145,11 @@ impl Session {
     pub fn begin(&mut self, said: &UnityRlInitializationInputProto) -> Result<(), UnityError> {
         self.client = Client::new(said)?;
         if said.seed != 0 {
-            self.remarks.make(format!(
+            let remark = format!(
                 "seed {}: not used, the chance of a world is its own: the same world and actions give the same episode",
                 said.seed
-            ));
+            );
+            self.remarks.make(About::Settings, remark);
         }
         Ok(())
     }
@@ -169,7 +167,6 @@ impl Session {
         let Ok(command) = CommandProto::try_from(input.command) else {
             return Err(UnityError::UnknownCommand { found: input.command });
         };
-        let action = action(&input.agent_actions)?;
         let messages = self.take_settings(&input.side_channel);
         if command == CommandProto::Reset {
             self.restart()?;
@@ -177,7 +174,7 @@ impl Session {
         let is_renewed = self.receive(&messages)?;
         let agents = match command {
             CommandProto::Quit => return Ok(Turn::Quit),
-            CommandProto::Step if !is_renewed => self.step(action)?,
+            CommandProto::Step if !is_renewed => self.step(action(&input.agent_actions)?)?,
             CommandProto::Step | CommandProto::Reset => {
                 self.episodes += 1;
                 let first = self.decision(0.0, 0)?;
@@ -190,15 +187,30 @@ impl Session {
 
     /// What the user of the executable should know since the last time, a line each.
     pub fn take_remarks(&mut self) -> Vec<String> {
-        let mut remarks = self.world_remarks.take();
-        remarks.extend(self.remarks.take());
-        remarks
+        self.remarks.take()
     }
 
     /// Begins the world anew, with what has been set.
     fn restart(&mut self) -> Result<(), UnityError> {
         let mut world = self.start.clone();
-        self.parameters.apply(&mut world);
+        if !self.parameters.is_empty() {
+            // Each number alone is sound; together with this world they may not be.
+            match self.parameters.try_world(world.clone()) {
+                Ok(changed) => world = changed,
+                Err(problem) => {
+                    let remark =
+                        format!("environment parameters: left out for a world that they do not suit: {problem}");
+                    self.remarks.make(About::Worlds, remark);
+                }
+            }
+        }
+        if matches!(
+            world.agent_params.actions,
+            ActionSpace::Discrete(_) | ActionSpace::DefaultDiscrete
+        ) {
+            let remark = "world: its table of actions is not used, clients are told of three numbers".to_owned();
+            self.remarks.make(About::Worlds, remark);
+        }
         Ok(self.environment.reset(world)?)
     }
 
@@ -267,9 +279,8 @@ impl Session {
         rl_output.side_channel = self.outbox.take(room);
         let left_out = self.outbox.take_left_out();
         if left_out > 0 {
-            self.remarks.make(format!(
-                "{left_out} messages were left out: they do not fit beside the observations"
-            ));
+            let remark = format!("{left_out} messages were left out: they do not fit beside the observations");
+            self.remarks.make_once(About::Refusals, "left out", remark);
         }
         UnityOutputProto {
             rl_output: Some(rl_output),

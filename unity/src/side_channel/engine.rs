@@ -19,6 +19,17 @@ pub(crate) enum EngineSetting {
 }
 
 impl EngineSetting {
+    /// Which one it is.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::ScreenResolution(..) => "screen resolution",
+            Self::QualityLevel(_) => "quality level",
+            Self::TimeScale(_) => "time scale",
+            Self::TargetFrameRate(_) => "target frame rate",
+            Self::CaptureFrameRate(_) => "capture frame rate",
+        }
+    }
+
     /// What becomes of it, in words.
     pub(crate) fn remark(self) -> String {
         match self {

@@ -53,6 +53,7 @@ impl SideChannel {
 pub(crate) fn guid_of(text: &str) -> Guid {
     let digits = text.chars().filter_map(|letter| letter.to_digit(16));
     let mut guid = [0; 16];
+    // 32 digits are two to each of the 16 bytes.
     for (place, digit) in digits.take(32).enumerate() {
         guid[place / 2] = guid[place / 2] << 4 | digit as u8;
     }

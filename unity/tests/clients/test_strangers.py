@@ -23,7 +23,7 @@ def test_without_a_client_the_exit_code_is_3_and_the_advice_names_the_port(launc
 
 
 def test_the_port_without_an_option_is_that_of_the_editor_mode(launcher: Launcher) -> None:
-    code, errors = said(launcher.run("--wait", "0"))
+    code, errors = said(launcher.run("--wait", "0.1"))
     # Somebody on this machine may be listening there: then the error names the same port.
     assert code in (1, 3) and "127.0.0.1:5004" in errors
 
