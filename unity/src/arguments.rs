@@ -29,12 +29,12 @@ Options:
   --world FILE            the world until the client resets to one of its own: ours, or a reset file of L2Explorer
   --maps FILE             layouts of predefined maps in place of the built-in ones
   --screenshots DIR       the folder that screenshots are written into, and nowhere else [default: screenshots]
-  --raw-observations      pictures as floats instead of PNG: depth keeps its fractions, messages are ten times as long
-  -logFile FILE           where to write what is said on the terminal otherwise; - is the terminal
+  --raw-observations      pictures as floats instead of PNG: depth keeps its fractions, messages are twenty times as long
+  -logFile [FILE]         where to write what is said on the terminal otherwise; without FILE or with - the terminal
   --help, --version
 
 -nographics, -batchmode and what else Unity knows are accepted and mean nothing: no display and no graphics card are needed.
-Exit codes: 0 the client is done, 1 an error, 2 arguments that contradict, 3 no client came.";
+Exit codes: 0 the client is done, 1 an error, 2 arguments that cannot be, 3 no client came.";
 
 /// What the arguments ask for.
 #[derive(Clone, Debug, PartialEq)]
@@ -123,16 +123,24 @@ impl Request {
         let mut remarks = Vec::new();
         // A word behind an option that we do not know is its value, as far as we can know.
         let mut after_foreign = false;
-        let mut rest = arguments.iter();
+        let mut rest = arguments.iter().peekable();
         while let Some(argument) = rest.next() {
             let (name, inline) = match argument.split_once('=') {
                 Some((name, value)) if name.starts_with("--") => (name, Some(value.to_owned())),
                 _ => (argument.as_str(), None),
             };
             let mut value = |expected: &str| {
-                let found = inline.clone().or_else(|| rest.next().cloned());
-                let missing = || UnityError::arguments(format!("{name}: found no value, expected {expected}"));
-                found.filter(|value| !value.is_empty()).ok_or_else(missing)
+                let refused =
+                    |found: &str| UnityError::arguments(format!("{name}: found {found}, expected {expected}"));
+                let found = match &inline {
+                    Some(value) => Some(value),
+                    None => match rest.peek() {
+                        Some(next) if is_option(next) => return Err(refused(&format!("the option {next}"))),
+                        _ => rest.next(),
+                    },
+                };
+                let found = found.filter(|value| !value.is_empty());
+                found.cloned().ok_or_else(|| refused("no value"))
             };
             let mut is_foreign = false;
             match name {
@@ -144,17 +152,24 @@ impl Request {
                 "--world" => options.world = Some(value("a file")?.into()),
                 "--maps" => options.maps = Some(value("a file")?.into()),
                 "--screenshots" => options.screenshots = value("a folder")?.into(),
-                "--raw-observations" => options.pictures = PictureForm::Floats,
+                "--raw-observations" => match &inline {
+                    None => options.pictures = PictureForm::Floats,
+                    Some(found) => {
+                        return Err(UnityError::arguments(format!(
+                            "{name}: found the value {found:?}, expected none"
+                        )));
+                    }
+                },
                 other if other.eq_ignore_ascii_case("-logfile") => {
-                    options.log = Some(value("a file, or - for the terminal")?)
-                        .filter(|file| file != "-")
-                        .map(PathBuf::from);
+                    // As in Unity: without a file it is the terminal.
+                    let file = rest.next_if(|next| !is_option(next));
+                    let file = file.filter(|file| !file.is_empty() && *file != "-");
+                    options.log = file.map(PathBuf::from);
                 }
                 other if other.starts_with('-') => {
                     is_foreign = true;
                     if !UNITYS.contains(&other.to_lowercase().as_str()) {
-                        let near =
-                            nearest(other, OURS).map_or_else(String::new, |near| format!("; did you mean {near}?"));
+                        let near = meant(other).map_or_else(String::new, |near| format!("; did you mean {near}?"));
                         remarks.push(format!("{other:?} is not known here and ignored{near}"));
                     }
                 }
@@ -165,6 +180,20 @@ impl Request {
         }
         Ok((Self::Run(options), remarks))
     }
+}
+
+/// Whether a word is an option rather than the value of the one before it.
+fn is_option(word: &str) -> bool {
+    word.len() > 1 && word.starts_with('-') && word.parse::<f64>().is_err()
+}
+
+/// The option of ours that a word may stand for.
+fn meant(word: &str) -> Option<String> {
+    // What most programs call it.
+    if word.trim_start_matches('-').eq_ignore_ascii_case("port") {
+        return Some("--mlagents-port".to_owned());
+    }
+    nearest(word, OURS)
 }
 
 fn port(text: &str) -> Result<u16, UnityError> {
@@ -209,12 +238,30 @@ mod tests {
         assert_eq!(found.log, Some(PathBuf::from("a.log")));
         assert!(remarks.is_empty(), "{remarks:?}");
         assert_eq!(options("").0.port, 5004);
-        assert_eq!(options("-logfile -").0.log, None);
+    }
+
+    #[test]
+    fn a_log_file_without_a_name_is_the_terminal() {
+        for text in [
+            "-logfile -",
+            "-logFile",
+            "-logFile -nographics",
+            "-logFile a.log -logFile -batchmode",
+        ] {
+            let (found, remarks) = options(text);
+            assert_eq!(found, Options::default(), "{text}");
+            assert!(remarks.is_empty(), "{remarks:?}");
+        }
+        let (found, _) = options("-logFile --mlagents-port 5007");
+        assert_eq!((found.log, found.port), (None, 5007), "the option behind it counts");
+        let (empty, _) = Request::parse(&["-logFile".to_owned(), String::new()]).expect("nothing is no file");
+        assert_eq!(empty, Request::Run(Options::default()));
     }
 
     #[test]
     fn what_is_not_known_is_ignored_with_a_remark() {
-        let (found, remarks) = options("-screen-width 640 -popupwindow --mlagents-scene-name A --screenshot b c d");
+        let (found, remarks) =
+            options("-screen-width 640 -popupwindow --mlagents-scene-name A --screenshot b c d --port 5007");
         assert_eq!(found, Options::default());
         assert_eq!(
             remarks,
@@ -224,6 +271,7 @@ mod tests {
                 "\"--screenshot\" is not known here and ignored; did you mean --screenshots?",
                 "\"c\" belongs to no option and is ignored",
                 "\"d\" belongs to no option and is ignored",
+                "\"--port\" is not known here and ignored; did you mean --mlagents-port?",
             ]
         );
     }
@@ -264,6 +312,26 @@ mod tests {
             "--wait: found \"NaN\", expected seconds from 0.1 to 86400",
         );
         check("--world=", "--world: found no value, expected a file");
+        check("--world --wait 5", "--world: found the option --wait, expected a file");
+        check(
+            "--maps -nographics",
+            "--maps: found the option -nographics, expected a file",
+        );
+        check("--wait -1", "--wait: found \"-1\", expected seconds from 0.1 to 86400");
+        check(
+            "--raw-observations=no",
+            "--raw-observations: found the value \"no\", expected none",
+        );
+        check(
+            "--raw-observations=",
+            "--raw-observations: found the value \"\", expected none",
+        );
+    }
+
+    #[test]
+    fn a_value_behind_an_equals_sign_may_begin_as_an_option_does() {
+        assert_eq!(options("--world=-odd.json").0.world, Some("-odd.json".into()));
+        assert_eq!(options("--screenshots -").0.screenshots, PathBuf::from("-"));
     }
 
     #[test]

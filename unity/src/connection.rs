@@ -1,4 +1,4 @@
-//! [`Connection`]: one client's gRPC server, called again and again. What is said is decided in `session.rs`.
+//! [`Connection`]: one client's gRPC server, called again and again. What is said is decided in `session/mod.rs`.
 
 use std::time::Duration;
 

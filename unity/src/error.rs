@@ -16,10 +16,20 @@ pub enum UnityError {
         text: String,
     },
     /// A file that cannot be read or written.
-    #[error("{}: {source}", path.display())]
+    #[error("{option} {}: cannot be {purpose}: {source}", path.display())]
     File {
+        /// The option that named it.
+        option: &'static str,
         /// Its path.
         path: PathBuf,
+        /// What it is for: to be "read" or "written".
+        purpose: &'static str,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The system gives us no network.
+    #[error("network: cannot be used: {source}")]
+    Network {
         /// What the system says.
         source: std::io::Error,
     },
@@ -51,21 +61,21 @@ pub enum UnityError {
         reason: String,
     },
     /// A client of another major version of the protocol.
-    #[error("client: found version {found:?} of the protocol, expected 1.x; mlagents-envs from 0.16.0 on speaks it")]
+    #[error("client: found version {found:?} of the protocol, expected 1.x, which mlagents-envs 0.16 to 1.1 speak")]
     ClientVersion {
         /// The version that it says.
         found: String,
     },
     /// A message that is no message of the protocol, or too long.
-    #[error("client: a message cannot be read: {reason}; messages may have {limit} bytes")]
+    #[error("client: a message cannot be read: {reason}")]
     Unreadable {
-        /// Why.
+        /// Why; of one that is too long, this says the limit.
         reason: String,
         /// The most bytes of a message.
         limit: usize,
     },
     /// A message without what it has to say.
-    #[error("client: found a message without {missing}, expected one")]
+    #[error("client: found a message without {missing}")]
     Incomplete {
         /// What is missing.
         missing: &'static str,
@@ -77,7 +87,7 @@ pub enum UnityError {
         found: i32,
     },
     /// The client says that it has failed.
-    #[error("client: it ended with status {status}: {text}")]
+    #[error("client: it ended with status {status}: {text:?}")]
     ClientFailed {
         /// Its status.
         status: i32,
@@ -85,7 +95,7 @@ pub enum UnityError {
         text: String,
     },
     /// Actions for other agents than the one there is.
-    #[error("actions: found {found} of behaviour {behavior:?}, expected one of \"L2Explorer?team=0\"")]
+    #[error("actions: found {found} for behaviour {behavior:?}, expected exactly one, for \"L2Explorer?team=0\"")]
     WrongAgent {
         /// The behaviour that they are for.
         behavior: String,
@@ -129,6 +139,7 @@ impl UnityError {
         match self {
             Self::Arguments { .. } => "unity/arguments",
             Self::File { .. } => "unity/file",
+            Self::Network { .. } => "unity/network",
             Self::Document(_) => "unity/document",
             Self::NoClient { .. } => "unity/no-client",
             Self::NoAddress { .. } => "unity/no-address",
@@ -149,7 +160,7 @@ impl UnityError {
     /// The exit status of the executable.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Arguments { .. } => 2,
+            Self::Arguments { .. } | Self::NoAddress { .. } => 2,
             Self::NoClient { .. } => 3,
             _ => 1,
         }

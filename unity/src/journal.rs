@@ -21,7 +21,9 @@ impl Journal {
         let open = |path: &Path| {
             let file = OpenOptions::new().create(true).append(true).open(path);
             file.map_err(|source| UnityError::File {
+                option: "-logFile",
                 path: path.to_owned(),
+                purpose: "written",
                 source,
             })
         };

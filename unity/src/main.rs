@@ -1,10 +1,7 @@
 //! The executable: reads its arguments, runs a session, sets the exit status. Everything else is in the library.
-#![expect(
-    clippy::print_stdout,
-    clippy::print_stderr,
-    reason = "a program speaks through its terminal"
-)]
 
+use std::fmt::Display;
+use std::io::{Write, stderr, stdout};
 use std::process::ExitCode;
 
 use driftworld_unity::{HELP, Journal, MARK, Request, UnityError, run};
@@ -15,12 +12,12 @@ fn main() -> ExitCode {
         .map(|argument| argument.to_string_lossy().into_owned())
         .collect();
     match Request::parse(&arguments) {
-        Ok((Request::Help, _)) => println!("{HELP}"),
-        Ok((Request::Version, _)) => println!("{MARK}, {}", env!("CARGO_PKG_VERSION")),
+        Ok((Request::Help, _)) => say(stdout(), HELP),
+        Ok((Request::Version, _)) => say(stdout(), format_args!("{MARK}, {}", env!("CARGO_PKG_VERSION"))),
         Ok((Request::Run(options), remarks)) => {
             // Without a log file there is the terminal still.
             let journal = Journal::open(options.log.as_deref())
-                .inspect_err(|error| eprintln!("driftworld-unity: -logFile {error}"));
+                .inspect_err(|error| say(stderr(), format_args!("driftworld-unity: {error}")));
             let ending = journal.and_then(|mut journal| {
                 for remark in remarks {
                     journal.note(&remark);
@@ -30,11 +27,17 @@ fn main() -> ExitCode {
             return ending.map_or_else(|error| failed(&error), |()| ExitCode::SUCCESS);
         }
         Err(error) => {
-            eprintln!("driftworld-unity: {error}\n\n{HELP}");
+            say(stderr(), format_args!("driftworld-unity: {error}"));
+            say(stderr(), "`driftworld-unity --help` lists the options");
             return failed(&error);
         }
     }
     ExitCode::SUCCESS
+}
+
+/// A terminal that is gone, or a full disk behind it, does not change how we end.
+fn say(mut terminal: impl Write, words: impl Display) {
+    let _ = writeln!(terminal, "{words}");
 }
 
 fn failed(error: &UnityError) -> ExitCode {

@@ -18,6 +18,9 @@ const KNOWN: [&str; 8] = [
     "max_angular_speed",
 ];
 
+/// Those that are whole numbers, and the least that each can be.
+const WHOLE: [(&str, u32); 3] = [("frame_skip", 1), ("max_steps", 0), ("supersampling", 1)];
+
 /// The numbers that are set.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Parameters(BTreeMap<&'static str, f64>);
@@ -35,10 +38,7 @@ impl Parameters {
         };
         // By way of its digits, so that 0.1 is 0.1.
         let number = value.to_string().parse().unwrap_or(f64::NAN);
-        let alone = Self(BTreeMap::from([(known, number)]));
-        alone
-            .try_world(World::default())
-            .map_err(|problem| format!("{known} = {value}: ignored, {problem}"))?;
+        check(known, number).map_err(|expected| format!("{known} = {value}: ignored, expected {expected}"))?;
         self.0.insert(known, number);
         Ok(())
     }
@@ -71,19 +71,8 @@ impl Parameters {
         self.0.is_empty()
     }
 
-    /// The world with the numbers laid over it, checked as a document would be.
+    /// The world with the numbers laid over it, checked as a document would be; else what is wrong with it.
     pub(crate) fn try_world(&self, mut world: World) -> Result<World, String> {
-        let whole = ["frame_skip", "max_steps", "supersampling"];
-        for (key, number) in &self.0 {
-            if !number.is_finite() || whole.contains(key) && (number.fract() != 0.0 || *number < 0.0) {
-                let expected = if whole.contains(key) {
-                    "a whole number"
-                } else {
-                    "a number"
-                };
-                return Err(format!("expected {expected}"));
-            }
-        }
         self.apply(&mut world);
         World::from_json("world", &world.to_json()).map_err(|error| {
             let first = error.problems().first();
@@ -93,6 +82,25 @@ impl Parameters {
             )
         })
     }
+}
+
+/// Whether a world may have that number, as a document would be checked; else what was expected.
+fn check(known: &'static str, number: f64) -> Result<(), String> {
+    let least = WHOLE.iter().find(|(key, _)| *key == known).map(|(_, least)| *least);
+    match least {
+        None if !number.is_finite() => return Err("a number".to_owned()),
+        // Before it becomes a whole number, which would round it.
+        Some(least) if number.fract() != 0.0 || number < f64::from(least) => {
+            return Err(format!("a whole number from {least}"));
+        }
+        _ => {}
+    }
+    let mut world = World::default();
+    Parameters(BTreeMap::from([(known, number)])).apply(&mut world);
+    World::from_json("world", &world.to_json()).map(drop).map_err(|error| {
+        let first = error.problems().first();
+        first.map_or_else(|| error.to_string(), |problem| problem.expected.clone())
+    })
 }
 
 #[cfg(test)]
@@ -136,8 +144,37 @@ mod tests {
             let reason = set(&mut parameters, key, value).expect_err("it cannot be");
             assert!(reason.contains(expected), "{reason}");
         };
-        check("frame_skip", 0.0, "frame_skip = 0: ignored, ");
-        check("frame_skip", 2.5, "expected a whole number");
+        check(
+            "frame_skip",
+            0.0,
+            "frame_skip = 0: ignored, expected a whole number from 1",
+        );
+        check("frame_skip", 2.5, "expected a whole number from 1");
+        check(
+            "frame_skip",
+            1e10,
+            "frame_skip = 10000000000: ignored, expected at most 1000",
+        );
+        check(
+            "max_steps",
+            -1.0,
+            "max_steps = -1: ignored, expected a whole number from 0",
+        );
+        check(
+            "max_steps",
+            f32::NAN,
+            "max_steps = NaN: ignored, expected a whole number from 0",
+        );
+        check(
+            "max_steps",
+            f32::INFINITY,
+            "max_steps = inf: ignored, expected a whole number from 0",
+        );
+        check(
+            "max_steps",
+            1e10,
+            "max_steps = 10000000000: ignored, expected at most 1000000000",
+        );
         check("field_of_view", f32::NAN, "expected a number");
         check("field_of_view", 500.0, "170");
         check("feld_of_view", 50.0, "did you mean \"field_of_view\"?");

@@ -1,4 +1,4 @@
-//! [`Screenshots`]: the one folder that messages can write into. What is drawn, and who asks, is in `session.rs`.
+//! [`Screenshots`]: the one folder that messages can write into. What is drawn, and who asks, is in `session/messages.rs`.
 
 use std::fs;
 use std::io::{Read, Write};

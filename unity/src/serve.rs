@@ -1,4 +1,4 @@
-//! [`run`]: a session over a connection, from the first look for a client to its end. What is said is decided in `session.rs`.
+//! [`run`]: a session over a connection, from the first look for a client to its end. What is said is decided in `session/mod.rs`.
 
 use std::path::Path;
 use std::time::Duration;
@@ -49,10 +49,7 @@ pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
     let runtime = runtime::Builder::new_current_thread()
         .enable_all()
         .build()
-        .map_err(|source| UnityError::File {
-            path: "the network".into(),
-            source,
-        })?;
+        .map_err(|source| UnityError::Network { source })?;
     let ended = runtime.block_on(serve(session, options, journal));
     // What the network still has to do for a client that is gone is not waited for.
     runtime.shutdown_background();
@@ -62,7 +59,7 @@ pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
 /// A world file, in our form or in the original's. What the original's reader made sense of is noted: a misspelt key reads as one
 /// that means nothing.
 fn world(path: &Path, journal: &mut Journal) -> Result<World, UnityError> {
-    let text = read(path)?;
+    let text = read("--world", path)?;
     let name = path.display().to_string();
     let error = match World::from_json(&name, &text) {
         Ok(world) => return Ok(world),
@@ -83,12 +80,17 @@ fn world(path: &Path, journal: &mut Journal) -> Result<World, UnityError> {
 }
 
 fn maps(path: &Path) -> Result<MapLibrary, UnityError> {
-    Ok(MapLibrary::from_json(&path.display().to_string(), &read(path)?)?)
+    Ok(MapLibrary::from_json(
+        &path.display().to_string(),
+        &read("--maps", path)?,
+    )?)
 }
 
-fn read(path: &Path) -> Result<String, UnityError> {
+fn read(option: &'static str, path: &Path) -> Result<String, UnityError> {
     std::fs::read_to_string(path).map_err(|source| UnityError::File {
+        option,
         path: path.to_owned(),
+        purpose: "read",
         source,
     })
 }

@@ -15,8 +15,13 @@ fn errors() -> Vec<UnityError> {
     vec![
         arguments.expect_err("soon is no number"),
         UnityError::File {
+            option: "--world",
             path: "world.json".into(),
+            purpose: "read",
             source: io::Error::new(io::ErrorKind::PermissionDenied, "permission denied"),
+        },
+        UnityError::Network {
+            source: io::Error::new(io::ErrorKind::QuotaExceeded, "too many open files"),
         },
         document.expect_err("steps are counted from 0").into(),
         UnityError::NoClient {
@@ -41,7 +46,7 @@ fn errors() -> Vec<UnityError> {
         UnityError::UnknownCommand { found: 7 },
         UnityError::ClientFailed {
             status: 500,
-            text: "words".to_owned(),
+            text: "two\nlines".to_owned(),
         },
         UnityError::WrongAgent {
             behavior: "Walker?team=0".to_owned(),

@@ -23,9 +23,9 @@ pub(crate) fn environment_parameter(bytes: &[u8]) -> Result<Setting, String> {
             key,
         }),
         1 => Err(format!(
-            "{key}: found a sampler, expected a number: what is drawn at each reset is drawn by the client, or by a task spec"
+            "{key:?}: found a sampler, expected a number: what is drawn at each reset is drawn by the client, or by a task spec"
         )),
-        other => Err(format!("{key}: found type {other}, expected 0, a number")),
+        other => Err(format!("{key:?}: found type {other}, expected 0, a number")),
     }
 }
 
@@ -75,8 +75,12 @@ mod tests {
             let error = environment_parameter(bytes).expect_err("the message is not sound");
             assert!(error.contains(expected), "{error}");
         };
-        check(&bytes("light", &[1_i32.to_le_bytes()]), "light: found a sampler");
-        check(&bytes("light", &[7_i32.to_le_bytes()]), "found type 7");
+        check(&bytes("light", &[1_i32.to_le_bytes()]), "\"light\": found a sampler");
+        check(&bytes("light", &[7_i32.to_le_bytes()]), "\"light\": found type 7");
+        check(
+            &bytes("a\nb", &[7_i32.to_le_bytes()]),
+            "\"a\\nb\": found type 7, expected 0, a number",
+        );
         check(&bytes("light", &[[0; 4]]), "expected 4 for a number");
         check(&bytes(&"k".repeat(201), &[[0; 4], [0; 4]]), "at most 200");
     }

@@ -303,13 +303,15 @@ def test_newer_clients_have_the_log_file_in_a_folder_of_theirs(launcher: Launche
 
 def test_a_log_file_that_cannot_be_written_is_an_error(launcher: Launcher) -> None:
     code, errors = said(launcher.run("-logFile", "missing/folder/a.log"))
-    assert code == 1 and errors.startswith("driftworld-unity: -logFile missing/folder/a.log: No such file"), errors
+    assert code == 1 and errors.startswith("driftworld-unity: -logFile missing/folder/a.log: cannot be written: "), (
+        errors
+    )
 
 
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        (None, "own.json: No such file"),
+        (None, "--world own.json: cannot be read: No such file"),
         ("{", "own.json:1:"),
         ("[]", "own.json:1:1"),
         ('{"version": 1, "objcts": []}', 'did you mean "objects"?'),

@@ -113,12 +113,12 @@ def test_nonsense_is_ignored_and_remarked_once(client: Client, parameters: Envir
         '"gravity" = 9.8: ignored',
         "frame_skip = 0: ignored",
         "frame_skip = 1.5: ignored",
-        "max_steps = -1: ignored",
+        "max_steps = -1: ignored, expected a whole number from 0",
         "time_step = NaN: ignored",
         "field_of_view = inf: ignored",
         'did you mean "field_of_view"?',
         '"" = 1: ignored',
-        "found a sampler",
+        '"time_step": found a sampler',
     ]:
         assert remarks.count(expected) == 1, (expected, remarks)
 

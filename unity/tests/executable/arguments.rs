@@ -2,6 +2,8 @@
 
 use std::fs;
 use std::path::Path;
+#[cfg(target_os = "linux")]
+use std::process::Command;
 
 use driftworld_spec::World;
 use driftworld_unity::protocol::CommandProto;
@@ -67,7 +69,7 @@ fn help_and_version_go_to_standard_output() {
 }
 
 #[test]
-fn values_that_cannot_be_end_it_with_2_and_help() {
+fn values_that_cannot_be_end_it_with_2_and_name_the_help() {
     for (arguments, expected) in [
         (
             ["--mlagents-port", "65536"].as_slice(),
@@ -78,10 +80,21 @@ fn values_that_cannot_be_end_it_with_2_and_help() {
             "--wait: found \"soon\", expected seconds from 0.1 to 86400",
         ),
         (&["--world"], "--world: found no value, expected a file"),
+        (
+            &["--world", "--wait", "5"],
+            "--world: found the option --wait, expected a file",
+        ),
+        (
+            &["--raw-observations=no"],
+            "--raw-observations: found the value \"no\", expected none",
+        ),
     ] {
         let ended = run(arguments);
         assert_eq!(ended.code, Some(2), "{ended:?}");
-        assert_eq!(ended.stderr, format!("driftworld-unity: {expected}\n\n{HELP}\n"));
+        assert_eq!(
+            ended.stderr,
+            format!("driftworld-unity: {expected}\n`driftworld-unity --help` lists the options\n")
+        );
         assert_eq!(ended.stdout, "");
     }
 }
@@ -151,11 +164,11 @@ fn files_that_cannot_be_used_are_named_with_the_place_and_no_client_is_looked_fo
     for (arguments, expected) in [
         (
             ["--world", "none.json"],
-            "driftworld-unity: none.json: No such file or directory (os error 2)\n",
+            "driftworld-unity: --world none.json: cannot be read: No such file or directory (os error 2)\n",
         ),
         (
             ["--maps", "none.json"],
-            "driftworld-unity: none.json: No such file or directory (os error 2)\n",
+            "driftworld-unity: --maps none.json: cannot be read: No such file or directory (os error 2)\n",
         ),
         (
             ["--world", "broken.json"],
@@ -230,7 +243,7 @@ fn remarks_go_into_the_log_file_and_after_those_that_are_there() {
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(1), ""));
     let said = fs::read_to_string(&log).expect("it is there");
     assert!(
-        said.ends_with("driftworld-unity: none.json: No such file or directory (os error 2)\n"),
+        said.ends_with("driftworld-unity: --world none.json: cannot be read: No such file or directory (os error 2)\n"),
         "{said}"
     );
 }
@@ -239,10 +252,42 @@ fn remarks_go_into_the_log_file_and_after_those_that_are_there() {
 fn a_log_file_in_a_folder_that_there_is_not_is_an_error() {
     let ended = run(&["-logFile", "none/run.log"]);
     assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert_eq!(
+        ended.stderr,
+        "driftworld-unity: -logFile none/run.log: cannot be written: No such file or directory (os error 2)\n"
+    );
+}
+
+#[test]
+fn a_log_file_without_a_name_is_the_terminal() {
+    let (ended, seen) = look(&["-logFile", "-nographics"], folder().path());
+    assert_eq!(ended.code, Some(0), "{ended:?}");
+    assert!(seen.is_some());
     assert!(
-        ended.stderr.contains("none/run.log: No such file or directory"),
+        ended.stderr.starts_with("driftworld-unity: a client at 127.0.0.1:"),
         "{ended:?}"
     );
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_that_takes_nothing_does_not_change_the_exit_status() {
+    for (argument, expected) in [
+        ("--help", 0),
+        ("--version", 0),
+        ("--wait=soon", 2),
+        ("--world=none.json", 1),
+    ] {
+        let full = || fs::File::options().write(true).open("/dev/full").expect("Linux has it");
+        let mut child = Command::new(env!("CARGO_BIN_EXE_driftworld-unity"))
+            .arg(argument)
+            .stdout(full())
+            .stderr(full())
+            .spawn()
+            .expect("the executable is built");
+        let status = child.wait().expect("the process is ours");
+        assert_eq!(status.code(), Some(expected), "{argument}");
+    }
 }
 
 #[cfg(target_os = "linux")]

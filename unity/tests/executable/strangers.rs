@@ -100,7 +100,7 @@ fn a_listener_that_hangs_up_is_no_client() {
 #[test]
 fn a_host_that_is_none_is_said_so() {
     let ended = Executable::start(&["--host", "not a machine"], &std::env::temp_dir()).ended();
-    assert_eq!(ended.code, Some(1), "{ended:?}");
+    assert_eq!(ended.code, Some(2), "{ended:?}");
     let expected =
         "driftworld-unity: not a machine:5004: expected the name or address of a machine, such as 127.0.0.1\n";
     assert_eq!(ended.stderr, expected);
