@@ -190,7 +190,10 @@ fn bombs_of_json_are_refused_before_they_go_off() {
             format!("{{\"action\":\"reset_environment\",\"payload\":{{\"objects\":{bomb}}}}}"),
         ] {
             let (sent, _) = check(told(&text));
-            assert!(sent.contains(" values, expected at most 400000"), "{sent}");
+            assert!(
+                sent.contains(" values, expected at most 400000 of the 400000 in one go"),
+                "{sent}"
+            );
         }
     }
 }
@@ -236,6 +239,16 @@ fn many_small_messages_are_cut_off_and_said_so() {
     assert_eq!(sent.matches("found more than 1000 in one go").count(), 4000);
     let cut = "messages: found more than 1000 in one go; the others are refused";
     assert!(remarks.iter().any(|remark| remark == cut), "{remarks:?}");
+}
+
+/// While texts are read, the end of a client is not seen: so they may not add up to more than one of the largest.
+#[test]
+fn large_worlds_in_one_go_are_read_up_to_a_limit() {
+    let objects = vec![r#"{"class":"rock","coordinates":[9,9]}"#; 39_000].join(",");
+    let world = format!(r#"{{"action":"reset_environment","payload":{{"objects":[{objects}]}}}}"#);
+    let (sent, _) = check(told(&world).repeat(4));
+    assert_eq!(sent.matches("\"action\":\"ok\"").count(), 2, "{sent}");
+    assert_eq!(sent.matches("of the 400000 in one go").count(), 2, "{sent}");
 }
 
 /// The guids of the Debug channel and of environment parameters, as they travel.

@@ -18,8 +18,9 @@ use crate::side_channel::{
 /// The most messages that are taken in one go.
 const MOST_MESSAGES: usize = 1000;
 
-/// The most values in the JSON text of one message: what a world of some twenty thousand objects has. A text of nothing but
-/// brackets that has that many takes half a gigabyte until it is found to say nothing; one of 4 MB took 2.8.
+/// The most values in the JSON texts that come in one go: what a world of some twenty thousand objects has. A text of nothing but
+/// brackets that has that many takes half a gigabyte until it is found to say nothing; one of 4 MB took 2.8. While texts are read,
+/// the end of a client is not seen.
 const MOST_VALUES: usize = 400_000;
 
 /// The most that are looked at, to refuse those beyond [`MOST_MESSAGES`].
@@ -35,6 +36,7 @@ impl Session {
     /// Takes the settings among the messages, and hands back the others.
     pub(super) fn take_settings<'a>(&mut self, bytes: &'a [u8]) -> Vec<Told<'a>> {
         let mut told = Vec::new();
+        let mut values = MOST_VALUES;
         for (number, record) in records(bytes).enumerate() {
             if number == MOST_MESSAGES {
                 let remark = format!("messages: found more than {MOST_MESSAGES} in one go; the others are refused");
@@ -62,7 +64,8 @@ impl Session {
             }
             match side_channel {
                 Some(SideChannel::L2Explorer(channel)) => {
-                    told.push((channel, Payload::new(record.payload).text().and_then(bounded)));
+                    let text = Payload::new(record.payload).text();
+                    told.push((channel, text.and_then(|text| bounded(text, &mut values))));
                 }
                 Some(SideChannel::Engine) => self.take_engine_setting(record.payload),
                 Some(SideChannel::Parameters) => {
@@ -194,14 +197,15 @@ impl Session {
     }
 }
 
-/// The text, unless it has more values than messages may have. Commas and brackets within texts count, too.
-fn bounded(text: &str) -> Result<&str, String> {
+/// The text, unless it has more values than are left. Commas and brackets within texts count, too.
+fn bounded<'a>(text: &'a str, left: &mut usize) -> Result<&'a str, String> {
     let found = text.bytes().filter(|byte| matches!(byte, b',' | b'[' | b'{')).count();
-    if found > MOST_VALUES {
+    let Some(rest) = left.checked_sub(found) else {
         return Err(format!(
-            "found about {found} values, expected at most {MOST_VALUES}; larger worlds are for --world"
+            "found about {found} values, expected at most {left} of the {MOST_VALUES} in one go; larger worlds are for --world"
         ));
-    }
+    };
+    *left = rest;
     Ok(text)
 }
 
