@@ -1,7 +1,7 @@
 //! What can be done in a world, as clients of each generation are told: one behaviour, three continuous numbers. What they mean
 //! is the world's action model's.
 
-use driftworld_spec::{ActionModel, ActionSpace, AgentParams, World};
+use driftworld_spec::{ActionModel, ActionSpace, AgentParams};
 
 use crate::client::Client;
 use crate::protocol::{ActionSpecProto, BrainParametersProto, SpaceTypeProto};
@@ -13,8 +13,8 @@ pub const BEHAVIOR: &str = "L2Explorer?team=0";
 pub(crate) const ACTION_LENGTH: usize = 3;
 
 /// The behaviour as a client understands it.
-pub(crate) fn behavior(world: &World, client: Client) -> BrainParametersProto {
-    let words: Vec<String> = words(&world.agent_params).map(str::to_owned).to_vec();
+pub(crate) fn behavior(agent: &AgentParams, client: Client) -> BrainParametersProto {
+    let words: Vec<String> = words(agent).map(str::to_owned).to_vec();
     let action_spec = client.hybrid_actions.then(|| ActionSpecProto {
         num_continuous_actions: ACTION_LENGTH as i32,
         num_discrete_actions: 0,
@@ -32,7 +32,7 @@ pub(crate) fn behavior(world: &World, client: Client) -> BrainParametersProto {
 }
 
 /// What the numbers mean, in words.
-fn words(agent: &AgentParams) -> [&'static str; ACTION_LENGTH] {
+pub(crate) fn words(agent: &AgentParams) -> [&'static str; ACTION_LENGTH] {
     let is_normalized = agent.actions == ActionSpace::Normalized;
     match (agent.action_model, is_normalized) {
         (ActionModel::ByVelocity, false) => [

@@ -13,9 +13,6 @@ use crate::protocol::unity_to_external_proto_client::UnityToExternalProtoClient;
 /// The longest message that is read, in bytes: far more than the texts of the channels may hold in values.
 pub const MAX_INCOMING_BYTES: usize = 48 << 20;
 
-/// The longest message that is sent, in bytes: what gRPC servers accept where nobody says otherwise.
-pub(crate) const MAX_OUTGOING_BYTES: usize = 4 << 20;
-
 /// How long a connection may be silent before the network is asked whether there is somebody still.
 const KEEPALIVE: Duration = Duration::from_secs(30);
 
@@ -37,8 +34,9 @@ pub(crate) enum Reply {
 }
 
 impl Connection {
-    /// Looks for a client until the deadline.
-    pub(crate) async fn open(host: &str, port: u16, wait: Duration, deadline: Instant) -> Result<Self, UnityError> {
+    /// Looks for a client for so long.
+    pub(crate) async fn open(host: &str, port: u16, wait: Duration) -> Result<Self, UnityError> {
+        let deadline = Instant::now() + wait;
         let host = if host.contains(':') {
             format!("[{host}]")
         } else {
@@ -105,7 +103,6 @@ fn reply(answer: Result<UnityMessageProto, Status>) -> Result<Reply, UnityError>
         {
             Err(UnityError::Unreadable {
                 reason: status.message().to_owned(),
-                limit: MAX_INCOMING_BYTES,
             })
         }
         // A client that closes cancels the call, one that is killed breaks the connection, and one that ends within its handler

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use driftworld_env::EnvError;
 use driftworld_spec::SpecError;
 
+use crate::behavior::BEHAVIOR;
+
 /// Everything that ends a session before its client does.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -71,8 +73,6 @@ pub enum UnityError {
     Unreadable {
         /// Why; of one that is too long, this says the limit.
         reason: String,
-        /// The most bytes of a message.
-        limit: usize,
     },
     /// A message without what it has to say.
     #[error("client: found a message without {missing}")]
@@ -95,7 +95,7 @@ pub enum UnityError {
         text: String,
     },
     /// Actions for other agents than the one there is.
-    #[error("actions: found {found} for behaviour {behavior:?}, expected exactly one, for \"L2Explorer?team=0\"")]
+    #[error("actions: found {found} for behaviour {behavior:?}, expected exactly one, for {BEHAVIOR:?}")]
     WrongAgent {
         /// The behaviour that they are for.
         behavior: String,

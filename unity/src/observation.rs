@@ -37,49 +37,37 @@ pub(crate) fn observations(
     form: PictureForm,
     client: Client,
 ) -> Result<Vec<ObservationProto>, UnityError> {
-    let picture = |name: &str, rgb: &dyn Fn() -> Vec<u8>, floats: &dyn Fn() -> Vec<f32>| {
-        let data = match form {
-            PictureForm::Png => ObservationData::CompressedData(png([frame.width, frame.height], &rgb())?),
-            PictureForm::Floats => ObservationData::FloatData(FloatData {
-                data: ordered(floats(), client),
-            }),
-        };
-        Ok::<_, UnityError>(visual(name, frame, data, client))
+    let size = [frame.width, frame.height];
+    let compressed = |rgb: &[u8]| png(size, rgb).map(ObservationData::CompressedData);
+    let floats = |data| {
+        let data = ordered(data, client);
+        Ok(ObservationData::FloatData(FloatData { data }))
     };
-    let shares = |bytes: Vec<u8>| {
-        bytes
-            .into_iter()
-            .map(|byte| f32::from(byte) / 255.0)
-            .collect::<Vec<f32>>()
+    let share = |byte: &u8| f32::from(*byte) / 255.0;
+    let colors = |rgb: &[u8]| match form {
+        PictureForm::Png => compressed(rgb),
+        PictureForm::Floats => floats(rgb.iter().map(share).collect()),
     };
-    let gray = || tripled(&depth_to_gray(&frame.depth));
-    let depth = || {
-        tripled(
-            &frame
-                .depth
-                .iter()
-                .map(|metres| (metres / WHITE_DEPTH).clamp(0.0, 1.0))
-                .collect::<Vec<_>>(),
-        )
+    let depth = match form {
+        PictureForm::Png => compressed(&tripled(depth_to_gray(&frame.depth)))?,
+        PictureForm::Floats => {
+            let share = |metres: &f32| (metres / WHITE_DEPTH).clamp(0.0, 1.0);
+            floats(tripled(frame.depth.iter().map(share)))?
+        }
     };
-    let categories = || {
-        frame
-            .category
-            .iter()
-            .flat_map(|category| category_color(*category))
-            .collect()
-    };
+    let categories = frame.category.iter();
+    let categories: Vec<u8> = categories.flat_map(|category| category_color(*category)).collect();
     Ok(vec![
-        picture("depth", &gray, &depth)?,
-        picture("rgb", &|| frame.rgb.clone(), &|| shares(frame.rgb.clone()))?,
-        picture("segmentation", &categories, &|| shares(categories()))?,
+        visual("depth", frame, depth, client),
+        visual("rgb", frame, colors(&frame.rgb)?, client),
+        visual("segmentation", frame, colors(&categories)?, client),
         vector(state),
     ])
 }
 
 /// A picture of one channel as one of three.
-fn tripled<T: Copy>(values: &[T]) -> Vec<T> {
-    values.iter().flat_map(|value| [*value; CHANNELS]).collect()
+fn tripled<T: Copy>(values: impl IntoIterator<Item = T>) -> Vec<T> {
+    values.into_iter().flat_map(|value| [value; CHANNELS]).collect()
 }
 
 /// Floats row by row as the client wants them: channels last, or first.

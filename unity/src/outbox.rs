@@ -3,7 +3,12 @@
 
 use std::collections::VecDeque;
 
-use crate::side_channel::{Guid, RECORD_HEAD, write_record};
+use uuid::Uuid;
+
+use crate::side_channel::{RECORD_HEAD, write_record};
+
+/// The longest message that is sent, in bytes: what gRPC servers accept where nobody says otherwise.
+pub(crate) const MAX_OUTGOING_BYTES: usize = 4 << 20;
 
 /// The most records that may wait: who asks for more than it takes is told less.
 const MOST_WAITING: usize = 10_000;
@@ -11,14 +16,14 @@ const MOST_WAITING: usize = 10_000;
 /// Messages to the client, in the order in which they go.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Outbox {
-    waiting: VecDeque<(Guid, Vec<u8>)>,
+    waiting: VecDeque<(Uuid, Vec<u8>)>,
     /// How many were left out since somebody asked.
     left_out: usize,
 }
 
 impl Outbox {
     /// Puts a message at the end.
-    pub(crate) fn push(&mut self, channel: Guid, payload: Vec<u8>) {
+    pub(crate) fn push(&mut self, channel: Uuid, payload: Vec<u8>) {
         if self.waiting.len() < MOST_WAITING {
             self.waiting.push_back((channel, payload));
         } else {
@@ -36,7 +41,7 @@ impl Outbox {
             } else if bytes.len() + length > room {
                 break;
             } else {
-                write_record(&mut bytes, channel, payload);
+                write_record(&mut bytes, *channel, payload);
             }
             self.waiting.pop_front();
         }
@@ -64,7 +69,7 @@ mod tests {
     fn what_does_not_fit_waits_and_what_never_fits_is_left_out() {
         let mut outbox = Outbox::default();
         for length in [10, 200, 30, 40] {
-            outbox.push([0; 16], vec![0; length]);
+            outbox.push(Uuid::nil(), vec![0; length]);
         }
         assert_eq!(lengths(&outbox.take(75)), [10]);
         assert_eq!(outbox.take_left_out(), 1, "the one of 200");
@@ -78,7 +83,7 @@ mod tests {
     fn there_is_an_end_to_waiting() {
         let mut outbox = Outbox::default();
         for _ in 0..MOST_WAITING + 5 {
-            outbox.push([0; 16], Vec::new());
+            outbox.push(Uuid::nil(), Vec::new());
         }
         assert_eq!(outbox.take_left_out(), 5);
         assert_eq!(lengths(&outbox.take(usize::MAX)).len(), MOST_WAITING);

@@ -8,12 +8,13 @@ use driftworld_spec::maps::MapLibrary;
 use prost::Message;
 use serde_json::Value;
 use tokio::runtime;
-use tokio::time::{Instant, timeout};
+use tokio::time::timeout;
 
 use crate::arguments::Options;
-use crate::connection::{Connection, MAX_OUTGOING_BYTES, Reply};
+use crate::connection::{Connection, Reply};
 use crate::error::UnityError;
 use crate::journal::Journal;
+use crate::outbox::MAX_OUTGOING_BYTES;
 use crate::protocol::{HeaderProto, UnityInputProto, UnityMessageProto, UnityOutputProto};
 use crate::screenshots::Screenshots;
 use crate::session::{Session, Setup, Turn};
@@ -96,8 +97,7 @@ fn read(option: &'static str, path: &Path) -> Result<String, UnityError> {
 }
 
 async fn serve(mut session: Session, options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
-    let deadline = Instant::now() + options.wait;
-    let mut connection = Connection::open(&options.host, options.port, options.wait, deadline).await?;
+    let mut connection = Connection::open(&options.host, options.port, options.wait).await?;
     let greeting = message(session.greeting());
     let first = connection.greet(greeting, options.wait).await?;
     let Some(who) = input(first, journal)? else {

@@ -40,7 +40,6 @@ fn errors() -> Vec<UnityError> {
         },
         UnityError::Unreadable {
             reason: "invalid varint".to_owned(),
-            limit: 50_331_648,
         },
         UnityError::Incomplete { missing: "a header" },
         UnityError::UnknownCommand { found: 7 },

@@ -11,8 +11,7 @@ use crate::observation::png;
 use crate::parameters::Parameters;
 use crate::remarks::About;
 use crate::side_channel::{
-    Payload, Setting, SideChannel, engine_setting, environment_parameter, float_property, guid_of, guid_text, records,
-    text_payload,
+    Payload, Setting, SideChannel, engine_setting, environment_parameter, float_property, id_of, records, text_payload,
 };
 
 /// The most messages that are taken in one go.
@@ -53,7 +52,7 @@ impl Session {
                     break;
                 }
             };
-            let side_channel = SideChannel::from_guid(record.guid);
+            let side_channel = SideChannel::from_id(record.id);
             if number >= MOST_MESSAGES {
                 if let Some(SideChannel::L2Explorer(channel)) = side_channel {
                     let reason =
@@ -74,7 +73,7 @@ impl Session {
                 Some(SideChannel::Properties) => self.take_setting("float property", float_property(record.payload)),
                 Some(SideChannel::Analytics) => {}
                 None => {
-                    let remark = format!("messages on the unknown channel {} are ignored", guid_text(record.guid));
+                    let remark = format!("messages on the unknown channel {} are ignored", record.id);
                     self.remarks.make(About::Settings, remark);
                 }
             }
@@ -193,7 +192,7 @@ impl Session {
             self.remarks.make(About::Refusals, remark);
         }
         let text = ascii(&message.to_json());
-        self.outbox.push(guid_of(message.channel.guid()), text_payload(&text));
+        self.outbox.push(id_of(message.channel), text_payload(&text));
     }
 }
 

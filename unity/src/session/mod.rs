@@ -10,18 +10,17 @@ use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{ActionSpace, World};
 use prost::Message;
 
-use crate::behavior::{ACTION_LENGTH, BEHAVIOR, behavior};
+use crate::behavior::{ACTION_LENGTH, BEHAVIOR, behavior, words};
 use crate::client::Client;
-use crate::connection::MAX_OUTGOING_BYTES;
 use crate::error::UnityError;
 use crate::observation::{PictureForm, observations};
-use crate::outbox::Outbox;
+use crate::outbox::{MAX_OUTGOING_BYTES, Outbox};
 use crate::parameters::Parameters;
 use crate::protocol::unity_rl_input_proto::ListAgentActionProto;
 use crate::protocol::unity_rl_output_proto::ListAgentInfoProto;
 use crate::protocol::{
-    AgentInfoProto, BrainParametersProto, CommandProto, UnityOutputProto, UnityRlCapabilitiesProto,
-    UnityRlInitializationInputProto, UnityRlInitializationOutputProto, UnityRlInputProto, UnityRlOutputProto,
+    AgentInfoProto, CommandProto, UnityOutputProto, UnityRlCapabilitiesProto, UnityRlInitializationInputProto,
+    UnityRlInitializationOutputProto, UnityRlInputProto, UnityRlOutputProto,
 };
 use crate::remarks::{About, Remarks};
 use crate::screenshots::Screenshots;
@@ -50,6 +49,15 @@ pub enum Turn {
     Output(Box<UnityOutputProto>),
     /// The client is done.
     Quit,
+}
+
+/// What a client is told of the behaviour once, and again when it is not so any more: what the numbers of an action mean, and how
+/// many numbers observations have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Announced {
+    words: [&'static str; ACTION_LENGTH],
+    picture_size: [u32; 2],
+    state_len: usize,
 }
 
 /// One client's world.
@@ -85,8 +93,8 @@ pub struct Session {
     episodes: i32,
     outbox: Outbox,
     remarks: Remarks,
-    /// The behaviour and the shapes of observations that the client knows.
-    told: Option<(BrainParametersProto, Vec<Vec<i32>>)>,
+    /// What the client knows of the behaviour.
+    announced: Option<Announced>,
 }
 
 impl Session {
@@ -116,7 +124,7 @@ impl Session {
             episodes: 0,
             outbox: Outbox::default(),
             remarks: Remarks::default(),
-            told: None,
+            announced: None,
         })
     }
 
@@ -260,17 +268,17 @@ impl Session {
     }
 
     fn output(&mut self, agents: Vec<AgentInfoProto>) -> UnityOutputProto {
-        let behavior = behavior(self.environment.world(), self.client);
-        let shapes = agents.last().map_or_else(Vec::new, |agent| {
-            let shapes = agent.observations.iter().map(|observation| observation.shape.clone());
-            shapes.collect()
-        });
-        let known = (behavior, shapes);
-        let news = (self.told.as_ref() != Some(&known)).then(|| UnityRlInitializationOutputProto {
-            brain_parameters: vec![known.0.clone()],
+        let agent = &self.environment.world().agent_params;
+        let now = Announced {
+            words: words(agent),
+            picture_size: agent.picture_size(),
+            state_len: agent.state_len(),
+        };
+        let news = (self.announced != Some(now)).then(|| UnityRlInitializationOutputProto {
+            brain_parameters: vec![behavior(agent, self.client)],
             ..UnityRlInitializationOutputProto::default()
         });
-        self.told = Some(known);
+        self.announced = Some(now);
         let mut rl_output = UnityRlOutputProto {
             agent_infos: BTreeMap::from([(BEHAVIOR.to_owned(), ListAgentInfoProto { value: agents })]),
             side_channel: Vec::new(),

@@ -10,9 +10,7 @@ pub(crate) use payload::Payload;
 pub(crate) use settings::{Setting, environment_parameter, float_property};
 
 use driftworld_env::Channel;
-
-/// A channel's identifier as it travels: its first three groups have their bytes the other way round.
-pub(crate) type Guid = [u8; 16];
+use uuid::{Uuid, uuid};
 
 /// Bytes of a record before its payload: the identifier and the length.
 pub(crate) const RECORD_HEAD: usize = 20;
@@ -34,55 +32,30 @@ pub(crate) enum SideChannel {
 
 impl SideChannel {
     /// The channel of that identifier, if it is known.
-    pub(crate) fn from_guid(guid: Guid) -> Option<Self> {
-        let l2explorer = Channel::ALL.into_iter().find(|channel| guid_of(channel.guid()) == guid);
-        let others = [
-            ("e951342c-4f7e-11ea-b238-784f4387d1f7", Self::Engine),
-            ("534c891e-810f-11ea-a9d0-822485860400", Self::Parameters),
-            ("60ccf7d0-4f7e-11ea-b238-784f4387d1f7", Self::Properties),
-            ("b664a4a9-d86f-5a5f-95cb-e8353a7e8356", Self::Analytics),
+    pub(crate) fn from_id(id: Uuid) -> Option<Self> {
+        const OTHERS: [(Uuid, SideChannel); 4] = [
+            (uuid!("e951342c-4f7e-11ea-b238-784f4387d1f7"), SideChannel::Engine),
+            (uuid!("534c891e-810f-11ea-a9d0-822485860400"), SideChannel::Parameters),
+            (uuid!("60ccf7d0-4f7e-11ea-b238-784f4387d1f7"), SideChannel::Properties),
+            (uuid!("b664a4a9-d86f-5a5f-95cb-e8353a7e8356"), SideChannel::Analytics),
         ];
-        l2explorer.map(Self::L2Explorer).or_else(|| {
-            let known = others.into_iter().find(|(text, _)| guid_of(text) == guid);
-            known.map(|(_, channel)| channel)
-        })
+        let l2explorer = Channel::ALL.into_iter().find(|channel| id_of(*channel) == id);
+        let other = || OTHERS.into_iter().find(|(known, _)| *known == id);
+        l2explorer
+            .map(Self::L2Explorer)
+            .or_else(|| other().map(|(_, channel)| channel))
     }
 }
 
-/// The bytes of an identifier that is written in the usual way. What is no hexadecimal digit counts as none.
-pub(crate) fn guid_of(text: &str) -> Guid {
-    let digits = text.chars().filter_map(|letter| letter.to_digit(16));
-    let mut guid = [0; 16];
-    // 32 digits are two to each of the 16 bytes.
-    for (place, digit) in digits.take(32).enumerate() {
-        guid[place / 2] = guid[place / 2] << 4 | digit as u8;
-    }
-    guid[..4].reverse();
-    guid[4..6].reverse();
-    guid[6..8].reverse();
-    guid
-}
-
-/// An identifier in the usual way.
-pub(crate) fn guid_text(mut guid: Guid) -> String {
-    guid[..4].reverse();
-    guid[4..6].reverse();
-    guid[6..8].reverse();
-    let digits = format!("{:032x}", u128::from_be_bytes(guid));
-    [
-        &digits[..8],
-        &digits[8..12],
-        &digits[12..16],
-        &digits[16..20],
-        &digits[20..],
-    ]
-    .join("-")
+/// The identifier of one of L2Explorer's channels.
+pub(crate) fn id_of(channel: Channel) -> Uuid {
+    Uuid::try_parse(channel.guid()).expect("the three are written as identifiers are, see the test below")
 }
 
 /// One message on one channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Record<'a> {
-    pub(crate) guid: Guid,
+    pub(crate) id: Uuid,
     pub(crate) payload: &'a [u8],
 }
 
@@ -97,9 +70,10 @@ pub(crate) fn records(mut bytes: &[u8]) -> impl Iterator<Item = Result<Record<'_
             bytes = &[];
             return Some(Err(format!("found {found} bytes, expected at least {RECORD_HEAD}")));
         };
-        let mut guid = [0; 16];
-        guid.copy_from_slice(&head[..16]);
-        let length = i32::from_le_bytes([head[16], head[17], head[18], head[19]]);
+        // The head is 16 bytes of the identifier, whose first groups travel reversed, and 4 of the length.
+        let (id, length) = head.split_at(16);
+        let id = Uuid::from_bytes_le(std::array::from_fn(|place| id[place]));
+        let length = i32::from_le_bytes(std::array::from_fn(|place| length[place]));
         let payload = usize::try_from(length)
             .ok()
             .and_then(|length| rest.split_at_checked(length));
@@ -111,13 +85,13 @@ pub(crate) fn records(mut bytes: &[u8]) -> impl Iterator<Item = Result<Record<'_
             )));
         };
         bytes = rest;
-        Some(Ok(Record { guid, payload }))
+        Some(Ok(Record { id, payload }))
     })
 }
 
 /// Adds a record. Its payload is far shorter than the 2 GiB that a length can say.
-pub(crate) fn write_record(bytes: &mut Vec<u8>, channel: &Guid, payload: &[u8]) {
-    bytes.extend_from_slice(channel);
+pub(crate) fn write_record(bytes: &mut Vec<u8>, id: Uuid, payload: &[u8]) {
+    bytes.extend_from_slice(&id.to_bytes_le());
     bytes.extend_from_slice(&(payload.len() as i32).to_le_bytes());
     bytes.extend_from_slice(payload);
 }
@@ -136,36 +110,37 @@ mod tests {
 
     #[test]
     fn identifiers_travel_with_their_first_groups_reversed() {
-        let text = "621f0a70-4f87-11ea-a6bf-784f4387d1f7";
-        let guid = guid_of(text);
-        // As `uuid.UUID(text).bytes_le` of Python has them.
+        for channel in Channel::ALL {
+            assert_eq!(
+                SideChannel::from_id(id_of(channel)),
+                Some(SideChannel::L2Explorer(channel))
+            );
+        }
+        assert_eq!(SideChannel::from_id(Uuid::nil()), None);
+        let mut bytes = Vec::new();
+        write_record(&mut bytes, id_of(Channel::Reset), b"");
+        // As `uuid.UUID("621f0a70-4f87-11ea-a6bf-784f4387d1f7").bytes_le` of Python has them.
         let expected = [
             0x70, 0x0a, 0x1f, 0x62, 0x87, 0x4f, 0xea, 0x11, 0xa6, 0xbf, 0x78, 0x4f, 0x43, 0x87, 0xd1, 0xf7,
         ];
-        assert_eq!(guid, expected);
-        assert_eq!(guid_text(guid), text);
-        assert_eq!(
-            SideChannel::from_guid(guid),
-            Some(SideChannel::L2Explorer(Channel::Reset))
-        );
-        assert_eq!(SideChannel::from_guid([0; 16]), None);
+        assert_eq!(bytes[..16], expected);
     }
 
     #[test]
     fn what_is_written_is_read_again() {
         let mut bytes = Vec::new();
-        write_record(&mut bytes, &[7; 16], b"abc");
-        write_record(&mut bytes, &[8; 16], b"");
+        write_record(&mut bytes, Uuid::from_bytes([7; 16]), b"abc");
+        write_record(&mut bytes, Uuid::from_bytes([8; 16]), b"");
         let found: Vec<_> = records(&bytes)
             .collect::<Result<_, _>>()
             .expect("the records are sound");
         let expected = [
             Record {
-                guid: [7; 16],
+                id: Uuid::from_bytes([7; 16]),
                 payload: b"abc".as_slice(),
             },
             Record {
-                guid: [8; 16],
+                id: Uuid::from_bytes([8; 16]),
                 payload: b"".as_slice(),
             },
         ];
@@ -176,7 +151,7 @@ mod tests {
     fn lengths_that_lie_end_the_run() {
         let check = |length: i32, expected: &str| {
             let mut bytes = Vec::new();
-            write_record(&mut bytes, &[7; 16], b"abc");
+            write_record(&mut bytes, Uuid::from_bytes([7; 16]), b"abc");
             bytes.extend_from_slice(&[9; 16]);
             bytes.extend_from_slice(&length.to_le_bytes());
             bytes.extend_from_slice(b"xy");
