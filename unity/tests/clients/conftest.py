@@ -14,6 +14,9 @@ import pytest
 from channels import Channels
 from clients import Launcher
 
+# Where the original's files are if nobody says otherwise: beside the checkout.
+BESIDE = Path(__file__).parents[4] / "shared" / "reference"
+
 
 @pytest.fixture(scope="session")
 def executable() -> Path:
@@ -44,7 +47,7 @@ def channels() -> Channels:
 @pytest.fixture(scope="session")
 def reference() -> Path:
     """Example files of the original."""
-    folder = os.environ.get("DRIFTWORLD_REFERENCE")
-    if not folder:
-        pytest.skip("DRIFTWORLD_REFERENCE is not set: the original's example files are not here")
-    return Path(folder) / "l2explorer"
+    folder = Path(os.environ.get("DRIFTWORLD_REFERENCE") or BESIDE) / "l2explorer"
+    if not folder.is_dir():
+        pytest.skip(f"{folder} is not there: set DRIFTWORLD_REFERENCE to where the original's example files are")
+    return folder
