@@ -10,18 +10,23 @@ use super::environment::Environment;
 use super::event::{Event, Step};
 
 impl Environment {
-    /// Finds what the time step set off, and pays for it. `scratch.met` holds what the agent met on its way.
+    /// Finds what the time step set off, and pays for it. `scratch.met` holds what the agent met on its way, and what met it;
+    /// `scratch.entered` the objects whose range was entered on the way.
     pub(super) fn answer(&mut self, intent: Intent, step: &mut Step) {
         let mut scratch = std::mem::take(&mut self.scratch);
-        self.ground.touching(self.episode.agent.position, &mut scratch.touching);
+        let here = self.episode.agent.position;
+        self.ground.note_touching(here, &mut scratch.met);
         scratch.triggered.clear();
-        let contacts = scratch.met.iter().chain(&scratch.touching);
-        scratch.triggered.extend(
-            contacts
-                .filter(|index| !self.episode.contacts.contains(index))
-                .map(|index| (*index, Stimulus::AgentCollide)),
-        );
-        std::mem::swap(&mut self.episode.contacts, &mut scratch.touching);
+        scratch.triggered.reserve(32);
+        let contacts = &mut self.episode.contacts;
+        contacts.reserve(scratch.met.len().max(16));
+        for index in scratch.met.drain(..) {
+            if let Err(place) = contacts.binary_search(&index) {
+                scratch.triggered.push((index, Stimulus::AgentCollide));
+                contacts.insert(place, index);
+            }
+        }
+        contacts.retain(|index| self.ground.is_still_touched(*index, here));
         if intent.interact {
             let agent = &self.episode.agent;
             self.ground
@@ -31,6 +36,10 @@ impl Environment {
                 .triggered
                 .extend(reached.map(|index| (*index, Stimulus::AgentInteract)));
         }
+        let entered = scratch.entered.drain(..);
+        scratch
+            .triggered
+            .extend(entered.map(|index| (index, Stimulus::AgentInRange)));
         for index in 0..self.episode.objects.len() {
             let now = self.is_in_range(index);
             if now && !self.episode.objects[index].in_range {
@@ -44,6 +53,34 @@ impl Environment {
             self.trigger(index as usize, stimulus, step);
         }
         self.scratch = scratch;
+    }
+
+    /// Notes the objects into whose range the agent's way of this time step leads, even if it leads out again.
+    pub(super) fn pass_ranges(&mut self) {
+        for index in 0..self.episode.objects.len() {
+            if self.world.objects[index].range_stimulus_distance > 0.0 && !self.episode.objects[index].in_range {
+                let [x, y] = self.scene.items[index].position.map(f64::from);
+                let path = self.ground.path().windows(2);
+                let nearest = path
+                    .map(|ends| squared_distance([x, y], ends[0], ends[1]))
+                    .fold(f64::INFINITY, f64::min);
+                if self.is_range(index, nearest) {
+                    self.scratch.entered.push(index as u32);
+                }
+            }
+        }
+    }
+
+    /// Notes an object that came from another place to where it is now, if the agent was in its range on the way.
+    pub(super) fn pass_range_of(&mut self, index: usize, from: [f32; 2]) {
+        if self.world.objects[index].range_stimulus_distance > 0.0 && !self.episode.objects[index].in_range {
+            let to = self.scene.items[index].position.map(f64::from);
+            let agent = self.episode.agent.position.map(f64::from);
+            let nearest = squared_distance(agent, from.map(f64::from), to);
+            if self.is_range(index, nearest) {
+                self.scratch.entered.push(index as u32);
+            }
+        }
     }
 
     /// One stimulus on one object: what it pays, whether it destroys.
@@ -106,13 +143,36 @@ impl Environment {
 
     /// Centre to centre in 3D: the agent's at half its height, the object's at half of its own.
     pub(super) fn is_in_range(&self, index: usize) -> bool {
-        let reach = self.world.objects[index].range_stimulus_distance as f32;
+        if self.world.objects[index].range_stimulus_distance <= 0.0 {
+            return false;
+        }
+        let [x, y] = self.way_to(index).map(f64::from);
+        self.is_range(index, x * x + y * y)
+    }
+
+    /// Whether an object's range reaches so far on the ground; the square of the distance in metres is given.
+    fn is_range(&self, index: usize, squared: f64) -> bool {
+        let reach = self.world.objects[index].range_stimulus_distance;
         if reach <= 0.0 || !self.episode.objects[index].present {
             return false;
         }
         let item = &self.scene.items[index];
-        let [dx, dy] = [0, 1].map(|axis| item.position[axis] - self.episode.agent.position[axis]);
-        let dz = (item.asset.height * item.scale - self.world.agent_params.agent_height as f32) / 2.0;
-        dx * dx + dy * dy + dz * dz < reach * reach
+        let height = f64::from(item.asset.height * item.scale);
+        let dz = (height - self.world.agent_params.agent_height) / 2.0;
+        squared + dz * dz < reach * reach
     }
+}
+
+/// The square of the distance of a point from a straight way.
+fn squared_distance(point: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let off = [point[0] - from[0], point[1] - from[1]];
+    let length = way[0] * way[0] + way[1] * way[1];
+    let share = if length > 0.0 {
+        ((off[0] * way[0] + off[1] * way[1]) / length).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let [x, y] = [0, 1].map(|axis| off[axis] - way[axis] * share);
+    x * x + y * y
 }

@@ -1,33 +1,23 @@
-//! Bodies on the ground: what the agent bumps into, slides along and touches. What a touch is worth is in `environment.rs`.
+//! Bodies on the ground: what the agent bumps into, slides along and touches. How far apart
+//! two are is in `footprint.rs`, what counts as a touch in `contact.rs`, what one is worth in `answer.rs`.
 
 use driftworld_spec::World;
 use rapier3d::parry::partitioning::Bvh;
-use rapier3d::parry::query::{ClosestPoints, closest_points};
 use rapier3d::prelude::*;
 
-use super::casting::{Hit, rank};
+use super::footprint::{Footprint, Gap, Point};
+use super::outline::Outline;
+use super::slide::{Obstacles, SKIN};
 use crate::assets::ColliderShape;
 use crate::scene::{Item, Scene};
-
-/// Distance that the agent keeps from what it slides along, in metres.
-pub(super) const SKIN: f32 = 0.01;
-
-/// Distance at which a touch counts, in metres: a little more than the skin.
-const TOUCH: f32 = 0.03;
 
 /// Where the world ends for what starts outside the arena, in metres from the origin: a document knows no place beyond.
 pub(super) const EDGE: f32 = 300.0;
 
-/// Longest way that is cast at once, in metres.
-const STRETCH: f32 = 1.0;
-
-/// How often a stretch's motion is turned aside before it ends.
-const SLIDES: usize = 5;
-
 /// Bodies that stop the agent.
 pub(super) const SOLID: Group = Group::GROUP_1;
 /// Bodies that it passes through.
-const GHOST: Group = Group::GROUP_2;
+pub(super) const GHOST: Group = Group::GROUP_2;
 /// Walls: they stop it, and are nobody's object.
 pub(super) const WALL: Group = Group::GROUP_3;
 
@@ -49,21 +39,44 @@ pub(crate) struct Ground {
     /// The agent's own collider, where objects move and may meet it.
     pub(super) agent_handle: Option<ColliderHandle>,
     pub(super) agent: SharedShape,
-    /// The agent's body without its radius: what is pushed out of things.
-    axis: Segment,
-    touch: SharedShape,
-    radius: f32,
+    /// Half the agent's width.
+    pub(super) radius: f64,
     height: f32,
     /// Half the arena's sides.
     pub(super) half: [f32; 2],
+    /// What stands around, by the numbers of the colliders' handles.
+    pub(super) standing: Vec<Standing>,
+    /// What each covers of the ground up to the agent's height.
+    pub(super) low: Vec<Footprint>,
+    /// What each covers of the ground in all.
+    pub(super) whole: Vec<Footprint>,
+    pub(super) scratch: Scratch,
 }
 
-/// A motion on its way.
-struct Motion<'a> {
-    /// Where it has come to.
-    position: [f32; 2],
-    /// Objects that were met on the way, each once, by index.
-    met: &'a mut Vec<u32>,
+/// One body, as questions about the ground see it.
+pub(super) struct Standing {
+    /// Its outline before it was turned and moved.
+    pub(super) outline: Outline,
+    /// Its object; walls and the agent are nobody's.
+    pub(super) object: Option<u32>,
+    /// A number that depends on the world alone: walls are told apart by the number that they were given, objects by theirs.
+    pub(super) rank: u64,
+}
+
+/// Lists that each motion uses again.
+#[derive(Default)]
+pub(super) struct Scratch {
+    /// The bodies around a motion, by the numbers of their handles.
+    pub(super) numbers: Vec<u32>,
+    pub(super) touched: Vec<Gap>,
+    /// Where the agent's way of this time step began, bent and ended.
+    pub(super) path: Vec<Point>,
+    /// The way of an object that moves by itself.
+    pub(super) strides: Vec<Point>,
+    /// The body of an object that moves, turned.
+    pub(super) body: Footprint,
+    /// Footprints widened by it.
+    pub(super) widened: Vec<Footprint>,
 }
 
 impl Ground {
@@ -82,11 +95,13 @@ impl Ground {
             handles: vec![None; scene.items.len()],
             agent_handle: None,
             agent: capsule(radius),
-            axis: Segment::new(Vector::ZERO, Vector::new(0.0, 0.0, height)),
-            touch: capsule(radius + TOUCH),
-            radius,
+            radius: f64::from(radius),
             height,
             half: scene.arena_size().map(|side| side / 2.0),
+            standing: Vec::new(),
+            low: Vec::new(),
+            whole: Vec::new(),
+            scratch: Scratch::default(),
         };
         ground.add_arena(scene.arena_size());
         let environment = &world.environment_params;
@@ -102,23 +117,48 @@ impl Ground {
         ground
     }
 
-    pub(super) fn insert(&mut self, collider: ColliderBuilder, group: Group) -> ColliderHandle {
+    /// Puts a body where it belongs; `heading_deg` turns its outline.
+    pub(super) fn insert(
+        &mut self,
+        collider: ColliderBuilder,
+        group: Group,
+        outline: Outline,
+        heading_deg: f32,
+    ) -> ColliderHandle {
+        let number = self.colliders.len() as u32;
         let collider = if group == WALL {
-            let number = self.colliders.len() as u128;
-            collider.user_data(number)
+            collider.user_data(u128::from(number))
         } else {
             collider
         };
         let groups = InteractionGroups::new(group, Group::ALL, InteractionTestMode::And);
         let handle = self.colliders.insert(collider.collision_groups(groups));
-        self.note_place(handle);
+        let slot = slot(handle);
+        while self.standing.len() <= slot {
+            self.standing.push(Standing::nothing());
+            self.low.push(Footprint::default());
+            self.whole.push(Footprint::default());
+        }
+        let user_data = self.colliders[handle].user_data as u64;
+        self.standing[slot] = Standing {
+            outline,
+            object: (group == SOLID || group == GHOST).then_some(user_data as u32),
+            rank: user_data | u64::from(group == WALL) << 32 | u64::from(group == AGENT) << 33,
+        };
+        self.note_place(handle, heading_deg);
         handle
     }
 
-    /// Notes where a collider is now.
-    pub(super) fn note_place(&mut self, handle: ColliderHandle) {
-        let area = self.colliders[handle].compute_aabb();
-        self.tree.insert(area, handle.into_raw_parts().0);
+    /// Notes where a body is now, and where it faces.
+    pub(super) fn note_place(&mut self, handle: ColliderHandle, heading_deg: f32) {
+        let collider = &self.colliders[handle];
+        let area = collider.compute_aabb();
+        let slot = slot(handle);
+        self.tree.insert(area, slot as u32);
+        let at = collider.translation();
+        let at = [f64::from(at.x), f64::from(at.y)];
+        let outline = &self.standing[slot].outline;
+        outline.place_into(heading_deg, at, &mut self.low[slot], &mut self.whole[slot]);
     }
 
     /// Four thick walls around the arena.
@@ -133,7 +173,7 @@ impl Ground {
         ] {
             let wall = ColliderBuilder::cuboid(half[0], half[1], self.wall_half_height())
                 .translation(Vector::new(at[0], at[1], 0.0));
-            self.insert(wall, WALL);
+            self.insert(wall, WALL, Outline::rectangle(half), 0.0);
         }
     }
 
@@ -154,8 +194,10 @@ impl Ground {
             if length > 0.0 {
                 let angle = libm::atan2f(along[1], along[0]);
                 let middle = Vector::new(f32::midpoint(from[0], to[0]), f32::midpoint(from[1], to[1]), 0.0);
-                let wall = ColliderBuilder::cuboid(length / 2.0, 0.02, self.wall_half_height());
-                self.insert(wall.position(Pose::new(middle, Vector::new(0.0, 0.0, angle))), WALL);
+                let half = [length / 2.0, 0.02];
+                let wall = ColliderBuilder::cuboid(half[0], half[1], self.wall_half_height());
+                let wall = wall.position(Pose::new(middle, Vector::new(0.0, 0.0, angle)));
+                self.insert(wall, WALL, Outline::rectangle(half), -angle.to_degrees());
             }
         }
     }
@@ -212,7 +254,9 @@ impl Ground {
             }
         };
         let collider = ColliderBuilder::new(shape).position(pose).user_data(u128::from(index));
-        let handle = self.insert(collider, if solid { SOLID } else { GHOST });
+        let group = if solid { SOLID } else { GHOST };
+        let outline = Outline::of(&item.asset.collider, item.scale, self.height);
+        let handle = self.insert(collider, group, outline, item.heading_deg);
         if self.handles.len() <= index as usize {
             self.handles.resize(index as usize + 1, None);
         }
@@ -241,10 +285,6 @@ impl Ground {
         self.query_but(WALL, own).cast_ray(&ray, 1.0, false).is_some()
     }
 
-    fn query(&self, groups: Group) -> QueryPipeline<'_> {
-        self.query_but(groups, None)
-    }
-
     /// Questions about bodies of these groups, one body left aside.
     pub(super) fn query_but(&self, groups: Group, but: Option<ColliderHandle>) -> QueryPipeline<'_> {
         let groups = InteractionGroups::new(Group::ALL, groups, InteractionTestMode::And);
@@ -259,176 +299,104 @@ impl Ground {
         }
     }
 
-    /// Moves the agent's body as far as solid things let it, sliding along them.
-    ///
-    /// Hands back where it comes to, and notes the objects that it met on the way, each once.
-    ///
-    /// The motion is a cast of the whole shape, so nothing is passed through at any speed; long ways are walked in
-    /// stretches, because the engine's casts lose precision with length.
-    pub(crate) fn slide(&self, from: [f32; 2], by: [f32; 2], met: &mut Vec<u32>) -> [f32; 2] {
-        let mut motion = Motion { position: from, met };
-        let way = Vector::new(by[0], by[1], 0.0);
-        let stretches = (way.length() / STRETCH).ceil().max(1.0);
-        for _ in 0..stretches as u32 {
-            let before = motion.position;
-            self.slide_stretch(way / stretches, &mut motion);
-            if motion.position == before {
-                break;
-            }
-        }
-        motion.position
+    /// Notes in `scratch.numbers` the bodies of these groups, one left aside, around the places from one to another.
+    pub(super) fn gather(&mut self, groups: Group, but: Option<ColliderHandle>, [from, to]: [Point; 2], reach: f64) {
+        let mut numbers = std::mem::take(&mut self.scratch.numbers);
+        numbers.clear();
+        // Room for what most ways meet, so that no step takes memory.
+        numbers.reserve(64);
+        self.scratch.touched.reserve(16);
+        self.scratch.path.reserve(64);
+        self.scratch.strides.reserve(64);
+        let least = [0, 1].map(|axis| (from[axis].min(to[axis]) - reach) as f32);
+        let most = [0, 1].map(|axis| (from[axis].max(to[axis]) + reach) as f32);
+        let area = Aabb::new(
+            Vector::new(least[0], least[1], -1e3),
+            Vector::new(most[0], most[1], 1e3),
+        );
+        let query = self.query_but(groups, but);
+        let around = query.intersect_aabb_conservative(area);
+        numbers.extend(around.map(|(handle, _)| slot(handle) as u32));
+        // The tree's order depends on its past, which a world that was written down does not have.
+        numbers.sort_unstable_by_key(|number| self.standing[*number as usize].rank);
+        self.scratch.numbers = numbers;
     }
 
-    fn slide_stretch(&self, mut left: Vector, motion: &mut Motion<'_>) {
-        let mut last_normal: Option<Vector> = None;
-        for _ in 0..SLIDES {
-            if left.length() < 1e-6 {
-                break;
-            }
-            let start = motion.position;
-            let hit = self.first_hit(start, left);
-            let share = hit.as_ref().map_or(1.0, |hit| hit.share);
-            let end = self.kept_clear(start, [start[0] + left.x * share, start[1] + left.y * share]);
-            if self.is_crossed(start, end) {
-                break;
-            }
-            motion.position = end;
-            self.pass_ghosts(start, motion.position, motion.met);
-            let Some(Hit { collider, normal, .. }) = hit else { break };
-            if let Some(index) = self.object_of(collider) {
-                note(motion.met, index);
-            }
-            left *= 1.0 - share;
-            left -= normal * left.dot(normal).min(0.0);
-            // In a corner the way along one wall leads into the other: there is no way on.
-            if let Some(last) = last_normal
-                && left.dot(last) < 0.0
-            {
-                left -= last * left.dot(last);
-                if left.dot(normal) < 0.0 {
-                    break;
-                }
-            }
-            last_normal = Some(normal);
+    /// Moves the agent's body as far as solid things let it, sliding along them; hands back where it comes to.
+    ///
+    /// Nothing is passed through at any speed. The way is noted for [`Ground::path`].
+    pub(crate) fn slide(&mut self, from: [f32; 2], by: [f32; 2]) -> [f32; 2] {
+        let start = from.map(f64::from);
+        let way = by.map(f64::from);
+        let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
+        self.scratch.path.clear();
+        self.scratch.path.push(start);
+        if length < 1e-6 {
+            return from;
         }
-    }
-
-    /// Whether the straight way between two places leads through the surface of something solid. A cast that missed, by
-    /// rounding, what it should have met ends here: the body's middle never changes sides.
-    fn is_crossed(&self, from: [f32; 2], to: [f32; 2]) -> bool {
-        let way = Vector::new(to[0] - from[0], to[1] - from[1], 0.0);
-        let ray = Ray::new(Vector::new(from[0], from[1], self.height / 2.0), way);
-        let outside = |_: ColliderHandle, body: &Collider| {
-            object_of(body).is_none() || !body.shape().contains_point(body.position(), ray.origin)
+        let to = [start[0] + way[0], start[1] + way[1]];
+        let reach = self.radius + SKIN + 1e-3;
+        self.gather(SOLID | WALL, None, [start, to], reach);
+        let obstacles = Obstacles {
+            footprints: &self.low,
+            numbers: &self.scratch.numbers,
         };
-        let mut query = self.query(SOLID | WALL);
-        query.filter.predicate = Some(&outside);
-        query.cast_ray(&ray, 1.0, false).is_some()
-    }
-
-    /// A place moved out of what it touches by the rounding of casts, and back into the arena that it came from.
-    fn kept_clear(&self, from: [f32; 2], at: [f32; 2]) -> [f32; 2] {
-        let mut place = at;
-        for _ in 0..3 {
-            let Some(push) = self.deepest_push(place) else { break };
-            (place[0], place[1]) = (place[0] + push.x, place[1] + push.y);
+        if obstacles.is_clear(start, way, self.radius) {
+            self.scratch.path.push(to);
+        } else {
+            // It may turn anywhere, but it goes no farther than it meant to.
+            self.gather(SOLID | WALL, None, [start, start], length + 2.0 + reach);
+            let mut scratch = std::mem::take(&mut self.scratch);
+            let obstacles = Obstacles {
+                footprints: &self.low,
+                numbers: &scratch.numbers,
+            };
+            let clear = obstacles.out_of_overlap(start, self.radius);
+            if clear != start {
+                scratch.path.push(clear);
+            }
+            obstacles.slide(clear, way, self.radius, &mut scratch.touched, &mut scratch.path);
+            self.scratch = scratch;
         }
+        let end = self.scratch.path.last().copied().unwrap_or(start);
+        let mut place = end.map(|metres| metres as f32);
         for axis in 0..2 {
-            let inside = self.half[axis] - self.radius - SKIN;
-            if from[axis].abs() <= inside + SKIN && inside > 0.0 {
+            // Rounding brings nothing out of the arena that came from within.
+            let inside = self.half[axis] - (self.radius + SKIN) as f32;
+            if from[axis].abs() <= inside + SKIN as f32 && inside > 0.0 {
                 place[axis] = place[axis].clamp(-inside, inside);
             }
             place[axis] = place[axis].clamp(-EDGE, EDGE);
         }
+        if let Some(end) = self.scratch.path.last_mut() {
+            *end = place.map(f64::from);
+        }
         place
     }
 
-    /// The way out of the solid thing that is nearest, if one is nearer than the skin.
-    fn deepest_push(&self, at: [f32; 2]) -> Option<Vector> {
-        let reach = Ball::new(self.radius + SKIN);
-        let solid = self.query(SOLID | WALL);
-        let mut worst: Option<(f32, u128, Vector)> = None;
-        // The slice at the height of the body's middle decides: all shapes stand upright.
-        let middle = Pose::from_translation(Vector::new(at[0], at[1], self.height / 2.0));
-        for (_, collider) in solid.intersect_shape(middle, &reach) {
-            let Some((distance, normal)) = self.separation(at, collider) else {
-                continue;
-            };
-            let key = rank(collider);
-            let deeper = |least: f32, other: u128| distance < least || (distance == least && key < other);
-            if distance < SKIN * 0.9 && worst.is_none_or(|(least, other, _)| deeper(least, other)) {
-                worst = Some((distance, key, normal * (SKIN - distance).min(0.5)));
-            }
-        }
-        worst.map(|(_, _, push)| push)
+    /// The outline of an object, while it is there.
+    pub(super) fn outline_of(&self, object: u32) -> Option<&Outline> {
+        self.handles[object as usize].map(|handle| &self.standing[slot(handle)].outline)
     }
 
-    /// How far the agent's body is from another, below 0 if they overlap, and the way out in the plane, of length 1; nothing if
-    /// they are farther apart than the skin.
-    ///
-    /// The engine's contacts would take memory from the heap for shapes that overlap. The axis of the body hardly ever does; if
-    /// it does, the way out is that from the middle of the other.
-    fn separation(&self, at: [f32; 2], collider: &Collider) -> Option<(f32, Vector)> {
-        let pose = Pose::from_translation(Vector::new(at[0], at[1], 0.0));
-        let (other, reach) = (collider.position(), self.radius + SKIN);
-        let (apart, way) = match closest_points(&pose, &self.axis, other, collider.shape(), reach).ok()? {
-            ClosestPoints::Disjoint => return None,
-            // In a wall there is no way out that could not be the wrong side.
-            ClosestPoints::Intersecting if object_of(collider).is_none() => return None,
-            ClosestPoints::Intersecting => (0.0, pose.translation - other.translation),
-            ClosestPoints::WithinMargin(own, others) => {
-                let way = pose * own - *other * others;
-                (way.length(), way)
-            }
-        };
-        Some((apart - self.radius, Vector::new(way.x, way.y, 0.0).normalize_or_zero()))
-    }
-
-    /// The first solid thing on the agent's way.
-    fn first_hit(&self, from: [f32; 2], by: Vector) -> Option<Hit> {
-        let pose = Pose::from_translation(Vector::new(from[0], from[1], 0.0));
-        self.first_met(SOLID | WALL, None, &*self.agent, &pose, by)
-    }
-
-    /// Notes the objects without substance that a stretch of the way leads through.
-    fn pass_ghosts(&self, from: [f32; 2], to: [f32; 2], met: &mut Vec<u32>) {
-        let along = [to[0] - from[0], to[1] - from[1]];
-        let length = (along[0] * along[0] + along[1] * along[1]).sqrt();
-        let samples = (length / self.radius.max(0.05)).ceil().clamp(1.0, 10_000.0) as u32;
-        let query = self.query(GHOST);
-        for k in 1..=samples {
-            let share = k as f32 / samples as f32;
-            let at = Vector::new(from[0] + along[0] * share, from[1] + along[1] * share, 0.0);
-            for (_, collider) in query.intersect_shape(Pose::from_translation(at), &*self.agent) {
-                note(met, collider.user_data as u32);
-            }
-        }
-    }
-
-    fn object_of(&self, handle: ColliderHandle) -> Option<u32> {
-        object_of(&self.colliders[handle])
-    }
-
-    /// The objects that the agent's body touches, by index in rising order.
-    pub(crate) fn touching(&self, at: [f32; 2], touched: &mut Vec<u32>) {
-        touched.clear();
-        let pose = Pose::from_translation(Vector::new(at[0], at[1], 0.0));
-        let query = self.query(SOLID | GHOST);
-        touched.extend(
-            query
-                .intersect_shape(pose, &*self.touch)
-                .map(|(_, collider)| collider.user_data as u32),
-        );
-        touched.sort_unstable();
+    /// Where the agent's way of this time step began, bent and ended.
+    pub(super) fn path(&self) -> &[Point] {
+        &self.scratch.path
     }
 
     /// The solid objects that the agent's body would be inside of at a place, by index in rising order.
     pub(crate) fn blocking(&self, at: [f32; 2], found: &mut Vec<u32>) {
         found.clear();
-        let pose = Pose::from_translation(Vector::new(at[0], at[1], 0.0));
-        let query = self.query(SOLID);
-        let inside = query.intersect_shape(pose, &*self.agent);
-        found.extend(inside.map(|(_, collider)| collider.user_data as u32));
+        let (x, y, radius) = (at[0], at[1], self.radius as f32);
+        let area = Aabb::new(
+            Vector::new(x - radius, y - radius, -1e3),
+            Vector::new(x + radius, y + radius, 1e3),
+        );
+        for (handle, _) in self.query_but(SOLID, None).intersect_aabb_conservative(area) {
+            let slot = slot(handle);
+            let inside = self.low[slot].gap(at.map(f64::from)).distance < self.radius;
+            found.extend(self.standing[slot].object.filter(|_| inside));
+        }
         found.sort_unstable();
     }
 
@@ -436,10 +404,10 @@ impl Ground {
     pub(crate) fn in_reach(&self, at: [f32; 2], forward: [f32; 2], found: &mut Vec<u32>) {
         found.clear();
         let cube = Cuboid::new(Vector::new(0.5, 0.5, 0.5));
-        let ahead = self.radius + 0.5;
+        let ahead = self.radius as f32 + 0.5;
         let centre = Vector::new(at[0] + forward[0] * ahead, at[1] + forward[1] * ahead, 0.5);
         let pose = Pose::new(centre, Vector::new(0.0, 0.0, libm::atan2f(forward[1], forward[0])));
-        let query = self.query(SOLID | GHOST);
+        let query = self.query_but(SOLID | GHOST, None);
         found.extend(
             query
                 .intersect_shape(pose, &cube)
@@ -449,18 +417,22 @@ impl Ground {
     }
 }
 
-/// The object whose body this is; walls are nobody's.
-fn object_of(collider: &Collider) -> Option<u32> {
-    (collider.collision_groups().memberships != WALL).then_some(collider.user_data as u32)
+impl Standing {
+    fn nothing() -> Self {
+        Self {
+            outline: Outline::disc(0.0),
+            object: None,
+            rank: 0,
+        }
+    }
+}
+
+/// The number of a handle: colliders that are gone give theirs to new ones.
+pub(super) fn slot(handle: ColliderHandle) -> usize {
+    handle.into_raw_parts().0 as usize
 }
 
 /// Whether a body shows where it faces: round ones do not.
 pub(super) fn shows_heading(shape: &SharedShape) -> bool {
     matches!(shape.shape_type(), ShapeType::Cuboid | ShapeType::ConvexPolyhedron)
-}
-
-fn note(met: &mut Vec<u32>, index: u32) {
-    if !met.contains(&index) {
-        met.push(index);
-    }
 }

@@ -48,9 +48,10 @@ pub struct Environment {
 /// Lists that each time step uses again.
 #[derive(Default)]
 pub(super) struct Scratch {
-    /// Objects that the agent met on its way.
+    /// Objects that the agent met on its way, and that met it on theirs.
     pub(super) met: Vec<u32>,
-    pub(super) touching: Vec<u32>,
+    /// Objects whose range was entered on the way.
+    pub(super) entered: Vec<u32>,
     pub(super) reached: Vec<u32>,
     pub(super) triggered: Vec<(u32, Stimulus)>,
 }
@@ -135,17 +136,19 @@ impl Environment {
             renderer,
             frame,
         };
-        match came {
-            Some(came) if came.has_begun() => environment.resume(&came),
-            _ => environment.take_stock(),
+        // At a start nothing is touched or near yet: where the agent starts counts as news in the first step.
+        if let Some(came) = came.filter(Came::has_begun) {
+            environment.resume(&came);
         }
         environment
     }
 
     /// Notes what is touched and near now, as no news.
     pub(super) fn take_stock(&mut self) {
-        let agent = self.episode.agent;
-        self.ground.touching(agent.position, &mut self.episode.contacts);
+        let here = self.episode.agent.position;
+        self.episode.contacts.clear();
+        self.ground.note_touching(here, &mut self.episode.contacts);
+        self.episode.contacts.sort_unstable();
         for index in 0..self.episode.objects.len() {
             self.episode.objects[index].in_range = self.is_in_range(index);
         }

@@ -15,7 +15,8 @@ impl Environment {
         self.ground.place_agent(self.episode.agent.position);
         let half = self.scene.arena_size().map(|side| side / 2.0);
         let seconds = self.world.agent_params.time_step as f32;
-        for mover in &mut self.episode.movers {
+        let mut movers = std::mem::take(&mut self.episode.movers);
+        for mover in &mut movers {
             let index = mover.object;
             if !self.episode.objects[index].present {
                 continue;
@@ -35,10 +36,16 @@ impl Environment {
             let Some(place) = self.ground.push(index as u32, stride.by, stride.heading_deg) else {
                 continue;
             };
-            let came = [place[0] - item.position[0], place[1] - item.position[1]];
+            let from = item.position;
+            let came = [place[0] - from[0], place[1] - from[1]];
             (item.position, item.heading_deg) = (place, stride.heading_deg);
             mover.moved(stride.by, came);
+            let agent = self.episode.agent.position;
+            self.ground
+                .note_passing(index as u32, came, agent, &mut self.scratch.met);
+            self.pass_range_of(index, from);
         }
+        self.episode.movers = movers;
     }
 
     /// Puts back the destroyed objects whose time has come: near their first place, where nothing stands.

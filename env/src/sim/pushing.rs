@@ -7,10 +7,10 @@
 use driftworld_spec::{MotionModel, Object, World};
 use rapier3d::prelude::*;
 
-use super::body::{EDGE, Ground, SOLID, WALL};
-use super::casting::rank;
+use super::body::{EDGE, Ground, SOLID, WALL, slot};
 use super::environment::Environment;
 use super::episode::wrapped;
+use super::outline::Outline;
 
 /// What the agent weighs, in kilograms. In each time step it meets what it pushes with this mass at its own speed.
 const AGENT_MASS: f32 = 80.0;
@@ -151,6 +151,9 @@ impl Environment {
 
     fn add_active(&self, physics: &mut PhysicsWorld, index: usize) -> Active {
         let body = self.episode.pushed[index];
+        let [vx, vy] = body.velocity;
+        let agent_speed = self.world.agent_params.max_linear_speed as f32;
+        let farthest = (vx * vx + vy * vy).sqrt().max(agent_speed) * LONGEST + MARGIN;
         let item = &self.scene.items[body.object];
         let (mass, friction) = self.world.objects[body.object]
             .pushable
@@ -166,11 +169,16 @@ impl Environment {
                 .enabled_translations(true, true, false)
                 .enabled_rotations(false, false, true)
                 .ccd_enabled(true)
+                // Contacts are foreseen: else a body stands still for the rest of the part of the step in which it meets a wall.
+                .soft_ccd_prediction(farthest)
                 .can_sleep(false),
         );
-        let collider = ColliderBuilder::new(shape)
-            .position(from_ground)
-            .mass(mass)
+        // It weighs and turns as the solid that it is, and meets others as its outline.
+        let mut mass_properties = shape.mass_properties(1.0);
+        mass_properties.set_mass(mass, true);
+        let outline = self.ground.outline_of(body.object as u32);
+        let collider = ColliderBuilder::new(outline.map_or(shape, Outline::upright))
+            .mass_properties(mass_properties.transform_by(&from_ground))
             .friction(friction)
             .restitution(0.0)
             .user_data(u128::from(index as u64));
@@ -188,7 +196,7 @@ impl Environment {
     /// Walls and objects that stand fast around the bodies, in an order that does not depend on how the world came to be.
     fn add_surroundings(&self, physics: &mut PhysicsWorld, active: &[Active], seconds: f32) {
         let speed = self.world.agent_params.max_linear_speed as f32;
-        let mut around: Vec<(ColliderHandle, u128)> = Vec::new();
+        let mut around: Vec<(ColliderHandle, u64)> = Vec::new();
         for body in active {
             let pushed = &self.episode.pushed[body.index];
             let [x, y] = self.scene.items[pushed.object].position;
@@ -210,14 +218,29 @@ impl Environment {
                 let standing = (groups & (SOLID | WALL)) != Group::NONE;
                 let fast = groups == WALL || !own(collider.user_data as usize);
                 if standing && fast && !around.iter().any(|(known, _)| *known == handle) {
-                    around.push((handle, rank(collider)));
+                    around.push((handle, self.ground.standing[slot(handle)].rank));
                 }
             }
         }
         around.sort_unstable_by_key(|(_, key)| *key);
         for (handle, _) in around {
             let standing = &self.ground.colliders[handle];
-            let collider = ColliderBuilder::new(standing.shared_shape().clone()).position(*standing.position());
+            let mut place = *standing.position();
+            place.translation.z = 0.0;
+            let outline = &self.ground.standing[slot(handle)].outline;
+            if outline.is_disc() {
+                place.rotation = Rotation::IDENTITY;
+            }
+            let collider = ColliderBuilder::new(outline.upright()).position(place);
+            // Along walls everything slides, as the agent does: what leads along one is kept.
+            let is_wall = standing.collision_groups().memberships == WALL;
+            let collider = if is_wall {
+                collider
+                    .friction(0.0)
+                    .friction_combine_rule(CoefficientCombineRule::Min)
+            } else {
+                collider
+            };
             physics.colliders.insert(collider);
         }
     }
@@ -234,7 +257,7 @@ impl Environment {
             .can_sleep(false);
         let body = physics.bodies.insert(body);
         // What it pushes is not held back by its sides, nor is it by walls.
-        let collider = ColliderBuilder::new(self.ground.agent.clone())
+        let collider = ColliderBuilder::ball(self.ground.radius as f32)
             .mass(AGENT_MASS)
             .friction(0.0)
             .friction_combine_rule(CoefficientCombineRule::Min)
@@ -278,9 +301,7 @@ impl Environment {
             // A body at rest keeps its very place, whatever solvers make of it.
             if position != item.position || pushed.moves() {
                 (item.position, item.heading_deg) = (position, heading_deg);
-                self.ground.remove(object as u32);
-                self.ground
-                    .add_object(object as u32, item, self.world.objects[object].solid);
+                self.ground.put(object as u32, position, heading_deg);
             }
         }
     }

@@ -86,6 +86,7 @@ impl Environment {
     fn tick(&mut self, intent: Intent, step: &mut Step) {
         self.episode.ticks += 1;
         self.carry_out(intent);
+        self.pass_ranges();
         self.bring_back();
         self.move_objects();
         self.answer(intent, step);
@@ -106,7 +107,8 @@ impl Environment {
         };
         self.scratch.met.clear();
         let by = self.push_bodies(by);
-        let position = self.ground.slide(start, by, &mut self.scratch.met);
+        let position = self.ground.slide(start, by);
+        self.ground.note_passed(&mut self.scratch.met);
         self.episode.agent.position = position;
         let seconds = self.world.agent_params.time_step as f32;
         self.episode.agent.velocity = [0, 1].map(|axis| (position[axis] - start[axis]) / seconds);

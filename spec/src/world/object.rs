@@ -205,11 +205,11 @@ impl JsonSchema for Model {
 /// What sets an object off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 pub enum Stimulus {
-    /// The agent's body meets the object's; again on each new contact.
+    /// The agent's body meets the object's; again when it comes back from at least a quarter of a metre away.
     AgentCollide,
     /// The agent interacts while the object is in the 1 m cube right in front of it.
     AgentInteract,
-    /// The centres are closer than `range_stimulus_distance`.
+    /// The centres come closer than `range_stimulus_distance`, even for a part of a step.
     AgentInRange,
 }
 

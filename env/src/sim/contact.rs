@@ -1,0 +1,87 @@
+//! What counts as a touch, and how long it lasts. What a touch pays is in `answer.rs`.
+//!
+//! A contact begins when the gap between the agent and an object is no wider than [`TOUCH`] anywhere on their ways, and ends when it
+//! is wider than [`RELEASE`]. Both are places, not times: how often one pass touches does not depend on speed or time step.
+
+use super::body::{GHOST, Ground, SOLID, slot};
+use super::footprint::Point;
+
+/// Widest gap that is a touch, in metres: a little more than the skin.
+const TOUCH: f64 = 0.03;
+
+/// Widest gap at which a contact lasts, in metres.
+const RELEASE: f64 = 0.25;
+
+impl Ground {
+    /// Notes the objects that the agent touched on its way of this time step, each once.
+    pub(super) fn note_passed(&mut self, met: &mut Vec<u32>) {
+        let Some((mut least, mut most)) = self.path().first().map(|&start| (start, start)) else {
+            return;
+        };
+        for point in self.path() {
+            for axis in 0..2 {
+                least[axis] = least[axis].min(point[axis]);
+                most[axis] = most[axis].max(point[axis]);
+            }
+        }
+        let reach = self.radius + TOUCH;
+        self.gather(SOLID | GHOST, None, [least, most], reach);
+        for &number in &self.scratch.numbers {
+            let Some(object) = self.standing[number as usize].object else {
+                continue;
+            };
+            let footprint = &self.low[number as usize];
+            let touched = self.path().windows(2).any(|ends| {
+                let by = [0, 1].map(|axis| ends[1][axis] - ends[0][axis]);
+                footprint.time_within(ends[0], by, reach).is_some()
+            });
+            if touched {
+                note(met, object);
+            }
+        }
+    }
+
+    /// Notes an object that touched the agent while it came `by` metres to where it is now.
+    pub(super) fn note_passing(&self, object: u32, by: [f32; 2], agent: [f32; 2], met: &mut Vec<u32>) {
+        let Some(handle) = self.handles[object as usize] else {
+            return;
+        };
+        let footprint = &self.low[slot(handle)];
+        // To the object it is the agent that came the other way.
+        let from = [0, 1].map(|axis| f64::from(agent[axis]) + f64::from(by[axis]));
+        let by = by.map(|metres| -f64::from(metres));
+        if footprint.time_within(from, by, self.radius + TOUCH).is_some() {
+            note(met, object);
+        }
+    }
+
+    /// Notes the objects that the agent's body touches where it is now.
+    pub(super) fn note_touching(&mut self, at: [f32; 2], met: &mut Vec<u32>) {
+        let at: Point = at.map(f64::from);
+        let reach = self.radius + TOUCH;
+        self.gather(SOLID | GHOST, None, [at, at], reach);
+        for &number in &self.scratch.numbers {
+            if self.low[number as usize].gap(at).distance <= reach
+                && let Some(object) = self.standing[number as usize].object
+            {
+                note(met, object);
+            }
+        }
+    }
+
+    /// Whether an object is so near to the agent that a contact lasts.
+    pub(super) fn is_still_touched(&self, object: u32, at: [f32; 2]) -> bool {
+        self.handles[object as usize].is_some_and(|handle| {
+            let gap = self.low[slot(handle)].gap(at.map(f64::from));
+            gap.distance <= self.radius + RELEASE
+        })
+    }
+}
+
+fn note(met: &mut Vec<u32>, object: u32) {
+    if !met.contains(&object) {
+        // Room for what most steps touch, so that no step takes memory.
+        met.reserve(16);
+        met.push(object);
+    }
+}

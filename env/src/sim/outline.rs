@@ -1,0 +1,168 @@
+//! What an asset's body covers of the ground before it is turned and moved: in all, and up to the agent's height.
+//!
+//! The agent is an upright cylinder: what is above its head does not stop it. Other bodies keep apart by all that they cover.
+
+use rapier3d::prelude::{SharedShape, Vector};
+
+use super::footprint::{Footprint, Point};
+use crate::assets::ColliderShape;
+
+/// What a body covers of the ground, in its own frame: around the origin, facing +y.
+pub(super) struct Outline {
+    /// Up to the agent's height; nothing if that is all of it.
+    low: Option<Footprint>,
+    whole: Footprint,
+}
+
+impl Outline {
+    pub(super) fn disc(radius: f32) -> Self {
+        Self {
+            low: None,
+            whole: Footprint::disc([0.0; 2], f64::from(radius)),
+        }
+    }
+
+    /// A rectangle of these half sides.
+    pub(super) fn rectangle(half: [f32; 2]) -> Self {
+        Self {
+            low: None,
+            whole: Footprint::rectangle(half.map(f64::from)),
+        }
+    }
+
+    /// The outline of an asset's body at a scale, for an agent of this height in metres.
+    pub(super) fn of(shape: &ColliderShape, scale: f32, agent_height: f32) -> Self {
+        let least = |metres: f32| f64::from((metres * scale).max(0.005));
+        let agent_height = f64::from(agent_height);
+        match shape {
+            ColliderShape::Box { half: [x, y, _] } => Self {
+                low: None,
+                whole: Footprint::rectangle([least(*x), least(*y)]),
+            },
+            ColliderShape::Cylinder { radius, .. } => Self::disc(least(*radius) as f32),
+            // Both stand on a half ball, which a low agent meets below its middle.
+            ColliderShape::Ball { radius } | ColliderShape::Capsule { radius, .. } => {
+                let radius = least(*radius);
+                let below = (radius - agent_height).max(0.0);
+                let low = (radius * radius - below * below).max(0.0).sqrt();
+                Self {
+                    low: (below > 0.0).then(|| Footprint::disc([0.0; 2], low)),
+                    whole: Footprint::disc([0.0; 2], radius),
+                }
+            }
+            ColliderShape::Hull { points } => {
+                let corners: Vec<[f64; 3]> = points
+                    .iter()
+                    .map(|point| point.map(|metres| f64::from(metres * scale)))
+                    .collect();
+                let Some(whole) = Footprint::around(corners.iter().map(|&[x, y, _]| [x, y]).collect()) else {
+                    return Self::disc(least(shape.radius()) as f32);
+                };
+                let is_taller = corners.iter().any(|corner| corner[2] > agent_height);
+                let low = is_taller.then(|| Footprint::around(points_below(&corners, agent_height)));
+                Self {
+                    low: low.flatten(),
+                    whole,
+                }
+            }
+        }
+    }
+
+    pub(super) fn is_disc(&self) -> bool {
+        self.whole.as_disc().is_some()
+    }
+
+    /// All of the outline as a shape for the physics of what is pushed, around the origin: a ball, or a prism.
+    ///
+    /// All of these meet at the height of their middles, where their contacts are those of their outlines, and exact.
+    pub(super) fn upright(&self) -> SharedShape {
+        /// Half the height of prisms, in metres.
+        const TALL: f32 = 4.0;
+        if let Some(radius) = self.whole.as_disc() {
+            return SharedShape::ball(radius as f32);
+        }
+        let corners = self.whole.corners().iter();
+        let corners: Vec<Vector> = corners
+            .flat_map(|&[x, y]| [TALL, -TALL].map(|z| Vector::new(x as f32, y as f32, z)))
+            .collect();
+        let reach = |axis: usize| {
+            corners
+                .iter()
+                .fold(0.0_f32, |most, corner| most.max(corner[axis].abs()))
+        };
+        let (x, y) = (reach(0), reach(1));
+        let is_rectangle =
+            corners.len() == 8 && corners.iter().all(|corner| corner.x.abs() == x && corner.y.abs() == y);
+        let prism = (!is_rectangle).then(|| SharedShape::convex_hull(&corners));
+        prism.flatten().unwrap_or_else(|| SharedShape::cuboid(x, y, TALL))
+    }
+
+    /// All of the outline, turned to a heading in degrees, around the origin.
+    pub(super) fn turned_into(&self, heading_deg: f32, whole: &mut Footprint) {
+        self.whole.place_into(turn(heading_deg), [0.0; 2], whole);
+    }
+
+    /// Turns the outline to a heading in degrees, and moves it to a place.
+    pub(super) fn place_into(&self, heading_deg: f32, at: Point, low: &mut Footprint, whole: &mut Footprint) {
+        let turn = turn(heading_deg);
+        self.whole.place_into(turn, at, whole);
+        self.low.as_ref().unwrap_or(&self.whole).place_into(turn, at, low);
+    }
+}
+
+/// Sine and cosine of a heading; headings turn clockwise.
+fn turn(heading_deg: f32) -> Point {
+    let (sine, cosine) = libm::sincos(-f64::from(heading_deg).to_radians());
+    [sine, cosine]
+}
+
+/// What of a convex body is below a height, seen from above: its corners there, and where its edges are cut.
+fn points_below(corners: &[[f64; 3]], height: f64) -> Vec<Point> {
+    let is_low = |corner: &&[f64; 3]| corner[2] <= height;
+    let mut points: Vec<Point> = corners.iter().filter(is_low).map(|&[x, y, _]| [x, y]).collect();
+    for low in corners.iter().filter(is_low) {
+        for high in corners.iter().filter(|corner| !is_low(corner)) {
+            let share = (height - low[2]) / (high[2] - low[2]);
+            points.push([0, 1].map(|axis| low[axis] + (high[axis] - low[axis]) * share));
+        }
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reach(outline: &Outline, heading_deg: f32, from: Point) -> [f64; 2] {
+        let mut placed = [Footprint::disc([0.0; 2], 0.0), Footprint::disc([0.0; 2], 0.0)];
+        let [low, whole] = &mut placed;
+        outline.place_into(heading_deg, [0.0; 2], low, whole);
+        [low.gap(from).distance, whole.gap(from).distance]
+    }
+
+    #[test]
+    fn a_low_agent_meets_a_ball_below_its_middle() {
+        let ball = Outline::of(&ColliderShape::Ball { radius: 2.0 }, 1.0, 1.0);
+        let [low, whole] = reach(&ball, 0.0, [10.0, 0.0]);
+        assert!((whole - 8.0).abs() < 1e-9 && (low - (10.0 - 3.0_f64.sqrt())).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_tent_is_wider_at_its_foot_and_turns_clockwise() {
+        let points = vec![
+            [-1.0, -2.0, 0.0],
+            [1.0, -2.0, 0.0],
+            [1.0, 2.0, 0.0],
+            [-1.0, 2.0, 0.0],
+            [0.0, 0.0, 4.0],
+        ];
+        let tent = Outline::of(&ColliderShape::Hull { points: points.clone() }, 1.0, 1.0);
+        let [low, whole] = reach(&tent, 90.0, [10.0, 0.0]);
+        assert!((whole - 8.0).abs() < 1e-9 && (low - 8.0).abs() < 1e-9);
+        // Standing on its top it is a quarter as wide up to a quarter of its height.
+        let upside_down = points.iter().map(|&[x, y, z]| [x, y, 4.0 - z]).collect();
+        let funnel = Outline::of(&ColliderShape::Hull { points: upside_down }, 1.0, 1.0);
+        let [low, whole] = reach(&funnel, 0.0, [10.0, 0.0]);
+        assert!((whole - 9.0).abs() < 1e-9 && (low - 9.75).abs() < 1e-9);
+    }
+}

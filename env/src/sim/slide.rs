@@ -1,0 +1,167 @@
+//! Sliding: the way of a body that is driven one way, without friction, among footprints. Which bodies these are is in `body.rs` and
+//! `moving_body.rs`.
+//!
+//! The law: at each moment the body moves as it is driven, less what leads into something that it touches. So on its way along a
+//! wall it keeps the part of its speed that points along the wall, whatever the wall's length, the body's width or the time step.
+
+use super::footprint::{Footprint, Gap, Point};
+
+/// Distance that a body keeps from what it slides along, in metres.
+pub(super) const SKIN: f64 = 0.01;
+
+/// How much wider than the skin a gap may be that still counts as contact, in metres: more than rounding to `f32` at the edge of
+/// the world.
+const SLACK: f64 = 2e-4;
+
+/// How far a part of the way may leave a round edge before it is brought back to it, in metres.
+const SAGITTA: f64 = 1e-3;
+
+/// Most parts of a way: each is a straight way along one thing. A way of 1 km along a thousand bodies ends early.
+const MOST_PARTS: usize = 4096;
+
+/// What may be in the way: the footprints of these numbers.
+#[derive(Clone, Copy)]
+pub(super) struct Obstacles<'a> {
+    /// The footprints by number.
+    pub(super) footprints: &'a [Footprint],
+    /// The numbers of those that may be met, in an order that depends on the world alone.
+    pub(super) numbers: &'a [u32],
+}
+
+impl Obstacles<'_> {
+    fn footprints(&self) -> impl Iterator<Item = &Footprint> {
+        self.numbers.iter().map(|number| &self.footprints[*number as usize])
+    }
+
+    /// The first time, 0..1, at which a body of this radius comes within the skin of something that it does not touch already.
+    fn first_time(&self, from: Point, by: Point, radius: f64) -> Option<f64> {
+        self.footprints()
+            .filter(|footprint| footprint.gap(from).distance - radius > SKIN + SLACK)
+            .filter_map(|footprint| footprint.time_within(from, by, radius + SKIN))
+            .min_by(f64::total_cmp)
+    }
+
+    /// Whether a straight way comes within the skin of nothing.
+    pub(super) fn is_clear(&self, from: Point, by: Point, radius: f64) -> bool {
+        self.footprints()
+            .all(|footprint| footprint.time_within(from, by, radius + SKIN).is_none())
+    }
+
+    /// The gap to what the body overlaps most deeply, but for what its middle is inside of.
+    fn deepest_overlap(&self, at: Point, radius: f64) -> Option<Gap> {
+        self.footprints()
+            .map(|footprint| footprint.gap(at))
+            .filter(|gap| (0.0..radius).contains(&gap.distance))
+            .min_by(|a, b| a.distance.total_cmp(&b.distance))
+    }
+
+    /// Moves a round body out of what it overlaps, by half a metre at most and never through anything else.
+    pub(super) fn out_of_overlap(&self, mut at: Point, radius: f64) -> Point {
+        for _ in 0..3 {
+            let Some(gap) = self.deepest_overlap(at, radius) else {
+                break;
+            };
+            let length = (radius - gap.distance).min(0.5);
+            let by = gap.out.map(|part| part * length);
+            let share = self.first_time(at, by, radius).unwrap_or(1.0);
+            at = add(at, by, share);
+        }
+        at
+    }
+
+    /// Lets a round body, driven a way in a unit of time, slide; notes in `path` where its way bends, and its end.
+    ///
+    /// What its middle is inside of does not hold it: where something was put on it, it walks out whichever way it likes.
+    pub(super) fn slide(&self, from: Point, by: Point, radius: f64, touched: &mut Vec<Gap>, path: &mut Vec<Point>) {
+        let (mut at, mut left) = (from, 1.0);
+        for _ in 0..MOST_PARTS {
+            touched.clear();
+            let gaps = self.footprints().map(|footprint| footprint.gap(at));
+            touched.extend(gaps.filter(|gap| is_touched(gap, radius)));
+            let Some((way, held_by)) = allowed(by, touched) else {
+                break;
+            };
+            let mut time = left;
+            let whole = way.map(|part| part * left);
+            if let Some(share) = self.first_time(at, whole, radius) {
+                time = left * share;
+            }
+            match held_by {
+                Some(out) => (at, time) = self.along(at, by, way, time, out, radius),
+                None => at = add(at, way, time),
+            }
+            if path.last() != Some(&at) {
+                path.push(at);
+            }
+            left -= time;
+            if left <= 1e-9 {
+                break;
+            }
+        }
+    }
+
+    /// Follows the edge of what holds the body for so much time, or for less where it bends away; hands back the place and the time.
+    fn along(&self, at: Point, by: Point, way: Point, most: f64, out: Point, radius: f64) -> (Point, f64) {
+        // What is touched now, and gives this way out, is what is followed.
+        let holds = |footprint: &&Footprint| {
+            let gap = footprint.gap(at);
+            is_touched(&gap, radius) && gap.out == out
+        };
+        let Some(held) = self.footprints().find(holds) else {
+            return (add(at, way, most), most);
+        };
+        let kept = held.gap(at).distance.max(radius + SKIN);
+        let mut time = most;
+        loop {
+            let end = add(at, way, time);
+            let gap = held.gap(end);
+            let apart = gap.distance - kept;
+            if apart <= SAGITTA {
+                // Driven away from the edge, the body leaves it.
+                let back = if dot(by, gap.out) < 0.0 { apart.max(0.0) } else { 0.0 };
+                return (add(end, gap.out, -back), time);
+            }
+            // Behind a bend the edge falls away with the square of the way.
+            time *= (0.9 * (SAGITTA / apart).sqrt()).clamp(0.05, 0.9);
+        }
+    }
+}
+
+/// Whether something holds a body of this radius. A body without one stands for others' outlines, which hold it from inside, too.
+fn is_touched(gap: &Gap, radius: f64) -> bool {
+    gap.distance - radius <= SKIN + SLACK && (gap.distance >= 0.0 || radius == 0.0)
+}
+
+/// The part of a way that leads into nothing that is touched, and the way out of what turned it; nothing where no way is left.
+fn allowed(by: Point, touched: &[Gap]) -> Option<(Point, Option<Point>)> {
+    let length = dot(by, by).sqrt();
+    let free = |way: Point, slack: f64| touched.iter().all(|gap| dot(way, gap.out) >= -slack);
+    if length <= 1e-9 {
+        return None;
+    }
+    if free(by, 0.0) {
+        return Some((by, None));
+    }
+    // Of the ways along one thing each, the nearest to what was meant among those that lead into no other.
+    let mut best: Option<(f64, Point, Point)> = None;
+    for gap in touched {
+        let into = dot(by, gap.out);
+        if into >= 0.0 {
+            continue;
+        }
+        let way = add(by, gap.out, -into);
+        if free(way, 1e-6 * length) && best.is_none_or(|(least, ..)| -into < least) {
+            best = Some((-into, way, gap.out));
+        }
+    }
+    let (_, way, out) = best?;
+    (dot(way, way).sqrt() > 1e-6 * length).then_some((way, Some(out)))
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn add(at: Point, by: Point, share: f64) -> Point {
+    [at[0] + by[0] * share, at[1] + by[1] * share]
+}

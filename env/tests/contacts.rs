@@ -1,0 +1,192 @@
+//! The laws of touching and coming near: what one pass sets off does not depend on speed, on the time step, or on how often one
+//! looks.
+
+use driftworld_env::{Action, Environment};
+use driftworld_spec::{Object, Stimulus, World};
+use proptest::prelude::*;
+
+fn start(world: World) -> Environment {
+    Environment::new(world).expect("a sound world starts")
+}
+
+/// How often each stimulus was set off on a way of legs (turn in degrees, metres), at a speed, in time steps of a length.
+fn count(mut world: World, legs: &[(f64, f64)], speed: f64, seconds: f64) -> [usize; 2] {
+    let agent = &mut world.agent_params;
+    (agent.max_linear_speed, agent.max_angular_speed, agent.time_step) = (1000.0, 1e6, seconds);
+    let mut environment = start(world);
+    let mut counts = [0; 2];
+    let mut act = |ahead: f64, turn: f64| {
+        let step = environment
+            .step(Action::Continuous([ahead / seconds, turn / seconds, 0.0]))
+            .expect("it goes on");
+        for event in &step.events {
+            match event.stimulus {
+                Stimulus::AgentCollide => counts[0] += 1,
+                Stimulus::AgentInRange => counts[1] += 1,
+                _ => {}
+            }
+        }
+    };
+    act(0.0, 0.0);
+    for &(turn, metres) in legs {
+        act(0.0, turn);
+        let steps = (metres / (speed * seconds)).ceil().max(1.0);
+        for _ in 0..steps as usize {
+            act(metres / steps, 0.0);
+        }
+    }
+    counts
+}
+
+fn touchable(class: &str, at: [f64; 2]) -> Object {
+    let mut object = Object::new(class, at);
+    object.reward = 1.0;
+    object.reward_stimulus = vec![Stimulus::AgentCollide, Stimulus::AgentInRange];
+    object
+}
+
+/// Fast enough for a metre and more in a step, and slow enough for a centimetre.
+const PACES: [(f64, f64); 7] = [
+    (1.0, 0.1),
+    (2.0, 0.1),
+    (5.0, 0.1),
+    (10.0, 0.1),
+    (5.0, 0.02),
+    (0.5, 0.02),
+    (30.0, 0.1),
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn one_pass_is_one_contact_at_any_pace(
+        class in prop::sample::select(vec!["barrel", "ball", "rock", "tree", "cube", "bush"]),
+        off in -0.9..0.9_f64,
+        scale in 0.5..3.0_f64,
+        heading in 0.0..360.0_f64,
+        solid in any::<bool>(),
+    ) {
+        let mut object = touchable(class, [0.0, 0.0]);
+        (object.scale, object.heading, object.solid) = (scale, heading, solid);
+        let mut world = World { objects: vec![object], ..World::default() };
+        let reach = f64::from(start(world.clone()).scene().items[0].asset.collider.radius()) * scale;
+        // Walked into off the middle, and held until past it.
+        let room = if class == "cube" { reach / 1.5 } else { reach };
+        world.agent_params.coordinates = [off * room, -reach - 4.0];
+        for (speed, seconds) in PACES {
+            let [touches, _] = count(world.clone(), &[(0.0, 4.0 * reach + 30.0)], speed, seconds);
+            prop_assert_eq!(touches, 1, "{} m/s in steps of {} s", speed, seconds);
+        }
+    }
+
+    #[test]
+    fn what_a_way_sets_off_does_not_depend_on_the_pace(
+        legs in prop::collection::vec((-180.0..180.0_f64, 0.5..12.0_f64), 1..12),
+        places in prop::collection::vec((-8.0..8.0_f64, -8.0..8.0_f64, 0.3..4.0_f64), 1..8),
+    ) {
+        // Ghosts hold nothing up: the way is the same at any pace.
+        let objects = places.iter().map(|&(x, y, range)| {
+            let mut object = touchable("ball", [x, y]);
+            object.solid = false;
+            object.range_stimulus_distance = range;
+            object
+        });
+        let world = World { objects: objects.collect(), ..World::default() };
+        let slow = count(world.clone(), &legs, 0.2, 0.05);
+        for (speed, seconds) in PACES {
+            let found = count(world.clone(), &legs, speed, seconds);
+            let off = [0, 1].map(|kind| found[kind].abs_diff(slow[kind]));
+            // A way that leaves and comes back within millimetres of an edge may count once more.
+            prop_assert!(off == [0, 0], "{found:?} beside {slow:?} at {speed} m/s in steps of {seconds} s");
+        }
+    }
+}
+
+#[test]
+fn a_range_that_is_crossed_within_a_step_is_entered() {
+    let mut object = touchable("ball", [3.0, 5.0]);
+    object.range_stimulus_distance = 3.5;
+    let world = World {
+        objects: vec![object],
+        ..World::default()
+    };
+    for (speed, seconds) in PACES {
+        assert_eq!(
+            count(world.clone(), &[(0.0, 20.0)], speed, seconds)[1],
+            1,
+            "{speed} {seconds}"
+        );
+    }
+    assert_eq!(count(world, &[(0.0, 40.0)], 400.0, 0.1)[1], 1, "in one step");
+}
+
+#[test]
+fn what_surrounds_the_start_is_set_off_in_the_first_step_and_once() {
+    let mut zone = touchable("ball", [0.5, 0.0]);
+    (zone.solid, zone.range_stimulus_distance) = (false, 4.0);
+    let mut environment = start(World {
+        objects: vec![zone],
+        ..World::default()
+    });
+    let mut step = || {
+        let step = environment.step(Action::Continuous([0.0; 3])).expect("it goes on");
+        step.events.iter().map(|event| event.stimulus).collect::<Vec<_>>()
+    };
+    assert_eq!(step(), [Stimulus::AgentCollide, Stimulus::AgentInRange]);
+    assert_eq!(step(), []);
+}
+
+#[test]
+fn a_contact_ends_a_quarter_of_a_metre_away() {
+    let world = World {
+        objects: vec![touchable("cube", [0.0, 3.0])],
+        ..World::default()
+    };
+    // There, back by so much, and there again.
+    for (back, expected) in [(0.1, 1), (0.2, 1), (0.3, 2), (1.0, 2)] {
+        for (speed, seconds) in [(1.0, 0.1), (10.0, 0.1), (5.0, 0.02)] {
+            let found = count(
+                world.clone(),
+                &[(0.0, 3.0), (180.0, back), (180.0, 3.0)],
+                speed,
+                seconds,
+            );
+            assert_eq!(
+                found[0], expected,
+                "back by {back} m at {speed} m/s in steps of {seconds} s"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_mover_that_rushes_past_touches_and_comes_near_once() {
+    for speed in [1.0, 5.0, 20.0, 60.0] {
+        let mut ghost = touchable("ball", [-30.0, 0.2]);
+        (ghost.solid, ghost.range_stimulus_distance) = (false, 1.0);
+        ghost.motion_model = driftworld_spec::MotionModel::Patrol;
+        ghost.speed = speed;
+        ghost.heading = 90.0;
+        ghost.waypoints = vec![[40.0, 0.2]];
+        let mut environment = start(World {
+            objects: vec![ghost],
+            ..World::default()
+        });
+        let mut counts = [0; 2];
+        for _ in 0..(700.0 / speed) as usize + 10 {
+            let step = environment.step(Action::Continuous([0.0; 3])).expect("it goes on");
+            counts[0] += step
+                .events
+                .iter()
+                .filter(|event| event.stimulus == Stimulus::AgentCollide)
+                .count();
+            counts[1] += step
+                .events
+                .iter()
+                .filter(|event| event.stimulus == Stimulus::AgentInRange)
+                .count();
+        }
+        assert_eq!(counts, [1, 1], "{speed} m/s");
+    }
+}

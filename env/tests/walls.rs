@@ -1,0 +1,301 @@
+//! The laws of sliding: along anything the agent, a mover or a pushed body keeps the part of its speed that leads along it, and
+//! nothing is passed.
+
+use driftworld_env::{Action, Environment};
+use driftworld_spec::{MotionModel, Object, Pushable, Wall, World};
+use proptest::prelude::*;
+
+/// A wall of this length in metres through a point, turned by degrees clockwise from +y.
+fn wall(through: [f64; 2], bearing_deg: f64, length: f64) -> Wall {
+    let along = direction(bearing_deg).map(|part| part * length / 2.0);
+    let across = direction(bearing_deg + 90.0).map(|part| part * 0.1);
+    let corner = |a: f64, b: f64| [0, 1].map(|axis| through[axis] + a * along[axis] + b * across[axis]);
+    Wall {
+        polygon: vec![
+            corner(-1.0, 1.0),
+            corner(1.0, 1.0),
+            corner(1.0, -1.0),
+            corner(-1.0, -1.0),
+        ],
+        height: None,
+        color: None,
+    }
+}
+
+fn direction(bearing_deg: f64) -> [f64; 2] {
+    let bearing = bearing_deg.to_radians();
+    [bearing.sin(), bearing.cos()]
+}
+
+fn arena(metres: f64) -> World {
+    let mut world = World::default();
+    world.environment_params.map_size = [metres, metres];
+    world
+}
+
+fn start(world: World) -> Environment {
+    Environment::new(world).expect("a sound world starts")
+}
+
+fn go(environment: &mut Environment, speed: f64) -> [f64; 2] {
+    environment
+        .step(Action::Continuous([speed, 0.0, 0.0]))
+        .expect("it goes on");
+    environment.agent().position.map(f64::from)
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn along_a_wall_the_agent_keeps_what_leads_along_it(
+        bearing in 0.0..360.0_f64,
+        // From the wall's normal: 0 leads straight into it.
+        angle in prop_oneof![-89.9..-0.5_f64, 0.5..89.9_f64],
+        length in 2.0..160.0_f64,
+        width in 0.1..3.0_f64,
+        speed in 0.2..20.0_f64,
+        seconds in 0.01..0.5_f64,
+        at in (-40.0..40.0_f64, -40.0..40.0_f64),
+    ) {
+        let (along, normal) = (direction(bearing), direction(bearing + 90.0));
+        let mut world = arena(400.0);
+        world.environment_params.walls = vec![wall([at.0, at.1], bearing, length)];
+        let agent = &mut world.agent_params;
+        agent.agent_width = width;
+        agent.max_linear_speed = speed;
+        agent.time_step = seconds;
+        // Before the wall, driven into it: its outer side is 0.12 m from its middle.
+        let distance = 0.12 + width / 2.0 + 0.01;
+        let sign = angle.signum();
+        let behind = sign * length * 0.4;
+        agent.coordinates = [0, 1].map(|axis| [at.0, at.1][axis] - along[axis] * behind + normal[axis] * distance);
+        agent.heading = bearing - 90.0 + angle;
+        let meant = speed * seconds * angle.to_radians().sin();
+        let steps = ((length * 0.7 / meant.abs()).floor() as usize).min(200);
+        prop_assume!(steps > 0);
+        let mut environment = start(world);
+        let begun = environment.agent().position.map(f64::from);
+        let mut last = begun;
+        for step in 1..=steps {
+            let now = go(&mut environment, speed);
+            let won = dot(minus(now, last), along) * sign;
+            prop_assert!(won > 0.0 || meant.abs() < 1e-3, "step {step} of {steps}: {won}");
+            prop_assert!(dot(minus(now, [at.0, at.1]), normal) > 0.12 + width / 2.0, "step {step} is in the wall");
+            last = now;
+        }
+        let won = dot(minus(last, begun), along);
+        let expected = meant * steps as f64;
+        prop_assert!((won - expected).abs() <= 0.01 * expected.abs() + 1e-3, "{won} of {expected} in {steps} steps");
+    }
+
+    #[test]
+    fn along_a_wall_a_mover_keeps_what_leads_along_it(
+        bearing in 0.0..360.0_f64,
+        angle in prop_oneof![-85.0..-3.0_f64, 3.0..85.0_f64],
+        length in 10.0..120.0_f64,
+        speed in 0.5..10.0_f64,
+        class in prop::sample::select(vec!["ball", "cube", "barrel", "rock"]),
+    ) {
+        let (along, normal) = (direction(bearing), direction(bearing + 90.0));
+        let mut world = arena(500.0);
+        world.environment_params.walls = vec![wall([0.0; 2], bearing, length)];
+        world.agent_params.coordinates = [-240.0, -240.0];
+        let sign = angle.signum();
+        let mut mover = Object::new(class, [0, 1].map(|axis| normal[axis] * 2.0 - along[axis] * sign * length * 0.4));
+        mover.motion_model = MotionModel::Patrol;
+        mover.speed = speed;
+        mover.heading = bearing - 90.0 + angle;
+        // Far behind the wall: the way there changes by less than a degree.
+        let far = direction(bearing - 90.0 + angle).map(|part| part * 2e4);
+        let from = mover.coordinates;
+        mover.waypoints = vec![[from[0] + far[0], from[1] + far[1]].map(|metres| metres.clamp(-290.0, 290.0))];
+        let to = mover.waypoints[0];
+        world.objects = vec![mover];
+        let mut environment = start(world);
+        let place = |environment: &Environment| environment.scene().items[0].position.map(f64::from);
+        let mut last = place(&environment);
+        for _ in 0..100 {
+            environment.step(Action::Continuous([0.0; 3])).expect("it goes on");
+            let now = place(&environment);
+            let moved = minus(now, last);
+            let way = minus(to, last);
+            let far = dot(way, way).sqrt();
+            let meant = dot(way, along) / far * speed * 0.1;
+            let (side, into) = (dot(last, normal), dot(way, normal));
+            let ahead = dot(last, along) * meant.signum();
+            if side > 0.0 && side < 2.5 && into < 0.0 && ahead < length / 2.0 - 3.0 && ahead > -length / 2.0 + 3.0 {
+                let free = speed * 0.1;
+                if (dot(moved, moved).sqrt() - free).abs() > 1e-4 {
+                    prop_assert!((dot(moved, along) - meant).abs() < 0.01 * meant.abs() + 2e-4, "{moved:?} of {meant}");
+                }
+            }
+            prop_assert!(dot(last, normal).signum() == dot(now, normal).signum() || ahead.abs() > length / 2.0 - 1.5, "through");
+            last = now;
+        }
+    }
+
+    #[test]
+    fn a_wedge_and_a_gap_as_wide_as_the_body_stop_it(
+        bearing in 0.0..360.0_f64,
+        opening in 1.0..60.0_f64,
+        off in -0.4..0.4_f64,
+        width in 0.2..2.0_f64,
+        speed in 0.5..30.0_f64,
+    ) {
+        // Two walls from one point, the agent between them on its way to it.
+        let mut world = arena(400.0);
+        let axis = direction(bearing);
+        let polygon = |turn: f64| {
+            let way = direction(bearing + turn).map(|part| part * 150.0);
+            let thick = direction(bearing + turn + 90.0 * turn.signum()).map(|part| part * 0.5);
+            vec![[0.0, 0.0], way, [way[0] + thick[0], way[1] + thick[1]], thick]
+        };
+        world.environment_params.walls = [opening / 2.0, -opening / 2.0]
+            .map(|turn| Wall { polygon: polygon(turn), height: None, color: None })
+            .to_vec();
+        let agent = &mut world.agent_params;
+        agent.agent_width = width;
+        agent.max_linear_speed = speed;
+        let room = (width / 2.0 + 0.05) / (opening / 2.0).to_radians().sin();
+        prop_assume!(room < 100.0);
+        agent.coordinates = axis.map(|part| part * (room + 10.0));
+        agent.heading = bearing + 180.0 + off * opening;
+        let mut environment = start(world);
+        let mut last = [0.0; 2];
+        for _ in 0..((room + 20.0) / speed * 10.0 * 2.0) as usize + 200 {
+            last = go(&mut environment, speed);
+            prop_assert!(dot(last, axis) > 0.0, "through the point");
+            // The distance to each wall, by the angle.
+            let (x, y) = (dot(last, axis), dot(last, direction(bearing + 90.0)));
+            let half = (opening / 2.0).to_radians();
+            let least = x * half.sin() - y.abs() * half.cos();
+            prop_assert!(least > width / 2.0, "{least} from a wall");
+        }
+        let again = go(&mut environment, speed);
+        prop_assert!(dot(minus(again, last), minus(again, last)).sqrt() < 1e-3, "at rest in the wedge");
+        // As deep as it can come: as far from the point as its width says.
+        let expected = (width / 2.0 + 0.03) / (opening / 2.0).to_radians().sin();
+        prop_assert!(dot(again, axis) < expected + 0.2, "{again:?} {expected}");
+    }
+}
+
+#[test]
+fn the_walks_of_the_audit_go_on() {
+    let mut world = arena(200.0);
+    world.environment_params.walls = vec![Wall {
+        polygon: vec![[-30.0, -30.0], [30.0, 30.0], [29.0, 31.0], [-31.0, -29.0]],
+        height: None,
+        color: None,
+    }];
+    world.agent_params.coordinates = [-14.0, -18.0];
+    world.agent_params.heading = 15.0;
+    let mut environment = start(world);
+    let mut last = [0.0; 2];
+    for _ in 0..20 {
+        go(&mut environment, 5.0);
+    }
+    for _ in 0..40 {
+        let now = environment.agent().position.map(f64::from);
+        last = go(&mut environment, 5.0);
+        let speed = dot(minus(last, now), minus(last, now)).sqrt() * 10.0;
+        // 5 m/s at 30° to the wall.
+        assert!((speed - 5.0 * 30.0_f64.to_radians().cos()).abs() < 0.01, "{speed}");
+    }
+    assert!(last[0] > 2.0, "{last:?}");
+}
+
+#[test]
+fn a_body_that_slides_into_a_wall_keeps_what_leads_along_it() {
+    for (class, friction) in [("ball", 0.0), ("cube", 0.0), ("barrel", 0.0)] {
+        for heading in [10.0_f64, 30.0, 45.0, 60.0, 80.0] {
+            let mut world = arena(580.0);
+            world.environment_params.walls = vec![Wall {
+                polygon: vec![[-250.0, 6.0], [250.0, 6.0], [250.0, 7.0], [-250.0, 7.0]],
+                height: None,
+                color: None,
+            }];
+            let mut body = Object::new(class, [-200.0, 0.0]);
+            body.pushable = Some(Pushable { mass: 5.0, friction });
+            body.heading = heading;
+            let way = direction(heading);
+            world.agent_params.coordinates = [-200.0 - way[0] * 1.5, -way[1] * 1.5];
+            world.agent_params.heading = heading;
+            world.objects = vec![body];
+            let mut environment = start(world);
+            let place = |environment: &Environment| environment.scene().items[0].position.map(f64::from);
+            for _ in 0..4 {
+                go(&mut environment, 8.0);
+            }
+            // From here on it slides by itself, until it has met the wall and for a while after.
+            go(&mut environment, 0.0);
+            let before = place(&environment);
+            go(&mut environment, 0.0);
+            let meant = minus(place(&environment), before)[0];
+            assert!(meant > 0.01, "{class} {heading}: it slides, {meant}");
+            // Its impact takes up to a sixtieth of a second, the longest step of the physics.
+            let (begun, mut last, mut nearest) = (place(&environment), [0.0; 2], f64::NEG_INFINITY);
+            for _ in 0..120 {
+                go(&mut environment, 0.0);
+                last = place(&environment);
+                nearest = nearest.max(last[1]);
+            }
+            let won = last[0] - begun[0];
+            assert!(
+                (won / 120.0 - meant).abs() < 0.01 * meant,
+                "{class} {heading}°: {won} of {}",
+                120.0 * meant
+            );
+            // A cube swings off again when its second corner slaps down.
+            assert!(nearest > 4.0, "{class} {heading}°: it came to the wall: {nearest}");
+        }
+    }
+}
+
+#[test]
+fn a_pushed_body_slides_along_a_wall() {
+    // A body that the agent pushes slantwise at a wall goes on along it.
+    for (class, friction) in [("ball", 0.0), ("cube", 0.0), ("ball", 0.5), ("cube", 0.5)] {
+        for heading in [20.0_f64, 35.0, 60.0, 75.0] {
+            let mut world = arena(400.0);
+            world.environment_params.walls = vec![Wall {
+                polygon: vec![[-150.0, 10.0], [150.0, 10.0], [150.0, 11.0], [-150.0, 11.0]],
+                height: None,
+                color: None,
+            }];
+            let mut body = Object::new(class, [-100.0, 0.0]);
+            body.heading = heading;
+            body.pushable = Some(Pushable { mass: 5.0, friction });
+            let way = direction(heading);
+            world.agent_params.coordinates = [-100.0 - way[0] * 3.0, -way[1] * 3.0];
+            world.agent_params.heading = heading;
+            world.objects = vec![body];
+            let mut environment = start(world);
+            let mut last = f64::NEG_INFINITY;
+            for step in 0..300 {
+                go(&mut environment, 5.0);
+                let [x, y] = environment.scene().items[0].position.map(f64::from);
+                // A cube turns where it is pushed at a corner, and its middle swings back.
+                let swing = if class == "cube" { 0.3 } else { 1e-3 };
+                assert!(
+                    x >= last - swing || last == f64::NEG_INFINITY,
+                    "{class} {heading}° step {step}: {last} to {x}"
+                );
+                assert!(y < 10.0);
+                last = x;
+                if x > 130.0 {
+                    break;
+                }
+            }
+            assert!(last > -90.0, "{class} {heading}°: {last}");
+        }
+    }
+}
