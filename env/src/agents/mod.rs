@@ -1,5 +1,9 @@
 //! Agents that come with the environment: one acts at random, one knows the map, one follows a script. None learns.
 
+mod flood;
+mod grid;
+mod ground;
+mod nearest;
 mod on_rails;
 mod random;
 mod route;

@@ -4,7 +4,9 @@
 use driftworld_spec::{EndCondition, Object, RailsProgress, Stimulus, World};
 
 use super::Agent;
-use super::steering::{Purpose, Target, distance, in_space};
+use super::nearest::Goal;
+use super::route::Route;
+use super::steering::{Purpose, Target, avoided, distance, in_space};
 use crate::scene::Scene;
 use crate::sim::{Action, Environment};
 
@@ -22,6 +24,8 @@ pub struct OnRailsAgent {
     target: Option<Target>,
     steps_on_target: u32,
     given_up: Vec<usize>,
+    /// Leads to the target. Boxed: agents are moved about, and this is large.
+    route: Box<Route>,
 }
 
 impl OnRailsAgent {
@@ -40,15 +44,22 @@ impl OnRailsAgent {
     /// Goes on from what was written down. A checked world names none but its own objects.
     pub(crate) fn resumed(progress: &RailsProgress, world: &World, scene: &Scene) -> Self {
         let known = |index: &u32| (*index as usize) < world.objects.len();
+        let mut route = Box::<Route>::default();
         let target = progress.target.filter(known).map(|object| {
             let goal = progress.goal.map(|metres| metres as f32);
-            let avoided = progress.avoided.iter().copied().filter(known).collect();
-            Target::new(object as usize, goal, avoided, world, scene)
+            let avoided: Vec<u32> = progress.avoided.iter().copied().filter(known).collect();
+            route.lead(world, scene, goal, &avoided);
+            Target {
+                object: object as usize,
+                goal,
+                avoided,
+            }
         });
         Self {
             target,
             steps_on_target: progress.patience,
             given_up: progress.given_up.iter().map(|index| *index as usize).collect(),
+            route,
         }
     }
 
@@ -69,15 +80,21 @@ impl OnRailsAgent {
             self.given_up.clear();
         }
         wanted.retain(|index| !self.given_up.contains(index));
-        let targets = wanted.into_iter().map(|index| Target::at(index, environment));
-        // What pays with a chance of a half is as good as what is twice as far.
-        let chance = |target: &Target| environment.world().objects[target.object].reward_probability.max(0.01) as f32;
-        let cost = |target: &Target| target.route.length(here) / chance(target);
-        self.target = targets.min_by(|a, b| cost(a).total_cmp(&cost(b)));
+        let (world, scene) = (environment.world(), environment.scene());
+        let goals: Vec<Goal> = wanted
+            .into_iter()
+            .map(|index| Goal {
+                object: index as u32,
+                place: scene.items[index].position,
+                chance: world.objects[index].reward_probability.max(0.01) as f32,
+            })
+            .collect();
+        let nearest = self.route.nearest(world, scene, here, &goals, &avoided(environment, None));
+        self.target = nearest.map(|number| Target::at(goals[number].object as usize, environment, &mut self.route));
         self.steps_on_target = 0;
     }
 
-    fn towards(&self, environment: &Environment) -> [f64; 3] {
+    fn towards(&mut self, environment: &Environment) -> [f64; 3] {
         let Some(target) = &self.target else {
             return if stands_in_the_way(environment) {
                 back(environment)
@@ -87,13 +104,13 @@ impl OnRailsAgent {
         };
         let object = &environment.world().objects[target.object];
         if reacts_to(object, Stimulus::AgentInteract) {
-            return target.towards(environment, Purpose::Interact);
+            return target.towards(environment, Purpose::Interact, &mut self.route);
         }
         // A contact counts when it begins: what wants to be touched again is left first.
         if environment.touches(target.object) && reacts_to(object, Stimulus::AgentCollide) {
             return back(environment);
         }
-        target.towards(environment, Purpose::Touch)
+        target.towards(environment, Purpose::Touch, &mut self.route)
     }
 }
 
@@ -103,7 +120,9 @@ impl Agent for OnRailsAgent {
     }
 
     fn begin(&mut self, _seed: u64) {
-        *self = Self::new();
+        // What the route knows of the ground it looks at again before it uses it.
+        let route = std::mem::take(&mut self.route);
+        *self = Self { route, ..Self::new() };
     }
 
     fn learns(&self) -> bool {
@@ -133,7 +152,7 @@ impl OnRailsAgent {
             self.target = None;
         }
         if let Some(target) = self.target.as_mut().filter(|target| target.is_astray(environment)) {
-            *target = Target::at(target.object, environment);
+            *target = Target::at(target.object, environment, &mut self.route);
         }
         self.towards(environment)
     }
@@ -143,20 +162,16 @@ impl OnRailsAgent {
 fn wanted(environment: &Environment) -> Vec<usize> {
     let world = environment.world();
     let states = environment.objects();
-    let lowest = |index: &usize| {
+    // In a sequence only what comes first of what is left pays.
+    let left = world.objects.iter().zip(states).filter(|(_, state)| !state.collected);
+    let first = left.filter_map(|(object, _)| object.order).min();
+    let in_turn = |index: &usize| {
         let order = world.objects[*index].order;
-        order.is_none_or(|own| {
-            let earlier = world
-                .objects
-                .iter()
-                .zip(states)
-                .filter(|(object, state)| object.order.is_some_and(|o| o < own) && !state.collected);
-            earlier.count() == 0
-        })
+        order.is_none_or(|own| first.is_none_or(|first| own <= first))
     };
     let pays =
         |index: &usize| world.objects[*index].is_target() && states[*index].present && states[*index].reward > 0.0;
-    let paying: Vec<usize> = (0..states.len()).filter(pays).filter(lowest).collect();
+    let paying: Vec<usize> = (0..states.len()).filter(pays).filter(in_turn).collect();
     if !paying.is_empty() {
         return paying;
     }

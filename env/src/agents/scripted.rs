@@ -2,6 +2,7 @@
 
 use driftworld_spec::Object;
 
+use super::route::Route;
 use super::script::{Command, Until, parse};
 use super::steering::{Purpose, Target, distance, in_space};
 use super::{Agent, OnRailsAgent};
@@ -47,6 +48,7 @@ pub struct ScriptedAgent {
     /// Steps that it has taken.
     steps: u32,
     walk: Option<Walk>,
+    route: Route,
     rails: OnRailsAgent,
 }
 
@@ -71,6 +73,7 @@ impl ScriptedAgent {
             now: 0,
             steps: 0,
             walk: None,
+            route: Route::default(),
             rails: OnRailsAgent::new(),
         })
     }
@@ -107,7 +110,7 @@ impl ScriptedAgent {
         if self.walk.is_none() {
             let object = nearest(environment, name)?;
             self.walk = Some(Walk {
-                target: Target::at(object, environment),
+                target: Target::at(object, environment, &mut self.route),
                 before: environment.objects()[object].clone(),
                 asked: 0,
             });
@@ -117,13 +120,13 @@ impl ScriptedAgent {
             return None;
         }
         if walk.target.is_astray(environment) {
-            walk.target = Target::at(walk.target.object, environment);
+            walk.target = Target::at(walk.target.object, environment, &mut self.route);
         }
         let purpose = match until {
             Until::Interacted => Purpose::Interact,
             Until::Touched | Until::Near(_) => Purpose::Touch,
         };
-        let numbers = walk.target.towards(environment, purpose);
+        let numbers = walk.target.towards(environment, purpose, &mut self.route);
         walk.asked += u32::from(purpose == Purpose::Interact && walk.target.is_in_reach(environment));
         Some(numbers)
     }

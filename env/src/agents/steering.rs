@@ -1,10 +1,9 @@
 //! Walking to one object: the way there, the next step on it, and that step as an action of the world. Which object is chosen by
 //! the agents.
 
-use driftworld_spec::{ActionModel, ActionSpace, MotionModel, Object, World};
+use driftworld_spec::{ActionModel, ActionSpace, MotionModel, Object};
 
 use super::route::Route;
-use crate::scene::Scene;
 use crate::sim::{Action, Environment};
 
 /// Metres within which an object is walked at straight, whatever the way.
@@ -34,25 +33,16 @@ pub(super) struct Target {
     pub(super) goal: [f32; 2],
     /// What the way leads around.
     pub(super) avoided: Vec<u32>,
-    pub(super) route: Route,
 }
 
 impl Target {
-    pub(super) fn new(object: usize, goal: [f32; 2], avoided: Vec<u32>, world: &World, scene: &Scene) -> Self {
-        let route = Route::to(world, scene, goal, &avoided);
-        Self {
-            object,
-            goal,
-            avoided,
-            route,
-        }
-    }
-
-    /// The object where it is now, with the way around what is there now.
-    pub(super) fn at(object: usize, environment: &Environment) -> Self {
+    /// The object where it is now, with the way around what is there now: the route leads to it from now on.
+    pub(super) fn at(object: usize, environment: &Environment, route: &mut Route) -> Self {
         let (world, scene) = (environment.world(), environment.scene());
         let goal = scene.items[object].position;
-        Self::new(object, goal, avoided(environment, object), world, scene)
+        let avoided = avoided(environment, Some(object));
+        route.lead(world, scene, goal, &avoided);
+        Self { object, goal, avoided }
     }
 
     /// Whether the object has moved so far that the way leads astray.
@@ -70,8 +60,8 @@ impl Target {
         distance(environment.agent().position, item.position) < bodies + 0.5
     }
 
-    /// The next step on the way, as speed, turn rate and interaction.
-    pub(super) fn towards(&self, environment: &Environment, purpose: Purpose) -> [f64; 3] {
+    /// The next step on the way, by the route that leads here, as speed, turn rate and interaction.
+    pub(super) fn towards(&self, environment: &Environment, purpose: Purpose, route: &mut Route) -> [f64; 3] {
         let world = environment.world();
         let agent = environment.agent();
         let goal = environment.scene().items[self.object].position;
@@ -79,7 +69,7 @@ impl Target {
         let point = if straight < NEAR {
             goal
         } else {
-            self.route.next(agent.position, 3)
+            route.next(agent.position, 3)
         };
         let way = [point[0] - agent.position[0], point[1] - agent.position[1]];
         let wanted = libm::atan2f(way[0], way[1]).to_degrees();
@@ -102,8 +92,9 @@ impl Target {
     }
 }
 
-/// The objects that a way to `goal` leads around: what stands fast and is solid or costs.
-pub(super) fn avoided(environment: &Environment, goal: usize) -> Vec<u32> {
+/// The objects that a way to `goal` leads around: what stands fast and is solid or costs. Without a goal all of them, by rising
+/// index.
+pub(super) fn avoided(environment: &Environment, goal: Option<usize>) -> Vec<u32> {
     let objects = environment.world().objects.iter().zip(environment.objects());
     let returns_elsewhere = |object: &Object| object.respawn.as_ref().is_some_and(|back| back.radius > 0.0);
     let stands = |object: &Object| {
@@ -112,7 +103,7 @@ pub(super) fn avoided(environment: &Environment, goal: usize) -> Vec<u32> {
     objects
         .enumerate()
         .filter(|(index, (object, state))| {
-            *index != goal && state.present && stands(object) && (object.solid || object.reward < 0.0)
+            Some(*index) != goal && state.present && stands(object) && (object.solid || object.reward < 0.0)
         })
         .map(|(index, _)| index as u32)
         .collect()

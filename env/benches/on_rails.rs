@@ -1,0 +1,71 @@
+//! What the built-in expert costs: a step where things move, and a choice among two hundred targets.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use driftworld_env::{Agent, Environment, OnRailsAgent};
+use driftworld_spec::{MotionModel, Object, Stimulus, World};
+
+/// A world of the built-in task `moving_object#wandering`; its balls move as is said.
+fn moving_object(motion: MotionModel) -> World {
+    let text = include_str!("scenes/moving_object.json");
+    let mut world = World::from_json("moving_object.json", text).expect("the scene is sound");
+    for ball in &mut world.objects {
+        if ball.motion_model != MotionModel::Stationary {
+            ball.motion_model = motion;
+        }
+    }
+    world
+}
+
+/// Two hundred solid cubes that pay, scattered over an arena of 100 × 100 m without chance.
+fn crowd() -> World {
+    let cube = |number: u32| {
+        let share = |prime: f64| (f64::from(number) * prime).fract() - 0.5;
+        // Steps of the golden ratio and of the root of two: no two are close, and no two distances are alike.
+        let mut cube = Object::new("cube", [share(0.618_033_988_75) * 94.0, share(0.414_213_562_37) * 94.0]);
+        cube.reward = 1.0;
+        cube.reward_once_stimulus = vec![Stimulus::AgentCollide];
+        cube.destroy_stimulus = vec![Stimulus::AgentCollide];
+        cube
+    };
+    World {
+        objects: (1..=200).map(cube).collect(),
+        ..World::default()
+    }
+}
+
+fn steps(c: &mut Criterion) {
+    let mut group = c.benchmark_group("on rails, a step of moving_object");
+    group.throughput(Throughput::Elements(1));
+    for (name, motion) in [
+        ("balls wander", MotionModel::RandomWaypoint),
+        ("balls flee", MotionModel::Prey),
+        ("balls come", MotionModel::Predator),
+    ] {
+        let start = moving_object(motion);
+        let mut environment = Environment::new(start.clone()).expect("the scene is sound");
+        let mut agent = OnRailsAgent::new();
+        group.bench_function(name, |bench| {
+            bench.iter(|| {
+                let action = agent.act(&environment);
+                if environment.step(action).expect("the action is sound").ended() {
+                    environment.reset(start.clone()).expect("the scene is sound");
+                    agent.begin(0);
+                }
+            });
+        });
+    }
+    group.finish();
+}
+
+fn choices(c: &mut Criterion) {
+    let environment = Environment::new(crowd()).expect("the scene is sound");
+    // An agent that knows nothing of the world yet: the dearest of its choices.
+    c.bench_function("on rails, a choice among 200 targets", |bench| {
+        bench.iter(|| black_box(OnRailsAgent::new().act(&environment)));
+    });
+}
+
+criterion_group!(benches, steps, choices);
+criterion_main!(benches);

@@ -1,0 +1,125 @@
+//! The arena as cells of equal size. What stands on them is in `ground.rs`.
+
+/// Most cells along one side of the grid.
+const MOST_CELLS: usize = 256;
+
+/// Least side of a cell in metres.
+const LEAST_SIDE: f32 = 0.5;
+
+/// Cells over the arena, row by row, with a rim of one cell around them that is never walked on: every cell of the arena has
+/// eight neighbours.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Grid {
+    columns: usize,
+    rows: usize,
+    /// The arena's south-western corner in metres.
+    corner: [f32; 2],
+    /// Side of a cell in metres.
+    side: f32,
+}
+
+impl Grid {
+    /// Cells over an arena of these sides in metres.
+    pub(super) fn over([width, depth]: [f32; 2]) -> Self {
+        let side = (width.max(depth) / MOST_CELLS as f32).max(LEAST_SIDE);
+        let [columns, rows] = [width, depth].map(|metres| ((metres / side).ceil() as usize).max(1));
+        Self {
+            columns,
+            rows,
+            corner: [-width / 2.0, -depth / 2.0],
+            side,
+        }
+    }
+
+    /// How many cells there are, with the rim.
+    pub(super) fn num_cells(&self) -> usize {
+        self.stride() * (self.rows + 2)
+    }
+
+    /// From a cell to the one north of it.
+    pub(super) fn stride(&self) -> usize {
+        self.columns + 2
+    }
+
+    /// Side of a cell in metres.
+    pub(super) fn side(&self) -> f32 {
+        self.side
+    }
+
+    /// The cell of a place; outside the arena the nearest one.
+    pub(super) fn cell_at(&self, [x, y]: [f32; 2]) -> usize {
+        self.cell([self.index(x, 0), self.index(y, 1)])
+    }
+
+    /// The cell of a column and a row of the arena, each from 0.
+    fn cell(&self, [column, row]: [usize; 2]) -> usize {
+        (row + 1) * self.stride() + column + 1
+    }
+
+    fn index(&self, metres: f32, axis: usize) -> usize {
+        let most = [self.columns, self.rows][axis] - 1;
+        ((metres - self.corner[axis]) / self.side).clamp(0.0, most as f32) as usize
+    }
+
+    /// Middle of a cell of the arena in metres.
+    pub(super) fn centre(&self, cell: usize) -> [f32; 2] {
+        let (x, y) = (cell % self.stride() - 1, cell / self.stride() - 1);
+        [
+            self.corner[0] + (x as f32 + 0.5) * self.side,
+            self.corner[1] + (y as f32 + 0.5) * self.side,
+        ]
+    }
+
+    /// Whether a cell belongs to the rim.
+    pub(super) fn is_rim(&self, cell: usize) -> bool {
+        let (x, y) = (cell % self.stride(), cell / self.stride());
+        x == 0 || y == 0 || x > self.columns || y > self.rows
+    }
+
+    /// The cells of the arena whose middles may lie within a rectangle, row by row.
+    pub(super) fn within(self, low: [f32; 2], high: [f32; 2]) -> impl Iterator<Item = usize> {
+        let [low, high] = [low, high].map(|place| [0, 1].map(|axis| self.index(place[axis], axis)));
+        (low[1]..=high[1]).flat_map(move |row| (low[0]..=high[0]).map(move |column| self.cell([column, row])))
+    }
+
+    /// The eight cells around a cell of the arena as steps in the list of cells, and whether they are slanting.
+    pub(super) fn around(&self) -> [(isize, bool); 8] {
+        let row = self.stride() as isize;
+        [
+            (-row - 1, true),
+            (-row, false),
+            (-row + 1, true),
+            (-1, false),
+            (1, false),
+            (row - 1, true),
+            (row, false),
+            (row + 1, true),
+        ]
+    }
+
+    /// All cells of the rim.
+    pub(super) fn rim(&self) -> impl Iterator<Item = usize> {
+        let (stride, rows) = (self.stride(), self.rows);
+        let ends = (0..stride).chain((rows + 1) * stride..(rows + 2) * stride);
+        ends.chain((1..=rows).flat_map(move |row| [row * stride, (row + 1) * stride - 1]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_cell_is_at_its_own_middle_and_the_rim_is_all_the_rest() {
+        for size in [[50.0, 20.0], [0.3, 7.0], [300.0, 299.0], [0.0, 0.0]] {
+            let grid = Grid::over(size);
+            let mut rim: Vec<usize> = grid.rim().collect();
+            rim.sort_unstable();
+            let expected: Vec<usize> = (0..grid.num_cells()).filter(|cell| grid.is_rim(*cell)).collect();
+            assert_eq!(rim, expected, "{size:?}");
+            for cell in (0..grid.num_cells()).filter(|cell| !grid.is_rim(*cell)) {
+                assert_eq!(grid.cell_at(grid.centre(cell)), cell, "{size:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! Where the agent cannot walk: cells near walls, and near objects that a way leads around. Ways over the rest are found in
+//! `flood.rs`.
+
+use driftworld_spec::World;
+
+use super::grid::Grid;
+use crate::scene::Scene;
+
+/// How far ways keep from walls and objects, in metres beside half the agent's width.
+const CLEARANCE: f32 = 0.15;
+
+/// How often each cell is taken: by walls once, and once by each object that is led around. What did not change since the last
+/// way is kept.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Ground {
+    grid: Grid,
+    walls: Walls,
+    taken: Vec<u32>,
+    /// The objects that are led around, by rising index.
+    discs: Vec<Disc>,
+}
+
+/// What is blocked whatever objects there are.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Walls {
+    arena_size: [f32; 2],
+    /// Half the agent's width in metres.
+    body: f32,
+    regions: Vec<Vec<[f64; 2]>>,
+}
+
+/// Ground that an object takes, for the agent's middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Disc {
+    object: u32,
+    centre: [f32; 2],
+    radius: f32,
+}
+
+impl Disc {
+    /// The cells whose middles it covers.
+    pub(super) fn cells(self, grid: Grid) -> impl Iterator<Item = usize> {
+        let [low, high] = [-self.radius, self.radius].map(|by| self.centre.map(|metres| metres + by));
+        grid.within(low, high).filter(move |cell| self.covers(*cell, grid))
+    }
+
+    /// Whether it covers the middle of a cell.
+    pub(super) fn covers(self, cell: usize, grid: Grid) -> bool {
+        let at = grid.centre(cell);
+        let (dx, dy) = (at[0] - self.centre[0], at[1] - self.centre[1]);
+        dx * dx + dy * dy < self.radius * self.radius
+    }
+}
+
+impl Ground {
+    pub(super) fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    /// Whether a cell is taken.
+    pub(super) fn is_blocked(&self, cell: usize) -> bool {
+        self.taken[cell] > 0
+    }
+
+    /// How many walls and objects take a cell.
+    pub(super) fn count(&self, cell: usize) -> u32 {
+        self.taken[cell]
+    }
+
+    /// The ground of an object, if it is led around.
+    pub(super) fn disc(&self, object: u32) -> Option<Disc> {
+        let place = self.discs.binary_search_by_key(&object, |disc| disc.object).ok()?;
+        Some(self.discs[place])
+    }
+
+    /// Blocks the walls of a world, and these of its objects where they stand at its start; opens all else.
+    pub(super) fn block(&mut self, world: &World, scene: &Scene, avoided: &[u32]) {
+        self.block_walls(world, scene);
+        let margin = self.walls.body + CLEARANCE;
+        let mut discs: Vec<Disc> = avoided
+            .iter()
+            .map(|&object| {
+                let item = &scene.items[object as usize];
+                Disc {
+                    object,
+                    centre: world.objects[object as usize].coordinates.map(|metres| metres as f32),
+                    radius: item.asset.collider.radius() * item.scale + margin,
+                }
+            })
+            .collect();
+        discs.sort_by_key(|disc| disc.object);
+        // Both lists rise: what is in one of them only is taken anew, or left.
+        let (mut old, mut new) = (self.discs.iter().peekable(), discs.iter().peekable());
+        loop {
+            match (old.peek(), new.peek()) {
+                (Some(left), Some(right)) if left == right => {
+                    old.next();
+                    new.next();
+                }
+                (Some(left), right) if right.is_none_or(|right| left.object <= right.object) => {
+                    left.cells(self.grid).for_each(|cell| self.taken[cell] -= 1);
+                    old.next();
+                }
+                (_, Some(right)) => {
+                    right.cells(self.grid).for_each(|cell| self.taken[cell] += 1);
+                    new.next();
+                }
+                (_, None) => break,
+            }
+        }
+        self.discs = discs;
+    }
+
+    fn block_walls(&mut self, world: &World, scene: &Scene) {
+        let environment = &world.environment_params;
+        let (arena_size, body) = (scene.arena_size(), world.agent_params.agent_width as f32 / 2.0);
+        let inner = environment.regions();
+        let regions = || {
+            let walls = environment.walls.iter().map(|wall| wall.polygon.as_slice());
+            inner.iter().copied().chain(walls)
+        };
+        let known = &self.walls;
+        if !self.taken.is_empty()
+            && (known.arena_size, known.body) == (arena_size, body)
+            && known.regions.iter().map(Vec::as_slice).eq(regions())
+        {
+            return;
+        }
+        let grid = Grid::over(arena_size);
+        self.grid = grid;
+        self.discs.clear();
+        self.taken.clear();
+        self.taken.resize(grid.num_cells(), 0);
+        let half = arena_size.map(|metres| metres / 2.0);
+        for cell in grid.within(half.map(|metres| -metres), half) {
+            let at = grid.centre(cell);
+            let is_near = |axis: usize| half[axis] - at[axis].abs() < body;
+            self.taken[cell] = u32::from(is_near(0) || is_near(1));
+        }
+        let margin = body + CLEARANCE;
+        for corners in regions() {
+            let bound = |axis: usize, sign: f32| {
+                let reach = corners.iter().map(|corner| corner[axis] as f32 * sign).fold(f32::NEG_INFINITY, f32::max);
+                (reach + margin) * sign
+            };
+            let [low, high] = [-1.0, 1.0].map(|sign| [bound(0, sign), bound(1, sign)]);
+            for cell in grid.within(low, high) {
+                if self.taken[cell] == 0 && near_or_inside(corners, grid.centre(cell), margin) {
+                    self.taken[cell] = 1;
+                }
+            }
+        }
+        let regions = regions().map(<[[f64; 2]]>::to_vec).collect();
+        self.walls = Walls {
+            arena_size,
+            body,
+            regions,
+        };
+    }
+}
+
+fn near_or_inside(corners: &[[f64; 2]], [x, y]: [f32; 2], margin: f32) -> bool {
+    let mut inside = false;
+    let mut near = false;
+    for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+        let ([ax, ay], [bx, by]) = (from.map(|c| c as f32), to.map(|c| c as f32));
+        let (dx, dy) = (bx - ax, by - ay);
+        let squared = dx * dx + dy * dy;
+        let along = if squared > 0.0 {
+            (((x - ax) * dx + (y - ay) * dy) / squared).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let (ex, ey) = (x - ax - along * dx, y - ay - along * dy);
+        near |= ex * ex + ey * ey < margin * margin;
+        if (ay > y) != (by > y) && x < dx * (y - ay) / dy + ax {
+            inside = !inside;
+        }
+    }
+    near || inside
+}

@@ -1,0 +1,363 @@
+//! Which of many goals is the best to walk to: one flood from the agent for all of them, which ends when no goal farther out can
+//! be better. The way to the chosen one is found in `route.rs`.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use driftworld_spec::World;
+
+use super::flood::{BLOCKED, Charge, SLANTING, STRAIGHT};
+use super::grid::Grid;
+use super::route::Route;
+use crate::scene::Scene;
+
+/// A place that may be walked to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Goal {
+    /// Index of the object that stands there: a way to it does not lead around it.
+    pub(super) object: u32,
+    /// Where it is, in metres.
+    pub(super) place: [f32; 2],
+    /// How likely it pays, above 0: what pays half the time is as good as what is twice as far.
+    pub(super) chance: f32,
+}
+
+/// Which goals a cell belongs to, as lists within one list, and room to look around a goal.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Marks {
+    /// For each cell the place of its first mark, from 1.
+    first: Vec<u32>,
+    /// Number of a goal, and the place of the next mark of the cell.
+    marks: Vec<(u32, u32)>,
+    marked: Vec<usize>,
+    /// For each cell the way from it to a goal, while that is being found.
+    back: Vec<u32>,
+    touched: Vec<usize>,
+    open: BinaryHeap<Reverse<(u32, usize)>>,
+}
+
+impl Marks {
+    fn begin(&mut self, grid: Grid) {
+        for cell in self.marked.drain(..) {
+            // The list may be that of a larger arena.
+            if let Some(first) = self.first.get_mut(cell) {
+                *first = 0;
+            }
+        }
+        self.marks.clear();
+        self.first.resize(grid.num_cells(), 0);
+        self.back.resize(grid.num_cells(), u32::MAX);
+    }
+
+    fn add(&mut self, cell: usize, goal: usize) {
+        self.marks.push((goal as u32, self.first[cell]));
+        self.first[cell] = self.marks.len() as u32;
+        self.marked.push(cell);
+    }
+
+    fn of(&self, cell: usize, mut each: impl FnMut(usize)) {
+        let mut next = self.first[cell];
+        while let Some(&(goal, after)) = (next as usize).checked_sub(1).and_then(|place| self.marks.get(place)) {
+            each(goal as usize);
+            next = after;
+        }
+    }
+}
+
+impl Route {
+    /// The goal of the shortest way from a place, each way as long as it is over its goal's chance; the first of equals.
+    ///
+    /// Ways lead around all that is avoided but their goal. What this instance led to is lost.
+    pub(super) fn nearest(
+        &mut self,
+        world: &World,
+        scene: &Scene,
+        from: [f32; 2],
+        goals: &[Goal],
+        avoided: &[u32],
+    ) -> Option<usize> {
+        self.ground.block(world, scene, avoided);
+        let grid = self.ground.grid();
+        self.marks.begin(grid);
+        for (number, goal) in goals.iter().enumerate() {
+            self.marks.add(grid.cell_at(goal.place), number);
+            for cell in self.ground.disc(goal.object).into_iter().flat_map(|disc| disc.cells(grid)) {
+                self.marks.add(cell, number);
+            }
+        }
+        self.flood.begin(grid, grid.cell_at(from));
+        // For each goal, how far it is at least: to the first cell that is open on the way to it alone.
+        let mut least: Vec<Option<u32>> = vec![None; goals.len()];
+        let likeliest = goals.iter().map(|goal| goal.chance).fold(0.0, f32::max);
+        let (mut best, mut farthest, mut num_unseen) = (f32::INFINITY, 0, goals.len());
+        let mut seen = Vec::new();
+        loop {
+            let marks = &self.marks;
+            let spread = self.flood.spread(&self.ground, Charge::Left, |cell| {
+                marks.of(cell, |number| seen.push(number));
+            });
+            let Some(distance) = spread else { break };
+            for number in seen.drain(..) {
+                if least[number].is_none() {
+                    least[number] = Some(distance);
+                    num_unseen -= 1;
+                    // What is known beyond the flood's edge are ways, if not the shortest.
+                    let way = self.length(&goals[number], distance);
+                    farthest = farthest.max(way);
+                    best = best.min(self.metres(way) / goals[number].chance);
+                }
+            }
+            if self.metres(distance) / likeliest > best || num_unseen == 0 && distance >= farthest {
+                break;
+            }
+        }
+        // Now every way that may be the best lies within the flood.
+        let mut costs = Vec::with_capacity(goals.len());
+        for (number, goal) in goals.iter().enumerate() {
+            if let Some(least) = least[number]
+                && self.metres(least) / goal.chance <= best
+            {
+                let way = self.length(goal, least);
+                costs.push((number, self.metres(way) / goal.chance));
+            }
+        }
+        let nearest = costs.into_iter().min_by(|(_, a), (_, b)| a.total_cmp(b));
+        nearest.map(|(number, _)| number)
+    }
+
+    /// Length of the way to a goal whose own ground is open, by what the flood knows so far; the flood came to that ground, or to
+    /// the goal, at the distance `least`.
+    ///
+    /// Spreads from the goal until the rest of the way, over ground that is the same for all goals, is known from the flood.
+    fn length(&mut self, goal: &Goal, least: u32) -> u32 {
+        let (ground, flood) = (&self.ground, &self.flood);
+        let grid = ground.grid();
+        let start = grid.cell_at(goal.place);
+        let Some(own) = ground.disc(goal.object) else {
+            return flood.distance(start);
+        };
+        let Marks {
+            back, touched, open, ..
+        } = &mut self.marks;
+        let mut best = flood.distance(start);
+        open.clear();
+        open.push(Reverse((0, start)));
+        back[start] = 0;
+        touched.push(start);
+        while let Some(Reverse((distance, cell))) = open.pop() {
+            // What is left leads through the goal's own ground, and to that it is `least` from the agent.
+            if distance.saturating_add(least) >= best {
+                break;
+            }
+            if distance > back[cell] {
+                continue;
+            }
+            for (step, is_slanting) in grid.around() {
+                let other = cell.wrapping_add_signed(step);
+                if grid.is_rim(other) {
+                    continue;
+                }
+                let is_blocked = ground.count(other) > u32::from(own.covers(other, grid));
+                let cost = if is_slanting { SLANTING } else { STRAIGHT } * if is_blocked { BLOCKED } else { 1 };
+                let through = distance + cost;
+                if through < back[other] {
+                    if back[other] == u32::MAX {
+                        touched.push(other);
+                    }
+                    back[other] = through;
+                    open.push(Reverse((through, other)));
+                    best = best.min(through.saturating_add(flood.distance(other)));
+                }
+            }
+        }
+        touched.drain(..).for_each(|cell| back[cell] = u32::MAX);
+        best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use driftworld_spec::{Object, Wall};
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// The same ways by a plan that shares nothing with ours but what a way costs: no queue, no rim, no marks. All cells are gone
+    /// over until nothing changes any more.
+    struct SlowPlan {
+        cells: [i64; 2],
+        side: f32,
+        corner: [f32; 2],
+        tenths: Vec<f64>,
+    }
+
+    impl SlowPlan {
+        fn to(world: &World, scene: &Scene, goal: [f32; 2], avoided: &[u32]) -> Self {
+            let [width, depth] = scene.arena_size();
+            let side = (width.max(depth) / 256.0).max(0.5);
+            let cells = [width, depth].map(|metres| ((metres / side).ceil() as i64).max(1));
+            let corner = [-width / 2.0, -depth / 2.0];
+            let mut plan = Self {
+                cells,
+                side,
+                corner,
+                tenths: vec![f64::INFINITY; (cells[0] * cells[1]) as usize],
+            };
+            let is_blocked: Vec<bool> = (0..cells[0] * cells[1])
+                .map(|cell| plan.is_blocked(plan.middle(cell), world, scene, avoided))
+                .collect();
+            let start = plan.cell(goal);
+            plan.tenths[start] = 0.0;
+            loop {
+                let mut changed = false;
+                for cell in 0..cells[0] * cells[1] {
+                    let weight = if is_blocked[cell as usize] { 40.0 } else { 1.0 };
+                    for (dx, dy) in (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy))) {
+                        let [x, y] = [cell % cells[0] + dx, cell / cells[0] + dy];
+                        if (dx, dy) == (0, 0) || x < 0 || y < 0 || x >= cells[0] || y >= cells[1] {
+                            continue;
+                        }
+                        let step = if dx != 0 && dy != 0 { 14.0 } else { 10.0 };
+                        let through = plan.tenths[(y * cells[0] + x) as usize] + step * weight;
+                        if through < plan.tenths[cell as usize] {
+                            plan.tenths[cell as usize] = through;
+                            changed = true;
+                        }
+                    }
+                }
+                if !changed {
+                    return plan;
+                }
+            }
+        }
+
+        fn middle(&self, cell: i64) -> [f32; 2] {
+            let place = |axis: usize, index: i64| self.corner[axis] + (index as f32 + 0.5) * self.side;
+            [place(0, cell % self.cells[0]), place(1, cell / self.cells[0])]
+        }
+
+        fn cell(&self, place: [f32; 2]) -> usize {
+            let [x, y] = [0, 1].map(|axis| {
+                let index = ((place[axis] - self.corner[axis]) / self.side).floor() as i64;
+                index.clamp(0, self.cells[axis] - 1)
+            });
+            (y * self.cells[0] + x) as usize
+        }
+
+        fn metres(&self, from: [f32; 2]) -> f64 {
+            self.tenths[self.cell(from)] / 10.0 * f64::from(self.side)
+        }
+
+        fn is_blocked(&self, at: [f32; 2], world: &World, scene: &Scene, avoided: &[u32]) -> bool {
+            let body = world.agent_params.agent_width as f32 / 2.0;
+            let margin = body + 0.15;
+            let apart = |[x, y]: [f32; 2]| ((at[0] - x).powi(2) + (at[1] - y).powi(2)).sqrt();
+            let is_at_rim = (0..2).any(|axis| -self.corner[axis] - at[axis].abs() < body);
+            let is_at_object = avoided.iter().any(|&index| {
+                let item = &scene.items[index as usize];
+                let place = world.objects[index as usize].coordinates.map(|metres| metres as f32);
+                apart(place) < item.asset.collider.radius() * item.scale + margin
+            });
+            let is_at_wall = world.environment_params.walls.iter().any(|wall| {
+                let corners: Vec<[f32; 2]> = wall.polygon.iter().map(|corner| corner.map(|m| m as f32)).collect();
+                // Convex and counter-clockwise, as they are drawn below.
+                let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+                let left = |a: &[f32; 2], b: &[f32; 2]| (b[0] - a[0]) * (at[1] - a[1]) - (b[1] - a[1]) * (at[0] - a[0]);
+                edges.clone().all(|(a, b)| left(a, b) > 0.0)
+                    || edges.clone().any(|(a, b)| {
+                        let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+                        let along = ((at[0] - a[0]) * dx + (at[1] - a[1]) * dy) / (dx * dx + dy * dy);
+                        let along = along.clamp(0.0, 1.0);
+                        apart([a[0] + along * dx, a[1] + along * dy]) < margin
+                    })
+            });
+            is_at_rim || is_at_object || is_at_wall
+        }
+    }
+
+    /// A rectangle that was turned.
+    fn wall() -> impl Strategy<Value = Wall> {
+        (
+            [-12.0..=12.0, -12.0..=12.0f64],
+            [0.3..=5.0, 0.3..=5.0f64],
+            0.0..=3.2f64,
+        )
+            .prop_map(|(middle, half, turn)| {
+                let (sin, cos) = (libm::sin(turn), libm::cos(turn));
+                let corner = |[x, y]: [f64; 2]| [middle[0] + x * cos - y * sin, middle[1] + x * sin + y * cos];
+                let [x, y] = half;
+                Wall {
+                    polygon: [[-x, -y], [x, -y], [x, y], [-x, y]].map(corner).to_vec(),
+                    height: None,
+                    color: None,
+                }
+            })
+    }
+
+    /// An arena with walls, and cubes of all sizes, some of them in heaps and in walls.
+    fn world() -> impl Strategy<Value = World> {
+        let cube = ([-13.0..=13.0, -13.0..=13.0], 0.3..=4.0f64, 0.0..=1.0).prop_map(|(place, scale, chance)| {
+            let mut cube = Object::new("cube", place);
+            (cube.scale, cube.reward_probability) = (scale, chance);
+            cube
+        });
+        (
+            [5.0..=27.0, 5.0..=27.0f64],
+            vec(wall(), 0..4),
+            vec(cube, 1..9),
+            0.2..=2.0f64,
+        )
+            .prop_map(|(size, walls, objects, width)| {
+                let mut world = World {
+                    objects,
+                    ..World::default()
+                };
+                world.environment_params.map_size = size;
+                world.environment_params.walls = walls;
+                world.agent_params.agent_width = width;
+                world
+            })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(96))]
+
+        /// One instance goes from world to world, as an agent does, and leaves some objects out of what it leads around.
+        #[test]
+        fn ways_are_as_long_as_a_slow_plan_has_them_and_the_same_goal_is_nearest(
+            worlds in vec((world(), [-13.0..=13.0, -13.0..=13.0f32], any::<u16>()), 1..3),
+        ) {
+            let mut route = Route::default();
+            for (world, from, solid) in worlds {
+                let scene = Scene::from_world(&world);
+                let all = (0..world.objects.len() as u32).filter(|index| solid >> index & 1 == 1);
+                let avoided: Vec<u32> = all.collect();
+                let goals: Vec<Goal> = (0..world.objects.len())
+                    .map(|index| Goal {
+                        object: index as u32,
+                        place: scene.items[index].position,
+                        chance: world.objects[index].reward_probability.max(0.01) as f32,
+                    })
+                    .collect();
+                let mut costs = Vec::new();
+                for goal in &goals {
+                    let others: Vec<u32> = avoided.iter().copied().filter(|index| *index != goal.object).collect();
+                    let slow = SlowPlan::to(&world, &scene, goal.place, &others);
+                    route.lead(&world, &scene, goal.place, &others);
+                    // Asked from here and there, near and far, the flood grows as it must.
+                    for from in [goal.place.map(|metres| metres * 0.5), from, [12.0, -12.0]] {
+                        let cell = route.ground.grid().cell_at(from);
+                        let found = route.flood.reach(cell, &route.ground, Charge::Entered);
+                        let (found, expected) = (f64::from(route.metres(found)), slow.metres(from));
+                        prop_assert!((found - expected).abs() <= 1e-4 * expected, "{} for {}", found, expected);
+                    }
+                    costs.push(slow.metres(from) / f64::from(goal.chance));
+                }
+                let chosen = route.nearest(&world, &scene, from, &goals, &avoided).expect("there are goals");
+                let least = costs.iter().copied().fold(f64::INFINITY, f64::min);
+                prop_assert!(costs[chosen] <= least * (1.0 + 1e-6), "{} is chosen: {:?}", chosen, costs);
+            }
+        }
+    }
+}
