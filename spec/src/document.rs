@@ -27,6 +27,20 @@ pub(crate) struct Document<'a> {
 impl<'a> Document<'a> {
     /// Parses a text: refuses what is not JSON, and keys that stand twice in one object.
     pub(crate) fn parse(name: &'a str, text: &'a str) -> Result<Self, SpecError> {
+        let (document, repeated) = Self::parse_with_repeats(name, text)?;
+        document.fail_on(repeated)?;
+        Ok(document)
+    }
+
+    /// Parses a text as most programs do: of keys that stand twice in one object the last counts. Hands back the pointers of
+    /// those that do.
+    pub(crate) fn parse_leniently(name: &'a str, text: &'a str) -> Result<(Self, Vec<String>), SpecError> {
+        let (document, repeated) = Self::parse_with_repeats(name, text)?;
+        let pointers = repeated.into_iter().map(|problem| problem.pointer);
+        Ok((document, pointers.collect()))
+    }
+
+    fn parse_with_repeats(name: &'a str, text: &'a str) -> Result<(Self, Vec<Problem>), SpecError> {
         if text.len() > MAX_BYTES {
             return Err(SpecError::TooLarge {
                 name: name.to_owned(),
@@ -37,16 +51,16 @@ impl<'a> Document<'a> {
         // One pass builds the value and finds out whether a key stands twice; only then are the places looked for.
         let parsed: Result<Unrepeated, _> = serde_json::from_str(text);
         if let Ok(Unrepeated(value)) = parsed {
-            return Ok(Self { name, text, value });
+            return Ok((Self { name, text, value }, Vec::new()));
         }
         let value = serde_json::from_str(text).map_err(|error| syntax_error(name, text, &error))?;
         let document = Self { name, text, value };
-        document.fail_on(document.with_ast(|root| {
+        let repeated = document.with_ast(|root| {
             let mut problems = Vec::new();
             duplicate_keys(root, &mut String::new(), &mut problems);
             problems
-        }))?;
-        Ok(document)
+        });
+        Ok((document, repeated))
     }
 
     /// Brings the document to the current version of its form; fails if it is of a newer one.

@@ -4,6 +4,7 @@
 use serde_json::{Map, Value as Json, json};
 
 use super::read::Reader;
+use crate::document::describe;
 
 impl Reader {
     /// Numbers that were written as text, alone or in a list.
@@ -40,6 +41,44 @@ impl Reader {
         }
     }
 
+    /// Lists of stimuli: names in any case, with or without underscores; a single name for a list of one. Other words for them
+    /// are read with a warning, and what names none is left out with one.
+    pub(super) fn stimuli(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
+        let Some(value) = map.get_mut(key) else { return };
+        let place = format!("{at}/{key}");
+        let items = match value.take() {
+            Json::Array(items) => items,
+            Json::String(word) if !word.is_empty() => vec![json!(word)],
+            other => {
+                let text = format!("found {}, expected a list of stimuli; none is assumed", describe(&other));
+                self.warn(place, text);
+                map.shift_remove(key);
+                return;
+            }
+        };
+        let mut names: Vec<&str> = Vec::new();
+        for (index, item) in items.iter().enumerate() {
+            let word = item.as_str().unwrap_or_default();
+            let found = describe(item);
+            match stimulus(word) {
+                Some(name) if names.contains(&name) => {
+                    self.warn(format!("{place}/{index}"), format!("{found} stands there already and is left out"));
+                }
+                Some(name) => {
+                    if !is_own_name(word, name) {
+                        self.warn(place_of(&place, index, items.len()), format!("{found} is read as {name:?}"));
+                    }
+                    names.push(name);
+                }
+                None => {
+                    let expected = "expected AgentCollide, AgentInteract or AgentInRange; it is left out";
+                    self.warn(place_of(&place, index, items.len()), format!("found {found}, {expected}"));
+                }
+            }
+        }
+        map.insert(key.to_owned(), json!(names));
+    }
+
     /// Colours in 0..255, which is taken to be so where a channel is above 1.
     pub(super) fn color(&mut self, at: &str, map: &mut Map<String, Json>, key: &str) {
         self.number(at, map, key);
@@ -50,17 +89,23 @@ impl Reader {
         let Some(channels) = items.iter().map(Json::as_f64).collect::<Option<Vec<f64>>>() else {
             return;
         };
-        let bytes = channels.iter().any(|channel| *channel > 1.0);
-        *items = channels
-            .iter()
-            .map(|channel| json!(if bytes { channel / 255.0 } else { *channel }))
-            .collect();
+        let bytes = channels.len() >= 3 && channels.iter().any(|channel| *channel > 1.0);
         if bytes {
+            *items = channels.iter().map(|channel| json!(channel / 255.0)).collect();
             self.warn(
                 format!("{at}/{key}"),
                 "a colour with a channel above 1 is read as 0..255",
             );
         }
+    }
+}
+
+/// Where an item of a list stands; a list of one may be written as the item alone.
+fn place_of(list: &str, index: usize, len: usize) -> String {
+    if len == 1 {
+        list.to_owned()
+    } else {
+        format!("{list}/{index}")
     }
 }
 
@@ -104,20 +149,19 @@ pub(super) fn word(map: &mut Map<String, Json>, key: &str) {
     }
 }
 
-/// Lists of stimuli: names in any case, with or without underscores; a single name for a list of one.
-pub(super) fn stimuli(map: &mut Map<String, Json>, key: &str) {
-    let Some(value) = map.get_mut(key) else { return };
-    if value.is_string() {
-        *value = json!([value.take()]);
+/// The stimulus that a word of the original or of its users means, in any case and with or without underscores.
+pub(super) fn stimulus(word: &str) -> Option<&'static str> {
+    let plain = word.replace(['_', '-', ' '], "").to_lowercase();
+    let bare = plain.strip_prefix("agent").unwrap_or(&plain);
+    match bare {
+        "collide" | "collision" | "contact" | "touch" => Some("AgentCollide"),
+        "interact" | "interaction" | "pickup" => Some("AgentInteract"),
+        "inrange" | "range" => Some("AgentInRange"),
+        _ => None,
     }
-    for item in value.as_array_mut().into_iter().flatten() {
-        let known = ["AgentCollide", "AgentInteract", "AgentInRange"];
-        let plain = |text: &str| text.replace('_', "").to_lowercase();
-        let name = item
-            .as_str()
-            .and_then(|text| known.into_iter().find(|name| plain(name) == plain(text)));
-        if let Some(name) = name {
-            *item = json!(name);
-        }
-    }
+}
+
+/// Whether a word is the stimulus's own name, but for case and underscores.
+fn is_own_name(word: &str, name: &str) -> bool {
+    word.replace('_', "").eq_ignore_ascii_case(name)
 }

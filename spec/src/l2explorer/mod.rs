@@ -1,5 +1,6 @@
 //! The dialect of L2Explorer's reset files: its keys, and what is said where it and a [`World`](crate::World) differ.
-//! Reading it is in `read.rs`, with the leniency for single values in `lenient.rs`; writing it is in `write.rs`.
+//! Reading it is in `read.rs`, with the leniency for single values in `lenient.rs` and what is assumed in place of entries that
+//! say nothing in `mend.rs`; writing it is in `write.rs`.
 //! Its scenario files, which name such reset files, are in `scenario.rs`.
 //!
 //! The dialect is the smaller language: every file of it becomes a world, but a world may hold more than a file can.
@@ -7,11 +8,14 @@
 //! original's regions there, and our own here.
 
 mod lenient;
+mod mend;
 mod read;
 mod scenario;
 mod write;
 
 use std::fmt;
+
+use crate::world::MotionModel;
 
 /// Something that did not pass between a file of the original and a world as it stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -151,6 +155,15 @@ const OBJECT: Keys = Keys {
     ],
     old: &["collectible", "reward_on", "interaction_distance"],
 };
+
+/// How fast an object of the original moves, in metres per second: its documents do not say. It is what the balls of the
+/// built-in `moving_object` do, a fifth of what the agent can.
+const ASSUMED_SPEED: f64 = 2.0;
+
+/// Whether an object of the original moves by itself; a patrol is ours, and is written as what stands still.
+fn moves(model: MotionModel) -> bool {
+    !matches!(model, MotionModel::Stationary | MotionModel::Patrol)
+}
 
 /// Whether black on this class (in lower case) is a choice; on all others it is the default and means the asset's own
 /// colours.

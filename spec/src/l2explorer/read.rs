@@ -1,16 +1,20 @@
 //! Reading the dialect of L2Explorer's reset files into a [`World`], with a warning for everything that was not plain.
 //! How a single value may be written is in `lenient.rs`; our own form of a world is read, strictly, in `world/mod.rs`.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::LazyLock;
 
+use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
-use super::lenient::{drop_decimal_point, stimuli, word};
-use super::{AGENT, ENVIRONMENT, IMAGE, Keys, OBJECT, RULES, WORLD, Warning, black_is_chosen};
+use super::lenient::{drop_decimal_point, stimulus, word};
+use super::mend::{self, Entry};
+use super::{AGENT, ASSUMED_SPEED, ENVIRONMENT, IMAGE, Keys, OBJECT, RULES, WORLD, Warning, black_is_chosen};
 use crate::document::{Document, describe, escape};
 use crate::error::{Problem, SpecError};
 use crate::schema;
-use crate::world::{Object, World};
+use crate::maps::MapLibrary;
+use crate::world::{AgentParams, EnvironmentParams, ImageParams, Object, World};
 
 impl World {
     /// Reads a reset file of the original: words in any case, numbers as strings, colours in 0..255, old keys.
@@ -18,14 +22,36 @@ impl World {
     /// A colour of (0, 0, 0) is the original's default; on anything but `geometric`, `cube` and `icosphere` it is read as
     /// the asset's own colours.
     ///
+    /// Entries of the original's keys that are empty, of another type or out of range get their defaults or the nearest value
+    /// that can be, each with a warning that says what is assumed: an object without a place stands at (0, 0), one that moves
+    /// goes at 2 m/s unless our own key `speed` says otherwise. Objects outside the arena and inside walls stay where they are,
+    /// and are named.
+    ///
     /// # Errors
-    /// [`SpecError`] where the file is not JSON, or holds a value that no leniency can make sense of.
+    /// [`SpecError`] where the file is not JSON or no object, has more objects than a world may hold, or has keys of ours whose
+    /// values no world can have.
     pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
-        let mut document = Document::parse(name, text)?;
+        Self::from_l2explorer_with(name, text, &MapLibrary::default())
+    }
+
+    /// The same, with the layouts of a library in place of the built-in ones: as [`MapLibrary::apply`] would write them, before
+    /// it is seen which objects stand inside walls.
+    ///
+    /// # Errors
+    /// Those of [`World::from_l2explorer`].
+    pub fn from_l2explorer_with(
+        name: &str,
+        text: &str,
+        maps: &MapLibrary,
+    ) -> Result<(Self, Vec<Warning>), SpecError> {
+        let (mut document, repeated) = Document::parse_leniently(name, text)?;
         let mut reader = Reader::default();
+        for pointer in repeated {
+            reader.warn(pointer, "the key stands twice; the last one counts");
+        }
         let value = reader.world(&document.value);
         document.value = value;
-        let kept = reader.kept;
+        let kept = std::mem::take(&mut reader.kept);
         let original = |mut problem: Problem| {
             problem.pointer = original_pointer(&problem.pointer, &kept);
             problem
@@ -37,9 +63,13 @@ impl World {
                 .map(original)
                 .collect(),
         )?;
-        let world: Self = document.deserialize()?;
+        let mut world: Self = document.deserialize()?;
         document.fail_on(world.problems().into_iter().map(original).collect())?;
-        let warnings = document.warnings(reader.warnings.into_iter().chain(outside(&world, &kept)));
+        maps.apply(&mut world);
+        for (pointer, text) in out_of_reach(&world, &kept) {
+            reader.warn(pointer, text);
+        }
+        let warnings = document.warnings(reader.warnings);
         Ok((world, warnings))
     }
 }
@@ -105,22 +135,45 @@ fn original_pointer(pointer: &str, kept: &[usize]) -> String {
     tokens.join("/")
 }
 
-fn outside(world: &World, kept: &[usize]) -> impl Iterator<Item = (String, String)> {
+/// The objects outside the arena and inside walls.
+fn out_of_reach(world: &World, kept: &[usize]) -> impl Iterator<Item = (String, String)> {
     let arena = &world.environment_params;
     let [width, depth] = arena.arena_size();
-    world
-        .objects
-        .iter()
-        .enumerate()
-        .filter(|(_, object)| !arena.contains(object.coordinates))
-        .map(move |(index, object)| {
-            let [x, y] = object.coordinates;
-            let text = format!(
-                "the {} stands at ({x:.1}, {y:.1}), outside the {width} × {depth} m arena; it is kept, out of reach",
-                object.class
-            );
-            (format!("/objects/{}/coordinates", kept[index]), text)
-        })
+    let numbered = world.objects.iter().enumerate();
+    numbered.filter_map(move |(index, object)| {
+        let place = if arena.contains(object.coordinates) {
+            format!("inside {}", arena.enclosure(object.coordinates)?)
+        } else {
+            format!("outside the {width} × {depth} m arena")
+        };
+        let ([x, y], class) = (object.coordinates, &object.class);
+        let text = format!("the {class} stands at ({x:.1}, {y:.1}), {place}; it is kept, out of reach");
+        Some((format!("/objects/{}/coordinates", kept[index]), text))
+    })
+}
+
+/// What entries are where nothing is said, by key.
+struct Defaults {
+    world: Map<String, Json>,
+    environment: Map<String, Json>,
+    agent: Map<String, Json>,
+    image: Map<String, Json>,
+    object: Map<String, Json>,
+}
+
+static DEFAULTS: LazyLock<Defaults> = LazyLock::new(|| Defaults {
+    world: map_of(&World::default()),
+    environment: map_of(&EnvironmentParams::default()),
+    agent: map_of(&AgentParams::default()),
+    image: map_of(&ImageParams::default()),
+    object: map_of(&Object::new("", [0.0, 0.0])),
+});
+
+fn map_of(value: &impl Serialize) -> Map<String, Json> {
+    match serde_json::to_value(value) {
+        Ok(Json::Object(map)) => map,
+        other => unreachable!("the parts of a world serialise as objects with string keys, not as {other:?}"),
+    }
 }
 
 #[derive(Default)]
@@ -128,11 +181,15 @@ pub(super) struct Reader {
     warnings: Vec<(String, String)>,
     /// For each object of the world, its index in the file.
     kept: Vec<usize>,
+    /// Places of entries under our names, whose keys the file spells otherwise: the places in the file.
+    spelled: BTreeMap<String, String>,
 }
 
 impl Reader {
     pub(super) fn warn(&mut self, pointer: impl Into<String>, text: impl Into<String>) {
-        self.warnings.push((pointer.into(), text.into()));
+        let pointer = pointer.into();
+        let pointer = self.spelled.get(&pointer).cloned().unwrap_or(pointer);
+        self.warnings.push((pointer, text.into()));
     }
 
     fn world(&mut self, json: &Json) -> Json {
@@ -142,18 +199,20 @@ impl Reader {
         let mut world = self.keys("", map, &WORLD);
         word(&mut world, "game_mode");
         self.whole("", &mut world, "max_steps");
-        if let Some(Json::Object(map)) = world.get("environment_params").cloned() {
+        self.mend("", &mut world, &mend::WORLD, &DEFAULTS.world);
+        if let Some(map) = self.part(&mut world, "environment_params") {
             world.insert("environment_params".into(), Json::Object(self.environment(&map)));
         }
-        if let Some(Json::Object(map)) = world.get("agent_params").cloned() {
+        if let Some(map) = self.part(&mut world, "agent_params") {
             world.insert("agent_params".into(), Json::Object(self.agent(&map)));
         }
-        if let Some(Json::Object(map)) = world.get("image_params").cloned() {
+        if let Some(map) = self.part(&mut world, "image_params") {
             let at = "/image_params";
             let mut image = self.keys(at, &map, &IMAGE);
             self.number(at, &mut image, "zoom");
             self.whole(at, &mut image, "yaw_subdivisions");
             self.whole(at, &mut image, "vertical_subdivisions");
+            self.mend(at, &mut image, &mend::IMAGE, &DEFAULTS.image);
             world.insert("image_params".into(), Json::Object(image));
         }
         if let Some(Json::Object(map)) = world.get("rules").cloned() {
@@ -162,8 +221,16 @@ impl Reader {
             word(&mut rules, "failure");
             world.insert("rules".into(), Json::Object(rules));
         }
-        if let Some(Json::Array(objects)) = world.get("objects").cloned() {
-            world.insert("objects".into(), Json::Array(self.objects(&objects)));
+        match world.get("objects").cloned() {
+            Some(Json::Array(objects)) => {
+                world.insert("objects".into(), Json::Array(self.objects(&objects)));
+            }
+            Some(other) => {
+                let text = format!("found {}, expected a list of objects; none is assumed", describe(&other));
+                self.warn("/objects", text);
+                world.shift_remove("objects");
+            }
+            None => {}
         }
         Json::Object(world)
     }
@@ -185,10 +252,15 @@ impl Reader {
                 continue;
             };
             if key != name {
-                self.warn(place, format!("the key {key:?} is read as {name:?}"));
+                self.warn(place.clone(), format!("the key {key:?} is read as {name:?}"));
             }
             if seen.insert(name) {
+                if key != name {
+                    self.spelled.insert(format!("{pointer}/{name}"), place);
+                }
                 renamed.insert(name.to_owned(), value.clone());
+            } else {
+                self.warn(place, format!("{name:?} is given already; the first one counts"));
             }
         }
         renamed
@@ -202,6 +274,16 @@ impl Reader {
         }
         self.whole(at, &mut environment, "predefined_map");
         self.color(at, &mut environment, "bounding_wall_color");
+        self.mend(at, &mut environment, &mend::ENVIRONMENT, &DEFAULTS.environment);
+        let is_zero = |json: &Json| json.as_f64() == Some(0.0);
+        let sides = environment.get("map_size").and_then(Json::as_array);
+        if sides.is_some_and(|sides| sides.iter().any(is_zero))
+            && environment.get("predefined_map").is_none_or(is_zero)
+        {
+            let text = "found a side of 0 m; the default [100, 100] is assumed";
+            self.warn(format!("{at}/map_size"), text);
+            environment.shift_remove("map_size");
+        }
         environment
     }
 
@@ -230,22 +312,32 @@ impl Reader {
         }
         self.whole(at, &mut agent, "observation_size");
         self.heading(at, &mut agent);
+        self.mend(at, &mut agent, &mend::AGENT, &DEFAULTS.agent);
         agent
     }
 
     fn objects(&mut self, objects: &[Json]) -> Vec<Json> {
         let mut read = Vec::new();
+        let mut names = BTreeSet::new();
         for (index, json) in objects.iter().enumerate() {
             let at = format!("/objects/{index}");
             let Some(map) = json.as_object() else {
-                read.push(json.clone());
-                self.kept.push(index);
+                self.warn(at, format!("found {}, expected an object with a class; it is skipped", describe(json)));
                 continue;
             };
-            let object = self.object(&at, map);
-            if object.get("class").is_none_or(|class| class.is_null() || class == "") {
+            let class = map.iter().find(|(key, _)| key.eq_ignore_ascii_case("class"));
+            let is_class = |class: &Json| class.as_str().is_some_and(|class| !class.is_empty());
+            if !class.is_some_and(|(_, class)| is_class(class)) {
                 self.warn(at, "an object without a class is skipped");
                 continue;
+            }
+            let mut object = self.object(&at, map);
+            if let Some(Json::String(name)) = object.get("unique_name")
+                && !names.insert(name.clone())
+            {
+                let text = format!("the name {name:?} is another object's already; it is left out");
+                self.warn(format!("{at}/unique_name"), text);
+                object.shift_remove("unique_name");
             }
             read.push(Json::Object(object));
             self.kept.push(index);
@@ -275,21 +367,49 @@ impl Reader {
             self.number(at, &mut object, key);
         }
         for key in ["reward_stimulus", "reward_once_stimulus", "destroy_stimulus"] {
-            stimuli(&mut object, key);
+            self.stimuli(at, &mut object, key);
         }
         self.heading(at, &mut object);
         self.old_reward(at, &mut object);
         self.color(at, &mut object, "color");
+        if !object.contains_key("coordinates") {
+            self.warn(at, "an object without coordinates is put at (0, 0)");
+            self.spelled.insert(format!("{at}/coordinates"), at.to_owned());
+            object.insert("coordinates".into(), json!([0.0, 0.0]));
+        }
+        self.mend(at, &mut object, &mend::OBJECT, &DEFAULTS.object);
+        object.entry("coordinates").or_insert_with(|| json!([0.0, 0.0]));
+        self.own_speed(at, &mut object);
         let class = object.get("class").and_then(Json::as_str).unwrap_or_default();
-        if object.get("color") == Some(&json!([0.0, 0.0, 0.0])) && !black_is_chosen(class) {
+        let channels = object.get("color").and_then(Json::as_array);
+        let is_black = channels.is_some_and(|channels| channels.iter().all(|channel| channel.as_f64() == Some(0.0)));
+        if is_black && !black_is_chosen(class) {
             object.shift_remove("color");
         }
         object
     }
 
+    /// What moves by itself does so at some speed, which the original's files do not say.
+    fn own_speed(&mut self, at: &str, object: &mut Map<String, Json>) {
+        if object.get("speed").is_some_and(Json::is_null) {
+            object.shift_remove("speed");
+        }
+        let model = object.get("motion_model").and_then(Json::as_str);
+        let Some(model) = model.filter(|model| *model != "stationary" && !object.contains_key("speed")) else {
+            return;
+        };
+        let text = format!("{model} comes without a speed; {ASSUMED_SPEED} m/s is assumed, our key \"speed\" sets another");
+        self.warn(format!("{at}/motion_model"), text);
+        object.insert("speed".into(), json!(ASSUMED_SPEED));
+    }
+
     /// The keys of early files: `collectible`, `reward_on`, `interaction_distance`.
     fn old_reward(&mut self, at: &str, object: &mut Map<String, Json>) {
-        let range = object.shift_remove("interaction_distance");
+        let distance = [("interaction_distance", Entry::Number(0.0, 1000.0))];
+        self.mend(at, object, &distance, &Map::new());
+        if let Some(range) = object.shift_remove("interaction_distance") {
+            object.entry("range_stimulus_distance").or_insert(range);
+        }
         let collectible = object.shift_remove("collectible");
         let Some(reward_on) = object.shift_remove("reward_on") else {
             if let Some(collectible) = collectible {
@@ -300,23 +420,42 @@ impl Reader {
             }
             return;
         };
-        let stimulus = match reward_on.as_str().map(str::to_lowercase).as_deref() {
-            Some("pickup") => Some("AgentInteract"),
-            Some("in_range") => Some("AgentInRange"),
-            Some("contact") => Some("AgentCollide"),
-            _ => None,
+        let words = match &reward_on {
+            Json::Array(words) => words.as_slice(),
+            word => std::slice::from_ref(word),
         };
-        let list: Vec<&str> = stimulus.into_iter().collect();
-        self.warn(
-            format!("{at}/reward_on"),
-            format!("reward_on {} is read as reward_stimulus {list:?}", describe(&reward_on)),
-        );
-        object.entry("reward_stimulus").or_insert_with(|| json!(list));
-        if collectible == Some(Json::Bool(true)) {
-            object.entry("destroy_stimulus").or_insert_with(|| json!(list));
+        let mut list: Vec<&str> = Vec::new();
+        let mut is_understood = true;
+        for word in words {
+            match word.as_str().map(|word| (stimulus(word), word.to_lowercase())) {
+                Some((Some(name), _)) if !list.contains(&name) => list.push(name),
+                Some((Some(_), _)) => {}
+                Some((None, word)) if word == "none" => {}
+                _ => is_understood = false,
+            }
         }
-        if let Some(range) = range {
-            object.entry("range_stimulus_distance").or_insert(range);
+        let mut text = format!("reward_on {} is read as reward_stimulus {list:?}", describe(&reward_on));
+        if !is_understood {
+            text.push_str("; expected pickup, in_range, contact or none");
+        }
+        if object.contains_key("reward_stimulus") {
+            text = format!("reward_on {} is left out, for there is a reward_stimulus", describe(&reward_on));
+        }
+        self.warn(format!("{at}/reward_on"), text);
+        object.entry("reward_stimulus").or_insert_with(|| json!(list));
+        let is_collectible = match &collectible {
+            Some(Json::Bool(is_collectible)) => *is_collectible,
+            Some(other) => {
+                let is_meant = matches!(other.as_str(), Some(word) if word.eq_ignore_ascii_case("true"))
+                    || other.as_f64().is_some_and(|number| number != 0.0);
+                let text = format!("found {}, expected true or false; {is_meant} is assumed", describe(other));
+                self.warn(format!("{at}/collectible"), text);
+                is_meant
+            }
+            None => false,
+        };
+        if is_collectible {
+            object.entry("destroy_stimulus").or_insert_with(|| json!(list));
         }
     }
 }
@@ -404,18 +543,86 @@ mod tests {
         assert_eq!(tree.reward_stimulus, [Stimulus::AgentCollide]);
         assert_eq!(tree.reward_once_stimulus, [Stimulus::AgentInRange]);
         assert_eq!(tree.destroy_stimulus, [Stimulus::AgentInteract]);
-        assert_eq!(warnings.len(), 2, "{warnings:?}");
+        assert_eq!(warnings.len(), 3, "{warnings:?}");
+        assert!(warnings[2].contains("random_waypoint comes without a speed"), "{warnings:?}");
         assert!(warnings[0].ends_with("(/environment_params/map_size): the text \"50\" is read as a number"));
         assert!(warnings[1].ends_with("(/agent_params/observation_size): the text \"64\" is read as a number"));
     }
 
     #[test]
-    fn what_no_leniency_can_read_is_an_error_at_its_place_in_the_file() {
-        let text = r#"{ "objects": [{}, { "class": "tree", "coordinates": ["here", 1] }] }"#;
+    fn what_our_own_keys_hold_is_checked_as_in_a_world_of_ours() {
+        let text = r#"{ "objects": [{}, { "class": "tree", "coordinates": [1, 1], "scale": "large" }] }"#;
         let error = World::from_l2explorer("map.json", text).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "map.json:1:54 (/objects/1/coordinates/0): found \"here\", expected a number"
+            "map.json:1:70 (/objects/1/scale): found \"large\", expected a number"
+        );
+        for text in ["[]", "3", "null", "{"] {
+            assert!(World::from_l2explorer("map.json", text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn entries_that_say_nothing_get_defaults_with_a_warning_each() {
+        let (world, warnings) = read(
+            r#"{ "max_steps": "", "game_mode": null, "image_params": [], "environment_params": { "map_size": [0, 50], "predefined_map": 7, "lightIntensity": "bright" },
+  "agent_params": { "observation_size": 0, "heading": {}, "agent_height": 99, "coordinates": ["here", 4] },
+  "objects": ["tree", { "class": "Bag", "model": "", "coordinates": [1], "color": [2], "motion_model": "hop", "reward": null, "unique_name": 7 },
+    { "class": "tree", "motion_model": "Prey", "reward_stimulus": ["collision", "smell", "AgentCollide"], "reward_on": "collision" },
+    { "class": "tree", "coordinates": [1, 2, 3], "unique_name": "7", "reward_on": "Collision", "collectible": "True", "interaction_distance": "" }] }"#,
+        );
+        let expected = [
+            "map.json:1:16 (/max_steps): found \"\", expected a whole number from 0 to 1000000000; the default 0 is assumed",
+            "map.json:1:33 (/game_mode): found null, expected one of learn, collect_images; the default \"learn\" is assumed",
+            "map.json:1:55 (/image_params): found [], expected an object; its defaults are assumed",
+            "map.json:1:95 (/environment_params/map_size): found a side of 0 m; the default [100, 100] is assumed",
+            "map.json:1:122 (/environment_params/predefined_map): found 7, expected a number from 0 to 4; the default 0 is assumed",
+            "map.json:1:143 (/environment_params/lightIntensity): the key \"lightIntensity\" is read as \"light_intensity\"",
+            "map.json:1:143 (/environment_params/lightIntensity): found \"bright\", expected a number from 0 to 100; the default 2.3 is assumed",
+            "map.json:2:41 (/agent_params/observation_size): found 0, expected a whole number from 1 to 4096; the default 84 is assumed",
+            "map.json:2:55 (/agent_params/heading): found {}, expected a number from 0 to 360; the default 0 is assumed",
+            "map.json:2:75 (/agent_params/agent_height): found 99, expected a number from 0.1 to 10; 10 is assumed",
+            "map.json:2:94 (/agent_params/coordinates): found [\"here\",4], expected two numbers from -300 to 300; [0, 4] is assumed",
+            "map.json:3:15 (/objects/0): found \"tree\", expected an object with a class; it is skipped",
+            "map.json:3:50 (/objects/1/model): found \"\", expected a text of 1 to 100 letters, or a whole number to 1000000; the default \"1\" is assumed",
+            "map.json:3:69 (/objects/1/coordinates): found [1], expected two numbers from -300 to 300; [1, 0] is assumed",
+            "map.json:3:83 (/objects/1/color): found [2], expected a colour of three numbers in 0..1; the asset's own colours are assumed",
+            "map.json:3:104 (/objects/1/motion_model): found \"hop\", expected one of stationary, predator, prey, random_waypoint, patrol; the default \"stationary\" is assumed",
+            "map.json:3:121 (/objects/1/reward): found null, expected a number from -1000000000 to 1000000000; the default 0 is assumed",
+            "map.json:3:142 (/objects/1/unique_name): found 7, expected a text of 1 to 100 letters; \"7\" is assumed",
+            "map.json:4:5 (/objects/2): an object without coordinates is put at (0, 0)",
+            "map.json:4:40 (/objects/2/motion_model): prey comes without a speed; 2 m/s is assumed, our key \"speed\" sets another",
+            "map.json:4:68 (/objects/2/reward_stimulus/0): \"collision\" is read as \"AgentCollide\"",
+            "map.json:4:81 (/objects/2/reward_stimulus/1): found \"smell\", expected AgentCollide, AgentInteract or AgentInRange; it is left out",
+            "map.json:4:90 (/objects/2/reward_stimulus/2): \"AgentCollide\" stands there already and is left out",
+            "map.json:4:120 (/objects/2/reward_on): reward_on \"collision\" is left out, for there is a reward_stimulus",
+            "map.json:5:39 (/objects/3/coordinates): found [1,2,3], expected two numbers from -300 to 300; [1, 2] is assumed",
+            "map.json:5:65 (/objects/3/unique_name): the name \"7\" is another object's already; it is left out",
+            "map.json:5:83 (/objects/3/reward_on): reward_on \"Collision\" is read as reward_stimulus [\"AgentCollide\"]",
+            "map.json:5:111 (/objects/3/collectible): found \"True\", expected true or false; true is assumed",
+            "map.json:5:143 (/objects/3/interaction_distance): found \"\", expected a number from 0 to 1000; it is left out",
+        ];
+        assert_eq!(warnings, expected, "{warnings:#?}");
+        assert_eq!(world.agent_params.coordinates, [0.0, 4.0]);
+        assert_eq!((world.objects[1].motion_model, world.objects[1].speed), (MotionModel::Prey, 2.0));
+        assert_eq!(world.objects[2].destroy_stimulus, [Stimulus::AgentCollide]);
+    }
+
+    #[test]
+    fn objects_inside_walls_and_regions_are_named_with_the_wall() {
+        let (world, warnings) = read(
+            r#"{ "environment_params": { "predefined_map": 2, "walls": [{ "polygon": [[0, 0], [9, 0], [9, 9]] }] },
+  "objects": [{}, { "class": "tree", "coordinates": [-70, 60] }, { "class": "bag", "coordinates": [8, 1] },
+    { "class": "pot", "coordinates": [0, 1] }, { "class": "car", "coordinates": [0, 101] }] }"#,
+        );
+        assert_eq!(world.objects.len(), 4);
+        assert_eq!(
+            warnings[1..],
+            [
+                "map.json:2:53 (/objects/1/coordinates): the tree stands at (-70.0, 60.0), inside region 1 of 12 of map 2 (village); it is kept, out of reach",
+                "map.json:2:99 (/objects/2/coordinates): the bag stands at (8.0, 1.0), inside the wall /environment_params/walls/0; it is kept, out of reach",
+                "map.json:3:81 (/objects/4/coordinates): the car stands at (0.0, 101.0), outside the 200 × 200 m arena; it is kept, out of reach",
+            ]
         );
     }
 }

@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
-use super::{AGENT, ENVIRONMENT, Keys, OBJECT, RULES, WORLD, Warning, black_is_chosen};
+use super::{AGENT, ASSUMED_SPEED, ENVIRONMENT, Keys, OBJECT, RULES, WORLD, Warning, black_is_chosen, moves};
 use crate::document::describe;
 use crate::world::{MotionModel, Object, World};
 
@@ -105,7 +105,14 @@ impl Writer {
         let written = objects.iter().enumerate().map(|(index, object)| {
             let full = map_of(object);
             for (key, _) in changed(&OBJECT, &full, &default) {
-                self.lose(index, key, key, LEFT_OUT);
+                if key != "speed" || !moves(object.motion_model) {
+                    self.lose(index, key, key, LEFT_OUT);
+                }
+            }
+            if moves(object.motion_model) && object.speed != ASSUMED_SPEED {
+                // Speed 0 is not written, the motion model is.
+                let becomes = "left out, L2Explorer has no such key; it reads back as 2 m/s";
+                self.lose(index, "motion_model", "speed", becomes);
             }
             let known = OBJECT.original.iter().filter_map(|key| {
                 let value = match *key {

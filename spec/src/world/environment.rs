@@ -1,5 +1,7 @@
 //! What surrounds the agent: the arena, its walls, the light. What stands in it is in `object.rs`.
 
+use std::fmt;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -92,6 +94,78 @@ impl EnvironmentParams {
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
         let [width, depth] = self.arena_size();
         x.abs() <= width / 2.0 && y.abs() <= depth / 2.0
+    }
+
+    /// The wall or region of the map that a point in metres lies in, by the even-odd rule; `None` on free ground.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::EnvironmentParams;
+    /// let village = EnvironmentParams { predefined_map: 2, ..EnvironmentParams::default() };
+    /// let house = village.enclosure([-70.0, 60.0]).expect("a house stands there");
+    /// assert_eq!(house.to_string(), "region 1 of 12 of map 2 (village)");
+    /// assert!(village.enclosure([0.0, 0.0]).is_none());
+    /// ```
+    pub fn enclosure(&self, point: [f64; 2]) -> Option<Enclosure> {
+        let regions = self.regions();
+        if let Some(index) = regions.iter().position(|corners| encloses(corners, point)) {
+            return Some(match &self.map_regions {
+                Some(_) => Enclosure::OwnRegion { index },
+                None => Enclosure::Region {
+                    index,
+                    count: regions.len(),
+                    map: self.predefined_map,
+                },
+            });
+        }
+        let index = self.walls.iter().position(|wall| encloses(&wall.polygon, point))?;
+        Some(Enclosure::Wall { index })
+    }
+}
+
+/// Whether a point lies within a polygon, by the even-odd rule.
+fn encloses(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+    let crossed = edges.filter(|(a, b)| {
+        let is_across = (a[1] > y) != (b[1] > y);
+        is_across && x < (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]) + a[0]
+    });
+    crossed.count() % 2 == 1
+}
+
+/// Ground that cannot be entered, as messages name it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Enclosure {
+    /// A region of a built-in layout.
+    Region {
+        /// Its index, from 0.
+        index: usize,
+        /// How many the layout has.
+        count: usize,
+        /// The layout's number.
+        map: u8,
+    },
+    /// A region of a layout that came with the world.
+    OwnRegion {
+        /// Its index in `map_regions`.
+        index: usize,
+    },
+    /// A wall of the world.
+    Wall {
+        /// Its index in `walls`.
+        index: usize,
+    },
+}
+
+impl fmt::Display for Enclosure {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match *self {
+            Self::Region { index, count, map } => {
+                write!(f, "region {} of {count} of map {map} ({})", index + 1, maps::name(map))
+            }
+            Self::OwnRegion { index } => write!(f, "the region /environment_params/map_regions/{index}"),
+            Self::Wall { index } => write!(f, "the wall /environment_params/walls/{index}"),
+        }
     }
 }
 

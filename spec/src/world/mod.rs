@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 pub use agent::{ActionModel, ActionSpace, AgentParams, Modality};
-pub use environment::{EnvironmentParams, Region, Wall};
+pub use environment::{Enclosure, EnvironmentParams, Region, Wall};
 pub use features::StateFeature;
 pub use object::{Model, MotionModel, Object, Pushable, Respawn, Stimulus};
 pub use progress::{LastEvent, ObjectProgress, Origin, Progress, RailsProgress};

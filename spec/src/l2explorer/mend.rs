@@ -1,0 +1,284 @@
+//! What becomes of entries of the original's keys that no leniency can read: empty, missing, of another type, or out of range.
+//! Each gets the default, or the nearest value that can be, and a warning that says so. Our own keys are none of its business:
+//! they are checked as in a document of ours.
+
+use serde_json::{Map, Value as Json, json};
+
+use super::read::Reader;
+use crate::color::Color;
+use crate::document::describe;
+
+/// What an entry must be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Entry {
+    /// A number within limits.
+    Number(f64, f64),
+    /// A whole number within limits.
+    Whole(f64, f64),
+    /// Two numbers within limits.
+    Pair(f64, f64),
+    /// One of some words.
+    Word(&'static [&'static str]),
+    /// A colour: three numbers in 0..1, or a name.
+    Color,
+    /// A text of 1 to 100 letters.
+    Text,
+    /// A text of 1 to 100 letters, or a whole number.
+    Model,
+    /// The number of one of some things, from 0 to the last.
+    Index(f64),
+}
+
+/// The longest text, in letters.
+const MOST_LETTERS: usize = 100;
+
+/// The largest number of a model.
+const MOST_MODELS: u64 = 1_000_000;
+
+pub(super) const WORLD: [(&str, Entry); 2] = [
+    ("game_mode", Entry::Word(&["learn", "collect_images"])),
+    ("max_steps", Entry::Whole(0.0, 1e9)),
+];
+
+pub(super) const ENVIRONMENT: [(&str, Entry); 4] = [
+    ("bounding_wall_color", Entry::Color),
+    ("light_intensity", Entry::Number(0.0, 100.0)),
+    ("predefined_map", Entry::Index(4.0)),
+    ("map_size", Entry::Pair(0.0, 300.0)),
+];
+
+pub(super) const AGENT: [(&str, Entry); 8] = [
+    (
+        "action_model",
+        Entry::Word(&["byvelocity", "bywaypoint", "onrails", "none"]),
+    ),
+    ("agent_height", Entry::Number(0.1, 10.0)),
+    ("agent_width", Entry::Number(0.05, 10.0)),
+    ("max_linear_speed", Entry::Number(0.0, 100.0)),
+    ("max_angular_speed", Entry::Number(0.0, 3600.0)),
+    ("observation_size", Entry::Whole(1.0, 4096.0)),
+    ("coordinates", Entry::Pair(-300.0, 300.0)),
+    ("heading", Entry::Number(0.0, 360.0)),
+];
+
+pub(super) const IMAGE: [(&str, Entry); 3] = [
+    ("zoom", Entry::Number(0.1, 100.0)),
+    ("yaw_subdivisions", Entry::Whole(1.0, 360.0)),
+    ("vertical_subdivisions", Entry::Whole(1.0, 360.0)),
+];
+
+pub(super) const OBJECT: [(&str, Entry); 8] = [
+    ("class", Entry::Text),
+    ("model", Entry::Model),
+    ("coordinates", Entry::Pair(-300.0, 300.0)),
+    ("color", Entry::Color),
+    (
+        "motion_model",
+        Entry::Word(&["stationary", "predator", "prey", "random_waypoint", "patrol"]),
+    ),
+    ("reward", Entry::Number(-1e9, 1e9)),
+    ("range_stimulus_distance", Entry::Number(0.0, 1000.0)),
+    ("unique_name", Entry::Text),
+];
+
+impl Reader {
+    /// Mends the entries of a part of the file, whose `defaults` are known by key.
+    pub(super) fn mend(
+        &mut self,
+        at: &str,
+        map: &mut Map<String, Json>,
+        entries: &[(&'static str, Entry)],
+        defaults: &Map<String, Json>,
+    ) {
+        for (key, entry) in entries {
+            let Some(value) = map.get_mut(*key) else { continue };
+            let is_optional = matches!(*key, "color" | "unique_name");
+            if value.is_null() && is_optional {
+                continue;
+            }
+            let place = format!("{at}/{key}");
+            let default = defaults.get(*key);
+            let Some(said) = entry.mend(value, default) else { continue };
+            if said.is_left_out {
+                map.shift_remove(*key);
+                let assumed = match (*key, default) {
+                    ("color", _) => "the asset's own colours are assumed".to_owned(),
+                    (_, Some(default)) => format!("the default {} is assumed", plain(default)),
+                    (_, None) => "it is left out".to_owned(),
+                };
+                self.warn(place, format!("found {}, expected {}; {assumed}", said.found, entry.expected()));
+            } else {
+                let now = map.get(*key).map_or_else(String::new, plain);
+                self.warn(place, format!("found {}, expected {}; {now} is assumed", said.found, entry.expected()));
+            }
+        }
+    }
+
+    /// A part of the file, if it is one; whatever else stands there is left out with a warning.
+    pub(super) fn part(&mut self, map: &mut Map<String, Json>, key: &str) -> Option<Map<String, Json>> {
+        match map.get(key)? {
+            Json::Object(part) => Some(part.clone()),
+            other => {
+                let text = format!("found {}, expected an object; its defaults are assumed", describe(other));
+                self.warn(format!("/{key}"), text);
+                map.shift_remove(key);
+                None
+            }
+        }
+    }
+}
+
+/// What was wrong with an entry.
+struct Mended {
+    found: String,
+    /// Whether nothing can be made of it; else it has been set to what is assumed.
+    is_left_out: bool,
+}
+
+impl Entry {
+    fn expected(self) -> String {
+        match self {
+            Self::Number(low, high) => format!("a number from {low} to {high}"),
+            Self::Whole(low, high) => format!("a whole number from {low} to {high}"),
+            Self::Pair(low, high) => format!("two numbers from {low} to {high}"),
+            Self::Word(words) => format!("one of {}", words.join(", ")),
+            Self::Color => "a colour of three numbers in 0..1".to_owned(),
+            Self::Text => format!("a text of 1 to {MOST_LETTERS} letters"),
+            Self::Model => format!("a text of 1 to {MOST_LETTERS} letters, or a whole number to {MOST_MODELS}"),
+            Self::Index(last) => format!("a number from 0 to {last}"),
+        }
+    }
+
+    /// Sets a value to what is assumed, and says what was wrong with it; `None` for what is right.
+    fn mend(self, value: &mut Json, default: Option<&Json>) -> Option<Mended> {
+        let found = describe(value);
+        let mended = match self {
+            Self::Number(low, high) => within(value, low, high).map(|number| json!(number)),
+            Self::Whole(low, high) => within(value, low, high).map(|number| json!(number.round() as i64)),
+            Self::Pair(low, high) => pair(value, default, low, high),
+            Self::Word(words) => value.as_str().filter(|word| words.contains(word)).map(|word| json!(word)),
+            Self::Color => color(value),
+            Self::Text => text(value),
+            Self::Model if value.is_u64() => value.as_u64().filter(|number| *number <= MOST_MODELS).map(|number| json!(number)),
+            Self::Model => value.as_str().and_then(|_| text(value)),
+            Self::Index(last) => value
+                .as_u64()
+                .filter(|number| *number as f64 <= last)
+                .map(|number| json!(number)),
+        };
+        match mended {
+            Some(mended) if is_same(&mended, value) => None,
+            Some(mended) => {
+                *value = mended;
+                Some(Mended {
+                    found,
+                    is_left_out: false,
+                })
+            }
+            None => Some(Mended {
+                found,
+                is_left_out: true,
+            }),
+        }
+    }
+}
+
+/// A number, brought within limits. Nothing is no size: where all that can be is above 0, only what is above 0 means something.
+fn within(value: &Json, low: f64, high: f64) -> Option<f64> {
+    let number = value.as_f64().filter(|number| low <= 0.0 || *number > 0.0)?;
+    Some(number.clamp(low, high))
+}
+
+/// Whether two values are the same, numbers by what they are worth.
+fn is_same(a: &Json, b: &Json) -> bool {
+    match (a, b) {
+        (Json::Number(x), Json::Number(y)) => x.as_f64() == y.as_f64(),
+        (Json::Array(a), Json::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| is_same(a, b)),
+        _ => a == b,
+    }
+}
+
+/// The first two numbers of a list, within limits; the default's in place of what is no number. Nothing if none is one.
+fn pair(value: &Json, default: Option<&Json>, low: f64, high: f64) -> Option<Json> {
+    let items = value.as_array()?;
+    let number = |axis: usize| items.get(axis).and_then(Json::as_f64);
+    if number(0).or(number(1)).is_none() {
+        return None;
+    }
+    let own = |axis: usize| default.and_then(|default| default.get(axis)).and_then(Json::as_f64);
+    let both = [0, 1].map(|axis| number(axis).or(own(axis)).unwrap_or(0.0).clamp(low, high));
+    Some(json!(both))
+}
+
+/// The first three numbers of a list, within 0..1; a name that is known.
+fn color(value: &Json) -> Option<Json> {
+    match value {
+        Json::String(name) => Color::from_name(name).map(|_| value.clone()),
+        Json::Array(items) => {
+            let channels: Option<Vec<f64>> = items.iter().take(3).map(Json::as_f64).collect();
+            let channels = channels.filter(|channels| channels.len() == 3)?;
+            Some(json!(channels.iter().map(|channel| channel.clamp(0.0, 1.0)).collect::<Vec<f64>>()))
+        }
+        _ => None,
+    }
+}
+
+/// A text that is not empty, cut off where it is too long; a number as it is written.
+fn text(value: &Json) -> Option<Json> {
+    let text = match value {
+        Json::String(text) => text.clone(),
+        Json::Number(number) => number.to_string(),
+        _ => return None,
+    };
+    (!text.is_empty()).then(|| json!(text.chars().take(MOST_LETTERS).collect::<String>()))
+}
+
+/// A value as people write it: whole numbers without a point.
+fn plain(value: &Json) -> String {
+    match value {
+        Json::Number(number) => number.as_f64().map_or_else(|| number.to_string(), |number| number.to_string()),
+        Json::Array(items) => format!("[{}]", items.iter().map(plain).collect::<Vec<String>>().join(", ")),
+        other => describe(other),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The entries of a part against the schema that the world is checked by.
+    fn check(part: &str, entries: &[(&str, Entry)]) {
+        let schema = crate::schema::world().json();
+        let properties = match part {
+            "World" => &schema["properties"],
+            part => &schema["$defs"][part]["properties"],
+        };
+        for (key, entry) in entries {
+            let property = &properties[key];
+            let limits = |node: &Json| (node["minimum"].as_f64(), node["maximum"].as_f64());
+            match *entry {
+                Entry::Number(low, high) | Entry::Whole(low, high) => {
+                    assert_eq!(limits(property), (Some(low), Some(high)), "{key}");
+                    assert_eq!(property["type"] == "integer", matches!(entry, Entry::Whole(..)), "{key}");
+                }
+                Entry::Pair(low, high) => assert_eq!(limits(&property["items"]), (Some(low), Some(high)), "{key}"),
+                Entry::Word(words) => {
+                    let name = property["$ref"].as_str().and_then(|path| path.rsplit('/').next()).expect("a type");
+                    let text = schema["$defs"][name].to_string();
+                    assert!(words.iter().all(|word| text.contains(&format!("\"{word}\""))), "{key}: {text}");
+                }
+                Entry::Index(last) => assert_eq!(limits(property), (Some(0.0), Some(last)), "{key}"),
+                Entry::Text | Entry::Model | Entry::Color => {}
+            }
+        }
+    }
+
+    #[test]
+    fn limits_are_those_of_worlds() {
+        check("World", &WORLD);
+        check("EnvironmentParams", &ENVIRONMENT);
+        check("AgentParams", &AGENT);
+        check("ImageParams", &IMAGE);
+        check("Object", &OBJECT);
+    }
+}
