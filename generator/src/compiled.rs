@@ -57,11 +57,13 @@ impl Randomized {
     fn covered(&self, coverage: Coverage, spread: &Stream, index: u64) -> Option<Value> {
         let (first, count) = self.dimensions?;
         let u = coverage.unit(spread, first, index)?;
-        if count == 1 {
-            return self.drawn.distribution.value_at(u);
+        let further = |dimension: usize| coverage.unit(spread, first + dimension, index);
+        let law = &self.drawn.distribution;
+        match count {
+            1 => law.value_at(u),
+            2 => point_at(law, [u, further(1)?]).map(Value::Point),
+            _ => law.color_at([u, further(1)?, further(2)?]).map(Value::Color),
         }
-        let v = coverage.unit(spread, first + 1, index)?;
-        point_at(&self.drawn.distribution, [u, v]).map(Value::Point)
     }
 }
 
@@ -173,6 +175,10 @@ impl Compiled {
                     | Distribution::Disc { .. }
                     | Distribution::Annulus { .. }
                     | Distribution::Gaussian { .. } => 2,
+                    Distribution::ColorUniform { .. }
+                    | Distribution::ColorNormal { .. }
+                    | Distribution::ColorPerturb { .. }
+                    | Distribution::ColorHsv { .. } => 3,
                     other => usize::from(other.is_scalar()),
                 };
                 let dimensions = (takes > 0).then_some((dimension, takes));

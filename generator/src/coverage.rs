@@ -9,7 +9,7 @@ pub(crate) const MAX_DIMENSIONS: usize = 100;
 
 /// How randomized parameters cover what they can be, over the worlds of a variant.
 ///
-/// Randomized parameters that one or two numbers of chance decide take part, in the order in which the task declares them, so
+/// Randomized parameters that up to three numbers of chance decide take part, colours with one for each channel, in the order in which the task declares them, so
 /// that one declared before another shifts its dimension. Choices, mixtures, Dirichlet shares and what is drawn inside groups
 /// stay independent draws, as do parameters beyond 100 dimensions and worlds that a requirement has drawn again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -22,6 +22,13 @@ pub(crate) fn draw<'a>(distribution: &'a Distribution, chance: &mut Chance) -> C
             let units: Vec<f64> = alpha[1..].iter().map(|_| chance.unit()).collect();
             Cow::Owned(Value::Vector(shares(alpha, &units)))
         }
+        colors if colors.draws_colors() => {
+            // All three numbers, also where one decides: a variant whose channels stray together shares its first.
+            let units = [chance.unit(), chance.unit(), chance.unit()];
+            Cow::Owned(Value::Color(
+                colors.color_at(units).expect("three numbers of chance decide a colour"),
+            ))
+        }
         planar if planar.is_planar() => Cow::Owned(Value::Point(place(planar, 0, chance).at)),
         other => Cow::Owned(
             other

@@ -1,8 +1,8 @@
 //! [`Drift`]: the variants between two variants of a task. How far apart two variants are is `similarity`'s to say.
 
 use driftworld_spec::{
-    Distribution, Domain, DriftSchedule, DriftSwitch, Number, Parameter, ParameterType, RegimeDrift, Spread, Value,
-    Variant,
+    ChannelSpread, Channels, Color, Distribution, Domain, DriftSchedule, DriftSwitch, Number, Parameter, ParameterType,
+    RegimeDrift, Spread, Value, Variant,
 };
 
 use crate::GeneratorError;
@@ -73,7 +73,7 @@ pub enum Switch {
 /// The way from one variant of a task to another.
 ///
 /// Numbers, points, vectors and the numbers of distributions of one family go straight; headings take the shorter way round, or the way through their range;
-/// colours go straight in Oklab, so that they change evenly to the eye; distributions of different families are mixed; whatever
+/// colours, those of distributions too, go straight in Oklab, so that they change evenly to the eye; distributions of different families are mixed; whatever
 /// has nothing in between switches. At 0 and 1 the variants are those that were given.
 ///
 /// # Example
@@ -239,7 +239,7 @@ fn literal(distribution: &Distribution) -> Distribution<Number> {
     }
 }
 
-/// Distributions of one family interpolate number by number; others are mixed, where both draw numbers or both points.
+/// Distributions of one family interpolate number by number; others are mixed, where both draw numbers, points or colours.
 fn between_distributions(from: &Distribution, to: &Distribution, t: f64) -> Option<Distribution> {
     let (from, to) = (comparable(from, to), comparable(to, from));
     if skeleton(&from) == skeleton(&to) {
@@ -253,19 +253,49 @@ fn between_distributions(from: &Distribution, to: &Distribution, t: f64) -> Opti
             let end = ends.next().expect("equal skeletons have equally many numbers");
             number + (end - number) * t
         });
-        return Some(whole(between));
+        return Some(colored(whole(between), &from, &to, t));
     }
-    let alike =
-        from.is_planar() == to.is_planar() && (from.is_planar() || from.mean().is_some() == to.mean().is_some());
+    let alike = if from.draws_colors() || to.draws_colors() {
+        from.yields(ParameterType::Color) && to.yields(ParameterType::Color)
+    } else {
+        from.is_planar() == to.is_planar() && (from.is_planar() || from.mean().is_some() == to.mean().is_some())
+    };
     alike.then(|| Distribution::Mixture {
         parts: vec![from, to],
         weights: Some(vec![1.0 - t, t]),
     })
 }
 
-/// A Gaussian by its covariance where the other is written in another way.
+/// A distribution as the other is written, where its family can be written in several ways: a Gaussian by its covariance, a
+/// spread of channels for each of them, the ends that are meant where none are given.
 fn comparable(distribution: &Distribution, other: &Distribution) -> Distribution {
+    let each = |spread: &ChannelSpread| ChannelSpread::Each(spread.to_array());
     match (distribution, other) {
+        (Distribution::ColorNormal { mean, std }, Distribution::ColorNormal { .. }) => Distribution::ColorNormal {
+            mean: mean.clone(),
+            std: each(std),
+        },
+        (
+            Distribution::ColorPerturb {
+                value,
+                noise,
+                low,
+                high,
+                channels,
+            },
+            Distribution::ColorPerturb { .. },
+        ) => Distribution::ColorPerturb {
+            value: value.clone(),
+            noise: each(noise),
+            low: Some(low.clone().unwrap_or(Channels([0.0; 3]))),
+            high: Some(high.clone().unwrap_or(Channels([1.0; 3]))),
+            channels: *channels,
+        },
+        (Distribution::ColorHsv { hue, saturation, value }, Distribution::ColorHsv { .. }) => Distribution::ColorHsv {
+            hue: hue.or(Some([0.0, 360.0])),
+            saturation: saturation.or(Some([0.0, 1.0])),
+            value: value.or(Some([0.0, 1.0])),
+        },
         (Distribution::Gaussian { mean, .. }, Distribution::Gaussian { .. })
             if skeleton(distribution) != skeleton(other) =>
         {
@@ -277,6 +307,72 @@ fn comparable(distribution: &Distribution, other: &Distribution) -> Distribution
             }
         }
         _ => distribution.clone(),
+    }
+}
+
+/// A distribution of colours between two of its family: its colours in Oklab, its hues the shorter way round.
+fn colored(between: Distribution, from: &Distribution, to: &Distribution, t: f64) -> Distribution {
+    use Distribution::{ColorHsv, ColorNormal, ColorPerturb, ColorUniform, Mixture};
+    let color = |a: &Channels, b: &Channels| {
+        if a == b {
+            a.clone()
+        } else {
+            Channels::from(oklab::between(Color(a.0), Color(b.0), t))
+        }
+    };
+    match (between, from, to) {
+        (ColorUniform { channels, .. }, ColorUniform { from: a, to: b, .. }, ColorUniform { from: c, to: d, .. }) => {
+            ColorUniform {
+                from: color(a, c),
+                to: color(b, d),
+                channels,
+            }
+        }
+        (ColorNormal { std, .. }, ColorNormal { mean: a, .. }, ColorNormal { mean: b, .. }) => {
+            ColorNormal { mean: color(a, b), std }
+        }
+        (
+            ColorPerturb {
+                noise,
+                low,
+                high,
+                channels,
+                ..
+            },
+            ColorPerturb { value: a, .. },
+            ColorPerturb { value: b, .. },
+        ) => ColorPerturb {
+            value: color(a, b),
+            noise,
+            low,
+            high,
+            channels,
+        },
+        (
+            ColorHsv { saturation, value, .. },
+            ColorHsv { hue: Some([a, b]), .. },
+            ColorHsv { hue: Some([c, d]), .. },
+        ) => {
+            let (middle, other) = (f64::midpoint(*a, *b), f64::midpoint(*c, *d));
+            let turn = (other - middle + 180.0).rem_euclid(360.0) - 180.0;
+            let (middle, half) = (middle + turn * t, ((b - a) + ((d - c) - (b - a)) * t) / 2.0);
+            // Where a document may have them, which is within a turn of 0..360.
+            let middle = middle.rem_euclid(360.0);
+            ColorHsv {
+                hue: Some([middle - half, middle + half]),
+                saturation,
+                value,
+            }
+        }
+        (Mixture { parts, weights }, Mixture { parts: a, .. }, Mixture { parts: b, .. }) => Mixture {
+            parts: parts
+                .into_iter()
+                .zip(a.iter().zip(b))
+                .map(|(part, (a, b))| colored(part, a, b, t))
+                .collect(),
+            weights,
+        },
+        (other, ..) => other,
     }
 }
 

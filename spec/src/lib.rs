@@ -16,7 +16,10 @@ mod version;
 mod world;
 
 pub use color::Color;
-pub use distribution::{Distribution, Number, Order, ParamRef, PlanarMoments, Spread};
+pub use distribution::{
+    Channel, ChannelChance, ChannelSpread, Channels, ColorMoments, Distribution, Number, Order, ParamRef,
+    PlanarMoments, Spread,
+};
 pub use document::MAX_BYTES;
 pub use error::{Problem, SpecError, nearest};
 pub use l2explorer::Warning;

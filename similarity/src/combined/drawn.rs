@@ -5,10 +5,11 @@ use std::collections::BTreeSet;
 
 use driftworld_spec::{Distribution, MeasureName, Parameter, ParameterType};
 
+use crate::ColorMeasure;
 use crate::combined::value::share;
 use crate::distribution::{
-    How, Measured, circular_wasserstein_1, draws_headings, extent, hellinger, jensen_shannon, planar_wasserstein_2,
-    total_variation, wasserstein_1, wasserstein_2,
+    How, Measured, circular_wasserstein_1, color_wasserstein_1, color_wasserstein_2, draws_headings, extent, hellinger,
+    jensen_shannon, planar_wasserstein_2, total_variation, wasserstein_1, wasserstein_2,
 };
 use crate::scalar::choice_mismatch;
 
@@ -19,8 +20,10 @@ pub(super) struct DrawnMeasure {
     headings: bool,
     /// Width of the numbers, or diagonal of the points, that all declared variants together draw.
     width: Option<f64>,
-    /// Whether points are drawn by different families, between which there are only samples.
+    /// Whether points are drawn by different families, or colours from lists and densities, between which there are only samples.
     mixed: bool,
+    /// By which measure the ways of colours are counted, where colours are compared by how far they are apart.
+    colors: Option<ColorMeasure>,
 }
 
 /// A comparison: the measure's name, how its number was found, the number, and the one that counts, which may be above 1.
@@ -32,7 +35,10 @@ impl DrawnMeasure {
         let mut corners: Option<[[f64; 2]; 2]> = None;
         let mut families = BTreeSet::new();
         let mut headings = parameter.kind == ParameterType::Heading;
+        let measure = parameter.compare.as_ref().and_then(|compare| compare.measure);
+        let mut kinds = [false; 2];
         for distribution in all {
+            kinds[usize::from(distribution.draws_colors())] = true;
             headings |= draws_headings(&distribution);
             families.insert(distribution.planar_moments().map(|_| distribution.name()));
             if let Some([low, high]) = bounds(&distribution) {
@@ -42,17 +48,19 @@ impl DrawnMeasure {
                 corners = Some([[x[0], y[0]], [x[1], y[1]]]);
             }
         }
+        let colors = kinds[1] || (parameter.kind == ParameterType::Color && asks_for_ways(measure));
         Self {
-            measure: parameter.compare.as_ref().and_then(|compare| compare.measure),
+            measure,
+            colors: colors.then(|| ways_of(measure)),
             headings,
             width: corners.map(|[low, high]| (high[0] - low[0]).hypot(high[1] - low[1])),
-            mixed: families.iter().flatten().count() > 1,
+            mixed: families.iter().flatten().count() > 1 || kinds == [true; 2],
         }
     }
 
     /// Whether the triangle inequality holds. Between points of different families it may fail by what samples are off.
     pub(super) fn is_metric(&self) -> bool {
-        !self.mixed
+        !self.mixed && self.colors.is_none_or(|colors| colors.nature().is_metric())
     }
 
     /// How far two distributions are apart.
@@ -68,6 +76,9 @@ impl DrawnMeasure {
             let raw = choice_mismatch(a, b);
             ("same or not", None, raw, raw)
         };
+        if let Some(colors) = self.colors.filter(|_| self.measure != Some(MeasureName::SameOrNot)) {
+            return between_colors(a, b, colors, self.measure).unwrap_or_else(same_or_not);
+        }
         let asked = match self.measure {
             Some(MeasureName::Wasserstein2) => found("wasserstein-2 / width", wasserstein_2(a, b), &over_width),
             Some(MeasureName::TotalVariation) => found("total variation", total_variation(a, b), &as_it_is),
@@ -91,6 +102,41 @@ impl DrawnMeasure {
             .or_else(|| found("total variation of mean shares", shares(a, b), &as_it_is))
             .unwrap_or_else(same_or_not)
     }
+}
+
+/// Whether a measure counts ways, so that colours of lists have them, too.
+fn asks_for_ways(measure: Option<MeasureName>) -> bool {
+    use MeasureName::{Cie76, Ciede2000, Oklab, Srgb, Wasserstein1, Wasserstein2};
+    matches!(
+        measure,
+        Some(Srgb | Cie76 | Ciede2000 | Oklab | Wasserstein1 | Wasserstein2)
+    )
+}
+
+/// What a colour's way is measured by.
+fn ways_of(measure: Option<MeasureName>) -> ColorMeasure {
+    match measure {
+        Some(MeasureName::Srgb) => ColorMeasure::Srgb,
+        Some(MeasureName::Cie76) => ColorMeasure::Cie76,
+        Some(MeasureName::Ciede2000) => ColorMeasure::Ciede2000,
+        _ => ColorMeasure::Oklab,
+    }
+}
+
+/// Wasserstein-1 of colours, or Wasserstein-2 where that is asked for, over the largest distance of two colours.
+fn between_colors(a: &Distribution, b: &Distribution, by: ColorMeasure, asked: Option<MeasureName>) -> Option<Found> {
+    let (name, measured) = if asked == Some(MeasureName::Wasserstein2) {
+        ("wasserstein-2 of oklab", color_wasserstein_2(a, b, by)?)
+    } else {
+        let name = match by {
+            ColorMeasure::Srgb => "wasserstein-1 of srgb / largest",
+            ColorMeasure::Cie76 => "wasserstein-1 of cie76 / largest",
+            ColorMeasure::Ciede2000 => "wasserstein-1 of ciede2000 / largest",
+            ColorMeasure::Oklab | ColorMeasure::Hyab => "wasserstein-1 of oklab",
+        };
+        (name, color_wasserstein_1(a, b, by)?)
+    };
+    Some((name, Some(measured.how), measured.value, measured.value / by.diameter()))
 }
 
 /// The corners between which nearly all of a distribution's numbers or points lie; numbers have the second coordinate 0.

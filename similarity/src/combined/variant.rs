@@ -15,7 +15,8 @@ use crate::{Nature, SimilarityError};
 /// `compare`, or else at weight 1 and by what its type has: numbers by difference over the declared range, headings by the
 /// turn, colours in Oklab, points over the widest pair of choices, vectors by Euclidean length over the range, anything else
 /// as the same or not. Randomized ones are compared by distribution: Wasserstein-1 over the width of all declared variants
-/// together, round the circle for headings, Wasserstein-2 over the diagonal for points, total variation for words. What is alike in both
+/// together, round the circle for headings, Wasserstein-2 over the diagonal for points, Wasserstein-1 in Oklab for colours out of a
+/// continuum, total variation for words and for colours out of lists. What is alike in both
 /// contributes exactly 0, so variants that differ in what they pay are 0 apart in all elements but the reward. Fixed
 /// parameters cannot differ and are left out.
 ///
@@ -312,6 +313,27 @@ mod tests {
             "total variation",
             1.0,
         );
+    }
+
+    #[test]
+    fn drawn_colours_are_as_far_as_the_work_that_turns_one_into_the_other() {
+        let around = |color: &str| format!(r#"{{ "color_normal": {{ "mean": "{color}", "std": 0 }} }}"#);
+        let drawn = |more: &str| {
+            let (black, white) = (around("black"), around("white"));
+            format!(
+                r#""role": "variant", "type": "distribution", "choices": [{black}, {white}], "default": {black}{more}"#
+            )
+        };
+        let asked = |name: &str| drawn(&format!(r#", "compare": {{ "measure": "{name}" }}"#));
+        let white = around("white");
+        check(&drawn(""), &white, "wasserstein-1 of oklab", 1.0);
+        check(&asked("oklab"), &white, "wasserstein-1 of oklab", 1.0);
+        check(&asked("wasserstein_1"), &white, "wasserstein-1 of oklab", 1.0);
+        check(&asked("wasserstein_2"), &white, "wasserstein-2 of oklab", 1.0);
+        check(&asked("srgb"), &white, "wasserstein-1 of srgb / largest", 1.0);
+        let expected = 100.0 / ColorMeasure::Cie76.diameter();
+        check(&asked("cie76"), &white, "wasserstein-1 of cie76 / largest", expected);
+        check(&asked("same_or_not"), &white, "same or not", 1.0);
     }
 
     #[test]

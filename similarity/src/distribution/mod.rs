@@ -1,6 +1,7 @@
-//! Distances between distributions: of numbers, headings, words and points. How those of many parameters combine is in `combined/`.
+//! Distances between distributions: of numbers, headings, words, points and colours. How those of many parameters combine is in `combined/`.
 
 mod circular;
+mod colors;
 mod counts;
 mod energy;
 mod extent;
@@ -25,6 +26,7 @@ mod wasserstein_1;
 mod wasserstein_2;
 
 pub use circular::circular_wasserstein_1;
+pub use colors::{color_wasserstein_1, color_wasserstein_2};
 pub use energy::energy;
 pub use extent::extent;
 pub use hellinger::hellinger;

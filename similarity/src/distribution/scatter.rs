@@ -85,7 +85,7 @@ fn point(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
 }
 
 /// Which of so many is chosen, and the chance that is left in 0..1.
-fn chosen(count: usize, weights: Option<&[f64]>, u: f64) -> (usize, f64) {
+pub(super) fn chosen(count: usize, weights: Option<&[f64]>, u: f64) -> (usize, f64) {
     let weight = |k: usize| weights.map_or(1.0, |weights| weights[k]);
     let mut left = u * (0..count).map(weight).sum::<f64>();
     for k in 0..count {

@@ -5,10 +5,10 @@ use std::fmt::{Display, Formatter, Result};
 use serde::Serialize;
 use serde_json::Value as Json;
 
-use super::Distribution;
+use super::{Channel, Distribution};
 use crate::document::plain_number;
 
-impl<N: Serialize> Display for Distribution<N> {
+impl<N: Channel + Serialize> Display for Distribution<N> {
     fn fmt(&self, f: &mut Formatter) -> Result {
         let json = serde_json::to_value(self).unwrap_or_default();
         f.write_str(&one(&json))

@@ -1,6 +1,6 @@
 //! What is wrong with a distribution's numbers. References and types are checked in `task/check.rs`.
 
-use super::{Distribution, Spread};
+use super::{ChannelSpread, Channels, Distribution, Spread};
 
 /// What was found, and what was expected.
 type Fault = Option<(String, &'static str)>;
@@ -93,7 +93,64 @@ impl Distribution<f64> {
                 let fine = alpha.iter().all(|shape| (1e-3..=1e6).contains(shape));
                 unless(fine, format!("alpha {alpha:?}"), "shapes in 0.001..1000000")
             }
+            Self::ColorUniform { .. }
+            | Self::ColorNormal { .. }
+            | Self::ColorPerturb { .. }
+            | Self::ColorHsv { .. } => self.color_fault(),
             planar => planar.planar_fault().or_else(|| planar.far_fault()),
+        }
+    }
+
+    fn color_fault(&self) -> Fault {
+        let color = |channels: &Channels| {
+            let fine = channels.0.iter().all(|channel| (0.0..=1.0).contains(channel));
+            unless(
+                fine,
+                format!("the colour {:?}", channels.0),
+                "a colour with channels in 0..1",
+            )
+        };
+        let spread = |name: &str, spread: &ChannelSpread| {
+            let fine = spread.to_array().iter().all(|spread| (0.0..=10.0).contains(spread));
+            unless(
+                fine,
+                format!("{name} {:?}", spread.to_array()),
+                "a spread of channels in 0..10",
+            )
+        };
+        match self {
+            Self::ColorUniform { from, to, .. } => color(from).or_else(|| color(to)),
+            Self::ColorNormal { mean, std } => color(mean).or_else(|| spread("std", std)),
+            Self::ColorPerturb {
+                value,
+                noise,
+                low,
+                high,
+                ..
+            } => {
+                let limits = [low, high].into_iter().flatten().find_map(color);
+                let crossed = low.as_ref().zip(high.as_ref()).and_then(|(low, high)| {
+                    let fine = (0..3).all(|k| low.0[k] <= high.0[k]);
+                    let found = format!("low {:?} and high {:?}", low.0, high.0);
+                    unless(fine, found, "low not above high in any channel")
+                });
+                color(value).or_else(|| spread("noise", noise)).or(limits).or(crossed)
+            }
+            _ => self.hsv_ends().and_then(|[hue, saturation, value]| {
+                let turns = hue[0] <= hue[1] && hue[1] - hue[0] <= 360.0 && hue[0] >= -360.0 && hue[1] <= 720.0;
+                let part = |name: &str, ends: [f64; 2]| {
+                    let fine = 0.0 <= ends[0] && ends[0] <= ends[1] && ends[1] <= 1.0;
+                    unless(
+                        fine,
+                        format!("{name} {ends:?}"),
+                        "two numbers in 0..1, the first not above the second",
+                    )
+                };
+                let expected = "two hues in -360..720, the first not above the second, at most 360 degrees apart";
+                unless(turns, format!("hue {hue:?}"), expected)
+                    .or_else(|| part("saturation", saturation))
+                    .or_else(|| part("value", value))
+            }),
         }
     }
 
@@ -281,5 +338,31 @@ mod tests {
             r#"{"von_mises": {"mean": 0, "kappa": -1}}"#,
             Some("a concentration in 0..10000"),
         );
+    }
+
+    #[test]
+    fn colours_that_are_none_are_faults() {
+        let color = Some("a colour with channels in 0..1");
+        let spread = Some("a spread of channels in 0..10");
+        check(r#"{"color_uniform": {"from": "red", "to": "blue"}}"#, None);
+        check(r#"{"color_uniform": {"from": "red", "to": [0, 2, 0]}}"#, color);
+        check(r#"{"color_normal": {"mean": [-1, 0, 0], "std": 0}}"#, color);
+        check(r#"{"color_normal": {"mean": "red", "std": [0, 0, -1]}}"#, spread);
+        check(r#"{"color_perturb": {"value": "red", "noise": 11}}"#, spread);
+        check(
+            r#"{"color_perturb": {"value": "red", "noise": 1, "low": [0, 0, 3]}}"#,
+            color,
+        );
+        check(
+            r#"{"color_perturb": {"value": "red", "noise": 1, "low": "gray", "high": "red"}}"#,
+            Some("low not above high in any channel"),
+        );
+        let hue = Some("two hues in -360..720, the first not above the second, at most 360 degrees apart");
+        check(r#"{"color_hsv": {"hue": [350, 370]}}"#, None);
+        check(r#"{"color_hsv": {"hue": [350, 10]}}"#, hue);
+        check(r#"{"color_hsv": {"hue": [0, 361]}}"#, hue);
+        let share = Some("two numbers in 0..1, the first not above the second");
+        check(r#"{"color_hsv": {"saturation": [0.5, 0.4]}}"#, share);
+        check(r#"{"color_hsv": {"value": [0.5, 1.4]}}"#, share);
     }
 }

@@ -1,6 +1,6 @@
 //! Passing every number of a distribution through a function: how references are settled and variants interpolated.
 
-use super::{Distribution, Spread};
+use super::{ChannelSpread, Channels, Distribution, Spread};
 
 type Map<'a, N, M, E> = &'a mut dyn FnMut(&N) -> Result<M, E>;
 
@@ -129,6 +129,33 @@ impl<N> Distribution<N> {
                 high: pair(high, f)?,
                 distance: f(distance)?,
             },
+            Self::ColorUniform { from, to, channels } => D::ColorUniform {
+                from: color(from, f)?,
+                to: color(to, f)?,
+                channels: *channels,
+            },
+            Self::ColorNormal { mean, std } => D::ColorNormal {
+                mean: color(mean, f)?,
+                std: spread(std, f)?,
+            },
+            Self::ColorPerturb {
+                value,
+                noise,
+                low,
+                high,
+                channels,
+            } => D::ColorPerturb {
+                value: color(value, f)?,
+                noise: spread(noise, f)?,
+                low: low.as_ref().map(|low| color(low, f)).transpose()?,
+                high: high.as_ref().map(|high| color(high, f)).transpose()?,
+                channels: *channels,
+            },
+            Self::ColorHsv { hue, saturation, value } => D::ColorHsv {
+                hue: hue.as_ref().map(|hue| pair(hue, f)).transpose()?,
+                saturation: saturation.as_ref().map(|saturation| pair(saturation, f)).transpose()?,
+                value: value.as_ref().map(|value| pair(value, f)).transpose()?,
+            },
             Self::Mixture { parts, weights } => D::Mixture {
                 parts: parts.iter().map(|part| part.try_map(f)).collect::<Result<_, E>>()?,
                 weights: list(weights.as_ref(), f)?,
@@ -139,6 +166,21 @@ impl<N> Distribution<N> {
 
 fn pair<N, M, E>([x, y]: &[N; 2], f: Map<N, M, E>) -> Result<[M; 2], E> {
     Ok([f(x)?, f(y)?])
+}
+
+fn triple<N, M, E>([red, green, blue]: &[N; 3], f: Map<N, M, E>) -> Result<[M; 3], E> {
+    Ok([f(red)?, f(green)?, f(blue)?])
+}
+
+fn color<N, M, E>(Channels(channels): &Channels<N>, f: Map<N, M, E>) -> Result<Channels<M>, E> {
+    Ok(Channels(triple(channels, f)?))
+}
+
+fn spread<N, M, E>(spread: &ChannelSpread<N>, f: Map<N, M, E>) -> Result<ChannelSpread<M>, E> {
+    Ok(match spread {
+        ChannelSpread::Same(spread) => ChannelSpread::Same(f(spread)?),
+        ChannelSpread::Each(spreads) => ChannelSpread::Each(triple(spreads, f)?),
+    })
 }
 
 fn maybe<N, M, E>(number: Option<&N>, f: Map<N, M, E>) -> Result<Option<M>, E> {

@@ -1,5 +1,7 @@
 //! [`Distribution`]: how values scatter, as data with its laws. Drawing from it is the generator's job, comparing two `similarity`'s.
 
+mod channels;
+mod color;
 mod cumulative;
 mod discrete;
 mod display;
@@ -17,6 +19,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+pub use channels::{Channel, ChannelChance, ChannelSpread, Channels};
+pub use color::ColorMoments;
 pub use planar::PlanarMoments;
 pub use reference::{Number, ParamRef};
 
@@ -26,7 +30,7 @@ use crate::task::Value;
 ///
 /// Families of numbers have closed-form laws where there are any: [`mean`](Distribution::mean),
 /// [`variance`](Distribution::variance), [`cdf`](Distribution::cdf), [`quantile`](Distribution::quantile). Families of points
-/// have [`planar_moments`](Distribution::planar_moments).
+/// have [`planar_moments`](Distribution::planar_moments), those of colours [`color_moments`](Distribution::color_moments).
 ///
 /// # Example
 /// ```
@@ -36,7 +40,11 @@ use crate::task::Value;
 /// assert!((light.quantile(0.5).unwrap() - 2.0).abs() < 1e-12);
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[serde(
+    rename_all = "snake_case",
+    deny_unknown_fields,
+    bound(serialize = "N: Channel + Serialize", deserialize = "N: Channel + Deserialize<'de>")
+)]
 #[schemars(rename = "Distribution", transform = gaussian_needs_one_spread)]
 pub enum Distribution<N = f64> {
     /// Always the same value, of any type.
@@ -265,9 +273,58 @@ pub enum Distribution<N = f64> {
         #[schemars(extend("exclusiveMinimum" = 0))]
         distance: N,
     },
+    /// Every colour of a box in sRGB alike, or of the line between two of its corners.
+    ColorUniform {
+        /// One corner.
+        from: Channels<N>,
+        /// The corner opposite; each channel lies between those of the two, whichever is greater.
+        to: Channels<N>,
+        /// Whether each channel has chance of its own, which fills the box, or all have the same, which goes along the line.
+        #[serde(default, skip_serializing_if = "channels::is_apart")]
+        channels: ChannelChance,
+    },
+    /// Colours around a colour: each channel is normal, given that it falls in 0..1.
+    ColorNormal {
+        /// The colour in the middle: the mean before truncation.
+        mean: Channels<N>,
+        /// Standard deviation of the channels before truncation, 0..10: one number for all, or one for each.
+        #[schemars(transform = small_spread)]
+        std: ChannelSpread<N>,
+    },
+    /// A colour with uniform noise, each channel cut off at limits, as the original's templates have it.
+    ColorPerturb {
+        /// The colour in the middle.
+        value: Channels<N>,
+        /// Greatest deviation of the channels to either side, 0..10: one number for all, or one for each.
+        #[schemars(transform = small_spread)]
+        noise: ChannelSpread<N>,
+        /// Limits below, at which smaller channels are cut off; black if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        low: Option<Channels<N>>,
+        /// Limits above, at which greater channels are cut off; white if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        high: Option<Channels<N>>,
+        /// Whether each channel has noise of its own, or all have the same, which makes lighter and darker shades.
+        #[serde(default, skip_serializing_if = "channels::is_apart")]
+        channels: ChannelChance,
+    },
+    /// Colours by hue, saturation and value, each drawn alike between its ends.
+    ColorHsv {
+        /// Hues in degrees, clockwise from the first to the second: 0 red, 120 green, 240 blue; across red as `[-20, 20]`; all if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        hue: Option<[N; 2]>,
+        /// Saturation from 0 (grey) to 1 (full); all if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(transform = up_to_1)]
+        saturation: Option<[N; 2]>,
+        /// Value from 0 (black) to 1 (bright); all if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(transform = up_to_1)]
+        value: Option<[N; 2]>,
+    },
     /// One of several distributions, by weight, and then a draw from that.
     Mixture {
-        /// The distributions: all of numbers, or all of points.
+        /// The distributions: all of numbers, all of points, or all of colours.
         #[schemars(length(min = 1, max = 100))]
         parts: Vec<Distribution<N>>,
         /// Weight of each part, at least 0, not all 0; all alike if absent.
@@ -314,6 +371,19 @@ fn none_negative(schema: &mut schemars::Schema) {
 
 fn shapes(schema: &mut schemars::Schema) {
     limit_items(schema, &json!({ "minimum": 0.001, "maximum": 1_000_000 }));
+}
+
+/// A literal spread of channels is in 0..10, alone or in a list.
+fn small_spread(schema: &mut schemars::Schema) {
+    let limits = json!({ "minimum": 0, "maximum": 10 });
+    for (key, limit) in limits.as_object().into_iter().flatten() {
+        schema.insert(key.clone(), limit.clone());
+    }
+    limit_items(schema, &limits);
+}
+
+fn up_to_1(schema: &mut schemars::Schema) {
+    limit_items(schema, &json!({ "minimum": 0, "maximum": 1 }));
 }
 
 /// Adds limits to the items of a list, beside what they are.
@@ -373,6 +443,10 @@ impl<N> Distribution<N> {
             Self::Points { .. } => "points",
             Self::Grid { .. } => "grid",
             Self::PoissonDisc { .. } => "poisson_disc",
+            Self::ColorUniform { .. } => "color_uniform",
+            Self::ColorNormal { .. } => "color_normal",
+            Self::ColorPerturb { .. } => "color_perturb",
+            Self::ColorHsv { .. } => "color_hsv",
             Self::Mixture { .. } => "mixture",
         }
     }

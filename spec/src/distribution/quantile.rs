@@ -126,7 +126,7 @@ impl Distribution<f64> {
 impl<N> Distribution<N> {
     /// Whether one number of chance decides what it draws, so that [`Distribution::value_at`] gives it.
     pub fn is_scalar(&self) -> bool {
-        !self.is_planar() && !matches!(self, Self::Mixture { .. } | Self::Dirichlet { .. })
+        !self.is_planar() && !self.draws_colors() && !matches!(self, Self::Mixture { .. } | Self::Dirichlet { .. })
             || matches!(self, Self::Constant { .. } | Self::Choice { .. })
     }
 }

@@ -25,7 +25,7 @@ impl From<f64> for Number {
 pub struct ParamRef {
     /// The parameter's name.
     pub param: String,
-    /// Which number of a vector or point, counted from 0; absent for the whole value.
+    /// Which number of a vector, point or colour, counted from 0; absent for the whole value.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 99))]
     pub index: Option<usize>,

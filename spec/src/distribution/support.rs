@@ -16,6 +16,7 @@ impl<N> Distribution<N> {
             }
             Self::VonMises { .. } => kind == ParameterType::Heading,
             Self::Dirichlet { .. } => kind == ParameterType::Vector,
+            _ if self.draws_colors() => kind == ParameterType::Color,
             _ if self.is_planar() => kind == ParameterType::Point,
             _ => ParameterType::Number.fits(kind),
         }
@@ -40,7 +41,8 @@ impl<N> Distribution<N> {
 }
 
 impl Distribution<f64> {
-    /// The least and greatest number it can draw, or all values of a choice; `None` where that has no bounds.
+    /// The least and greatest number it can draw, corners of a box around its points or colours, or all values of a choice;
+    /// `None` where that has no bounds.
     pub fn support(&self) -> Option<Vec<Value>> {
         let numbers = |low: f64, high: f64| Some(vec![Value::Number(low), Value::Number(high)]);
         let counts = |low: f64, high: f64| Some(vec![Value::Integer(low as i64), Value::Integer(high as i64)]);
@@ -83,6 +85,10 @@ impl Distribution<f64> {
                 outer: radius,
                 ..
             } => corners([x - radius, y - radius], [x + radius, y + radius]),
+            Self::ColorUniform { .. }
+            | Self::ColorNormal { .. }
+            | Self::ColorPerturb { .. }
+            | Self::ColorHsv { .. } => Some(self.color_box()?.map(Value::Color).to_vec()),
             Self::Points { values, .. } => Some(values.iter().copied().map(Value::Point).collect()),
             Self::Mixture { parts, .. } => {
                 let each = parts.iter().map(Self::support).collect::<Option<Vec<_>>>()?;

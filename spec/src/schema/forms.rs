@@ -68,6 +68,11 @@ impl Form<'_, '_> {
         }
     }
 
+    /// Whether it is a list of three: a colour whose channels may be parameters, or a number for each channel.
+    fn is_a_triple(&self) -> bool {
+        self.name.is_none() && self.has_type("array") && self.schema["maxItems"] == 3
+    }
+
     /// The words that this form consists of.
     fn words(&self) -> Vec<&str> {
         let options = self.schema["enum"].as_array().into_iter().flatten();
@@ -94,6 +99,7 @@ impl Form<'_, '_> {
                 (5, "a point [x, y]".to_owned())
             }
             None if self.has_type("array") && of_numbers => (7, "a list of numbers".to_owned()),
+            None if self.is_a_triple() => (7, "a list of three numbers or parameters".to_owned()),
             None => match self.tag() {
                 Some(tag) => (8, format!("{{{tag:?}: …}}")),
                 None if self.has_type("object") => (8, object(self.schema)),
@@ -128,7 +134,8 @@ impl Explainer<'_> {
         let value = error.instance();
         let of_its_type: Vec<&Form> = forms.iter().filter(|form| !form.is_of_another_type(own)).collect();
         if !of_its_type.is_empty()
-            && of_its_type.iter().all(|form| form.is("Color"))
+            && of_its_type.iter().any(|form| form.is("Color"))
+            && of_its_type.iter().all(|form| form.is("Color") || form.is_a_triple())
             && let Some(problem) = color::problem(own, value)
         {
             return vec![Finding { problem, forms: 1 }];

@@ -6,7 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::parameter::{Domain, Parameter, Role};
-use super::value::ParameterType;
+use super::template::Source;
+use super::value::{ParameterType, Value};
 use crate::error::Problem;
 
 /// How two values of a parameter are compared, and how much that counts.
@@ -50,7 +51,7 @@ pub enum MeasureName {
     LogRatio,
     /// Any type: 0 if they are the same, 1 if not.
     SameOrNot,
-    /// Colours: Euclidean in sRGB, as in the L2Explorer paper.
+    /// Colours, and the ways of drawn ones: Euclidean in sRGB, as in the L2Explorer paper.
     Srgb,
     /// Colours: Euclidean in CIELAB.
     Cie76,
@@ -58,10 +59,10 @@ pub enum MeasureName {
     Ciede2000,
     /// Colours: Euclidean in Oklab. What colours have if nothing is said.
     Oklab,
-    /// Distributions of numbers: least work. What they have if nothing is said.
+    /// Distributions of numbers or colours: least work. What they have if nothing is said.
     #[serde(rename = "wasserstein_1")]
     Wasserstein1,
-    /// Distributions of numbers: least squared work, its root.
+    /// Distributions of numbers or colours: least squared work, its root.
     #[serde(rename = "wasserstein_2")]
     Wasserstein2,
     /// Distributions: the largest difference of the probabilities that they give to any set.
@@ -91,6 +92,14 @@ impl MeasureName {
         }
     }
 
+    /// What measures there are for colours out of a continuum, which have no probabilities to compare; `None` if this is one.
+    pub(super) fn misfit_of_drawn_colors(self) -> Option<&'static str> {
+        matches!(self, Self::TotalVariation | Self::Hellinger | Self::JensenShannon).then_some(
+            "wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000 or same_or_not, since colours out of a continuum are \
+             compared by how far they are apart",
+        )
+    }
+
     /// What parameters must be for this measure; `None` if this one is.
     fn misfit(self, parameter: &Parameter) -> Option<&'static str> {
         use MeasureName::{
@@ -103,19 +112,41 @@ impl MeasureName {
             SameOrNot => return None,
             Difference if numeric && !by_distribution => return None,
             LogRatio if numeric && !by_distribution && always_positive(parameter) => return None,
-            Srgb | Cie76 | Ciede2000 | Oklab if parameter.kind == ParameterType::Color && !by_distribution => {
+            Srgb | Cie76 | Ciede2000 | Oklab if parameter.kind == ParameterType::Color || gives_colors(parameter) => {
                 return None;
             }
+            TotalVariation | Hellinger | JensenShannon if gives_colors(parameter) => {
+                return self.misfit_of_drawn_colors();
+            }
             Wasserstein1 | Wasserstein2 | TotalVariation | Hellinger | JensenShannon if by_distribution => return None,
-            Difference => "a variant parameter of type number or integer",
-            LogRatio => "a variant parameter of type number or integer whose values are all above 0",
-            Srgb | Cie76 | Ciede2000 | Oklab => "a variant parameter of type color",
+            Difference => "a variant parameter of type number or integer for it",
+            LogRatio => "a variant parameter of type number or integer whose values are all above 0 for it",
+            Srgb | Cie76 | Ciede2000 | Oklab => {
+                "a parameter of type color, or one whose distributions draw colours, for it"
+            }
             Wasserstein1 | Wasserstein2 | TotalVariation | Hellinger | JensenShannon => {
-                "a randomized parameter, or one of type distribution"
+                "a randomized parameter, or one of type distribution for it"
             }
         };
         Some(wanted)
     }
+}
+
+/// Whether colours out of a continuum are drawn: by the parameter's own distribution, or by one that it may be.
+fn gives_colors(parameter: &Parameter) -> bool {
+    let own = match &parameter.distribution {
+        Some(Source::Distribution(distribution)) => distribution.draws_colors(),
+        // Then the measure stands where that parameter is declared.
+        Some(Source::Param(_)) | None => false,
+    };
+    let values = parameter
+        .value
+        .iter()
+        .chain(&parameter.default)
+        .chain(parameter.choices.iter().flatten());
+    own || values
+        .into_iter()
+        .any(|value| matches!(value, Value::Distribution(distribution) if distribution.draws_colors()))
 }
 
 fn always_positive(parameter: &Parameter) -> bool {
@@ -134,12 +165,7 @@ impl Compare {
             && let Some(expected) = measure.misfit(parameter)
         {
             let at = format!("{pointer}/measure");
-            problems.push(Problem::new(
-                "spec/compare",
-                at,
-                measure.name(),
-                format!("{expected} for it"),
-            ));
+            problems.push(Problem::new("spec/compare", at, measure.name(), expected));
         }
         if let Some(costs) = &self.costs {
             let at = format!("{pointer}/costs");
@@ -277,7 +303,7 @@ mod tests {
         check(
             r#"{ "measure": "ciede2000" }"#,
             WORDS,
-            "/parameters/p/compare/measure): found ciede2000, expected a variant parameter of type color for it",
+            "/parameters/p/compare/measure): found ciede2000, expected a parameter of type color, or one whose distributions draw colours, for it",
         );
         check(
             r#"{ "measure": "hellinger" }"#,
@@ -286,6 +312,48 @@ mod tests {
         );
         let drawn = r#""role": "randomized", "type": "number", "distribution": { "uniform": { "low": 0, "high": 1 } }"#;
         check(r#"{ "measure": "hellinger" }"#, drawn, "");
+    }
+
+    #[test]
+    fn drawn_colours_are_compared_by_how_far_they_are_apart() {
+        let drawn = r#""role": "randomized", "type": "color", "distribution": { "color_normal": { "mean": "red", "std": 0.1 } }"#;
+        let law = r#""role": "variant", "type": "distribution", "choices": [{ "color_hsv": {} }], "default": { "color_hsv": {} }"#;
+        for parameter in [drawn, law] {
+            for fits in [
+                "srgb",
+                "cie76",
+                "ciede2000",
+                "oklab",
+                "wasserstein_1",
+                "wasserstein_2",
+                "same_or_not",
+            ] {
+                check(&format!(r#"{{ "measure": "{fits}" }}"#), parameter, "");
+            }
+            for odd in ["total_variation", "hellinger", "jensen_shannon"] {
+                let said = format!(
+                    "/parameters/p/compare/measure): found {odd}, expected wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000 or \
+                     same_or_not, since colours out of a continuum are compared by how far they are apart"
+                );
+                check(&format!(r#"{{ "measure": "{odd}" }}"#), parameter, &said);
+            }
+        }
+        let words =
+            r#""role": "randomized", "type": "color", "distribution": { "choice": { "values": ["red", "blue"] } }"#;
+        check(r#"{ "measure": "total_variation" }"#, words, "");
+    }
+
+    #[test]
+    fn a_measure_looks_at_the_distributions_that_another_parameter_may_be() {
+        let text = r#"{ "name": "t", "parameters": {
+            "law": { "role": "variant", "type": "distribution", "affects": ["O"], "choices": [{ "color_hsv": {} }], "default": { "color_hsv": {} } },
+            "p": { "role": "randomized", "type": "color", "affects": ["O"], "distribution": { "param": "law" },
+                   "compare": { "measure": "hellinger" } } } }"#;
+        let said = TaskSpec::from_json("t.json", text).map_or_else(|error| error.to_string(), |_| String::new());
+        assert!(
+            said.contains("(/parameters/p/compare/measure): found hellinger, expected wasserstein_1"),
+            "{said}"
+        );
     }
 
     #[test]

@@ -128,13 +128,14 @@ impl<'a> Check<'a> {
                 }
             }
             if let Some(source) = &parameter.distribution {
-                self.randomized(&format!("{pointer}/distribution"), parameter, source);
+                self.randomized(&pointer, parameter, source);
             }
         }
     }
 
     /// Whether a randomized parameter's distribution yields its type.
-    fn randomized(&mut self, pointer: &str, parameter: &Parameter, source: &Source) {
+    fn randomized(&mut self, parameter_pointer: &str, parameter: &Parameter, source: &Source) {
+        let pointer = &format!("{parameter_pointer}/distribution");
         if let Source::Param(reference) = source {
             let known = self.parameters.get(&reference.param);
             if known.is_some_and(|known| known.kind != ParameterType::Distribution || known.role == Role::Randomized) {
@@ -143,7 +144,21 @@ impl<'a> Check<'a> {
                 return self.report(Problem::new("spec/type", pointer, found, expected));
             }
         }
-        self.source(pointer, source, parameter.kind);
+        if self.source(pointer, source, parameter.kind) && matches!(source, Source::Param(_)) {
+            self.compared_by(&format!("{parameter_pointer}/compare/measure"), parameter, source);
+        }
+    }
+
+    /// Whether the measure of a parameter drawn from another that is a distribution takes all that this one may be.
+    fn compared_by(&mut self, pointer: &str, parameter: &Parameter, source: &Source) {
+        let measure = parameter.compare.as_ref().and_then(|compare| compare.measure);
+        let Some((measure, expected)) = measure.and_then(|measure| Some((measure, measure.misfit_of_drawn_colors()?)))
+        else {
+            return;
+        };
+        if self.distributions_of(source).iter().any(|law| law.draws_colors()) {
+            self.report(Problem::new("spec/compare", pointer, measure.name(), expected));
+        }
     }
 
     /// The requirements that can be read and make sense.

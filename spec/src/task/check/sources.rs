@@ -22,8 +22,15 @@ impl Check<'_> {
             Ok(0.0)
         });
         drop(collected);
-        for reference in references {
-            self.number_reference(pointer, &reference);
+        let mut references = &references[..];
+        while let Some(reference) = references.first() {
+            if let Some(rest) = after_whole_color(references) {
+                self.color_reference(pointer, reference);
+                references = rest;
+            } else {
+                self.number_reference(pointer, reference);
+                references = &references[1..];
+            }
         }
         if self.problems.len() > before {
             return false;
@@ -37,6 +44,24 @@ impl Check<'_> {
             self.report(Problem::new("spec/distribution", pointer, found, expected));
         }
         self.problems.len() == before
+    }
+
+    /// A colour in a distribution may be a fixed or variant colour, or three numbers.
+    fn color_reference(&mut self, pointer: &str, first_channel: &ParamRef) {
+        let odd = self.parameters.get(&first_channel.param).filter(|parameter| {
+            let is_color = parameter.kind == ParameterType::Color;
+            let has_three = parameter.kind == ParameterType::Vector && parameter.vector_length() == Some(3);
+            parameter.role != Role::Randomized && !is_color && !has_three
+        });
+        let Some(parameter) = odd else {
+            return self.number_reference(pointer, first_channel);
+        };
+        let found = format!(
+            "the parameter {:?} of type {}",
+            first_channel.param,
+            parameter.kind.name()
+        );
+        self.report(Problem::new("spec/type", pointer, found, "a parameter of type color"));
     }
 
     /// A number in a distribution, or a group's margin, may refer to a fixed or variant number only.
@@ -66,6 +91,7 @@ impl Check<'_> {
         };
         let length = match parameter.kind {
             ParameterType::Point => Some(2),
+            ParameterType::Color => Some(3),
             ParameterType::Vector => parameter.vector_length().or_else(|| {
                 let source = parameter.distribution.as_ref()?;
                 // The shortest that it can be.
@@ -85,7 +111,7 @@ impl Check<'_> {
             "spec/index",
             pointer,
             found,
-            "an index, from 0, into a vector or point",
+            "an index, from 0, into a vector, point or colour",
         ));
         None
     }
@@ -274,6 +300,13 @@ impl Check<'_> {
         }
         outside.is_none()
     }
+}
+
+/// The references after the first three, where those are the channels of one parameter, as its name alone stands for.
+fn after_whole_color(references: &[ParamRef]) -> Option<&[ParamRef]> {
+    let (channels, rest) = references.split_first_chunk::<3>()?;
+    let of_one = |(k, channel): (usize, &ParamRef)| channel.param == channels[0].param && channel.index == Some(k);
+    channels.iter().enumerate().all(of_one).then_some(rest)
 }
 
 impl Parameter {

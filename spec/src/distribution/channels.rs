@@ -1,0 +1,184 @@
+//! [`Channels`]: the colour in a distribution, whose channels may be references. Colours of worlds are in `crate::color`.
+
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::reference::{Number, ParamRef};
+use crate::Color;
+
+/// A number that can be a channel of a colour: [`Number`] in a spec, `f64` once a variant has settled it.
+pub trait Channel: From<f64> {
+    /// The channels of the colour that a parameter has; `None` where there are no references.
+    fn of_parameter(reference: &ParamRef) -> Option<[Self; 3]>;
+
+    /// The parameter whose colour these channels are, all three of it.
+    fn parameter_of(channels: &[Self; 3]) -> Option<ParamRef>;
+}
+
+impl Channel for f64 {
+    fn of_parameter(_: &ParamRef) -> Option<[Self; 3]> {
+        None
+    }
+
+    fn parameter_of(_: &[Self; 3]) -> Option<ParamRef> {
+        None
+    }
+}
+
+impl Channel for Number {
+    fn of_parameter(reference: &ParamRef) -> Option<[Self; 3]> {
+        let channel = |index| {
+            Self::Param(ParamRef {
+                param: reference.param.clone(),
+                index: Some(index),
+            })
+        };
+        reference.index.is_none().then(|| [0, 1, 2].map(channel))
+    }
+
+    fn parameter_of(channels: &[Self; 3]) -> Option<ParamRef> {
+        let Self::Param(first) = &channels[0] else { return None };
+        let whole = ParamRef {
+            param: first.param.clone(),
+            index: None,
+        };
+        (Self::of_parameter(&whole).as_ref() == Some(channels)).then_some(whole)
+    }
+}
+
+/// A colour in a distribution: red, green and blue in 0..=1, sRGB.
+///
+/// Reads `[r, g, b]`, a CSS name, or `{ "param": NAME }` of a parameter that is a colour; writes a list, or the reference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channels<N = f64>(pub [N; 3]);
+
+impl From<Color> for Channels {
+    fn from(color: Color) -> Self {
+        Self(color.0)
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "[r, g, b] in 0..1, a CSS colour name, or {\"param\": NAME}")]
+enum Form<N> {
+    Each([N; 3]),
+    Name(String),
+    Param(ParamRef),
+}
+
+impl<'de, N: Channel + Deserialize<'de>> Deserialize<'de> for Channels<N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        match Form::deserialize(deserializer)? {
+            Form::Each(channels) => Ok(Self(channels)),
+            Form::Name(name) => Color::from_name(&name)
+                .map(|color| Self(color.0.map(N::from)))
+                .ok_or_else(|| D::Error::custom(format!("found {name:?}, expected a CSS colour name or [r, g, b]"))),
+            Form::Param(reference) => N::of_parameter(&reference)
+                .map(Self)
+                .ok_or_else(|| D::Error::custom("expected a whole colour: {\"param\": NAME} without an index")),
+        }
+    }
+}
+
+impl<N: Channel + Serialize> Serialize for Channels<N> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match N::parameter_of(&self.0) {
+            Some(reference) => reference.serialize(serializer),
+            None => self.0.serialize(serializer),
+        }
+    }
+}
+
+impl<N: JsonSchema> JsonSchema for Channels<N> {
+    fn schema_name() -> Cow<'static, str> {
+        "Channels".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut channel = generator.subschema_for::<N>();
+        for (key, limit) in [("minimum", 0), ("maximum", 1)] {
+            channel.insert(key.to_owned(), limit.into());
+        }
+        let color = generator.subschema_for::<Color>();
+        let reference = generator.subschema_for::<ParamRef>();
+        json_schema!({
+            "description": "A colour: [r, g, b] in 0..1, a CSS name, or {\"param\": NAME} of a parameter that is a colour.",
+            "anyOf": [
+                color,
+                { "type": "array", "items": channel, "minItems": 3, "maxItems": 3 },
+                reference
+            ]
+        })
+    }
+}
+
+/// How far each channel of a colour strays.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a number, or [r, g, b]")]
+#[schemars(rename = "ChannelSpread")]
+pub enum ChannelSpread<N = f64> {
+    /// All as far.
+    Same(N),
+    /// Red, green and blue.
+    Each([N; 3]),
+}
+
+impl ChannelSpread {
+    /// The number of each channel.
+    pub fn to_array(&self) -> [f64; 3] {
+        match self {
+            Self::Same(spread) => [*spread; 3],
+            Self::Each(spreads) => *spreads,
+        }
+    }
+}
+
+/// Whether each channel of a colour has a number of chance of its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ChannelChance {
+    /// Each has its own: red may stray up where green strays down.
+    #[default]
+    Apart,
+    /// All three have the same: they stray up and down together, as the shades of one colour do.
+    Together,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+pub(super) fn is_apart(chance: &ChannelChance) -> bool {
+    *chance == ChannelChance::Apart
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(text: &str, expected: Option<&str>) {
+        let read = serde_json::from_str::<Channels<Number>>(text).ok();
+        let written = read.map(|channels| serde_json::to_string(&channels).expect("a colour serialises"));
+        assert_eq!(written.as_deref(), expected, "{text}");
+    }
+
+    #[test]
+    fn a_colour_is_a_list_a_name_or_a_parameter() {
+        check("[0, 0.5, 1]", Some("[0.0,0.5,1.0]"));
+        check("\"red\"", Some("[1.0,0.0,0.0]"));
+        check(r#"{"param": "leaf"}"#, Some(r#"{"param":"leaf"}"#));
+        let mixed = r#"[{"param":"leaf","index":1},0.5,{"param":"light"}]"#;
+        check(mixed, Some(mixed));
+        check("\"bleu\"", None);
+        check(r#"{"param": "leaf", "index": 1}"#, None);
+        check("[0, 0]", None);
+    }
+
+    #[test]
+    fn where_all_is_settled_there_are_no_references() {
+        let red: Channels = serde_json::from_str("\"red\"").expect("a CSS name");
+        assert_eq!(red, Channels::from(Color([1.0, 0.0, 0.0])));
+        assert!(serde_json::from_str::<Channels>(r#"{"param": "leaf"}"#).is_err());
+    }
+}
