@@ -41,7 +41,7 @@ mod score;
 mod statistics;
 
 pub use error::MetricsError;
-pub use lifetime::{Lifetime, MAX_REGIMES, Regime, SteLog};
+pub use lifetime::{Lifetime, MAX_REGIMES, Regime, SteLog, experts_serving};
 pub use log::{
     BlockSubtype, BlockType, Complexity, DEFAULT_WORKER, Delimiter, Difficulty, ExpStatus, KeptRows,
     LOG_FORMAT_VERSION, Log, LogColumn, LogCounts, LogTable, LogWarning, LogWriter, LoggerInfo, MAX_CELL_BYTES,

@@ -4,7 +4,36 @@
 
 /// Arithmetic mean; `None` when there is nothing to average.
 pub(crate) fn mean(values: &[f64]) -> Option<f64> {
-    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    (!values.is_empty()).then(|| sum(values) / values.len() as f64)
+}
+
+/// The sum in `NumPy`'s order, so that means have the reference's bits: eight sums side by side, halves of more than 128 values by
+/// themselves.
+pub(crate) fn sum(values: &[f64]) -> f64 {
+    let num = values.len();
+    if num < 8 {
+        return values.iter().sum();
+    }
+    if num > 128 {
+        let half = num / 2 - (num / 2) % 8;
+        return sum(&values[..half]) + sum(&values[half..]);
+    }
+    let (eights, rest) = values.as_chunks::<8>();
+    let mut side = [0.0; 8];
+    for (index, chunk) in eights.iter().enumerate() {
+        for (sum, value) in side.iter_mut().zip(chunk) {
+            *sum = if index == 0 { *value } else { *sum + value };
+        }
+    }
+    let [a, b, c, d, e, f, g, h] = side;
+    rest.iter()
+        .fold(((a + b) + (c + d)) + ((e + f) + (g + h)), |sum, value| sum + value)
+}
+
+/// The mean of those that are no NaN, infinite where one is; `None` when there is none.
+pub(crate) fn mean_of_known(values: &[f64]) -> Option<f64> {
+    let known: Vec<f64> = values.iter().copied().filter(|value| !value.is_nan()).collect();
+    mean(&known)
 }
 
 /// Quantile with linear interpolation between the two nearest values; `q` in `0..=1`. `None` when there are no values.
@@ -15,7 +44,13 @@ pub(crate) fn quantile(values: &[f64], q: f64) -> Option<f64> {
     let position = q * last as f64;
     let below = position.floor() as usize;
     let above = (below + 1).min(last);
-    Some(sorted[below] + (sorted[above] - sorted[below]) * (position - below as f64))
+    let (low, high, share) = (sorted[below], sorted[above], position - below as f64);
+    // From the nearer end, as NumPy does it.
+    Some(if share < 0.5 {
+        low + (high - low) * share
+    } else {
+        high - (high - low) * (1.0 - share)
+    })
 }
 
 /// Middle value, or the mean of the two middle ones; `None` when there are no values. Sorts in place, since the slopes

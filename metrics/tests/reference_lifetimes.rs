@@ -9,8 +9,9 @@ use driftworld_metrics::{
 };
 use serde_json::Value;
 
-/// The reference adds in another order; its values for lifetimes have ten decimals.
-const TOLERANCE: f64 = 1e-9;
+mod agreement;
+
+use agreement::compare;
 
 fn text(value: &Value) -> &str {
     value.as_str().unwrap()
@@ -55,41 +56,6 @@ fn scored(case: &Value) -> LifetimeMetrics {
         .rev()
         .map(|rows| SteLog::new(log_of(rows)).unwrap());
     score(&log_of(&case["rows"]), &experts.collect::<Vec<_>>(), &options).unwrap()
-}
-
-/// Compares numbers within the tolerance, lists entry by entry; returns how many numbers there were.
-fn compare(place: &str, found: &Value, expected: &Value) -> usize {
-    match (found, expected) {
-        (Value::Number(found), Value::Number(expected)) => {
-            let (found, expected) = (found.as_f64().unwrap(), expected.as_f64().unwrap());
-            // Differences of numbers around 100 lose what they have in common.
-            let near = (found - expected).abs() <= TOLERANCE * expected.abs().max(1.0);
-            assert!(near, "{place}: found {found}, the reference has {expected}");
-            1
-        }
-        (Value::Array(found), Value::Array(expected)) => {
-            assert_eq!(found.len(), expected.len(), "{place}: {found:?}, {expected:?}");
-            let pairs = found.iter().zip(expected).enumerate();
-            pairs
-                .map(|(index, (found, expected))| compare(&format!("{place}/{index}"), found, expected))
-                .sum()
-        }
-        (Value::Object(found), Value::Object(expected)) => {
-            let names = found
-                .keys()
-                .filter(|name| !expected.contains_key(*name))
-                .collect::<Vec<_>>();
-            assert!(names.is_empty(), "{place}: the reference has no {names:?}");
-            let entries = expected.iter();
-            entries
-                .map(|(name, expected)| compare(&format!("{place}/{name}"), &found[name], expected))
-                .sum()
-        }
-        (found, expected) => {
-            assert_eq!(found, expected, "{place}");
-            0
-        }
-    }
 }
 
 #[test]

@@ -9,8 +9,8 @@ use indexmap::{IndexMap, IndexSet};
 
 pub(crate) use regime::mean_per_experience;
 pub use regime::{MAX_REGIMES, Regime};
-pub use ste::SteLog;
 pub(crate) use ste::SteRun;
+pub use ste::{SteLog, experts_serving};
 
 use crate::log::{TaskParams, Timestamp};
 use crate::preprocess;
@@ -33,8 +33,8 @@ pub struct Lifetime {
 
 impl Lifetime {
     /// Takes the complete rows that have a number in the performance column, forms regimes, and preprocesses them:
-    /// smoothing, clamping, normalisation, in that order. Expert logs of tasks the lifetime lacks are left aside;
-    /// several logs of one task are several runs of its expert.
+    /// smoothing, clamping, normalisation, in that order. Which experts a task is compared with, [`experts_serving`] says; others
+    /// are left aside. Several logs of one task are several runs of its expert.
     ///
     /// # Errors
     /// [`MetricsError::UnknownColumn`], [`MetricsError::NoUsableRows`], [`MetricsError::TooManyRegimes`],
@@ -177,6 +177,14 @@ pub(crate) struct Usable<'a> {
 /// The rows that count: complete, with a number in the performance column, and not of the time before deployment, which prepares
 /// a lifetime and is no part of it. Rows of that time have the task parameter `phase`, `pre_deployment`. Messages call the log `name`.
 pub(crate) fn usable_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<Usable<'a>, MetricsError> {
+    let mut usable = complete_rows(log, name, column)?;
+    let performance = usable.performance;
+    usable.indices.retain(|&row| !performance[row].is_nan());
+    Ok(usable)
+}
+
+/// The same with complete rows that have no number; at least one has a number.
+pub(crate) fn complete_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<Usable<'a>, MetricsError> {
     let declared = log.logger_info.metrics_columns();
     let performance = (declared.iter().any(|name| name == column))
         .then(|| log.rows.metric(column))
@@ -190,13 +198,9 @@ pub(crate) fn usable_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<
     let params = rows.task_params();
     let is_deployed = |params: &TaskParams| params.get(PHASE.0).is_none_or(|phase| phase != PHASE.1);
     let deployed: Vec<bool> = params.values().iter().map(is_deployed).collect();
-    let counts = |&row: &usize| {
-        rows.exp_statuses()[row] == ExpStatus::Complete
-            && deployed[params.ids()[row] as usize]
-            && !performance[row].is_nan()
-    };
+    let counts = |&row: &usize| rows.exp_statuses()[row] == ExpStatus::Complete && deployed[params.ids()[row] as usize];
     let indices: Vec<usize> = (0..rows.len()).filter(counts).collect();
-    if indices.is_empty() {
+    if indices.iter().all(|&row| performance[row].is_nan()) {
         return Err(MetricsError::NoUsableRows {
             run_id: name.to_owned(),
             column: column.to_owned(),

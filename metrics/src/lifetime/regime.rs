@@ -58,6 +58,21 @@ impl Regime {
         self.block_type == BlockType::Train && self.block_subtype == BlockSubtype::Wake
     }
 
+    /// Drops the rows that have no number.
+    pub(super) fn keep_numbers(&mut self) {
+        let has: Vec<bool> = self.raw.iter().map(|value| !value.is_nan()).collect();
+        fn keep<T>(list: &mut Vec<T>, has: &[bool]) {
+            let mut has = has.iter();
+            list.retain(|_| has.next().is_some_and(|has| *has));
+        }
+        keep(&mut self.exp_nums, &has);
+        keep(&mut self.raw, &has);
+        keep(&mut self.performance, &has);
+        if let Some(steps) = &mut self.steps {
+            keep(steps, &has);
+        }
+    }
+
     /// One performance per experience: where an experience has several rows, their mean.
     pub(crate) fn per_experience(&self) -> Vec<f64> {
         mean_per_experience(&self.exp_nums, &self.performance)

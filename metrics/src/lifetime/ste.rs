@@ -8,7 +8,7 @@ use std::sync::Arc;
 use indexmap::{IndexMap, IndexSet};
 
 use super::regime::{self, Regime};
-use super::{scored_name, usable_rows};
+use super::{complete_rows, scored_name};
 use crate::{BlockType, Log, MetricsError, Options, VariantMode};
 
 /// The log of a single-task expert: exactly one task is trained in it. A clone shares the log.
@@ -101,26 +101,83 @@ impl SteRun {
     }
 }
 
+/// Which experts a task is compared with: positions in `trained`, the tasks that the experts trained, with their variants.
+///
+/// Those of the task's own name; where there is none, those of its variants: `ferry_red` and `ferry_blue` serve `ferry`. So it is for a
+/// task that was logged without a variant, and for one that lost it because variants do not count. A variant is served by its own
+/// experts alone. Names are compared in lower case.
+///
+/// QUIRK: the reference finds files of variants by the beginning of their names, so that an expert of `ferryman_red` serves `ferry`,
+/// too, where one of `ferry`'s variants does; that is not followed.
+///
+/// ```
+/// use driftworld_metrics::experts_serving;
+///
+/// assert_eq!(experts_serving("ferry", &["ferry_red", "dock_old", "ferry_blue"]), [0, 2]);
+/// assert_eq!(experts_serving("ferry", &["ferry_red", "ferry"]), [1]);
+/// assert_eq!(experts_serving("ferry_red", &["ferry", "ferry_blue"]), [] as [usize; 0]);
+/// ```
+pub fn experts_serving(task: &str, trained: &[&str]) -> Vec<usize> {
+    let task = task.to_lowercase();
+    let serving = |mode| {
+        let is_named = |name: &&str| scored_name(name, mode) == task;
+        (0..)
+            .zip(trained)
+            .filter(|(_, name)| is_named(name))
+            .map(|(index, _)| index)
+            .collect::<Vec<usize>>()
+    };
+    let own = serving(VariantMode::Aware);
+    if own.is_empty() {
+        serving(VariantMode::Agnostic)
+    } else {
+        own
+    }
+}
+
 /// Runs per task of the lifetime, in the order in which they were given.
 pub(super) fn gather(
     experts: &[SteLog],
     tasks: &[String],
     options: &Options,
 ) -> Result<IndexMap<String, Vec<SteRun>>, MetricsError> {
+    let trained: Vec<&str> = experts.iter().map(SteLog::task_name).collect();
     let mut runs: IndexMap<String, Vec<SteRun>> = IndexMap::new();
-    for expert in experts {
-        let task = scored_name(&expert.task_name, options.variant_mode);
-        if !tasks.contains(&task) {
-            tracing::warn!(
-                run_id = expert.log.run_id,
-                task,
-                "expert log left aside: the lifetime has no such task"
-            );
-            continue;
+    let mut taken = vec![false; experts.len()];
+    for task in tasks {
+        for index in experts_serving(task, &trained) {
+            taken[index] = true;
+            let run = run_of(&experts[index], task, options)?;
+            runs.entry(task.clone()).or_default().push(run);
         }
-        let rows = usable_rows(&expert.log, &expert.place(), &options.perf_measure)?;
-        let regimes = regime::form(&expert.place(), &rows, options)?;
-        runs.entry(task).or_default().push(SteRun { regimes });
+    }
+    for (expert, _) in experts.iter().zip(taken).filter(|(_, taken)| !taken) {
+        tracing::warn!(
+            run_id = expert.log.run_id,
+            task = expert.task_name,
+            "expert log left aside: the lifetime has no such task"
+        );
     }
     Ok(runs)
+}
+
+/// An expert's regimes under the name of the task that it serves.
+///
+/// They are formed with variants, and, as the reference does when it stores an expert, before rows without a number are dropped:
+/// such rows part what is smoothed by itself.
+fn run_of(expert: &SteLog, task: &str, options: &Options) -> Result<SteRun, MetricsError> {
+    let rows = complete_rows(&expert.log, &expert.place(), &options.perf_measure)?;
+    let with_variants = Options {
+        variant_mode: VariantMode::Aware,
+        ..options.clone()
+    };
+    let mut regimes = regime::form(&expert.place(), &rows, &with_variants)?;
+    for regime in &mut regimes {
+        regime.keep_numbers();
+        if regime.task_name == expert.task_name {
+            task.clone_into(&mut regime.task_name);
+        }
+    }
+    regimes.retain(|regime| !regime.is_empty());
+    Ok(SteRun { regimes })
 }

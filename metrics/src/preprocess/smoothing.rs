@@ -5,6 +5,7 @@
 use std::f64::consts::PI;
 
 use crate::lifetime::Lifetime;
+use crate::statistics::sum;
 use crate::{BlockType, Options, SmoothingMethod};
 
 /// Longest window that is chosen where none is given.
@@ -36,10 +37,13 @@ pub(crate) fn smoothed(values: &[f64], window_length: Option<usize>, method: Smo
         .filter(|length| *length <= num)
         .unwrap_or(fifth.min(LONGEST_DEFAULT));
     let weights = window(method, length);
-    let total: f64 = weights.iter().sum();
+    let total = sum(&weights);
     if length < 3 || total <= 0.0 {
         return values.to_vec();
     }
+    // Shares of one before anything is added, as the reference does it: windows that tie in exact arithmetic, as on a plateau of
+    // clamped data, then have its bits and its first maximum. It adds windows of more than 11 in an order of its processor's.
+    let shares: Vec<f64> = weights.iter().map(|weight| weight / total).collect();
     let mirrored: Vec<f64> = (values[1..length].iter().rev())
         .chain(values)
         .chain(values[num - length..num - 1].iter().rev())
@@ -47,10 +51,7 @@ pub(crate) fn smoothed(values: &[f64], window_length: Option<usize>, method: Smo
         .collect();
     // Of the num + length - 1 places the window fits in, the num from here on are kept.
     let start = (length / 2).saturating_sub(1);
-    moving_sums(&mirrored[start..start + num + length - 1], &weights)
-        .into_iter()
-        .map(|sum| sum / total)
-        .collect()
+    moving_sums(&mirrored[start..start + num + length - 1], &shares)
 }
 
 /// Windows that are summed side by side: as many as there are sums in flight at once, so that none waits for another.
@@ -81,17 +82,20 @@ fn moving_sums(values: &[f64], weights: &[f64]) -> Vec<f64> {
     sums
 }
 
-/// Weights of a symmetric window, not normalised.
+/// Weights of a symmetric window, not normalised, reckoned from its middle as `NumPy` does.
 fn window(method: SmoothingMethod, length: usize) -> Vec<f64> {
     let last = length.saturating_sub(1).max(1) as f64;
     let weight = |index: usize| {
-        let turn = 2.0 * PI * index as f64 / last;
+        // From -last to last in steps of two.
+        let place = (2 * index) as f64 - last;
+        let turn = PI * place / last;
         match method {
             SmoothingMethod::Flat | SmoothingMethod::Off => 1.0,
-            SmoothingMethod::Hanning => 0.5 - 0.5 * turn.cos(),
-            SmoothingMethod::Hamming => 0.54 - 0.46 * turn.cos(),
-            SmoothingMethod::Bartlett => 1.0 - (2.0 * index as f64 / last - 1.0).abs(),
-            SmoothingMethod::Blackman => 0.42 - 0.5 * turn.cos() + 0.08 * (2.0 * turn).cos(),
+            SmoothingMethod::Hanning => 0.5 + 0.5 * turn.cos(),
+            SmoothingMethod::Hamming => 0.54 + 0.46 * turn.cos(),
+            SmoothingMethod::Bartlett if place <= 0.0 => 1.0 + place / last,
+            SmoothingMethod::Bartlett => 1.0 - place / last,
+            SmoothingMethod::Blackman => 0.42 + 0.5 * turn.cos() + 0.08 * (2.0 * PI * place / last).cos(),
         }
     };
     (0..length).map(weight).collect()

@@ -25,6 +25,8 @@ pub enum Value {
     Runs(Vec<Vec<f64>>),
     /// Several numbers for each of other tasks.
     Pairs(PairValues),
+    /// Several numbers, of which some could not be computed: in JSON these are `null`.
+    Gapped(Vec<Option<f64>>),
 }
 
 impl Value {
@@ -36,6 +38,7 @@ impl Value {
             Self::Numbers(numbers) => numbers.iter().all(|number| number.is_finite()),
             Self::Runs(runs) => runs.iter().flatten().all(|number| number.is_finite()),
             Self::Pairs(pairs) => pairs.values().flatten().all(|number| number.is_finite()),
+            Self::Gapped(numbers) => numbers.iter().flatten().all(|number| number.is_finite()),
         }
     }
 }
@@ -81,7 +84,7 @@ impl Values {
         }
     }
 
-    /// Several numbers; none for a list of counts.
+    /// Several numbers; none for a list of counts, or for one in which a number is missing.
     pub fn numbers(&self, name: &str) -> Option<&[f64]> {
         match self.get(name)? {
             Value::Numbers(numbers) => Some(numbers),
@@ -123,6 +126,16 @@ into_value! {
     PairValues => Pairs,
 }
 
+impl From<Vec<Option<f64>>> for Value {
+    /// Where all could be computed, they are plain numbers.
+    fn from(numbers: Vec<Option<f64>>) -> Self {
+        match numbers.iter().copied().collect() {
+            Some(all) => Self::Numbers(all),
+            None => Self::Gapped(numbers),
+        }
+    }
+}
+
 impl From<usize> for Value {
     fn from(count: usize) -> Self {
         Self::Count(count as u64)
@@ -142,10 +155,12 @@ mod tests {
         values.set("numbers", vec![1.0, 2.0]);
         values.set("runs", vec![vec![1.5], vec![]]);
         values.set("pairs", PairValues::from([("b".to_owned(), vec![2.5])]));
+        values.set("gapped", vec![Some(1.5), None]);
+        values.set("whole", vec![Some(1.5), Some(2.5)]);
         let json = serde_json::to_string(&values).unwrap();
         assert_eq!(
             json,
-            r#"{"count":3,"number":0.5,"counts":[1,2],"numbers":[1.0,2.0],"runs":[[1.5],[]],"pairs":{"b":[2.5]}}"#
+            r#"{"count":3,"number":0.5,"counts":[1,2],"numbers":[1.0,2.0],"runs":[[1.5],[]],"pairs":{"b":[2.5]},"gapped":[1.5,null],"whole":[1.5,2.5]}"#
         );
         assert_eq!(serde_json::from_str::<Values>(&json).unwrap(), values);
     }

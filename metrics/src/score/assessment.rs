@@ -2,7 +2,7 @@
 //!
 //! Not here: how any value is computed.
 
-use indexmap::IndexMap;
+use indexmap::{IndexMap, IndexSet};
 
 use crate::lifetime::Lifetime;
 use crate::results::{Value, Values};
@@ -18,6 +18,8 @@ pub struct Assessment<'a> {
     regimes: Vec<Values>,
     tasks: IndexMap<String, Values>,
     whole: Values,
+    /// Values of the lifetime that a metric said to be no number; they are not made of the tasks' either.
+    none: IndexSet<String>,
 }
 
 impl<'a> Assessment<'a> {
@@ -31,6 +33,7 @@ impl<'a> Assessment<'a> {
                 .map(|task| (task.clone(), Values::default()))
                 .collect(),
             whole: Values::default(),
+            none: IndexSet::new(),
         }
     }
 
@@ -78,11 +81,23 @@ impl<'a> Assessment<'a> {
         }
     }
 
-    /// Gives the lifetime a value; `None` and one that is not finite are left out.
+    /// Gives the lifetime a value; `None` and one that is not finite are left out. Where it is not finite, the lifetime has no such
+    /// value, also if tasks do.
     pub fn set_lifetime(&mut self, name: &str, value: Option<impl Into<Value>>) {
-        if let Some(value) = value {
+        let Some(value) = value.map(Into::into) else { return };
+        if value.is_finite() {
+            self.none.shift_remove(name);
             self.whole.set(name, value);
+        } else {
+            self.none.insert(name.to_owned());
         }
+    }
+
+    /// Gives the lifetime the mean or median of values of tasks that may be infinite, a quotient of which the divisor was 0: where
+    /// the result is no number, the lifetime has no value, as in the reference. NaN counts as none.
+    pub(super) fn set_lifetime_of(&mut self, name: &str, of_tasks: Vec<f64>) {
+        let known = of_tasks.into_iter().filter(|value| !value.is_nan()).collect();
+        self.set_lifetime(name, self.aggregate(known));
     }
 
     /// Mean or median, as the options say; `None` of no values.
@@ -95,7 +110,7 @@ impl<'a> Assessment<'a> {
 
     /// Where a headline has numbers for tasks but none for the lifetime, brings those together, missing ones skipped.
     pub(super) fn aggregate_tasks(&mut self, name: &str) {
-        if self.whole.get(name).is_none() {
+        if self.whole.get(name).is_none() && !self.none.contains(name) {
             let numbers = self.tasks.values().filter_map(|values| values.number(name)).collect();
             self.set_lifetime(name, self.aggregate(numbers));
         }

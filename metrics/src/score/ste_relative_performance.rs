@@ -6,7 +6,7 @@
 use super::{Assessment, Metric};
 use crate::lifetime::{Lifetime, SteRun};
 use crate::results::{Direction, Headline};
-use crate::statistics::mean;
+use crate::statistics::mean_of_known;
 use crate::{MetricsError, Options, SteAveragingMethod};
 
 /// `ste_rel_perf` of every task, the mean of its `ste_rel_perf_vals`.
@@ -25,11 +25,15 @@ impl Metric for SteRelativePerformance {
 
     fn judge(&self, assessment: &mut Assessment<'_>) -> Result<(), MetricsError> {
         let lifetime = assessment.lifetime();
+        let mut of_tasks = Vec::new();
         for task in lifetime.tasks() {
             let values = of_task(lifetime, task, assessment.options().ste_averaging_method);
-            assessment.set_task(task, NAME, mean(&values));
-            assessment.set_task(task, "ste_rel_perf_vals", Some(values));
+            let whole = mean_of_known(&values);
+            of_tasks.extend(whole);
+            assessment.set_task(task, NAME, whole);
+            assessment.set_task(task, "ste_rel_perf_vals", Some(with_gaps(&values)));
         }
+        assessment.set_lifetime_of(NAME, of_tasks);
         Ok(())
     }
 }
@@ -37,7 +41,8 @@ impl Metric for SteRelativePerformance {
 /// One value per run of the task's expert (`metrics`), or one against their average (`time`).
 ///
 /// Sum of the first n performances of the task's learning, over that of the expert's, n being the shorter length.
-/// Empty without experts or without learning; runs that add up to 0 are left out.
+/// Empty without experts or without learning. Over a run that adds up to 0 the value is no finite number; the mean leaves out NaN, as
+/// the reference's does.
 fn of_task(lifetime: &Lifetime, task: &str, averaging: SteAveragingMethod) -> Vec<f64> {
     let (_, learning) = lifetime.training_of(task);
     if learning.is_empty() {
@@ -55,10 +60,13 @@ fn of_task(lifetime: &Lifetime, task: &str, averaging: SteAveragingMethod) -> Ve
         let num = run.len().min(learning.len());
         learning[..num].iter().sum::<f64>() / run[..num].iter().sum::<f64>()
     };
-    runs.into_iter()
-        .map(relative)
-        .filter(|value| value.is_finite())
-        .collect()
+    runs.into_iter().map(relative).collect()
+}
+
+/// The values, with nothing in place of those that are no finite numbers.
+pub(super) fn with_gaps(values: &[f64]) -> Vec<Option<f64>> {
+    let finite = |value: &f64| value.is_finite().then_some(*value);
+    values.iter().map(finite).collect()
 }
 
 /// The runs cut to the shortest and averaged step by step; `None` without runs.

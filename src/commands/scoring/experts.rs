@@ -1,9 +1,12 @@
 //! The single-task experts that lifetimes are compared with: logs that were named, and those kept in a folder, read when they are needed.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use crate::metrics::{Log, MetricsError, Options, SteLog, StoredTask, VariantMode, find_ste, read_ste_log};
+use crate::metrics::{
+    Log, MetricsError, Options, SteLog, StoredTask, VariantMode, experts_serving, find_ste, read_ste_log,
+};
 
 use crate::commands::{Failure, log_folders};
 
@@ -40,11 +43,14 @@ impl Experts {
     /// What is said of experts that were named for a lifetime without their task.
     pub(crate) fn left_aside(&self, log: &Log, options: &Options) -> Vec<String> {
         let tasks = tasks(log, options);
+        let trained: Vec<&str> = self.trained().collect();
+        let taken = serving(&tasks, &trained);
         let strangers = self
             .named
             .iter()
-            .filter(|expert| !tasks.contains(&scored(expert.task_name(), options)));
-        let told = |expert: &SteLog| {
+            .enumerate()
+            .filter(|(index, _)| !taken.contains(index));
+        let told = |(_, expert): (usize, &SteLog)| {
             let (name, task) = (&expert.log().run_id, expert.task_name());
             format!(
                 "the expert {name} of {task} is left aside: the lifetime has no such task, but {}",
@@ -56,15 +62,16 @@ impl Experts {
 
     /// The experts of the tasks that a lifetime has.
     pub(crate) fn of(&self, log: &Log, options: &Options) -> Result<Vec<SteLog>, Failure> {
-        let tasks = tasks(log, options);
-        let scored = |task: &str| scored(task, options);
-        let mut experts: Vec<SteLog> = self.named.clone();
-        experts.retain(|expert| tasks.contains(&scored(expert.task_name())));
-        for stored in self
-            .stored
-            .iter()
-            .filter(|stored| tasks.contains(&scored(&stored.task.task_name)))
-        {
+        let trained: Vec<&str> = self.trained().collect();
+        let taken = serving(&tasks(log, options), &trained);
+        let mut experts = Vec::new();
+        for index in taken {
+            let Some(number) = index.checked_sub(self.named.len()) else {
+                experts.push(self.named[index].clone());
+                continue;
+            };
+            // What comes behind those that were named is stored.
+            let stored = &self.stored[number];
             let read = || {
                 let logs = stored
                     .task
@@ -81,22 +88,27 @@ impl Experts {
         }
         Ok(experts)
     }
-}
 
-/// The name under which a task is scored.
-fn scored(task: &str, options: &Options) -> String {
-    let task = task.to_lowercase();
-    match (options.variant_mode, task.split_once('_')) {
-        (VariantMode::Agnostic, Some((task, _))) => task.to_owned(),
-        _ => task,
+    /// The tasks that experts trained: of those that were named, then of those that are stored.
+    fn trained(&self) -> impl Iterator<Item = &str> {
+        let stored = self.stored.iter().map(|stored| stored.task.task_name.as_str());
+        self.named.iter().map(SteLog::task_name).chain(stored)
     }
 }
 
+/// Positions of the experts that serve some of the tasks.
+fn serving(tasks: &[String], trained: &[&str]) -> BTreeSet<usize> {
+    tasks.iter().flat_map(|task| experts_serving(task, trained)).collect()
+}
+
+/// The names under which a lifetime's tasks are scored.
 fn tasks(log: &Log, options: &Options) -> Vec<String> {
-    log.rows
-        .task_names()
-        .values()
-        .iter()
-        .map(|task| scored(task, options))
-        .collect()
+    let scored = |task: &String| {
+        let task = task.to_lowercase();
+        match (options.variant_mode, task.split_once('_')) {
+            (VariantMode::Agnostic, Some((task, _))) => task.to_owned(),
+            _ => task,
+        }
+    };
+    log.rows.task_names().values().iter().map(scored).collect()
 }

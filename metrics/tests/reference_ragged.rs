@@ -1,0 +1,175 @@
+//! Oracle: ragged lifetimes drawn by chance, scored by l2metrics itself; `oracles/l2metrics_ragged.py` drew and scored them.
+//!
+//! Not here: lifetimes as they should be, see `reference_lifetimes`.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Read as _;
+use std::path::Path;
+
+use driftworld_metrics::{LifetimeMetrics, Options, SteLog, read_log, read_ste_log, score};
+use flate2::read::GzDecoder;
+use serde_json::Value;
+
+mod agreement;
+
+use agreement::compare;
+
+/// Lists with a value to an expert: the reference takes experts in the order in which a file system lists them.
+const PER_EXPERT: [&str; 6] = [
+    "ste_rel_perf_vals",
+    "ste_saturation_vals",
+    "ste_exp_to_sat_vals",
+    "se_saturation_vals",
+    "se_exp_to_sat_vals",
+    "sample_efficiency_vals",
+];
+
+fn oracle() -> Value {
+    let mut text = String::new();
+    GzDecoder::new(&include_bytes!("oracles/l2metrics_ragged.json.gz")[..])
+        .read_to_string(&mut text)
+        .unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+fn text(value: &Value) -> &str {
+    value.as_str().unwrap()
+}
+
+fn list(value: &Value) -> &[Value] {
+    value.as_array().unwrap()
+}
+
+/// A cell as Python's csv writes it.
+fn quoted(cell: &str) -> String {
+    if cell.contains(['\t', '"', '\n', '\r']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_owned()
+    }
+}
+
+/// Writes a log as the oracle did, not through our writer.
+fn write(dir: &Path, oracle: &Value, segments: &Value) {
+    let header: Vec<&str> = list(&oracle["header"]).iter().map(text).collect();
+    let mut files: BTreeMap<String, String> = BTreeMap::new();
+    for segment in list(segments) {
+        let (block, kind, worker) = (&segment["block"], text(&segment["kind"]), text(&segment["worker"]));
+        let file = files
+            .entry(format!("{worker}/{block}-{kind}"))
+            .or_insert_with(|| format!("{}\n", header.join("\t")));
+        let statuses = text(&segment["status"]).chars();
+        for (k, (status, exp)) in statuses.zip(list(&segment["exp"])).enumerate() {
+            let of = |column: &str| text(&segment[column][k]).to_owned();
+            let index = |list: &str, index: &Value| text(&oracle[list][index.as_u64().unwrap() as usize]).to_owned();
+            let cells = [
+                block.to_string(),
+                exp.to_string(),
+                worker.to_owned(),
+                kind.to_owned(),
+                text(&segment["subtype"]).to_owned(),
+                text(&segment["task"]).to_owned(),
+                index("params", &segment["params"]),
+                if status == 'c' { "complete" } else { "incomplete" }.to_owned(),
+                format!("20200913T122640.{:06}", exp.as_u64().unwrap()),
+                index("comments", &segment["comment"][k]),
+                of("pay"),
+                of("score"),
+            ];
+            writeln!(file, "{}", cells.map(|cell| quoted(&cell)).join("\t")).unwrap();
+        }
+    }
+    fs::create_dir_all(dir).unwrap();
+    let info = r#"{"metrics_columns": ["score", "pay"], "log_format_version": "1.1"}"#;
+    fs::write(dir.join("logger_info.json"), info).unwrap();
+    fs::write(dir.join("scenario_info.json"), "{}").unwrap();
+    for (folder, text) in files {
+        fs::create_dir_all(dir.join(&folder)).unwrap();
+        fs::write(dir.join(folder).join("data-log.tsv"), text).unwrap();
+    }
+}
+
+/// Sorts the lists that have a value to an expert.
+fn as_sets(tasks: &Value) -> Value {
+    let mut tasks = tasks.clone();
+    for values in tasks.as_object_mut().unwrap().values_mut() {
+        for name in PER_EXPERT {
+            if let Some(list) = values.get_mut(name).and_then(Value::as_array_mut) {
+                list.sort_by(|a, b| a.as_f64().partial_cmp(&b.as_f64()).unwrap());
+            }
+        }
+    }
+    tasks
+}
+
+/// Compares everything that the reference says of one lifetime.
+fn agree(place: &str, found: &LifetimeMetrics, expected: &Value) -> usize {
+    let regimes = list(&expected["regimes"]);
+    assert_eq!(found.regimes.len(), regimes.len(), "{place}: regimes");
+    let mut num_numbers = 0;
+    for (regime, expected) in found.regimes.iter().zip(regimes) {
+        let value = |name: &str| serde_json::to_value(regime.values.get(name)).unwrap();
+        let row = Value::Array(vec![
+            regime.regime_num.into(),
+            regime.block_num.into(),
+            regime.task_name.clone().into(),
+            value("saturation"),
+            value("exp_to_sat"),
+            value("term_perf"),
+            value("exp_to_term_perf"),
+            value("avg_perf"),
+        ]);
+        num_numbers += compare(&format!("{place}, regime {}", regime.regime_num), &row, expected);
+    }
+    let tasks = serde_json::to_value(&found.task_metrics).unwrap();
+    num_numbers += compare(
+        &format!("{place}, tasks"),
+        &as_sets(&tasks),
+        &as_sets(&expected["tasks"]),
+    );
+    let lifetime = serde_json::to_value(&found.lifetime).unwrap();
+    num_numbers += compare(&format!("{place}, lifetime"), &lifetime, &expected["lifetime"]);
+    let all = serde_json::to_value(found).unwrap();
+    for (name, expected) in expected["whole"].as_object().unwrap() {
+        num_numbers += compare(&format!("{place}, {name}"), &all[name], expected);
+    }
+    // The reference keeps ranges of tasks that were given and that the lifetime lacks.
+    num_numbers
+        + compare(
+            &format!("{place}, range"),
+            &all["normalization_data_range"],
+            &expected["range"],
+        )
+}
+
+#[test]
+fn ragged_lifetimes_have_the_references_numbers() {
+    let oracle = oracle();
+    let cases = list(&oracle["cases"]);
+    assert!(cases.len() >= 50, "{} lifetimes", cases.len());
+    let mut num_numbers = 0;
+    for case in cases {
+        let base = tempfile::tempdir().unwrap();
+        write(&base.path().join("life"), &oracle, &case["life"]);
+        let log = read_log(base.path().join("life")).unwrap();
+        // The reference lists the run of a task that was stored last first.
+        let experts: Vec<SteLog> = (list(&case["experts"]).iter().enumerate().rev())
+            .map(|(number, segments)| {
+                let dir = base.path().join(format!("expert{number}"));
+                write(&dir, &oracle, segments);
+                read_ste_log(dir).unwrap()
+            })
+            .collect();
+        for scored in list(&case["scored"]) {
+            let place = format!("seed {}, {}", case["seed"], scored["options"]);
+            let options: Options = serde_json::from_value(scored["options"].clone()).unwrap();
+            let found = score(&log, &experts, &options).unwrap();
+            num_numbers += agree(&place, &found, scored);
+        }
+    }
+    assert!(num_numbers > 10_000, "only {num_numbers} numbers were compared");
+}
