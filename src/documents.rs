@@ -8,6 +8,7 @@ use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{Scenario, SpecError, TaskSpec, World, nearest};
 use serde_json::Value;
 
+use crate::contents::{Contents, OtherContents};
 use crate::tasks::TaskError;
 
 /// Why a document cannot be had from its file.
@@ -30,12 +31,15 @@ pub enum DocumentError {
         /// The first byte that is no text.
         at: usize,
     },
+    /// The document is of another kind.
+    #[error(transparent)]
+    OtherContents(#[from] OtherContents),
     /// The document is wrong.
     #[error(transparent)]
     Spec(#[from] SpecError),
 }
 
-/// The text of a file.
+/// The text of a file, without the byte order mark that some editors put in front.
 ///
 /// # Errors
 /// [`DocumentError::Unreadable`], [`DocumentError::NotText`].
@@ -44,10 +48,29 @@ pub fn text(path: &Path) -> Result<String, DocumentError> {
         path: path.to_owned(),
         source,
     })?;
-    String::from_utf8(bytes).map_err(|error| DocumentError::NotText {
+    let text = String::from_utf8(bytes).map_err(|error| DocumentError::NotText {
         path: path.to_owned(),
         at: error.utf8_error().valid_up_to(),
+    })?;
+    Ok(match text.strip_prefix('\u{feff}') {
+        Some(text) => text.to_owned(),
+        None => text,
     })
+}
+
+/// The text of a file that should hold one of several kinds of documents.
+///
+/// # Errors
+/// As [`text`], and [`DocumentError::OtherContents`] for a folder, and for a text that shows itself to be of another kind.
+pub fn text_of(path: &Path, wanted: &[Contents]) -> Result<String, DocumentError> {
+    if let Some(other) = OtherContents::check(path, Contents::of_folder(path), wanted) {
+        return Err(other.into());
+    }
+    let text = text(path)?;
+    match OtherContents::check(path, Contents::of_text(&text), wanted) {
+        Some(other) => Err(other.into()),
+        None => Ok(text),
+    }
 }
 
 /// What a document is.
@@ -81,7 +104,7 @@ impl Kind {
     /// What a text is, seen from its keys: `blocks` make a scenario, `scenario` one of L2Explorer's, `maps` a maps file, `name`,
     /// `parameters` or `groups` a task spec, anything else a world.
     pub fn of(text: &str) -> Self {
-        let json: Value = serde_json::from_str(text).unwrap_or_default();
+        let json: Value = serde_json::from_str(text.trim_start_matches('\u{feff}')).unwrap_or_default();
         let has = |key: &str| json.get(key).is_some();
         if has("blocks") {
             Self::Scenario
@@ -193,6 +216,7 @@ mod tests {
         check(r#"{ "maps": [] }"#, Kind::Maps);
         check(r#"{ "name": "t" }"#, Kind::Task);
         check(r#"{ "objects": [] }"#, Kind::World);
+        check("\u{feff}{ \"blocks\": [] }", Kind::Scenario);
         check("{", Kind::World);
     }
 

@@ -22,6 +22,7 @@ pub use driftworld_spec as spec;
 
 pub mod columns;
 pub mod commands;
+pub mod contents;
 pub mod distances;
 pub mod documents;
 pub mod log_columns;

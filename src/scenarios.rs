@@ -9,6 +9,7 @@ use driftworld_curriculum::{CurriculumError, FoundWorld, Plan, Sources};
 use driftworld_spec::{Scenario, SpecError, TaskSpec, World, nearest};
 use serde_json::Value;
 
+use crate::contents::Contents;
 use crate::documents::{self, DocumentError};
 use crate::tasks::{self, TaskError};
 
@@ -31,7 +32,11 @@ impl ScenarioFile {
     /// # Errors
     /// [`DocumentError`] if it cannot be read or is wrong.
     pub fn read(path: &Path, warn: Warn) -> Result<Self, DocumentError> {
-        Ok(Self::from_text(path, &documents::text(path)?, warn)?)
+        Ok(Self::from_text(
+            path,
+            &documents::text_of(path, &[Contents::Scenario])?,
+            warn,
+        )?)
     }
 
     /// Reads a scenario from its text; what it names by paths is looked for as if it stood at `path`.
@@ -60,7 +65,7 @@ impl ScenarioFile {
 
     /// Whether a file is a scenario, in whichever form.
     pub fn is_one(path: &Path) -> bool {
-        let text = fs::read_to_string(path).unwrap_or_default();
+        let text = documents::text(path).unwrap_or_default();
         let json: Value = serde_json::from_str(&text).unwrap_or_default();
         json.get("blocks").is_some() || Scenario::is_l2explorer(&json)
     }
@@ -150,7 +155,7 @@ impl ScenarioFile {
 
     fn read_world(&self, path: &Path) -> Result<World, String> {
         let name = path.display().to_string();
-        let text = documents::text(path).map_err(|error| error.to_string())?;
+        let text = documents::text_of(path, &[Contents::World]).map_err(|error| error.to_string())?;
         let ours = World::from_json(&name, &text);
         match (self.original, ours) {
             (false, Ok(world)) => Ok(world),

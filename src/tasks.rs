@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::contents::Contents;
+use crate::documents::{self, DocumentError};
 use driftworld_spec::{DEFAULT_VARIANT, SpecError, TaskSpec, Variant, nearest};
 
 /// The tasks that are built in: name and text. The files are `examples/tasks/`.
@@ -37,6 +39,9 @@ pub enum TaskError {
         /// What the system says.
         source: std::io::Error,
     },
+    /// The file holds another kind of document, or is a folder.
+    #[error(transparent)]
+    Document(DocumentError),
     /// The document is wrong, or has no such variant.
     #[error(transparent)]
     Spec(#[from] SpecError),
@@ -69,18 +74,20 @@ pub fn task(name: &str) -> Result<Arc<TaskSpec>, TaskError> {
         return Ok(TaskSpec::from_json(&format!("{task}.json"), text)?);
     }
     let path = Path::new(task);
-    let text = match std::fs::read_to_string(path) {
-        Ok(text) => text,
-        Err(source) if source.kind() == std::io::ErrorKind::NotFound => {
-            return Err(TaskError::Unknown { name: task.to_owned() });
+    let text = documents::text_of(path, &[Contents::Task]).map_err(|error| match error {
+        DocumentError::Unreadable { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
+            TaskError::Unknown { name: task.to_owned() }
         }
-        Err(source) => {
-            return Err(TaskError::Unreadable {
-                path: path.to_owned(),
-                source,
-            });
-        }
-    };
+        DocumentError::Unreadable { path, source } => TaskError::Unreadable { path, source },
+        DocumentError::NotText { path, at } => TaskError::Unreadable {
+            path,
+            source: std::io::Error::new(
+                std::io::ErrorKind::InvalidData,
+                format!("byte {at} is not UTF-8; JSON documents are UTF-8 text"),
+            ),
+        },
+        other => TaskError::Document(other),
+    })?;
     Ok(TaskSpec::from_json(task, &text)?)
 }
 

@@ -174,6 +174,7 @@ pub(crate) fn cause_details<'py>(
 fn of_task(source: &TaskError) -> &'static str {
     match source {
         TaskError::Unreadable { .. } => "task/unreadable",
+        TaskError::Document(_) => "task/document",
         _ => "task/unknown",
     }
 }

@@ -179,10 +179,23 @@ def test_problems_go_into_json() -> None:
 
 def test_what_is_no_text_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "bytes.json").write_bytes(b"\xff\xfe")
-    for path in (tmp_path, tmp_path / "bytes.json"):
-        with pytest.raises(driftworld.TaskError, match="cannot be read") as refused:
+    with pytest.raises(driftworld.TaskError, match="cannot be read: byte 0 is not UTF-8") as refused:
+        TaskSpec.load(tmp_path / "bytes.json")
+    assert refused.value.code == "task/unreadable"
+
+
+def test_what_is_no_task_spec_is_called_what_it_is(tmp_path: Path, world_file: Path) -> None:
+    for path, found in ((tmp_path, "a folder"), (world_file, "a world")):
+        with pytest.raises(driftworld.TaskError, match=f"found {found}, expected a task spec; ") as refused:
             TaskSpec.load(path)
-        assert refused.value.code == "task/unreadable"
+        assert refused.value.code == "task/document"
+
+
+def test_a_byte_order_mark_is_no_part_of_a_document(tmp_path: Path) -> None:
+    path = tmp_path / "marked.json"
+    path.write_text('\ufeff{ "name": "marked" }', encoding="utf-8")
+    assert TaskSpec.load(path).name == "marked"
+    assert TaskSpec.from_json("marked", path.read_text(encoding="utf-8")).name == "marked"
 
 
 def test_what_a_command_refuses_has_code_and_place(tmp_path: Path) -> None:

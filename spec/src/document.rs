@@ -41,6 +41,8 @@ impl<'a> Document<'a> {
     }
 
     fn parse_with_repeats(name: &'a str, text: &'a str) -> Result<(Self, Vec<Problem>), SpecError> {
+        // A byte order mark, which some editors put in front, is no part of the document.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         if text.len() > MAX_BYTES {
             return Err(SpecError::TooLarge {
                 name: name.to_owned(),

@@ -85,6 +85,7 @@ impl Distance {
     }
 
     fn side(&self, name: &str) -> Result<Side, Failure> {
+        input::expect_world_or_task(name)?;
         if input::is_world_file(name) {
             let world = input::world(name, self.seed, self.index, false)?;
             Ok(Side::World(Box::new(world)))

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::contents::{Contents, OtherContents};
 use crate::documents;
 use crate::generator::Sampler;
 use crate::spec::maps::MapLibrary;
@@ -32,7 +33,7 @@ pub(crate) fn checksum(bytes: &[u8]) -> String {
 /// A world file, in our form or in the original's.
 pub(crate) fn world_file(path: &Path, l2explorer: bool) -> Result<(World, Vec<Warning>), Failure> {
     let name = path.display().to_string();
-    let text = text(path)?;
+    let text = documents::text_of(path, &[Contents::World])?;
     if l2explorer {
         return Ok(World::from_l2explorer(&name, &text)?);
     }
@@ -50,7 +51,7 @@ pub(crate) fn world_file(path: &Path, l2explorer: bool) -> Result<(World, Vec<Wa
 /// Whether an argument names a world file rather than a task: a JSON file whose top level has no `"parameters"` or `"name"`.
 pub(crate) fn is_world_file(name: &str) -> bool {
     let path = Path::new(name);
-    let Ok(text) = fs::read_to_string(path) else {
+    let Ok(text) = documents::text(path) else {
         return false;
     };
     match serde_json::from_str::<serde_json::Value>(&text) {
@@ -60,11 +61,23 @@ pub(crate) fn is_world_file(name: &str) -> bool {
     }
 }
 
+/// Refuses a file that shows itself to be neither a world nor a task spec, and a folder.
+pub(crate) fn expect_world_or_task(name: &str) -> Result<(), Failure> {
+    let path = Path::new(tasks::split(name).0);
+    let shown = || Contents::of_text(&documents::text(path).ok()?);
+    let found = Contents::of_folder(path).or_else(shown);
+    match OtherContents::check(path, found, &[Contents::World, Contents::Task]) {
+        Some(other) => Err(other.into()),
+        None => Ok(()),
+    }
+}
+
 /// The layouts of a maps file, or of all `.json` files of a folder.
 pub(crate) fn maps(path: &Path) -> Result<MapLibrary, Failure> {
     let mut library = MapLibrary::default();
     for file in json_files(path)? {
-        let read = MapLibrary::from_json(&file.display().to_string(), &text(&file)?)?;
+        let text = documents::text_of(&file, &[Contents::Maps])?;
+        let read = MapLibrary::from_json(&file.display().to_string(), &text)?;
         for layout in read.layouts() {
             if library.layouts().any(|known| known.id == layout.id) {
                 let id = layout.id;
@@ -126,6 +139,7 @@ impl WorldChoice {
 
     /// Reads or draws the world.
     pub(crate) fn world(&self) -> Result<World, Failure> {
+        expect_world_or_task(&self.world)?;
         if self.is_file() {
             return self.named(&self.world);
         }
@@ -134,6 +148,7 @@ impl WorldChoice {
 
     /// World number `index` of the variant, under the same seed.
     pub(crate) fn numbered(&self, index: u64) -> Result<World, Failure> {
+        expect_world_or_task(&self.world)?;
         if self.is_file() {
             return Err(Failure::input(format!(
                 "{}: is one world, not a variant that has worlds by number; name a world file",
@@ -164,6 +179,7 @@ impl WorldChoice {
 
 /// The world that an argument names: a file, or number `index` of a variant under a seed.
 pub(crate) fn world(name: &str, seed: u64, index: u64, l2explorer: bool) -> Result<World, Failure> {
+    expect_world_or_task(name)?;
     if !l2explorer && !is_world_file(name) {
         return Ok(Sampler::new(&tasks::variant(name)?, seed).world(index)?);
     }

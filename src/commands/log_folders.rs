@@ -5,6 +5,8 @@ use std::fs;
 use std::path::{Component, Path, PathBuf, absolute};
 
 use super::Failure;
+use crate::contents::{Contents, OtherContents};
+use crate::documents;
 
 /// How deep logs are looked for below a folder that is none itself.
 const MOST_LEVELS: usize = 4;
@@ -97,7 +99,13 @@ fn folders_to(log: &Path) -> Vec<String> {
 fn is_folder(argument: &Path) -> Result<(), Failure> {
     let found = match fs::metadata(argument) {
         Ok(kind) if kind.is_dir() => return Ok(()),
-        Ok(_) => "a file".to_owned(),
+        Ok(_) => {
+            let shown = documents::text(argument).ok().and_then(|text| Contents::of_text(&text));
+            if let Some(other) = OtherContents::check(argument, shown, &[Contents::Log]) {
+                return Err(other.into());
+            }
+            "a file".to_owned()
+        }
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => "nothing".to_owned(),
         Err(error) => error.to_string(),
     };

@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::contents::{Contents, OtherContents};
+use crate::documents;
 use crate::similarity::{DistanceMatrix, SimilarityError};
 
 use super::{Failure, input, output};
@@ -41,9 +43,12 @@ pub(crate) fn write(option: &str, path: &Path, matrix: &DistanceMatrix) -> Resul
 /// Reads a matrix. Without a file of labels beside it, the items of an array are called by their numbers.
 pub(crate) fn read(option: &str, path: &Path) -> Result<DistanceMatrix, Failure> {
     let named = |error: SimilarityError| Failure::input(format!("{}: {error}", path.display()));
+    if let Some(other) = OtherContents::check(path, Contents::of_folder(path), &[Contents::Matrix]) {
+        return Err(other.into());
+    }
     match format(option, path)? {
         Format::Csv => DistanceMatrix::from_csv(&input::text(path)?).map_err(named),
-        Format::Json => DistanceMatrix::from_json(&input::text(path)?).map_err(named),
+        Format::Json => DistanceMatrix::from_json(&documents::text_of(path, &[Contents::Matrix])?).map_err(named),
         Format::Npy => {
             let bytes = fs::read(path)
                 .map_err(|error| Failure::input(format!("{}: cannot be read: {error}", path.display())))?;

@@ -10,6 +10,8 @@ use clap::Args;
 use super::pictures::{SheetRow, sheet};
 use super::render::Views;
 use super::{Failure, input, output};
+use crate::contents::Contents;
+use crate::documents;
 use crate::scenarios::is_original;
 
 /// The most variants that one picture shows.
@@ -139,7 +141,7 @@ impl Shown {
 
 /// The variants that a scenario learns, each as often as it comes; of a drift both ends.
 fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
-    let text = input::text(file)?;
+    let text = documents::text_of(file, &[Contents::Scenario])?;
     if is_original(&text) {
         return Err(Failure::input(format!(
             "{}: found a scenario of L2Explorer, which lives map files, expected one of ours; draw its maps with driftworld render --l2explorer",

@@ -1,7 +1,8 @@
 //! `driftworld validate`: every problem of a document with its place.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use crate::contents::Contents;
 use crate::documents::{self, Checked, Kind};
 use crate::scenarios::task_from;
 use crate::spec::Problem;
@@ -28,28 +29,25 @@ pub(crate) struct Validate {
     json: bool,
 }
 
+/// What is judged; anything else that shows what it is, is refused as such.
+const DOCUMENTS: [Contents; 4] = [Contents::Task, Contents::World, Contents::Scenario, Contents::Maps];
+
 /// What was found in one file.
 struct Verdict {
     path: PathBuf,
-    checked: Checked,
+    /// What the document came to, or why there is none.
+    found: Result<Checked, Failure>,
 }
 
 impl Validate {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let files = files(&self.files)?;
-        let verdicts = files
-            .into_iter()
-            .map(|path| self.check(path))
-            .collect::<Result<Vec<_>, _>>()?;
+        let verdicts: Vec<Verdict> = self.files.iter().flat_map(|path| self.judge(path)).collect();
         if self.json {
             output::json(&verdicts.iter().map(Verdict::to_json).collect::<Vec<_>>())?;
         } else {
             verdicts.iter().try_for_each(Verdict::print)?;
         }
-        let wrong = verdicts
-            .iter()
-            .filter(|verdict| verdict.checked.error.is_some())
-            .count();
+        let wrong = verdicts.iter().filter(|verdict| !verdict.is_valid()).count();
         if wrong == 0 {
             return Ok(());
         }
@@ -57,35 +55,57 @@ impl Validate {
         Err(Failure::input(format!("{wrong} of {} {files} refused", verdicts.len())))
     }
 
-    fn check(&self, path: PathBuf) -> Result<Verdict, Failure> {
-        let text = input::text(&path)?;
+    /// The verdicts on a file, or on the files of a folder; also on what cannot be read, so that no file goes without.
+    fn judge(&self, path: &Path) -> Vec<Verdict> {
+        let files = match Contents::of_folder(path) {
+            // What lies in a log is no document of ours, and `logs validate` judges it.
+            Some(Contents::Log) => Ok(vec![path.to_owned()]),
+            _ => input::json_files(path),
+        };
+        match files {
+            Ok(files) => files.into_iter().map(|path| self.verdict(path)).collect(),
+            Err(failure) => vec![Verdict {
+                path: path.to_owned(),
+                found: Err(failure),
+            }],
+        }
+    }
+
+    fn verdict(&self, path: PathBuf) -> Verdict {
+        let found = self.check(&path);
+        Verdict { path, found }
+    }
+
+    fn check(&self, path: &Path) -> Result<Checked, Failure> {
+        let text = documents::text_of(path, &DOCUMENTS)?;
         let name = path.display().to_string();
         let kind = match Kind::of(&text) {
             Kind::World if self.l2explorer => Kind::L2ExplorerWorld,
             kind => kind,
         };
-        let checked = documents::check(&name, &text, kind, &mut |task| task_from(&path, task));
-        Ok(Verdict { path, checked })
+        Ok(documents::check(&name, &text, kind, &mut |task| task_from(path, task)))
     }
-}
-
-/// The files named, and those of the folders named, sorted.
-fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
-    let mut files = Vec::new();
-    for path in paths {
-        files.append(&mut input::json_files(path)?);
-    }
-    Ok(files)
 }
 
 impl Verdict {
+    fn is_valid(&self) -> bool {
+        self.found.as_ref().is_ok_and(|checked| checked.error.is_none())
+    }
+
     fn print(&self) -> Result<(), Failure> {
-        self.checked
+        let checked = match &self.found {
+            Ok(checked) => checked,
+            Err(failure) => {
+                output::note(failure.text());
+                return Ok(());
+            }
+        };
+        checked
             .warnings
             .iter()
             .for_each(|warning| output::note(format!("warning: {warning}")));
-        match &self.checked.error {
-            None => output::line(format!("{}: a valid {}", self.path.display(), self.checked.kind.name())),
+        match &checked.error {
+            None => output::line(format!("{}: a valid {}", self.path.display(), checked.kind.name())),
             Some(error) => {
                 output::note(error.to_string());
                 Ok(())
@@ -94,7 +114,14 @@ impl Verdict {
     }
 
     fn to_json(&self) -> Value {
-        let problems = self.checked.error.as_ref().map(|error| {
+        let checked = match &self.found {
+            Ok(checked) => checked,
+            Err(failure) => {
+                let problem = json!({ "code": "document/unreadable", "message": failure.text() });
+                return json!({ "file": self.path, "kind": null, "valid": false, "problems": [problem], "warnings": [] });
+            }
+        };
+        let problems = checked.error.as_ref().map(|error| {
             let listed: Vec<Value> = error.problems().iter().map(problem_json).collect();
             if listed.is_empty() {
                 vec![json!({ "code": error.code(), "message": error.to_string() })]
@@ -103,8 +130,8 @@ impl Verdict {
             }
         });
         json!({
-            "file": self.path, "kind": self.checked.kind.name(), "valid": self.checked.error.is_none(),
-            "problems": problems.unwrap_or_default(), "warnings": self.checked.warnings,
+            "file": self.path, "kind": checked.kind.name(), "valid": checked.error.is_none(),
+            "problems": problems.unwrap_or_default(), "warnings": checked.warnings,
         })
     }
 }

@@ -8,6 +8,7 @@ mod lived;
 mod logs;
 mod metrics;
 mod original_scenarios;
+mod other_contents;
 mod report;
 mod run;
 mod terminal;

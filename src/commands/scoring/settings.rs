@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::contents::Contents;
+use crate::documents;
 use crate::metrics::{DataRange, Options};
 use crate::spec::nearest;
 use serde_json::{Map, Value, json};
@@ -35,6 +37,7 @@ pub(super) struct Loaded {
 
 /// Reads a settings file, of l2metrics or ours.
 pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
+    documents::text_of(path, &[Contents::Settings])?;
     let mut settings = object(path, "an object of settings, such as {\"perf_measure\": \"reward\"}")?;
     let log_dir = settings.get("log_dir").and_then(Value::as_str);
     let log_dir = log_dir.filter(|dir| !dir.is_empty()).map(PathBuf::from);

@@ -1,0 +1,200 @@
+//! [`Contents`]: what a file or folder holds, as far as its keys show it, so that a command that was given another kind of document can
+//! say so. Whether the document is sound is found out by whoever reads it.
+
+use std::path::Path;
+
+use driftworld_spec::Scenario;
+use serde_json::Value;
+
+/// What a file or folder holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Contents {
+    /// A task spec.
+    Task,
+    /// A world, in our form or the original's.
+    World,
+    /// A scenario, in our form or the original's.
+    Scenario,
+    /// Layouts.
+    Maps,
+    /// How lifetimes are scored: l2metrics' settings, or ours.
+    Settings,
+    /// A distance matrix.
+    Matrix,
+    /// The folder of a log, or the file that says what is in one.
+    Log,
+    /// A folder that is no log.
+    Folder,
+}
+
+impl Contents {
+    /// Every kind.
+    pub const ALL: [Self; 8] = [
+        Self::Task,
+        Self::World,
+        Self::Scenario,
+        Self::Maps,
+        Self::Settings,
+        Self::Matrix,
+        Self::Log,
+        Self::Folder,
+    ];
+
+    /// What a JSON text shows itself to be; `None` for one that shows nothing, or is no JSON.
+    pub fn of_text(text: &str) -> Option<Self> {
+        let json: Value = serde_json::from_str(text.trim_start_matches('\u{feff}')).ok()?;
+        let map = json.as_object()?;
+        let has = |keys: &[&str]| keys.iter().any(|key| map.contains_key(*key));
+        if has(&["blocks"]) || Scenario::is_l2explorer(&json) {
+            Some(Self::Scenario)
+        } else if has(&["maps"]) {
+            Some(Self::Maps)
+        } else if has(&["labels"]) && has(&["values"]) {
+            Some(Self::Matrix)
+        } else if has(&["metrics_columns", "scenario_type"]) {
+            Some(Self::Log)
+        } else if has(&[
+            "perf_measure",
+            "maintenance_method",
+            "transfer_method",
+            "normalization_method",
+        ]) {
+            Some(Self::Settings)
+        } else if has(&["parameters", "groups", "variants", "world"]) {
+            Some(Self::Task)
+        } else if has(&[
+            "environment_params",
+            "agent_params",
+            "objects",
+            "game_mode",
+            "image_params",
+        ]) {
+            Some(Self::World)
+        } else {
+            None
+        }
+    }
+
+    /// What a folder is; `None` for anything else.
+    pub fn of_folder(path: &Path) -> Option<Self> {
+        let has_info = || {
+            ["logger_info.json", "scenario_info.json"]
+                .iter()
+                .any(|name| path.join(name).is_file())
+        };
+        path.is_dir().then(|| if has_info() { Self::Log } else { Self::Folder })
+    }
+
+    /// What messages call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Task => "a task spec",
+            Self::World => "a world",
+            Self::Scenario => "a scenario",
+            Self::Maps => "a maps file",
+            Self::Settings => "settings of metrics",
+            Self::Matrix => "a distance matrix",
+            Self::Log => "a log",
+            Self::Folder => "a folder",
+        }
+    }
+
+    /// What to do about it where one of `wanted` was asked for: how to make that, or else what takes this.
+    fn advice(self, wanted: &[Self], path: &Path) -> String {
+        let path = path.display();
+        match self {
+            Self::Task if wanted.contains(&Self::Scenario) => {
+                format!("make one of its variants by `driftworld curriculum {path} -o scenario.json`")
+            }
+            Self::Task if wanted.contains(&Self::World) => {
+                format!("draw one by `driftworld sample {path} -o world.json`")
+            }
+            Self::Task if wanted.contains(&Self::Matrix) => {
+                format!("make one by `driftworld order {path} --matrix matrix.json`")
+            }
+            Self::Scenario if wanted.contains(&Self::Log) => format!("make one by `driftworld run {path} --logs DIR`"),
+            Self::Task => format!("`driftworld sample {path}` draws its worlds"),
+            Self::World => format!("`driftworld render {path}` draws it"),
+            Self::Scenario => format!("`driftworld run {path}` lives it"),
+            Self::Maps => format!("`driftworld sample TASK --maps {path}` draws worlds in its layouts"),
+            Self::Settings => format!("`driftworld metrics LOG --load-settings {path}` scores by them"),
+            Self::Matrix => format!("`driftworld order --from-matrix {path}` orders its items"),
+            Self::Log => "`driftworld metrics DIR` scores the log in the folder DIR".to_owned(),
+            Self::Folder => "name a file in it".to_owned(),
+        }
+    }
+
+    /// The names of several kinds, as messages list what was expected.
+    pub(crate) fn either(kinds: &[Self]) -> String {
+        let names: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
+        match names.split_last() {
+            Some((last, before)) if !before.is_empty() => format!("{} or {last}", before.join(", ")),
+            _ => names.concat(),
+        }
+    }
+}
+
+/// What was found in place of a document of another kind. Says the file, both kinds, and what to do.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{path}: found {found}, expected {expected}; {advice}", found = found.name())]
+pub struct OtherContents {
+    path: String,
+    found: Contents,
+    expected: String,
+    advice: String,
+}
+
+impl OtherContents {
+    /// What is wrong where `found` is none of those that are wanted; `None` where it is one, or shows nothing.
+    pub(crate) fn check(path: &Path, found: Option<Contents>, wanted: &[Contents]) -> Option<Self> {
+        let found = found.filter(|found| !wanted.contains(found))?;
+        Some(Self {
+            path: path.display().to_string(),
+            found,
+            expected: Contents::either(wanted),
+            advice: found.advice(wanted, path),
+        })
+    }
+
+    /// What the document is.
+    pub fn found(&self) -> Contents {
+        self.found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_text_is_shows_in_its_keys() {
+        let check = |text: &str, expected: Option<Contents>| assert_eq!(Contents::of_text(text), expected, "{text}");
+        check(r#"{ "name": "s", "blocks": [] }"#, Some(Contents::Scenario));
+        check(r#"{ "maps": [] }"#, Some(Contents::Maps));
+        check(r#"{ "labels": ["a"], "values": [[0]] }"#, Some(Contents::Matrix));
+        check(r#"{ "perf_measure": "reward" }"#, Some(Contents::Settings));
+        check(r#"{ "metrics_columns": ["reward"] }"#, Some(Contents::Log));
+        check("\u{feff}{ \"name\": \"t\", \"groups\": [] }", Some(Contents::Task));
+        // A name alone may be that of a scenario whose other keys are misspelt.
+        check(r#"{ "name": "t" }"#, None);
+        check(r#"{ "max_steps": 3, "objects": [] }"#, Some(Contents::World));
+        check(r#"{ "max_steps": 3 }"#, None);
+        check("[1]", None);
+        check("{", None);
+    }
+
+    #[test]
+    fn what_is_wanted_or_shows_nothing_is_let_through() {
+        let path = Path::new("a.json");
+        assert_eq!(OtherContents::check(path, None, &[Contents::Task]), None);
+        assert_eq!(
+            OtherContents::check(path, Some(Contents::Task), &[Contents::World, Contents::Task]),
+            None
+        );
+        let other = OtherContents::check(path, Some(Contents::Task), &[Contents::Scenario]).unwrap();
+        assert_eq!(
+            other.to_string(),
+            "a.json: found a task spec, expected a scenario; make one of its variants by `driftworld curriculum a.json -o scenario.json`"
+        );
+    }
+}

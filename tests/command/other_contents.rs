@@ -1,0 +1,186 @@
+//! Every command that takes a document says of one of another kind what it is, what was wanted, and what to do. What documents are is
+//! seen in `src/contents.rs`.
+
+use std::fs;
+use std::path::Path;
+
+use crate::terminal::{driftworld_in, fail_in, output, root, scratch, succeed_in};
+
+/// Each kind: a file or folder of it in the scratch folder, and what messages call it.
+const KINDS: [(&str, &str); 7] = [
+    ("task.json", "a task spec"),
+    ("world.json", "a world"),
+    ("scenario.json", "a scenario"),
+    ("maps.json", "a maps file"),
+    ("settings.json", "settings of metrics"),
+    ("matrix.json", "a distance matrix"),
+    ("log", "a log"),
+];
+
+/// Each command with `DOC` in place of the document, and the kinds that it takes.
+const COMMANDS: [(&str, &[&str]); 26] = [
+    ("run DOC --logs new", &["scenario.json"]),
+    ("render DOC", &["task.json", "world.json"]),
+    ("render task.json --maps DOC", &["maps.json"]),
+    ("console DOC", &["task.json", "world.json"]),
+    ("photograph DOC", &["task.json", "world.json"]),
+    ("convert DOC", &["task.json", "world.json", "scenario.json"]),
+    ("sample DOC", &["task.json"]),
+    ("sample task.json --maps DOC", &["maps.json"]),
+    ("tasks show DOC", &["task.json"]),
+    ("vary DOC#red --element R --distance 0.1", &["task.json"]),
+    ("sheet DOC", &["task.json"]),
+    ("sheet --scenario DOC", &["scenario.json"]),
+    ("distance DOC task.json", &["task.json", "world.json"]),
+    ("distance world.json DOC", &["task.json", "world.json"]),
+    ("distance DOC world.json --pictures", &["task.json", "world.json"]),
+    ("order DOC", &["task.json"]),
+    ("order --from-matrix DOC", &["matrix.json"]),
+    ("curriculum DOC", &["task.json"]),
+    (
+        "validate DOC",
+        &["task.json", "world.json", "scenario.json", "maps.json"],
+    ),
+    ("logs validate DOC", &["log"]),
+    ("logs aggregate DOC -o table.tsv", &["log"]),
+    ("metrics DOC", &["log"]),
+    ("metrics log --load-settings DOC", &["settings.json"]),
+    ("report DOC -o page.html", &["log"]),
+    ("transfer-report DOC --distances matrix.json", &["log"]),
+    ("transfer-report log --distances DOC", &["matrix.json"]),
+];
+
+/// A folder with something of every kind, each made by the command that makes such.
+fn everything() -> tempfile::TempDir {
+    let folder = scratch();
+    let path = folder.path();
+    fs::copy(root().join("examples/tasks/find_objects.json"), path.join("task.json")).expect("the example is there");
+    succeed_in(path, &["sample", "task.json", "-o", "world.json"]);
+    let short = ["--learn", "1", "--eval-episodes", "1"];
+    let curriculum = ["curriculum", "task.json#red", "task.json#blue", "-o", "scenario.json"];
+    succeed_in(path, &[&curriculum[..], &short[..]].concat());
+    succeed_in(path, &["order", "task.json", "--matrix", "matrix.json"]);
+    succeed_in(path, &["run", "scenario.json", "--agent", "random", "--logs", "log"]);
+    fs::write(path.join("settings.json"), r#"{ "perf_measure": "reward" }"#).expect("the folder is ours");
+    let maps = root().join("tests/documents/good/maps/one_map.json");
+    fs::copy(maps, path.join("maps.json")).expect("the document is there");
+    folder
+}
+
+fn arguments(command: &str, document: &str) -> Vec<String> {
+    command.split(' ').map(|word| word.replace("DOC", document)).collect()
+}
+
+#[test]
+fn a_document_of_another_kind_is_called_what_it_is() {
+    let folder = everything();
+    for (command, taken) in COMMANDS {
+        for (document, name) in KINDS.into_iter().filter(|(document, _)| !taken.contains(document)) {
+            let arguments = arguments(command, document);
+            let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+            let error = fail_in(folder.path(), 1, &arguments);
+            let line = error.lines().next().unwrap_or_default();
+            assert!(
+                line.contains(document) && line.contains(&format!(": found {name}, expected a"))
+                    || line.contains(&format!(": found {name}, expected settings")),
+                "{arguments:?}: {error}"
+            );
+            assert!(line.contains("`driftworld "), "{arguments:?} says what to do: {error}");
+            // `validate` counts, in a line of its own.
+            assert!(error.lines().count() <= 2, "{arguments:?}: {error}");
+        }
+    }
+    assert!(!folder.path().join("new").exists(), "no log was begun");
+}
+
+#[test]
+fn what_messages_advise_works() {
+    let folder = everything();
+    let path = folder.path();
+    let error = fail_in(path, 1, &["run", "task.json"]);
+    let advised = error.split('`').nth(1).expect("a command between backticks");
+    let words: Vec<&str> = advised.split(' ').skip(1).collect();
+    succeed_in(path, &words);
+    assert!(fs::read_to_string(path.join("scenario.json")).is_ok_and(|text| text.contains("\"blocks\"")));
+}
+
+/// Copies of the documents with the byte order mark that some editors put in front.
+fn marked(folder: &Path) {
+    for (document, _) in KINDS.into_iter().filter(|(document, _)| *document != "log") {
+        let path = folder.join(document);
+        let text = fs::read_to_string(&path).expect("it was written");
+        fs::write(&path, format!("\u{feff}{text}")).expect("the folder is ours");
+    }
+}
+
+#[test]
+fn a_byte_order_mark_is_no_part_of_a_document() {
+    let folder = everything();
+    let path = folder.path();
+    marked(path);
+    let said = succeed_in(
+        path,
+        &["validate", "task.json", "world.json", "scenario.json", "maps.json"],
+    );
+    assert_eq!(
+        said.lines().filter(|line| line.contains(": a valid ")).count(),
+        4,
+        "{said}"
+    );
+    for command in [
+        "sample task.json#red",
+        "distance world.json task.json#red",
+        "run scenario.json --agent random --logs again",
+        "convert scenario.json",
+        "convert world.json --maps maps.json",
+        "order --from-matrix matrix.json",
+        "metrics log --load-settings settings.json",
+    ] {
+        succeed_in(
+            path,
+            &arguments(command, "").iter().map(String::as_str).collect::<Vec<_>>(),
+        );
+    }
+    // Lines and columns are those that an editor shows.
+    fs::write(path.join("broken.json"), "\u{feff}{ \"name\": \"t\", \"grups\": [] }").expect("the folder is ours");
+    let error = fail_in(path, 1, &["validate", "broken.json"]);
+    assert!(error.starts_with("broken.json:1:16 (/grups)"), "{error}");
+}
+
+#[test]
+fn every_file_is_judged_whatever_the_others_are() {
+    let folder = everything();
+    let path = folder.path();
+    fs::write(path.join("latin.json"), b"{ \"name\": \"caf\xe9\" }").expect("the folder is ours");
+    let files = ["task.json", "missing.json", "latin.json", "matrix.json", "world.json"];
+    let judged = output(&mut driftworld_in(path, &[&["validate"], &files[..]].concat()));
+    let (said, error) = (
+        String::from_utf8_lossy(&judged.stdout),
+        String::from_utf8_lossy(&judged.stderr),
+    );
+    assert_eq!(judged.status.code(), Some(1));
+    assert_eq!(said.lines().count(), 2, "{said}");
+    assert!(
+        error.contains("missing.json: cannot be read") && error.contains("latin.json: byte 14 is not UTF-8"),
+        "{error}"
+    );
+    assert!(
+        error.contains("matrix.json: found a distance matrix") && error.contains("3 of 5 files refused"),
+        "{error}"
+    );
+    let judged = output(&mut driftworld_in(
+        path,
+        &[&["validate", "--json"], &files[..]].concat(),
+    ));
+    let verdicts: serde_json::Value = serde_json::from_slice(&judged.stdout).expect("JSON");
+    let valid: Vec<bool> = verdicts
+        .as_array()
+        .into_iter()
+        .flatten()
+        .map(|verdict| verdict["valid"] == true)
+        .collect();
+    assert_eq!(valid, [true, false, false, false, true]);
+    // One bad file in a folder leaves the others their verdicts.
+    let judged = output(&mut driftworld_in(path, &["validate", "."]));
+    assert!(String::from_utf8_lossy(&judged.stdout).contains("scenario.json: a valid scenario"));
+}
