@@ -34,6 +34,7 @@ mod scoring;
 mod sheet;
 mod table;
 mod tasks;
+mod temporary;
 mod transfer_report;
 mod unity;
 mod validate;
@@ -141,16 +142,12 @@ pub(crate) enum Failure {
 
 impl Failure {
     /// Says on standard error what went wrong.
-    #[expect(
-        clippy::print_stderr,
-        reason = "this is the one place where the command reports its failure"
-    )]
     fn report(&self) -> u8 {
         let (text, code) = match self {
             Self::Input(text, _) => (text, 1),
             Self::Usage(text) => (text, 2),
         };
-        eprintln!("error: {text}");
+        output::to_standard_error(&format!("error: {text}"));
         code
     }
 
@@ -189,7 +186,7 @@ fn quiet_on_closed_pipe() {
     let default = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
         let text = info.payload_as_str().unwrap_or_default();
-        if text.starts_with("failed printing to stdout") && text.contains("Broken pipe") {
+        if text.starts_with("failed printing to std") && text.contains("Broken pipe") {
             #[expect(
                 clippy::exit,
                 reason = "the reader of our output has gone: there is nobody left to tell"

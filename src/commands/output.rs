@@ -8,8 +8,8 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use tempfile::NamedTempFile;
 
+use super::temporary::{Temporary, remove_leftovers};
 use super::{Answer, Failure};
 
 /// What is said while somebody wants it handed back. Not a thing of one thread: subcommands work with many.
@@ -74,15 +74,16 @@ pub(crate) fn json(value: &impl Serialize) -> Result<(), Failure> {
 }
 
 /// Says something on standard error that is not a result.
-#[expect(
-    clippy::print_stderr,
-    reason = "warnings belong on standard error, beside the results"
-)]
 pub(crate) fn note(text: impl AsRef<str>) {
     if keep(|answer| answer.notes.push(text.as_ref().to_owned())) {
         return;
     }
-    eprintln!("{}", text.as_ref());
+    to_standard_error(text.as_ref());
+}
+
+/// A line on standard error. Where its reader has gone, there is nobody to tell, and the work goes on.
+pub(super) fn to_standard_error(text: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
 /// Says on standard error what is odd.
@@ -93,29 +94,42 @@ pub(crate) fn warning(text: impl AsRef<str>) {
 /// Writes a file under a temporary name beside its own and renames it: it is there whole or not at all.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     let failed = |error: std::io::Error| unwritable(path, &error);
-    let mut file = temporary(path).map_err(failed)?;
+    let mut file = beside(path).map_err(failed)?;
     file.write_all(bytes).map_err(failed)?;
     persist(file, path)
 }
 
-/// A file to write into until it can take `path`'s name: in the same folder, which is made where it is missing.
-pub(crate) fn temporary(path: &Path) -> std::io::Result<NamedTempFile> {
-    if is_special(path) {
-        return NamedTempFile::new();
+/// A file to write into for long until it can take `path`'s name, as [`beside`]; what killed processes left of it is removed.
+pub(crate) fn temporary(path: &Path) -> std::io::Result<Temporary> {
+    let file = beside(path)?;
+    if !is_special(path) {
+        let (folder, name) = place(&behind_links(path));
+        remove_leftovers(&folder, Some(&name));
     }
-    let path = behind_links(path);
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    fs::create_dir_all(folder)?;
-    NamedTempFile::new_in(folder)
+    Ok(file)
+}
+
+/// A file to write into until it can take `path`'s name: in the same folder, which is made where it is missing.
+fn beside(path: &Path) -> std::io::Result<Temporary> {
+    if is_special(path) {
+        return Temporary::nameless();
+    }
+    let (folder, name) = place(&behind_links(path));
+    fs::create_dir_all(&folder)?;
+    Temporary::new(&folder, &name)
+}
+
+/// The folder of a file, and its name there.
+fn place(path: &Path) -> (PathBuf, String) {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    (folder.unwrap_or(Path::new(".")).to_owned(), name)
 }
 
 /// Gives a finished temporary file its name.
 ///
 /// A device or a pipe cannot be given away: what was written is copied into it instead.
-pub(crate) fn persist(file: NamedTempFile, path: &Path) -> Result<(), Failure> {
+pub(crate) fn persist(file: Temporary, path: &Path) -> Result<(), Failure> {
     let failed = |error: std::io::Error| unwritable(path, &error);
     if is_special(path) {
         let mut out = fs::OpenOptions::new().write(true).open(path).map_err(failed)?;
@@ -123,7 +137,7 @@ pub(crate) fn persist(file: NamedTempFile, path: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     file.as_file().sync_all().map_err(failed)?;
-    let file = file.persist(behind_links(path)).map_err(|error| failed(error.error))?;
+    let file = file.persist(&behind_links(path)).map_err(failed)?;
     readable_by_all(&file).map_err(failed)
 }
 

@@ -10,8 +10,9 @@ use crate::spec::{Variant, World, maps::MapLibrary};
 use crate::tasks;
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
-use tempfile::NamedTempFile;
 
+use super::interrupt::Interrupt;
+use super::temporary::{Temporary, remove_leftovers};
 use super::{Failure, input, output};
 
 /// The most worlds that are drawn at once while streaming.
@@ -242,7 +243,7 @@ impl Sample {
     }
 
     /// A file under a temporary name in the folder of the output, which appears when it is whole.
-    fn temporary(&self) -> Result<BufWriter<NamedTempFile>, Failure> {
+    fn temporary(&self) -> Result<BufWriter<Temporary>, Failure> {
         let file = output::temporary(&self.output).map_err(|error| self.failed(&error))?;
         Ok(BufWriter::new(file))
     }
@@ -251,7 +252,7 @@ impl Sample {
         Failure::input(format!("{}: cannot be written: {error}", self.output.display()))
     }
 
-    fn persist(&self, file: BufWriter<NamedTempFile>) -> Result<(), Failure> {
+    fn persist(&self, file: BufWriter<Temporary>) -> Result<(), Failure> {
         let file = file.into_inner().map_err(|error| self.failed(&error.into_error()))?;
         output::persist(file, &self.output)
     }
@@ -293,6 +294,7 @@ impl Sample {
 
     fn files(&self, source: &Source, range: std::ops::Range<u64>) -> Result<(), Failure> {
         let count = range.end - range.start;
+        remove_leftovers(&self.output, None);
         each(source, range, |(index, _, world)| {
             let path = self.output.join(format!("{index:08}.json"));
             output::write(&path, world.to_json_pretty().as_bytes())
@@ -307,6 +309,8 @@ fn each(
     range: std::ops::Range<u64>,
     mut take: impl FnMut((u64, String, World)) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
+    // Whoever is asked to stop gives up what is half written, and removes it.
+    let interrupt = Interrupt::listen()?;
     let bar = output::progress(range.end - range.start, "sampling");
     let mut first = range.start;
     let mut chunk = 16;
@@ -318,6 +322,13 @@ fn each(
             let (variant, world) = world?;
             objects += world.objects.len() as u64;
             take((index, variant, world))?;
+            if interrupt.is_asked() && index + 1 < range.end {
+                let done = index + 1 - range.start;
+                return Err(Failure::input(format!(
+                    "interrupted after {done} of {} worlds; what was half written is removed",
+                    range.end - range.start
+                )));
+            }
         }
         bar.inc(next - first);
         let each = (objects / (next - first)).max(1);

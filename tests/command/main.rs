@@ -1,9 +1,11 @@
 //! The `driftworld` command as its users meet it, a file per subcommand. What the libraries under it do is tested in their rooms.
 
 mod assets;
+mod closed_pipes;
 mod console;
 mod curriculum;
 mod general;
+mod half_written;
 mod lived;
 mod logs;
 mod metrics;

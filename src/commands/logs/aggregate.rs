@@ -7,8 +7,8 @@ use crate::columns;
 use crate::log_columns::write_log_table;
 use crate::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
 use clap::{Args, ValueEnum};
-use tempfile::NamedTempFile;
 
+use super::super::temporary::Temporary;
 use super::super::{Failure, log_folders, output};
 use super::count;
 
@@ -150,7 +150,7 @@ impl Aggregate {
         };
         let file = output::temporary(&self.output).map_err(|error| failed(&error))?;
         let file = written(table, format, BufWriter::new(file)).map_err(|error| failed(&error))?;
-        let file: NamedTempFile = file.into_inner().map_err(|error| failed(&error.into_error()))?;
+        let file: Temporary = file.into_inner().map_err(|error| failed(&error.into_error()))?;
         output::persist(file, &self.output)
     }
 }

@@ -1,0 +1,116 @@
+//! Where whoever reads the output or the messages has gone, as with `| head`, every command ends without a word and without a panic.
+
+use std::process::Stdio;
+
+use crate::terminal::{driftworld_in, root, scratch, succeed, succeed_in};
+
+/// Every subcommand, as it prints something: results, messages, or both.
+const COMMANDS: [&str; 33] = [
+    "--help",
+    "run --help",
+    "nonsense",
+    "demo --help",
+    "tasks list",
+    "tasks show find_objects",
+    "validate scenario.json missing.json",
+    "validate scenario.json --json",
+    "sample find_objects --count 50 --jsonl",
+    "sample nowhere",
+    "vary find_objects#red --element R --distance 0.1",
+    "convert find_objects --to l2explorer",
+    "render find_objects --size 32 -o a.png",
+    "sheet find_objects#red --size 32 -o b.png",
+    "assets list",
+    "assets show nothing",
+    "photograph world.json -o photographs",
+    "console find_objects",
+    "distance find_objects#red find_objects#dusk --explain",
+    "order find_objects",
+    "curriculum find_objects",
+    "run scenario.json --agent random --logs new",
+    "logs validate log",
+    "logs aggregate log --format csv -o -",
+    "metrics log",
+    "report log -o page.html",
+    "transfer-report log --distances matrix.json",
+    "transfer-report nowhere --distances matrix.json",
+    "schema task",
+    "unity --list",
+    "bench nothing",
+    "doctor",
+    "doctor --json",
+];
+
+/// A pipe whose reading end is closed.
+fn closed() -> Stdio {
+    let (reader, writer) = std::io::pipe().expect("the machine has pipes");
+    drop(reader);
+    writer.into()
+}
+
+#[test]
+fn every_command_ends_quietly_where_nobody_reads() {
+    let folder = scratch();
+    let path = folder.path();
+    let curriculum = [
+        "curriculum",
+        "find_objects#red",
+        "find_objects#blue",
+        "-o",
+        "scenario.json",
+    ];
+    succeed_in(
+        path,
+        &[&curriculum[..], &["--learn", "1", "--eval-episodes", "1"]].concat(),
+    );
+    succeed_in(path, &["run", "scenario.json", "--agent", "random", "--logs", "log"]);
+    succeed_in(path, &["order", "find_objects", "--matrix", "matrix.json"]);
+    // A world of one object, so that its photographs are soon taken.
+    let world = r#"{ "objects": [{ "class": "cube", "coordinates": [3, 4] }] }"#;
+    std::fs::write(path.join("world.json"), world).expect("the folder is ours");
+    for command in COMMANDS {
+        let arguments: Vec<&str> = command.split(' ').collect();
+        let run = |output: Stdio, errors: Stdio| {
+            let _ = std::fs::remove_dir_all(path.join("new"));
+            let mut command = driftworld_in(path, &arguments);
+            let child = command.stdin(Stdio::null()).stdout(output).stderr(errors).spawn();
+            let done = child
+                .and_then(std::process::Child::wait_with_output)
+                .expect("the command starts");
+            (done.status.code(), String::from_utf8_lossy(&done.stderr).into_owned())
+        };
+        let (expected, _) = run(Stdio::null(), Stdio::piped());
+        let (code, said) = run(closed(), Stdio::piped());
+        assert!(
+            code == Some(0) || code == expected,
+            "{command}, output closed: {code:?}\n{said}"
+        );
+        assert!(
+            !said.contains("panicked") && !said.contains("Broken pipe"),
+            "{command}: {said}"
+        );
+        let (code, _) = run(Stdio::null(), closed());
+        assert_eq!(code, expected, "{command}, messages closed");
+        let (code, _) = run(closed(), closed());
+        assert!(code == Some(0) || code == expected, "{command}, both closed: {code:?}");
+    }
+}
+
+#[test]
+fn no_subcommand_is_left_out() {
+    let help = succeed(&["--help"]);
+    let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    // Descriptions that go on in a second line are set in deeper.
+    let listed = listed.filter(|line| !line.starts_with("   "));
+    let names = listed
+        .take_while(|line| !line.is_empty())
+        .filter_map(|line| line.split_whitespace().next());
+    for name in names.filter(|name| *name != "help") {
+        let is_tried = COMMANDS.iter().any(|command| command.split(' ').next() == Some(name));
+        assert!(
+            is_tried,
+            "{name}: add a line that prints something; see {}",
+            root().join(file!()).display()
+        );
+    }
+}

@@ -1,0 +1,112 @@
+//! What is half written when `sample` fails, is stopped or is killed does not stay. Whole files are tested in `general.rs`.
+#![cfg(unix)]
+
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::terminal::{driftworld_in, fail_in, scratch, succeed_in};
+
+/// More worlds than can be drawn before the signal comes.
+const MANY: [&str; 4] = ["find_objects", "--count", "100000000", "--jsonl"];
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).expect("the folder is there");
+    let name =
+        |entry: std::io::Result<std::fs::DirEntry>| entry.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    entries.map(|entry| name(entry).expect("it can be listed")).collect()
+}
+
+/// A `sample` that has begun to write into its folder.
+fn begun(folder: &Path) -> Child {
+    let arguments = [&["sample"], &MANY[..], &["-o", "worlds.jsonl"]].concat();
+    let child = driftworld_in(folder, &arguments)
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the command starts");
+    let patience = Instant::now() + Duration::from_secs(20);
+    let is_written = || {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        entries
+            .filter_map(|entry| entry.metadata().ok())
+            .any(|file| file.len() > 0)
+    };
+    while !is_written() {
+        assert!(Instant::now() < patience, "nothing is written");
+        std::thread::yield_now();
+    }
+    child
+}
+
+fn signal(child: &Child, signal: &str) {
+    let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
+    assert!(sent.is_ok_and(|sent| sent.success()));
+}
+
+#[test]
+fn a_stopped_sample_leaves_nothing() {
+    for name in ["-INT", "-TERM"] {
+        let folder = scratch();
+        let child = begun(folder.path());
+        signal(&child, name);
+        let done = child.wait_with_output().expect("it ends");
+        let error = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert_eq!(done.status.code(), Some(1), "{name}: {error}");
+        assert!(
+            error.contains("interrupted after ") && error.contains(" of 100000000 worlds"),
+            "{name}: {error}"
+        );
+        assert_eq!(names(folder.path()), [""; 0], "{name}");
+    }
+}
+
+#[test]
+fn what_a_killed_sample_leaves_is_removed_by_the_next_but_not_while_it_is_written() {
+    let folder = scratch();
+    let path = folder.path();
+    let mut child = begun(path);
+    // Another that writes the same file meanwhile takes nothing away.
+    succeed_in(
+        path,
+        &[
+            "sample",
+            "find_objects",
+            "--count",
+            "3",
+            "--jsonl",
+            "-o",
+            "worlds.jsonl",
+        ],
+    );
+    assert_eq!(names(path).len(), 2, "{:?}", names(path));
+    signal(&child, "-KILL");
+    child.wait().expect("it ends");
+    assert_eq!(names(path).len(), 2, "{:?}", names(path));
+    succeed_in(
+        path,
+        &[
+            "sample",
+            "find_objects",
+            "--count",
+            "3",
+            "--jsonl",
+            "-o",
+            "worlds.jsonl",
+        ],
+    );
+    assert_eq!(names(path), ["worlds.jsonl"]);
+}
+
+#[test]
+fn a_sample_that_fails_leaves_nothing() {
+    let folder = scratch();
+    let text = r#"{ "name": "t", "groups": [{ "name": "a", "count": { "integer_uniform": { "low": 1, "high": 60 } }, "separation": 3,
+        "object": { "class": "cube" }, "placement": { "box": { "low": [0, 0], "high": [12, 12] } } }] }"#;
+    std::fs::write(folder.path().join("crowded.json"), text).expect("the folder is ours");
+    for output in ["worlds.jsonl", "worlds.parquet"] {
+        let jsonl: &[&str] = if output.ends_with("jsonl") { &["--jsonl"] } else { &[] };
+        let arguments = [&["sample", "crowded.json", "--count", "2000", "-o", output], jsonl].concat();
+        fail_in(folder.path(), 1, &arguments);
+        assert_eq!(names(folder.path()), ["crowded.json"]);
+    }
+}
