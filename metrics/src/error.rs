@@ -371,9 +371,7 @@ pub enum MetricsError {
     },
 
     /// The performance column is not in the log.
-    #[error(
-        "log {run_id}: found no metrics column {column:?}, expected one of {available}; choose one by Options::perf_measure or --perf-measure"
-    )]
+    #[error("log {run_id}: found no metrics column {column:?}, expected one of {available}")]
     UnknownColumn {
         /// Name of the log.
         run_id: String,

@@ -244,7 +244,7 @@ fn a_log_without_usable_rows_says_which_column_was_asked_for() {
     check(
         format!("{HEADER}{ROW}"),
         "score",
-        ": found no metrics column \"score\", expected one of reward; choose one by Options::perf_measure or --perf-measure",
+        ": found no metrics column \"score\", expected one of reward",
     );
     let none = ": found no complete row with a number in column \"reward\", expected at least one";
     check(HEADER.to_owned(), "reward", none);

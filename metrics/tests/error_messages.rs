@@ -303,7 +303,7 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
                 available: text("reward"),
             },
             "metrics/unknown-column",
-            "log run: found no metrics column \"score\", expected one of reward; choose one by Options::perf_measure or --perf-measure",
+            "log run: found no metrics column \"score\", expected one of reward",
         ),
         (
             E::NoUsableRows {

@@ -415,7 +415,7 @@ fn what_cannot_be_scored_is_told() {
     check(
         1,
         &["mine/run0", "-p", "joy"],
-        "log run0: found no metrics column \"joy\", expected one of reward; choose one by Options::perf_measure or --perf-measure",
+        "--perf-measure: log run0: found no metrics column \"joy\", expected one of reward",
     );
     check(
         1,

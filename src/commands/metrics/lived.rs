@@ -1,8 +1,10 @@
 //! A log, the lifetime in it, and its scores; many at once. What a score is, is the library's.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use crate::metrics::{ExpStatus, Lifetime, LifetimeMetrics, Log, Options, Scorer, read_log};
+use crate::metrics::{ExpStatus, Lifetime, LifetimeMetrics, Log, MetricsError, Options, Scorer, read_log};
+use crate::spec::nearest;
 use rayon::prelude::*;
 
 use crate::commands::scoring::Experts;
@@ -35,7 +37,7 @@ impl Lived {
         for warning in &warnings {
             output::note(format!("warning: {}: {warning}", folder.display()));
         }
-        let lifetime = Lifetime::prepare(&log, &experts.of(&log, options)?, options)?;
+        let lifetime = Lifetime::prepare(&log, &experts.of(&log, options)?, options).map_err(without_column)?;
         let metrics = Scorer::default().judge(&log, &lifetime, options)?;
         Ok(Self {
             log,
@@ -44,6 +46,16 @@ impl Lived {
             warnings,
         })
     }
+}
+
+/// A failure in the command's words: a column that is not there was asked for, or is what is asked for by default.
+fn without_column(error: MetricsError) -> Failure {
+    let MetricsError::UnknownColumn { column, available, .. } = &error else {
+        return error.into();
+    };
+    let near = nearest(column, available.split(", "));
+    let advice = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
+    Failure::Input(format!("--perf-measure: {error}{advice}"), Some(Arc::new(error)))
 }
 
 /// Says how many rows are passed over because they have no number.
