@@ -6,6 +6,7 @@ mod links;
 mod marks;
 mod names;
 mod opening;
+mod paths;
 mod sizes;
 mod tree;
 
@@ -29,6 +30,7 @@ fn check(tree: &Tree, members: &[(String, String)]) -> Vec<Finding> {
     findings.extend(names::check(tree));
     findings.extend(marks::check(tree));
     findings.extend(links::check(tree));
+    findings.extend(paths::check(tree));
     findings.extend(architecture::check(tree, members));
     findings.extend(sizes::check(tree));
     findings

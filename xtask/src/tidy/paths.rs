@@ -1,0 +1,91 @@
+//! Every path that the pages for people who change the code name in backticks is there. Links are checked by `links.rs`.
+
+use super::links::prose;
+use super::tree::Tree;
+use crate::finding::Finding;
+
+/// The pages whose paths are checked.
+const PAGES: [&str; 3] = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"];
+
+/// Where builds put what no repository keeps.
+const BUILT: &str = "target/";
+
+pub(super) fn check(tree: &Tree) -> Vec<Finding> {
+    let pages = PAGES.iter().filter_map(|page| Some((*page, tree.text(page)?)));
+    pages.flat_map(|(page, text)| missing(tree, page, text)).collect()
+}
+
+fn missing(tree: &Tree, file: &str, text: &str) -> Vec<Finding> {
+    let spans = prose(text).flat_map(|(number, line)| code_spans(line).map(move |span| (number, span)));
+    let missing = spans.filter(|(_, span)| is_path(span) && !exists(tree, span));
+    let finding = |(line, span): (usize, &str)| {
+        let advice = "name the path as it is now, or take what is no path out of the backticks";
+        Finding::new(file, line, format!("`{span}`"), "a path of this repository", advice)
+    };
+    missing.map(finding).collect()
+}
+
+/// What stands between pairs of backticks.
+pub(super) fn code_spans(line: &str) -> impl Iterator<Item = &str> {
+    let closed = line.matches('`').count() / 2;
+    line.split('`').skip(1).step_by(2).take(closed)
+}
+
+/// Whether it looks like a path of this repository: not one beside it, nor one from the root of the machine.
+fn is_path(span: &str) -> bool {
+    let is_one_word = !span.is_empty() && !span.contains(|letter: char| letter.is_whitespace() || letter == '<');
+    let ends_like_one = [".rs", ".md", ".toml", ".json"]
+        .iter()
+        .any(|ending| span.ends_with(ending));
+    let elsewhere =
+        span.contains("://") || span.starts_with(['/', '-']) || span.starts_with("../") || span.starts_with(BUILT);
+    is_one_word && !elsewhere && (span.contains('/') || ends_like_one)
+}
+
+/// A path from the root; the name of a file anywhere; or a pattern whose folder exists.
+fn exists(tree: &Tree, span: &str) -> bool {
+    let path = span.trim_start_matches("./").split(':').next().unwrap_or(span);
+    match path.split_once(['*', '{']) {
+        Some((before, _)) => before.rsplit_once('/').is_some_and(|(folder, _)| tree.has(folder)),
+        None if path.contains('/') => tree.has(path),
+        None => tree.has_name(path),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check_text(text: &str, expected: &[&str]) {
+        for page in PAGES {
+            let tree = Tree::of(&[
+                (page, text),
+                ("spec/src/lib.rs", ""),
+                ("src/lib.rs", ""),
+                ("Cargo.toml", ""),
+            ]);
+            let found: Vec<String> = check(&tree).into_iter().map(|finding| finding.found).collect();
+            assert_eq!(found, expected, "{page}: {text}");
+        }
+    }
+
+    #[test]
+    fn paths_that_are_there_pass() {
+        check_text("`src/`, `spec/src/lib.rs`, `lib.rs`, `Cargo.toml`\n", &[]);
+        check_text("`spec/`, `src/*.rs`, `spec/src/{lib,gone}.rs`, `src/lib.rs:12`\n", &[]);
+    }
+
+    #[test]
+    fn what_is_no_path_of_ours_is_left_alone() {
+        check_text(
+            "`spec` `https://a.b/c` `cargo run -- a/b` `World` `//!` `../shared/gone` `target/gone` `bad/<kind>/`\n```\n`gone/away.rs`\n```\n",
+            &[],
+        );
+    }
+
+    #[test]
+    fn a_path_that_leads_nowhere_is_reported_on_every_page() {
+        let text = "`spec`\n`spec/gone.rs` `gone.json` `gone/*.rs`\n";
+        check_text(text, &["`spec/gone.rs`", "`gone.json`", "`gone/*.rs`"]);
+    }
+}
