@@ -18,6 +18,7 @@ TASKS = {
     "driftworld/SelectObject-v0": "select_object",
     "driftworld/MovingObject-v0": "moving_object",
     "driftworld/ScavengerHunt-v0": "scavenger_hunt",
+    "driftworld/BlueRedGreen-v0": "blue_red_green",
 }
 
 

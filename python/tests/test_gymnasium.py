@@ -19,6 +19,8 @@ from driftworld._equality import first_difference
 from driftworld.errors import DriftworldError, EnvError, SpecError, TaskError
 from gymnasium.utils.env_checker import check_env
 
+from conftest import TASKS
+
 FIND = "driftworld/FindObjects-v0"
 TABLE = [[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [0.0, 90.0, 0.0]]
 #: By waypoints, rows are places to go to.
@@ -53,6 +55,45 @@ def run_python(program: str, **environment: str) -> subprocess.CompletedProcess[
         timeout=200,
         check=False,
     )
+
+
+def test_every_built_in_task_has_an_id_of_its_own() -> None:
+    named = {
+        gym.spec(env_id).kwargs["task"]: env_id
+        for env_id in gym.registry
+        if env_id.startswith("driftworld/") and "task" in gym.spec(env_id).kwargs
+    }
+    assert sorted(named) == sorted(driftworld.built_in_tasks()) == sorted(TASKS.values())
+    for task, env_id in named.items():
+        assert env_id == f"driftworld/{task.title().replace('_', '')}-v0" and TASKS[env_id] == task
+
+
+@pytest.mark.parametrize(
+    ("misspelt", "meant"), [("modalites", "modalities"), ("max_step", "max_steps"), ("framskip", "frame_skip")]
+)
+def test_a_misspelt_option_is_told_the_nearest(misspelt: str, meant: str) -> None:
+    made = [
+        lambda: gym.make(FIND, **{misspelt: 3}),
+        lambda: gym.make_vec(FIND, num_envs=2, vectorization_mode="vector_entry_point", **{misspelt: 3}),
+        lambda: driftworld.DriftworldEnv("find_objects", **{misspelt: 3}),
+        lambda: driftworld.DriftworldVectorEnv("find_objects", num_envs=2, **{misspelt: 3}),
+    ]
+    for make in made:
+        with pytest.raises(TypeError, match=f"found the option '{misspelt}', expected one of .*did you mean '{meant}'"):
+            make()
+    with pytest.raises(TypeError, match="found the option 'zzz', expected one of task, [^;]*$"):
+        driftworld.DriftworldEnv("find_objects", zzz=1)
+
+
+def test_a_class_made_from_ours_says_what_options_it_has() -> None:
+    class Own(driftworld.DriftworldEnv):
+        def __init__(self, colour: str, **options: Any) -> None:
+            super().__init__("find_objects", **options)
+            self.colour = colour
+
+    assert Own(colour="red", size=16, modalities="rgb").colour == "red"
+    with pytest.raises(TypeError, match="sizes"):
+        Own(colour="red", sizes=16)
 
 
 @pytest.mark.parametrize("actions", ["normalized", "discrete"])

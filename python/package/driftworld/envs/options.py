@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import difflib
+import inspect
 import json
 import math
 import numbers
@@ -168,6 +170,23 @@ def _words(action: dict[str, Any]) -> str:
     if "n" in action:
         return f"{action['n']} rows"
     return "numbers in " + ", ".join(f"{low:g}..{high:g}" for low, high in action["bounds"])
+
+
+def refuse_unknown(made: type, given: Iterable[str]) -> None:
+    """Refuses options that a class's constructor does not have.
+
+    Raises:
+        TypeError: That names them, and the option that was most likely meant.
+    """
+    parameters = inspect.signature(made.__init__).parameters  # type: ignore[misc]
+    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters.values()):
+        return
+    known = [name for name in parameters if name != "self"]
+    for name in given:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, n=1)
+            advice = f"; did you mean {near[0]!r}?" if near else ""
+            raise TypeError(f"{made.__name__}: found the option {name!r}, expected one of {', '.join(known)}{advice}")
 
 
 def _one_of(option: str, found: Any, known: Sequence[str]) -> None:

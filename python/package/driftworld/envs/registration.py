@@ -13,6 +13,7 @@ ENV_IDS: dict[str, dict[str, Any]] = {
     "driftworld/SelectObject-v0": {"task": "select_object"},
     "driftworld/MovingObject-v0": {"task": "moving_object"},
     "driftworld/ScavengerHunt-v0": {"task": "scavenger_hunt"},
+    "driftworld/BlueRedGreen-v0": {"task": "blue_red_green"},
     "driftworld/Task-v0": {},
     "driftworld/World-v0": {},
 }

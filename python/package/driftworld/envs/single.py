@@ -6,17 +6,20 @@ import json
 import numbers
 from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
 from driftworld.envs.members import Members
-from driftworld.envs.options import DEFAULT_MODALITIES, Options
+from driftworld.envs.options import DEFAULT_MODALITIES, Options, refuse_unknown
 from driftworld.envs.origin import MAX_SEED
 from driftworld.envs.picture import Camera
 from driftworld.envs.window import Window
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 
 class DriftworldEnv(gymnasium.Env[Any, Any]):
@@ -48,11 +51,17 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
     Raises:
         SpecError: If the task or an option is wrong, with pointer, line and column.
         TaskError: If there is no such task.
-        ValueError: For an option that is not known.
+        ValueError: For a value that an option does not know.
+        TypeError: For an option that there is not.
         EnvError: If a graphics card is asked for and none works.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["human", "rgb_array"], "render_fps": 10}
+
+    def __new__(cls, *args: Any, **options: Any) -> Self:
+        """Refuses unknown options before Python does, to name the one that was meant."""
+        refuse_unknown(cls, options)
+        return super().__new__(cls)
 
     def __init__(
         self,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from gymnasium.utils import seeding
@@ -15,9 +15,12 @@ from numpy.typing import NDArray
 
 from driftworld.envs.autoreset import AutoresetMode, autoreset_mode_of
 from driftworld.envs.members import Members
-from driftworld.envs.options import DEFAULT_MODALITIES, Options, whole
+from driftworld.envs.options import DEFAULT_MODALITIES, Options, refuse_unknown, whole
 from driftworld.envs.origin import seed_in_range
 from driftworld.envs.picture import Camera
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 #: As many as a native batch holds.
 MOST_ENVS = 65_536
@@ -49,6 +52,11 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         "render_fps": 10,
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
+
+    def __new__(cls, *args: Any, **options: Any) -> Self:
+        """Refuses unknown options before Python does, to name the one that was meant."""
+        refuse_unknown(cls, options)
+        return super().__new__(cls)
 
     def __init__(
         self,
