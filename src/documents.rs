@@ -178,7 +178,10 @@ pub fn check(
     let mut warnings = Vec::new();
     let error = match kind {
         Kind::Task => TaskSpec::from_json(name, text).err(),
-        Kind::World => World::from_json(name, text).err(),
+        Kind::World => told(
+            World::from_json(name, text).and_then(|world| world.remarks(name, text).map(|odd| (world, odd))),
+            &mut warnings,
+        ),
         Kind::Maps => MapLibrary::from_json(name, text).err(),
         Kind::Scenario => {
             let read = Scenario::from_json_with(name, text, |called| {
@@ -193,7 +196,7 @@ pub fn check(
     Checked { kind, warnings, error }
 }
 
-/// What is wrong with a document of the original's; what is odd goes to the warnings.
+/// What is wrong with a document; what is odd about it goes to the warnings.
 fn told<T, W: ToString>(read: Result<(T, Vec<W>), SpecError>, warnings: &mut Vec<String>) -> Option<SpecError> {
     match read {
         Ok((_, found)) => {
@@ -227,6 +230,25 @@ mod tests {
         }
         let refused = "scenrio".parse::<Kind>().unwrap_err();
         assert!(refused.ends_with("did you mean \"scenario\"?"), "{refused}");
+    }
+
+    #[test]
+    fn what_means_to_move_and_stands_still_is_remarked_and_what_stands_in_walls() {
+        let text = r#"{ "environment_params": { "predefined_map": 2 }, "objects": [
+            { "class": "car", "coordinates": [0, 0], "motion_model": "predator" },
+            { "class": "car", "coordinates": [0, 0], "motion_model": "patrol", "speed": 1 },
+            { "class": "car", "coordinates": [-70, 60], "motion_model": "prey", "speed": 1 }] }"#;
+        let found = check("w.json", text, Kind::World, &mut tasks::task);
+        assert!(found.error.is_none(), "{:?}", found.error);
+        let [no_speed, no_way, walled] = found.warnings.as_slice() else {
+            panic!("{:?}", found.warnings)
+        };
+        assert!(
+            no_speed.starts_with("w.json:2:70 (/objects/0/motion_model)"),
+            "{no_speed}"
+        );
+        assert!(no_way.contains("set \"waypoints\""), "{no_way}");
+        assert!(walled.contains("inside region 1 of 12 of map 2 (village)"), "{walled}");
     }
 
     #[test]

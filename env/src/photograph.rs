@@ -4,6 +4,7 @@
 use driftworld_spec::{EnvironmentParams, World};
 
 use crate::EnvError;
+use crate::assets::Catalogue;
 use crate::camera::Camera;
 use crate::render::{CpuRenderer, Target};
 use crate::scene::{Item, Scene};
@@ -67,6 +68,14 @@ impl Studio {
     /// # Errors
     /// [`EnvError::TooManyPhotographs`] for more than [`MAX_PHOTOGRAPHS`].
     pub fn new(world: &World) -> Result<Self, EnvError> {
+        Self::with_catalogue(world, &Catalogue::default())
+    }
+
+    /// The same with assets from a catalogue.
+    ///
+    /// # Errors
+    /// Those of [`Studio::new`].
+    pub fn with_catalogue(world: &World, catalogue: &Catalogue) -> Result<Self, EnvError> {
         let image = world.image_params.clone().unwrap_or_default();
         let views = image.yaw_subdivisions as usize * image.vertical_subdivisions as usize;
         let objects = world.objects.len();
@@ -77,11 +86,12 @@ impl Studio {
                 most: MAX_PHOTOGRAPHS,
             });
         }
-        let mut scene = Scene::from_world(&World {
+        let backdrop = World {
             environment_params: backdrop(&world.environment_params),
             objects: world.objects.clone(),
             ..World::default()
-        });
+        };
+        let mut scene = Scene::from_world_with(&backdrop, catalogue);
         for item in &mut scene.items {
             (item.position, item.heading_deg, item.visible) = ([0.0; 2], 0.0, false);
         }

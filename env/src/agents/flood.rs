@@ -78,7 +78,11 @@ impl Flood {
                 continue;
             }
             found(cell);
-            let factor = if charge == Charge::Left && ground.is_blocked(cell) { BLOCKED } else { 1 };
+            let factor = if charge == Charge::Left && ground.is_blocked(cell) {
+                BLOCKED
+            } else {
+                1
+            };
             for (step, cost) in around {
                 let other = cell.wrapping_add_signed(step);
                 let known = self.distance[other];

@@ -140,7 +140,10 @@ impl Ground {
         let margin = body + CLEARANCE;
         for corners in regions() {
             let bound = |axis: usize, sign: f32| {
-                let reach = corners.iter().map(|corner| corner[axis] as f32 * sign).fold(f32::NEG_INFINITY, f32::max);
+                let reach = corners
+                    .iter()
+                    .map(|corner| corner[axis] as f32 * sign)
+                    .fold(f32::NEG_INFINITY, f32::max);
                 (reach + margin) * sign
             };
             let [low, high] = [-1.0, 1.0].map(|sign| [bound(0, sign), bound(1, sign)]);

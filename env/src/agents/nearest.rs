@@ -81,7 +81,12 @@ impl Route {
         self.marks.begin(grid);
         for (number, goal) in goals.iter().enumerate() {
             self.marks.add(grid.cell_at(goal.place), number);
-            for cell in self.ground.disc(goal.object).into_iter().flat_map(|disc| disc.cells(grid)) {
+            for cell in self
+                .ground
+                .disc(goal.object)
+                .into_iter()
+                .flat_map(|disc| disc.cells(grid))
+            {
                 self.marks.add(cell, number);
             }
         }
@@ -278,21 +283,16 @@ mod tests {
 
     /// A rectangle that was turned.
     fn wall() -> impl Strategy<Value = Wall> {
-        (
-            [-12.0..=12.0, -12.0..=12.0f64],
-            [0.3..=5.0, 0.3..=5.0f64],
-            0.0..=3.2f64,
-        )
-            .prop_map(|(middle, half, turn)| {
-                let (sin, cos) = (libm::sin(turn), libm::cos(turn));
-                let corner = |[x, y]: [f64; 2]| [middle[0] + x * cos - y * sin, middle[1] + x * sin + y * cos];
-                let [x, y] = half;
-                Wall {
-                    polygon: [[-x, -y], [x, -y], [x, y], [-x, y]].map(corner).to_vec(),
-                    height: None,
-                    color: None,
-                }
-            })
+        ([-12.0..=12.0, -12.0..=12.0f64], [0.3..=5.0, 0.3..=5.0f64], 0.0..=3.2f64).prop_map(|(middle, half, turn)| {
+            let (sin, cos) = (libm::sin(turn), libm::cos(turn));
+            let corner = |[x, y]: [f64; 2]| [middle[0] + x * cos - y * sin, middle[1] + x * sin + y * cos];
+            let [x, y] = half;
+            Wall {
+                polygon: [[-x, -y], [x, -y], [x, y], [-x, y]].map(corner).to_vec(),
+                height: None,
+                color: None,
+            }
+        })
     }
 
     /// An arena with walls, and cubes of all sizes, some of them in heaps and in walls.

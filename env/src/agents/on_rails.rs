@@ -89,7 +89,9 @@ impl OnRailsAgent {
                 chance: world.objects[index].reward_probability.max(0.01) as f32,
             })
             .collect();
-        let nearest = self.route.nearest(world, scene, here, &goals, &avoided(environment, None));
+        let nearest = self
+            .route
+            .nearest(world, scene, here, &goals, &avoided(environment, None));
         self.target = nearest.map(|number| Target::at(goals[number].object as usize, environment, &mut self.route));
         self.steps_on_target = 0;
     }

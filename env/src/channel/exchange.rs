@@ -2,13 +2,14 @@
 //! payload says, in `request.rs`.
 
 use driftworld_spec::World;
+use driftworld_spec::maps::MapLibrary;
 use serde_json::{Value, json};
 
 use super::Channel;
 use super::category::{Category, Level};
 use super::message::{Message, Outgoing, Refusal, unknown};
 use super::request::{PARTS, Screenshot, categories, create, parts, remark_of, screenshot};
-use crate::{Environment, Step};
+use crate::{Environment, Step, Warning};
 
 /// Our end of the three channels: who watches what, and which remarks are wanted.
 ///
@@ -32,6 +33,8 @@ use crate::{Environment, Step};
 pub struct Channels {
     /// The hash of the world that the last reset asked for.
     world: String,
+    /// Layouts that take the place of the built-in ones in worlds that are reset to.
+    maps: MapLibrary,
     sent: u64,
     /// What is told at each step, of [`PARTS`].
     watched: Vec<&'static str>,
@@ -66,10 +69,18 @@ impl Channels {
     pub fn new(world: &World) -> Self {
         Self {
             world: world.hash(),
+            maps: MapLibrary::default(),
             sent: 0,
             watched: Vec::new(),
             active: [false; 4],
         }
+    }
+
+    /// The same channels, whose resets lead to worlds with these layouts in place of the built-in ones.
+    #[must_use]
+    pub fn with_maps(mut self, maps: MapLibrary) -> Self {
+        self.maps = maps;
+        self
     }
 
     /// Whether remarks of a category are wanted.
@@ -253,14 +264,17 @@ impl Channels {
     /// Hands back remarks on the new world.
     fn reset(&mut self, environment: &mut Environment, message: &Message) -> Result<Vec<String>, Refusal> {
         let payload = message.payload("a world as in L2Explorer's reset files")?;
-        let (world, warnings) =
-            World::from_l2explorer("payload", &payload.to_string()).map_err(|error| Refusal::of_document(&error))?;
+        let (world, warnings) = World::from_l2explorer_with("payload", &payload.to_string(), &self.maps)
+            .map_err(|error| Refusal::of_document(&error))?;
         let hash = world.hash();
         environment
             .reset(world)
             .map_err(|error| Refusal::new(error.to_string()))?;
         self.world = hash;
-        let own = environment.warnings().into_iter().map(|warning| warning.to_string());
+        // Objects in walls were named where the world was read, with their places.
+        let mut own = environment.warnings();
+        own.retain(|warning| !matches!(warning, Warning::StandsInWall { .. }));
+        let own = own.into_iter().map(|warning| warning.to_string());
         Ok(warnings.iter().map(remark_of).chain(own).collect())
     }
 

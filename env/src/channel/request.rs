@@ -50,7 +50,11 @@ pub(super) fn create(environment: &mut Environment, message: &Message) -> Result
         EnvError::BadObject { problem } => Refusal::of_document(problem),
         other => Refusal::new(other.to_string()),
     })?;
-    Ok((index, warnings.iter().map(remark_of).collect()))
+    let own = environment
+        .warnings_of(index)
+        .into_iter()
+        .map(|warning| warning.to_string());
+    Ok((index, warnings.iter().map(remark_of).chain(own).collect()))
 }
 
 /// The parts that `set_active_observers` names: in its payload, or beside its action.

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use driftworld_spec::{GameMode, MotionModel, Object, Stimulus, World};
+use driftworld_spec::{GameMode, Object, Stimulus, World};
 
 use super::body::Ground;
 use super::chance::Seed;
@@ -200,22 +200,34 @@ impl Environment {
         {
             warnings.push(Warning::StartsInside { obstacle });
         }
-        for (index, (object, item)) in self.world.objects.iter().zip(&self.scene.items).enumerate() {
-            if !item.asset.known {
-                let (class, model) = (object.class.clone(), object.model.0.clone());
-                warnings.push(Warning::UnknownAsset {
-                    object: index,
-                    class,
-                    model,
-                });
-            }
-            let patrols_nowhere = object.motion_model == MotionModel::Patrol && object.waypoints.is_empty();
-            if object.motion_model != MotionModel::Stationary && (object.speed == 0.0 || patrols_nowhere) {
-                warnings.push(Warning::StandsStill { object: index });
-            }
-            if object.pushable.is_some() && !is_pushed(object) {
-                warnings.push(Warning::IsNotPushed { object: index });
-            }
+        let objects = 0..self.world.objects.len();
+        warnings.extend(objects.flat_map(|index| self.warnings_of(index)));
+        warnings
+    }
+
+    /// The warnings about one object, by its index in the world.
+    pub(crate) fn warnings_of(&self, index: usize) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        let (object, item) = (&self.world.objects[index], &self.scene.items[index]);
+        if let Some(enclosure) = self.world.environment_params.enclosure(object.coordinates) {
+            warnings.push(Warning::StandsInWall {
+                object: index,
+                enclosure,
+            });
+        }
+        if !item.asset.known {
+            let (class, model) = (object.class.clone(), object.model.0.clone());
+            warnings.push(Warning::UnknownAsset {
+                object: index,
+                class,
+                model,
+            });
+        }
+        if object.stands_still() {
+            warnings.push(Warning::StandsStill { object: index });
+        }
+        if object.pushable.is_some() && !is_pushed(object) {
+            warnings.push(Warning::IsNotPushed { object: index });
         }
         warnings
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use driftworld_spec::Stimulus;
+use driftworld_spec::{Enclosure, Stimulus};
 
 use super::edit::Obstacle;
 
@@ -67,6 +67,13 @@ pub enum Warning {
         /// Index of the object.
         object: usize,
     },
+    /// The object stands inside a wall or a region that cannot be entered: nobody comes to it.
+    StandsInWall {
+        /// Index of the object.
+        object: usize,
+        /// Which wall or region.
+        enclosure: Enclosure,
+    },
     /// The agent starts inside something; it cannot move until it is put elsewhere.
     StartsInside {
         /// What it starts in.
@@ -96,6 +103,12 @@ impl std::fmt::Display for Warning {
                     "/objects/{object}/motion_model: found no speed, or a patrol without waypoints; it stands still"
                 )
             }
+            Self::StandsInWall { object, enclosure } => {
+                write!(
+                    f,
+                    "/objects/{object}/coordinates: found a place inside {enclosure}; it is kept, out of reach"
+                )
+            }
             Self::StartsInside { obstacle } => {
                 write!(
                     f,
@@ -109,7 +122,7 @@ impl std::fmt::Display for Warning {
                 )
             }
             Self::ForPhotographs => f.write_str(
-                "/game_mode: collect_images is for `driftworld photograph`; stepped, the world runs as learn",
+                "/game_mode: collect_images is for `driftworld photograph` and driftworld-unity; stepped, the world runs as learn",
             ),
         }
     }

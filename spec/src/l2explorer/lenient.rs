@@ -50,7 +50,10 @@ impl Reader {
             Json::Array(items) => items,
             Json::String(word) if !word.is_empty() => vec![json!(word)],
             other => {
-                let text = format!("found {}, expected a list of stimuli; none is assumed", describe(&other));
+                let text = format!(
+                    "found {}, expected a list of stimuli; none is assumed",
+                    describe(&other)
+                );
                 self.warn(place, text);
                 map.shift_remove(key);
                 return;
@@ -62,17 +65,26 @@ impl Reader {
             let found = describe(item);
             match stimulus(word) {
                 Some(name) if names.contains(&name) => {
-                    self.warn(format!("{place}/{index}"), format!("{found} stands there already and is left out"));
+                    self.warn(
+                        format!("{place}/{index}"),
+                        format!("{found} stands there already and is left out"),
+                    );
                 }
                 Some(name) => {
                     if !is_own_name(word, name) {
-                        self.warn(place_of(&place, index, items.len()), format!("{found} is read as {name:?}"));
+                        self.warn(
+                            place_of(&place, index, items.len()),
+                            format!("{found} is read as {name:?}"),
+                        );
                     }
                     names.push(name);
                 }
                 None => {
                     let expected = "expected AgentCollide, AgentInteract or AgentInRange; it is left out";
-                    self.warn(place_of(&place, index, items.len()), format!("found {found}, {expected}"));
+                    self.warn(
+                        place_of(&place, index, items.len()),
+                        format!("found {found}, {expected}"),
+                    );
                 }
             }
         }

@@ -1,6 +1,6 @@
-//! What becomes of entries of the original's keys that no leniency can read: empty, missing, of another type, or out of range.
-//! Each gets the default, or the nearest value that can be, and a warning that says so. Our own keys are none of its business:
-//! they are checked as in a document of ours.
+//! What becomes of entries of the original's keys that no leniency can read: empty, missing, or of another type. Each gets the
+//! default, or what of it can be read, and a warning that says so. What is out of range, and our own keys, are none of its
+//! business: they are checked as in a document of ours.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -25,8 +25,6 @@ pub(super) enum Entry {
     Text,
     /// A text of 1 to 100 letters, or a whole number.
     Model,
-    /// The number of one of some things, from 0 to the last.
-    Index(f64),
 }
 
 /// The longest text, in letters.
@@ -43,7 +41,7 @@ pub(super) const WORLD: [(&str, Entry); 2] = [
 pub(super) const ENVIRONMENT: [(&str, Entry); 4] = [
     ("bounding_wall_color", Entry::Color),
     ("light_intensity", Entry::Number(0.0, 100.0)),
-    ("predefined_map", Entry::Index(4.0)),
+    ("predefined_map", Entry::Whole(0.0, 4.0)),
     ("map_size", Entry::Pair(0.0, 300.0)),
 ];
 
@@ -98,7 +96,9 @@ impl Reader {
             }
             let place = format!("{at}/{key}");
             let default = defaults.get(*key);
-            let Some(said) = entry.mend(value, default) else { continue };
+            let Some(said) = entry.mend(value, default) else {
+                continue;
+            };
             if said.is_left_out {
                 map.shift_remove(*key);
                 let assumed = match (*key, default) {
@@ -106,10 +106,16 @@ impl Reader {
                     (_, Some(default)) => format!("the default {} is assumed", plain(default)),
                     (_, None) => "it is left out".to_owned(),
                 };
-                self.warn(place, format!("found {}, expected {}; {assumed}", said.found, entry.expected()));
+                self.warn(
+                    place,
+                    format!("found {}, expected {}; {assumed}", said.found, entry.expected()),
+                );
             } else {
                 let now = map.get(*key).map_or_else(String::new, plain);
-                self.warn(place, format!("found {}, expected {}; {now} is assumed", said.found, entry.expected()));
+                self.warn(
+                    place,
+                    format!("found {}, expected {}; {now} is assumed", said.found, entry.expected()),
+                );
             }
         }
     }
@@ -119,7 +125,10 @@ impl Reader {
         match map.get(key)? {
             Json::Object(part) => Some(part.clone()),
             other => {
-                let text = format!("found {}, expected an object; its defaults are assumed", describe(other));
+                let text = format!(
+                    "found {}, expected an object; its defaults are assumed",
+                    describe(other)
+                );
                 self.warn(format!("/{key}"), text);
                 map.shift_remove(key);
                 None
@@ -145,7 +154,6 @@ impl Entry {
             Self::Color => "a colour of three numbers in 0..1".to_owned(),
             Self::Text => format!("a text of 1 to {MOST_LETTERS} letters"),
             Self::Model => format!("a text of 1 to {MOST_LETTERS} letters, or a whole number to {MOST_MODELS}"),
-            Self::Index(last) => format!("a number from 0 to {last}"),
         }
     }
 
@@ -153,18 +161,17 @@ impl Entry {
     fn mend(self, value: &mut Json, default: Option<&Json>) -> Option<Mended> {
         let found = describe(value);
         let mended = match self {
-            Self::Number(low, high) => within(value, low, high).map(|number| json!(number)),
-            Self::Whole(low, high) => within(value, low, high).map(|number| json!(number.round() as i64)),
-            Self::Pair(low, high) => pair(value, default, low, high),
-            Self::Word(words) => value.as_str().filter(|word| words.contains(word)).map(|word| json!(word)),
+            Self::Number(..) => value.is_number().then(|| value.clone()),
+            Self::Whole(..) => whole(value),
+            Self::Pair(..) => pair(value, default),
+            Self::Word(words) => value
+                .as_str()
+                .filter(|word| words.contains(word))
+                .map(|word| json!(word)),
             Self::Color => color(value),
             Self::Text => text(value),
-            Self::Model if value.is_u64() => value.as_u64().filter(|number| *number <= MOST_MODELS).map(|number| json!(number)),
+            Self::Model if value.is_u64() => Some(value.clone()),
             Self::Model => value.as_str().and_then(|_| text(value)),
-            Self::Index(last) => value
-                .as_u64()
-                .filter(|number| *number as f64 <= last)
-                .map(|number| json!(number)),
         };
         match mended {
             Some(mended) if is_same(&mended, value) => None,
@@ -183,10 +190,15 @@ impl Entry {
     }
 }
 
-/// A number, brought within limits. Nothing is no size: where all that can be is above 0, only what is above 0 means something.
-fn within(value: &Json, low: f64, high: f64) -> Option<f64> {
-    let number = value.as_f64().filter(|number| low <= 0.0 || *number > 0.0)?;
-    Some(number.clamp(low, high))
+/// A whole number; of others the nearest one.
+fn whole(value: &Json) -> Option<Json> {
+    let number = value.as_f64()?;
+    let is_broken = number.fract() != 0.0;
+    Some(if is_broken {
+        json!(number.round() as i64)
+    } else {
+        value.clone()
+    })
 }
 
 /// Whether two values are the same, numbers by what they are worth.
@@ -198,45 +210,49 @@ fn is_same(a: &Json, b: &Json) -> bool {
     }
 }
 
-/// The first two numbers of a list, within limits; the default's in place of what is no number. Nothing if none is one.
-fn pair(value: &Json, default: Option<&Json>, low: f64, high: f64) -> Option<Json> {
+/// The first two numbers of a list, the default's in place of what is no number. Nothing if none is one.
+fn pair(value: &Json, default: Option<&Json>) -> Option<Json> {
     let items = value.as_array()?;
-    let number = |axis: usize| items.get(axis).and_then(Json::as_f64);
+    let number = |axis: usize| items.get(axis).filter(|item| item.is_number());
     if number(0).or(number(1)).is_none() {
         return None;
     }
-    let own = |axis: usize| default.and_then(|default| default.get(axis)).and_then(Json::as_f64);
-    let both = [0, 1].map(|axis| number(axis).or(own(axis)).unwrap_or(0.0).clamp(low, high));
-    Some(json!(both))
+    let own = |axis: usize| default.and_then(|default| default.get(axis));
+    Some(
+        [0, 1]
+            .map(|axis| number(axis).or(own(axis)).cloned().unwrap_or(json!(0)))
+            .into(),
+    )
 }
 
-/// The first three numbers of a list, within 0..1; a name that is known.
+/// The first three numbers of a list; a name that is known.
 fn color(value: &Json) -> Option<Json> {
     match value {
         Json::String(name) => Color::from_name(name).map(|_| value.clone()),
         Json::Array(items) => {
-            let channels: Option<Vec<f64>> = items.iter().take(3).map(Json::as_f64).collect();
-            let channels = channels.filter(|channels| channels.len() == 3)?;
-            Some(json!(channels.iter().map(|channel| channel.clamp(0.0, 1.0)).collect::<Vec<f64>>()))
+            let channels = items.get(..3)?;
+            channels.iter().all(Json::is_number).then(|| json!(channels))
         }
         _ => None,
     }
 }
 
-/// A text that is not empty, cut off where it is too long; a number as it is written.
+/// A text that is not empty; a number as it is written.
 fn text(value: &Json) -> Option<Json> {
     let text = match value {
         Json::String(text) => text.clone(),
         Json::Number(number) => number.to_string(),
         _ => return None,
     };
-    (!text.is_empty()).then(|| json!(text.chars().take(MOST_LETTERS).collect::<String>()))
+    (!text.is_empty()).then(|| json!(text))
 }
 
 /// A value as people write it: whole numbers without a point.
 fn plain(value: &Json) -> String {
     match value {
-        Json::Number(number) => number.as_f64().map_or_else(|| number.to_string(), |number| number.to_string()),
+        Json::Number(number) => number
+            .as_f64()
+            .map_or_else(|| number.to_string(), |number| number.to_string()),
         Json::Array(items) => format!("[{}]", items.iter().map(plain).collect::<Vec<String>>().join(", ")),
         other => describe(other),
     }
@@ -259,15 +275,24 @@ mod tests {
             match *entry {
                 Entry::Number(low, high) | Entry::Whole(low, high) => {
                     assert_eq!(limits(property), (Some(low), Some(high)), "{key}");
-                    assert_eq!(property["type"] == "integer", matches!(entry, Entry::Whole(..)), "{key}");
+                    assert_eq!(
+                        property["type"] == "integer",
+                        matches!(entry, Entry::Whole(..)),
+                        "{key}"
+                    );
                 }
                 Entry::Pair(low, high) => assert_eq!(limits(&property["items"]), (Some(low), Some(high)), "{key}"),
                 Entry::Word(words) => {
-                    let name = property["$ref"].as_str().and_then(|path| path.rsplit('/').next()).expect("a type");
+                    let name = property["$ref"]
+                        .as_str()
+                        .and_then(|path| path.rsplit('/').next())
+                        .expect("a type");
                     let text = schema["$defs"][name].to_string();
-                    assert!(words.iter().all(|word| text.contains(&format!("\"{word}\""))), "{key}: {text}");
+                    assert!(
+                        words.iter().all(|word| text.contains(&format!("\"{word}\""))),
+                        "{key}: {text}"
+                    );
                 }
-                Entry::Index(last) => assert_eq!(limits(property), (Some(0.0), Some(last)), "{key}"),
                 Entry::Text | Entry::Model | Entry::Color => {}
             }
         }

@@ -12,8 +12,8 @@ use super::mend::{self, Entry};
 use super::{AGENT, ASSUMED_SPEED, ENVIRONMENT, IMAGE, Keys, OBJECT, RULES, WORLD, Warning, black_is_chosen};
 use crate::document::{Document, describe, escape};
 use crate::error::{Problem, SpecError};
-use crate::schema;
 use crate::maps::MapLibrary;
+use crate::schema;
 use crate::world::{AgentParams, EnvironmentParams, ImageParams, Object, World};
 
 impl World {
@@ -22,14 +22,14 @@ impl World {
     /// A colour of (0, 0, 0) is the original's default; on anything but `geometric`, `cube` and `icosphere` it is read as
     /// the asset's own colours.
     ///
-    /// Entries of the original's keys that are empty, of another type or out of range get their defaults or the nearest value
-    /// that can be, each with a warning that says what is assumed: an object without a place stands at (0, 0), one that moves
+    /// Entries of the original's keys that are empty or of another type get their defaults, or what of them can be read, each
+    /// with a warning that says what is assumed: an object without a place stands at (0, 0), one that moves
     /// goes at 2 m/s unless our own key `speed` says otherwise. Objects outside the arena and inside walls stay where they are,
     /// and are named.
     ///
     /// # Errors
-    /// [`SpecError`] where the file is not JSON or no object, has more objects than a world may hold, or has keys of ours whose
-    /// values no world can have.
+    /// [`SpecError`] where the file is not JSON or no object, has a number out of range or more objects than a world may hold, or
+    /// has keys of ours whose values no world can have.
     pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
         Self::from_l2explorer_with(name, text, &MapLibrary::default())
     }
@@ -39,11 +39,7 @@ impl World {
     ///
     /// # Errors
     /// Those of [`World::from_l2explorer`].
-    pub fn from_l2explorer_with(
-        name: &str,
-        text: &str,
-        maps: &MapLibrary,
-    ) -> Result<(Self, Vec<Warning>), SpecError> {
+    pub fn from_l2explorer_with(name: &str, text: &str, maps: &MapLibrary) -> Result<(Self, Vec<Warning>), SpecError> {
         let (mut document, repeated) = Document::parse_leniently(name, text)?;
         let mut reader = Reader::default();
         for pointer in repeated {
@@ -52,8 +48,9 @@ impl World {
         let value = reader.world(&document.value);
         document.value = value;
         let kept = std::mem::take(&mut reader.kept);
+        let spelled = reader.spelled.clone();
         let original = |mut problem: Problem| {
-            problem.pointer = original_pointer(&problem.pointer, &kept);
+            problem.pointer = as_spelled(original_pointer(&problem.pointer, &kept), &spelled);
             problem
         };
         document.fail_on(
@@ -66,8 +63,10 @@ impl World {
         let mut world: Self = document.deserialize()?;
         document.fail_on(world.problems().into_iter().map(original).collect())?;
         maps.apply(&mut world);
-        for (pointer, text) in out_of_reach(&world, &kept) {
-            reader.warn(pointer, text);
+        for (object, index) in world.objects.iter().zip(&kept) {
+            if let Some(text) = world.out_of_reach(object) {
+                reader.warn(format!("/objects/{index}/coordinates"), text);
+            }
         }
         let warnings = document.warnings(reader.warnings);
         Ok((world, warnings))
@@ -103,7 +102,7 @@ impl Object {
 
 impl Document<'_> {
     /// What the reader remarked, in the order of the text.
-    pub(super) fn warnings(&self, remarks: impl IntoIterator<Item = (String, String)>) -> Vec<Warning> {
+    pub(crate) fn warnings(&self, remarks: impl IntoIterator<Item = (String, String)>) -> Vec<Warning> {
         let remarks: Vec<(String, String)> = remarks.into_iter().collect();
         let pointers: Vec<&str> = remarks.iter().map(|(pointer, _)| pointer.as_str()).collect();
         let places = self.places(&pointers);
@@ -135,21 +134,14 @@ fn original_pointer(pointer: &str, kept: &[usize]) -> String {
     tokens.join("/")
 }
 
-/// The objects outside the arena and inside walls.
-fn out_of_reach(world: &World, kept: &[usize]) -> impl Iterator<Item = (String, String)> {
-    let arena = &world.environment_params;
-    let [width, depth] = arena.arena_size();
-    let numbered = world.objects.iter().enumerate();
-    numbered.filter_map(move |(index, object)| {
-        let place = if arena.contains(object.coordinates) {
-            format!("inside {}", arena.enclosure(object.coordinates)?)
-        } else {
-            format!("outside the {width} × {depth} m arena")
-        };
-        let ([x, y], class) = (object.coordinates, &object.class);
-        let text = format!("the {class} stands at ({x:.1}, {y:.1}), {place}; it is kept, out of reach");
-        Some((format!("/objects/{}/coordinates", kept[index]), text))
-    })
+/// Keys may be spelled otherwise in the file: the place there of a place under our names.
+fn as_spelled(pointer: String, spelled: &BTreeMap<String, String>) -> String {
+    let ends = pointer.match_indices('/').map(|(end, _)| end).chain([pointer.len()]);
+    let known = ends.filter_map(|end| Some((end, spelled.get(&pointer[..end])?)));
+    match known.last() {
+        Some((end, place)) => format!("{place}{}", &pointer[end..]),
+        None => pointer,
+    }
 }
 
 /// What entries are where nothing is said, by key.
@@ -187,9 +179,8 @@ pub(super) struct Reader {
 
 impl Reader {
     pub(super) fn warn(&mut self, pointer: impl Into<String>, text: impl Into<String>) {
-        let pointer = pointer.into();
-        let pointer = self.spelled.get(&pointer).cloned().unwrap_or(pointer);
-        self.warnings.push((pointer, text.into()));
+        self.warnings
+            .push((as_spelled(pointer.into(), &self.spelled), text.into()));
     }
 
     fn world(&mut self, json: &Json) -> Json {
@@ -226,7 +217,10 @@ impl Reader {
                 world.insert("objects".into(), Json::Array(self.objects(&objects)));
             }
             Some(other) => {
-                let text = format!("found {}, expected a list of objects; none is assumed", describe(&other));
+                let text = format!(
+                    "found {}, expected a list of objects; none is assumed",
+                    describe(&other)
+                );
                 self.warn("/objects", text);
                 world.shift_remove("objects");
             }
@@ -275,15 +269,6 @@ impl Reader {
         self.whole(at, &mut environment, "predefined_map");
         self.color(at, &mut environment, "bounding_wall_color");
         self.mend(at, &mut environment, &mend::ENVIRONMENT, &DEFAULTS.environment);
-        let is_zero = |json: &Json| json.as_f64() == Some(0.0);
-        let sides = environment.get("map_size").and_then(Json::as_array);
-        if sides.is_some_and(|sides| sides.iter().any(is_zero))
-            && environment.get("predefined_map").is_none_or(is_zero)
-        {
-            let text = "found a side of 0 m; the default [100, 100] is assumed";
-            self.warn(format!("{at}/map_size"), text);
-            environment.shift_remove("map_size");
-        }
         environment
     }
 
@@ -322,7 +307,13 @@ impl Reader {
         for (index, json) in objects.iter().enumerate() {
             let at = format!("/objects/{index}");
             let Some(map) = json.as_object() else {
-                self.warn(at, format!("found {}, expected an object with a class; it is skipped", describe(json)));
+                self.warn(
+                    at,
+                    format!(
+                        "found {}, expected an object with a class; it is skipped",
+                        describe(json)
+                    ),
+                );
                 continue;
             };
             let class = map.iter().find(|(key, _)| key.eq_ignore_ascii_case("class"));
@@ -398,7 +389,8 @@ impl Reader {
         let Some(model) = model.filter(|model| *model != "stationary" && !object.contains_key("speed")) else {
             return;
         };
-        let text = format!("{model} comes without a speed; {ASSUMED_SPEED} m/s is assumed, our key \"speed\" sets another");
+        let text =
+            format!("{model} comes without a speed; {ASSUMED_SPEED} m/s is assumed, our key \"speed\" sets another");
         self.warn(format!("{at}/motion_model"), text);
         object.insert("speed".into(), json!(ASSUMED_SPEED));
     }
@@ -408,7 +400,11 @@ impl Reader {
         let distance = [("interaction_distance", Entry::Number(0.0, 1000.0))];
         self.mend(at, object, &distance, &Map::new());
         if let Some(range) = object.shift_remove("interaction_distance") {
-            object.entry("range_stimulus_distance").or_insert(range);
+            if !object.contains_key("range_stimulus_distance") {
+                let early = format!("{at}/interaction_distance");
+                self.spelled.insert(format!("{at}/range_stimulus_distance"), early);
+                object.insert("range_stimulus_distance".into(), range);
+            }
         }
         let collectible = object.shift_remove("collectible");
         let Some(reward_on) = object.shift_remove("reward_on") else {
@@ -439,7 +435,10 @@ impl Reader {
             text.push_str("; expected pickup, in_range, contact or none");
         }
         if object.contains_key("reward_stimulus") {
-            text = format!("reward_on {} is left out, for there is a reward_stimulus", describe(&reward_on));
+            text = format!(
+                "reward_on {} is left out, for there is a reward_stimulus",
+                describe(&reward_on)
+            );
         }
         self.warn(format!("{at}/reward_on"), text);
         object.entry("reward_stimulus").or_insert_with(|| json!(list));
@@ -448,7 +447,10 @@ impl Reader {
             Some(other) => {
                 let is_meant = matches!(other.as_str(), Some(word) if word.eq_ignore_ascii_case("true"))
                     || other.as_f64().is_some_and(|number| number != 0.0);
-                let text = format!("found {}, expected true or false; {is_meant} is assumed", describe(other));
+                let text = format!(
+                    "found {}, expected true or false; {is_meant} is assumed",
+                    describe(other)
+                );
                 self.warn(format!("{at}/collectible"), text);
                 is_meant
             }
@@ -544,7 +546,10 @@ mod tests {
         assert_eq!(tree.reward_once_stimulus, [Stimulus::AgentInRange]);
         assert_eq!(tree.destroy_stimulus, [Stimulus::AgentInteract]);
         assert_eq!(warnings.len(), 3, "{warnings:?}");
-        assert!(warnings[2].contains("random_waypoint comes without a speed"), "{warnings:?}");
+        assert!(
+            warnings[2].contains("random_waypoint comes without a speed"),
+            "{warnings:?}"
+        );
         assert!(warnings[0].ends_with("(/environment_params/map_size): the text \"50\" is read as a number"));
         assert!(warnings[1].ends_with("(/agent_params/observation_size): the text \"64\" is read as a number"));
     }
@@ -565,8 +570,8 @@ mod tests {
     #[test]
     fn entries_that_say_nothing_get_defaults_with_a_warning_each() {
         let (world, warnings) = read(
-            r#"{ "max_steps": "", "game_mode": null, "image_params": [], "environment_params": { "map_size": [0, 50], "predefined_map": 7, "lightIntensity": "bright" },
-  "agent_params": { "observation_size": 0, "heading": {}, "agent_height": 99, "coordinates": ["here", 4] },
+            r#"{ "max_steps": "", "game_mode": null, "image_params": [], "environment_params": { "map_size": [null, 50], "predefined_map": {}, "lightIntensity": "bright" },
+  "agent_params": { "observation_size": 9.7, "heading": {}, "agent_height": "", "coordinates": ["here", 4] },
   "objects": ["tree", { "class": "Bag", "model": "", "coordinates": [1], "color": [2], "motion_model": "hop", "reward": null, "unique_name": 7 },
     { "class": "tree", "motion_model": "Prey", "reward_stimulus": ["collision", "smell", "AgentCollide"], "reward_on": "collision" },
     { "class": "tree", "coordinates": [1, 2, 3], "unique_name": "7", "reward_on": "Collision", "collectible": "True", "interaction_distance": "" }] }"#,
@@ -575,14 +580,14 @@ mod tests {
             "map.json:1:16 (/max_steps): found \"\", expected a whole number from 0 to 1000000000; the default 0 is assumed",
             "map.json:1:33 (/game_mode): found null, expected one of learn, collect_images; the default \"learn\" is assumed",
             "map.json:1:55 (/image_params): found [], expected an object; its defaults are assumed",
-            "map.json:1:95 (/environment_params/map_size): found a side of 0 m; the default [100, 100] is assumed",
-            "map.json:1:122 (/environment_params/predefined_map): found 7, expected a number from 0 to 4; the default 0 is assumed",
-            "map.json:1:143 (/environment_params/lightIntensity): the key \"lightIntensity\" is read as \"light_intensity\"",
-            "map.json:1:143 (/environment_params/lightIntensity): found \"bright\", expected a number from 0 to 100; the default 2.3 is assumed",
-            "map.json:2:41 (/agent_params/observation_size): found 0, expected a whole number from 1 to 4096; the default 84 is assumed",
-            "map.json:2:55 (/agent_params/heading): found {}, expected a number from 0 to 360; the default 0 is assumed",
-            "map.json:2:75 (/agent_params/agent_height): found 99, expected a number from 0.1 to 10; 10 is assumed",
-            "map.json:2:94 (/agent_params/coordinates): found [\"here\",4], expected two numbers from -300 to 300; [0, 4] is assumed",
+            "map.json:1:95 (/environment_params/map_size): found [null,50], expected two numbers from 0 to 300; [100, 50] is assumed",
+            "map.json:1:125 (/environment_params/predefined_map): found {}, expected a whole number from 0 to 4; the default 0 is assumed",
+            "map.json:1:147 (/environment_params/lightIntensity): the key \"lightIntensity\" is read as \"light_intensity\"",
+            "map.json:1:147 (/environment_params/lightIntensity): found \"bright\", expected a number from 0 to 100; the default 2.3 is assumed",
+            "map.json:2:41 (/agent_params/observation_size): found 9.7, expected a whole number from 1 to 4096; 10 is assumed",
+            "map.json:2:57 (/agent_params/heading): found {}, expected a number from 0 to 360; the default 0 is assumed",
+            "map.json:2:77 (/agent_params/agent_height): found \"\", expected a number from 0.1 to 10; the default 1 is assumed",
+            "map.json:2:96 (/agent_params/coordinates): found [\"here\",4], expected two numbers from -300 to 300; [0, 4] is assumed",
             "map.json:3:15 (/objects/0): found \"tree\", expected an object with a class; it is skipped",
             "map.json:3:50 (/objects/1/model): found \"\", expected a text of 1 to 100 letters, or a whole number to 1000000; the default \"1\" is assumed",
             "map.json:3:69 (/objects/1/coordinates): found [1], expected two numbers from -300 to 300; [1, 0] is assumed",
@@ -604,7 +609,10 @@ mod tests {
         ];
         assert_eq!(warnings, expected, "{warnings:#?}");
         assert_eq!(world.agent_params.coordinates, [0.0, 4.0]);
-        assert_eq!((world.objects[1].motion_model, world.objects[1].speed), (MotionModel::Prey, 2.0));
+        assert_eq!(
+            (world.objects[1].motion_model, world.objects[1].speed),
+            (MotionModel::Prey, 2.0)
+        );
         assert_eq!(world.objects[2].destroy_stimulus, [Stimulus::AgentCollide]);
     }
 

@@ -6,6 +6,7 @@ mod environment;
 mod features;
 mod object;
 mod progress;
+mod remarks;
 mod rules;
 
 use std::fmt::Write;

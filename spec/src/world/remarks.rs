@@ -1,0 +1,71 @@
+//! What is odd about a sound world: what means to move and stands still, and what stands where nobody comes. What is wrong with
+//! one is said by the schema and in `mod.rs`.
+
+use super::{MotionModel, Object, World};
+use crate::document::Document;
+use crate::error::SpecError;
+use crate::l2explorer::Warning;
+
+impl Object {
+    /// Whether the object means to move by itself, and cannot: it has no speed, or its patrol no waypoints.
+    pub fn stands_still(&self) -> bool {
+        let goes_nowhere = self.motion_model == MotionModel::Patrol && self.waypoints.is_empty();
+        self.motion_model != MotionModel::Stationary && (self.speed == 0.0 || goes_nowhere)
+    }
+}
+
+impl World {
+    /// What is odd about this world as the text that it was read from has it, with the places there; `name` is what messages call
+    /// the text.
+    ///
+    /// # Errors
+    /// [`SpecError`] where the text is not JSON.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::World;
+    /// let text = r#"{ "objects": [{ "class": "car", "coordinates": [3, 4], "motion_model": "prey" }] }"#;
+    /// let remarks = World::from_json("w.json", text)?.remarks("w.json", text)?;
+    /// assert_eq!(
+    ///     remarks[0].to_string(),
+    ///     "w.json:1:72 (/objects/0/motion_model): the car is to move as prey and stands still: it has no speed; set \"speed\""
+    /// );
+    /// # Ok::<(), driftworld_spec::SpecError>(())
+    /// ```
+    pub fn remarks(&self, name: &str, text: &str) -> Result<Vec<Warning>, SpecError> {
+        let document = Document::parse(name, text)?;
+        let mut remarks = Vec::new();
+        for (index, object) in self.objects.iter().enumerate() {
+            if let Some(place) = self.out_of_reach(object) {
+                remarks.push((format!("/objects/{index}/coordinates"), place));
+            }
+            if object.stands_still() {
+                let model = serde_json::to_value(object.motion_model).unwrap_or_default();
+                let lack = if object.speed == 0.0 {
+                    "it has no speed; set \"speed\""
+                } else {
+                    "it has no waypoints; set \"waypoints\""
+                };
+                let (class, model) = (&object.class, model.as_str().unwrap_or_default());
+                let text = format!("the {class} is to move as {model} and stands still: {lack}");
+                remarks.push((format!("/objects/{index}/motion_model"), text));
+            }
+        }
+        Ok(document.warnings(remarks))
+    }
+
+    /// Where an object stands that nobody comes to: outside the arena, or inside which wall; `None` on free ground.
+    pub(crate) fn out_of_reach(&self, object: &Object) -> Option<String> {
+        let arena = &self.environment_params;
+        let [width, depth] = arena.arena_size();
+        let place = if arena.contains(object.coordinates) {
+            format!("inside {}", arena.enclosure(object.coordinates)?)
+        } else {
+            format!("outside the {width} × {depth} m arena")
+        };
+        let ([x, y], class) = (object.coordinates, &object.class);
+        Some(format!(
+            "the {class} stands at ({x:.1}, {y:.1}), {place}; it is kept, out of reach"
+        ))
+    }
+}
