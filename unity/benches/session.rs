@@ -44,7 +44,7 @@ fn session(pictures: PictureForm) -> Session {
 fn commands(c: &mut Criterion) {
     let action = AgentActionProto {
         vector_actions: vec![5.0, 15.0, 0.0],
-        continuous_actions: Vec::new(),
+        ..AgentActionProto::default()
     };
     let mut step = UnityRlInputProto::default();
     step.agent_actions

@@ -28,6 +28,8 @@ Options:
   --wait SECONDS          how long to look for a client [default: 60]
   --world FILE            the world until the client resets to one of its own: ours, or a reset file of L2Explorer
   --maps FILE             layouts of predefined maps in place of the built-in ones
+  --assets LIB            a library of models that worlds may use beside the built-in ones, made by `driftworld assets pack`;
+                          may be given again, the last one holds where two have the same model
   --screenshots DIR       the folder that screenshots are written into, and nowhere else [default: screenshots]
   --raw-observations      pictures as floats instead of PNG: depth keeps its fractions, messages are twenty times as long
   -logFile [FILE]         where to write what is said on the terminal otherwise; without FILE or with - the terminal
@@ -60,6 +62,8 @@ pub struct Options {
     pub world: Option<PathBuf>,
     /// Layouts of predefined maps, if not the built-in ones.
     pub maps: Option<PathBuf>,
+    /// Libraries of models, the last one in front.
+    pub assets: Vec<PathBuf>,
     /// The folder for screenshots.
     pub screenshots: PathBuf,
     /// The form of pictures.
@@ -76,6 +80,7 @@ impl Default for Options {
             wait: Duration::from_mins(1),
             world: None,
             maps: None,
+            assets: Vec::new(),
             screenshots: PathBuf::from("screenshots"),
             pictures: PictureForm::Png,
             log: None,
@@ -84,7 +89,8 @@ impl Default for Options {
 }
 
 /// Options of ours.
-const OURS: [&str; 9] = [
+const OURS: [&str; 10] = [
+    "--assets",
     "--mlagents-port",
     "--host",
     "--wait",
@@ -150,6 +156,7 @@ impl Request {
                 "--host" => options.host = value("the name or address of a machine")?,
                 "--wait" => options.wait = wait(&value("a number of seconds")?)?,
                 "--world" => options.world = Some(value("a file")?.into()),
+                "--assets" => options.assets.push(value("a file")?.into()),
                 "--maps" => options.maps = Some(value("a file")?.into()),
                 "--screenshots" => options.screenshots = value("a folder")?.into(),
                 "--raw-observations" => match &inline {
@@ -278,12 +285,15 @@ mod tests {
 
     #[test]
     fn ours_take_their_values_either_way() {
-        let (found, _) = options("--screenshots=out --world w.json --wait 2.5 --raw-observations --maps=m --host ::1");
+        let (found, _) = options(
+            "--screenshots=out --world w.json --wait 2.5 --assets a --raw-observations --maps=m --host ::1 --assets=b",
+        );
         let expected = Options {
             host: "::1".to_owned(),
             wait: Duration::from_millis(2500),
             world: Some("w.json".into()),
             maps: Some("m".into()),
+            assets: vec!["a".into(), "b".into()],
             screenshots: "out".into(),
             pictures: PictureForm::Floats,
             ..Options::default()

@@ -1,5 +1,5 @@
-//! What can be done in a world, as clients of each generation are told: one behaviour, three continuous numbers. What they mean
-//! is the world's action model's.
+//! What can be done in a world, as clients of each generation are told: one behaviour, of three continuous numbers or one
+//! discrete. What they mean is the world's action model's, and its table's.
 
 use driftworld_spec::{ActionModel, ActionSpace, AgentParams};
 
@@ -12,19 +12,30 @@ pub const BEHAVIOR: &str = "L2Explorer?team=0";
 /// How many numbers an action has.
 pub(crate) const ACTION_LENGTH: usize = 3;
 
-/// The behaviour as a client understands it.
+/// What an action is where the world has a table of them.
+const ROW: &str = "a row of the world's table of actions";
+
+/// The behaviour as a client understands it: three continuous numbers, or one discrete, the row of the world's table.
 pub(crate) fn behavior(agent: &AgentParams, client: Client) -> BrainParametersProto {
-    let words: Vec<String> = words(agent).map(str::to_owned).to_vec();
+    let num_rows = agent.num_actions().map(|rows| rows as i32);
+    let words: Vec<String> = match num_rows {
+        Some(_) => vec![ROW.to_owned()],
+        None => words(agent).map(str::to_owned).to_vec(),
+    };
     let action_spec = client.hybrid_actions.then(|| ActionSpecProto {
-        num_continuous_actions: ACTION_LENGTH as i32,
-        num_discrete_actions: 0,
-        discrete_branch_sizes: Vec::new(),
+        num_continuous_actions: if num_rows.is_some() { 0 } else { ACTION_LENGTH as i32 },
+        num_discrete_actions: num_rows.iter().len() as i32,
+        discrete_branch_sizes: num_rows.into_iter().collect(),
         action_descriptions: words.clone(),
     });
+    let kind = match num_rows {
+        Some(_) => SpaceTypeProto::Discrete,
+        None => SpaceTypeProto::Continuous,
+    };
     BrainParametersProto {
-        vector_action_size: vec![ACTION_LENGTH as i32],
+        vector_action_size: vec![num_rows.unwrap_or(ACTION_LENGTH as i32)],
         vector_action_descriptions: words,
-        vector_action_space_type: SpaceTypeProto::Continuous.into(),
+        vector_action_space_type: kind.into(),
         brain_name: BEHAVIOR.to_owned(),
         is_training: true,
         action_spec,
@@ -63,6 +74,25 @@ fn interact(agent: &AgentParams, words: &'static str) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_table_of_actions_is_one_choice_for_every_generation() {
+        let mut agent = AgentParams {
+            actions: ActionSpace::DefaultDiscrete,
+            ..AgentParams::default()
+        };
+        let old = behavior(&agent, Client::default());
+        assert_eq!((old.vector_action_size, old.vector_action_space_type), (vec![7], 0));
+        assert_eq!(old.action_spec, None);
+        let hybrid = Client {
+            hybrid_actions: true,
+            ..Client::default()
+        };
+        agent.actions = ActionSpace::Discrete(vec![[1.0, 0.0, 0.0]; 3]);
+        let spec = behavior(&agent, hybrid).action_spec.expect("new clients have one");
+        assert_eq!((spec.num_continuous_actions, spec.num_discrete_actions), (0, 1));
+        assert_eq!(spec.discrete_branch_sizes, [3]);
+    }
 
     #[test]
     fn numbers_are_told_as_the_world_takes_them() {

@@ -103,10 +103,28 @@ pub enum UnityError {
         found: usize,
     },
     /// An action of another length.
-    #[error("action: found {found} numbers, expected 3")]
+    #[error("action: found {found} numbers, expected {expected}")]
     ActionLength {
         /// How many numbers it has.
         found: usize,
+        /// How many it should have: 3, or 1 where the world has a table of actions.
+        expected: usize,
+    },
+    /// A discrete action that the world's table does not have.
+    #[error("action: found {found}, expected the number of a row of the world's table of actions, 0 to {last}")]
+    ActionRow {
+        /// The number.
+        found: String,
+        /// The last row.
+        last: usize,
+    },
+    /// A library of models that is none.
+    #[error("--assets {}: {source}", path.display())]
+    Library {
+        /// Its path.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: EnvError,
     },
     /// An answer that is longer than clients accept.
     #[error(
@@ -151,6 +169,8 @@ impl UnityError {
             Self::ClientFailed { .. } => "unity/client-failed",
             Self::WrongAgent { .. } => "unity/wrong-agent",
             Self::ActionLength { .. } => "unity/action-length",
+            Self::ActionRow { .. } => "unity/action-row",
+            Self::Library { .. } => "unity/library",
             Self::TooLarge { .. } => "unity/too-large",
             Self::Picture { .. } => "unity/picture",
             Self::Env(_) => "unity/env",

@@ -1,8 +1,10 @@
 //! [`run`]: a session over a connection, from the first look for a client to its end. What is said is decided in `session/mod.rs`.
 
-use std::path::Path;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use driftworld_env::{Catalogue, Library};
 use driftworld_spec::World;
 use driftworld_spec::maps::MapLibrary;
 use prost::Message;
@@ -33,20 +35,25 @@ const FAREWELL: Duration = Duration::from_millis(500);
 /// [`UnityError`] for files that cannot be used, without a client, and for a client that breaks the protocol, which is told so
 /// before. A client that ends or goes away is no error.
 pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
+    let maps = options
+        .maps
+        .as_deref()
+        .map_or_else(|| Ok(MapLibrary::default()), maps)?;
     let setup = Setup {
         world: match &options.world {
-            Some(path) => world(path, journal)?,
+            Some(path) => world(path, &maps, journal)?,
             None => World::default(),
         },
-        maps: options
-            .maps
-            .as_deref()
-            .map_or_else(|| Ok(MapLibrary::default()), maps)?,
+        maps,
+        catalogue: catalogue(&options.assets)?,
         pictures: options.pictures,
     };
     // Always with three digits of the second: readers of one fixed form do not take fewer.
     let clock = || format!("{:.3}", jiff::Timestamp::now());
-    let session = Session::new(setup, Screenshots::new(&options.screenshots), clock)?;
+    let mut session = Session::new(setup, Screenshots::new(&options.screenshots), clock)?;
+    for remark in session.take_remarks() {
+        journal.note(&remark);
+    }
     let runtime = runtime::Builder::new_current_thread()
         .enable_all()
         .build()
@@ -59,7 +66,7 @@ pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
 
 /// A world file, in our form or in the original's. What the original's reader made sense of is noted: a misspelt key reads as one
 /// that means nothing.
-fn world(path: &Path, journal: &mut Journal) -> Result<World, UnityError> {
+fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World, UnityError> {
     let text = read("--world", path)?;
     let name = path.display().to_string();
     let error = match World::from_json(&name, &text) {
@@ -68,7 +75,7 @@ fn world(path: &Path, journal: &mut Journal) -> Result<World, UnityError> {
     };
     // Only ours has a version; where neither form reads, the complaints of ours are the stricter ones.
     let is_ours = serde_json::from_str::<Value>(&text).is_ok_and(|json| json.get("version").is_some());
-    match World::from_l2explorer(&name, &text) {
+    match World::from_l2explorer_with(&name, &text, maps) {
         Ok((world, warnings)) if !is_ours => {
             journal.note(&format!("{name}: read as a reset file of L2Explorer"));
             for warning in warnings {
@@ -85,6 +92,33 @@ fn maps(path: &Path) -> Result<MapLibrary, UnityError> {
         &path.display().to_string(),
         &read("--maps", path)?,
     )?)
+}
+
+/// The built-in models with those of libraries in front.
+fn catalogue(paths: &[PathBuf]) -> Result<Catalogue, UnityError> {
+    let mut catalogue = Catalogue::default();
+    for path in paths {
+        let library = Library::from_bytes(&bytes("--assets", path)?).map_err(|source| UnityError::Library {
+            path: path.clone(),
+            source,
+        })?;
+        catalogue = catalogue.with_library(&library);
+    }
+    Ok(catalogue)
+}
+
+/// The bytes of a plain file: a device or a pipe has no end.
+fn bytes(option: &'static str, path: &Path) -> Result<Vec<u8>, UnityError> {
+    let failed = |source| UnityError::File {
+        option,
+        path: path.to_owned(),
+        purpose: "read",
+        source,
+    };
+    if !std::fs::metadata(path).map_err(failed)?.is_file() {
+        return Err(failed(ErrorKind::InvalidInput.into()));
+    }
+    std::fs::read(path).map_err(failed)
 }
 
 fn read(option: &'static str, path: &Path) -> Result<String, UnityError> {

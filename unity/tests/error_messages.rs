@@ -51,7 +51,15 @@ fn errors() -> Vec<UnityError> {
             behavior: "Walker?team=0".to_owned(),
             found: 2,
         },
-        UnityError::ActionLength { found: 2 },
+        UnityError::ActionLength { found: 2, expected: 3 },
+        UnityError::ActionRow {
+            found: "7".to_owned(),
+            last: 6,
+        },
+        UnityError::Library {
+            path: "town.assets".into(),
+            source: EnvError::NoSuchAction { found: 7, last: 6 },
+        },
         UnityError::TooLarge {
             found: 9_437_482,
             limit: 4_194_304,

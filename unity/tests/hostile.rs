@@ -60,7 +60,7 @@ fn answer(session: &mut Session, input: &UnityRlInputProto) -> Result<UnityOutpu
 fn actions(lists: &[(&str, &[&[f32]])]) -> UnityRlInputProto {
     let action = |numbers: &&[f32]| AgentActionProto {
         vector_actions: numbers.to_vec(),
-        continuous_actions: Vec::new(),
+        ..AgentActionProto::default()
     };
     let entry = |(behavior, agents): &(&str, &[&[f32]])| {
         let value = agents.iter().map(action).collect();
@@ -211,7 +211,15 @@ fn texts_full_of_mistakes_are_looked_at_once() {
     let (sent, _) = check(told(&format!(
         "{{\"action\":\"reset_environment\",\"payload\":{{\"objects\":{objects}}}}}"
     )));
-    assert!(sent.contains("payload: and 19981 more"), "{sent}");
+    assert!(
+        sent.contains("\"action\":\"ok\""),
+        "what is no object is skipped: {sent}"
+    );
+    let objects = "{\"class\":\"tree\",\"coordinates\":[1e9,0]},".repeat(20_000);
+    let (sent, _) = check(told(&format!(
+        "{{\"action\":\"reset_environment\",\"payload\":{{\"objects\":[{objects}1]}}}}"
+    )));
+    assert!(sent.contains("payload: and 19980 more"), "{sent}");
 }
 
 #[test]

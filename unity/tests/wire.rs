@@ -88,6 +88,7 @@ fn what_clients_say_has_its_numbers() {
     let action = AgentActionProto {
         vector_actions: vec![1.5, -2.0, 0.0],
         continuous_actions: vec![0.5],
+        ..AgentActionProto::default()
     };
     let list = ListAgentActionProto { value: vec![action] };
     let command = UnityRlInputProto {

@@ -158,6 +158,8 @@ impl Session {
         self.maps.apply(&mut self.start);
         if !self.parameters.is_empty() || self.start != *self.environment.world() {
             self.restart()?;
+        } else {
+            self.open_album();
         }
         Ok(())
     }

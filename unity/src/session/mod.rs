@@ -1,14 +1,17 @@
 //! [`Session`]: what a world answers to what a client says. How messages beside commands are taken is in `messages.rs`; how all
 //! of it travels, in `serve.rs`.
 
+mod album;
 mod messages;
 
 use std::collections::BTreeMap;
 
-use driftworld_env::{Action, Channels, Environment, Event, Step};
+use driftworld_env::{Action, Catalogue, Channels, Environment, Event, Step, Warning};
 use driftworld_spec::maps::MapLibrary;
-use driftworld_spec::{ActionSpace, World};
+use driftworld_spec::{AgentParams, GameMode, World};
 use prost::Message;
+
+use album::Album;
 
 use crate::behavior::{ACTION_LENGTH, BEHAVIOR, behavior, words};
 use crate::client::Client;
@@ -19,8 +22,8 @@ use crate::parameters::Parameters;
 use crate::protocol::unity_rl_input_proto::ListAgentActionProto;
 use crate::protocol::unity_rl_output_proto::ListAgentInfoProto;
 use crate::protocol::{
-    AgentInfoProto, CommandProto, UnityOutputProto, UnityRlCapabilitiesProto, UnityRlInitializationInputProto,
-    UnityRlInitializationOutputProto, UnityRlInputProto, UnityRlOutputProto,
+    AgentActionProto, AgentInfoProto, CommandProto, UnityOutputProto, UnityRlCapabilitiesProto,
+    UnityRlInitializationInputProto, UnityRlInitializationOutputProto, UnityRlInputProto, UnityRlOutputProto,
 };
 use crate::remarks::{About, Remarks};
 use crate::screenshots::Screenshots;
@@ -38,6 +41,8 @@ pub struct Setup {
     pub world: World,
     /// Layouts that take the place of the built-in ones.
     pub maps: MapLibrary,
+    /// The models that worlds may refer to.
+    pub catalogue: Catalogue,
     /// How pictures travel.
     pub pictures: PictureForm,
 }
@@ -56,6 +61,7 @@ pub enum Turn {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Announced {
     words: [&'static str; ACTION_LENGTH],
+    num_rows: Option<usize>,
     picture_size: [u32; 2],
     state_len: usize,
 }
@@ -80,6 +86,8 @@ struct Announced {
 /// ```
 pub struct Session {
     environment: Environment,
+    /// The photographs of the world's objects, if it is for them.
+    album: Option<Album>,
     channels: Channels,
     /// What a reset begins.
     start: World,
@@ -107,13 +115,19 @@ impl Session {
         screenshots: Screenshots,
         clock: impl Fn() -> String + 'static,
     ) -> Result<Self, UnityError> {
-        let Setup { world, maps, pictures } = setup;
+        let Setup {
+            world,
+            maps,
+            catalogue,
+            pictures,
+        } = setup;
         // A world that was written down while it ran is taken back to its start: clients begin episodes.
         let mut start = Environment::new(world)?.world().clone();
         maps.apply(&mut start);
-        Ok(Self {
-            environment: Environment::new(start.clone())?,
-            channels: Channels::new(&start),
+        let mut session = Self {
+            environment: Environment::with_catalogue(start.clone(), catalogue)?,
+            album: None,
+            channels: Channels::new(&start).with_maps(maps.clone()),
             start,
             maps,
             parameters: Parameters::default(),
@@ -125,7 +139,15 @@ impl Session {
             outbox: Outbox::default(),
             remarks: Remarks::default(),
             announced: None,
-        })
+        };
+        // Of worlds that messages reset to, the channels have remarks of their own.
+        for warning in session.environment.warnings() {
+            if warning != Warning::ForPhotographs {
+                session.remarks.make(About::Worlds, format!("world: {warning}"));
+            }
+        }
+        session.open_album();
+        Ok(session)
     }
 
     /// The first thing said to a client.
@@ -180,9 +202,13 @@ impl Session {
             self.restart()?;
         }
         let is_renewed = self.receive(&messages)?;
+        let agent_params = &self.environment.world().agent_params;
         let agents = match command {
             CommandProto::Quit => return Ok(Turn::Quit),
-            CommandProto::Step if !is_renewed => self.step(action(&input.agent_actions)?)?,
+            CommandProto::Step if !is_renewed => {
+                let action = action(&input.agent_actions, agent_params)?;
+                self.step(action)?
+            }
             CommandProto::Step | CommandProto::Reset => {
                 self.episodes += 1;
                 let first = self.decision(0.0, 0)?;
@@ -212,19 +238,41 @@ impl Session {
                 }
             }
         }
-        if matches!(
-            world.agent_params.actions,
-            ActionSpace::Discrete(_) | ActionSpace::DefaultDiscrete
-        ) {
-            let remark = "world: its table of actions is not used, clients are told of three numbers".to_owned();
-            self.remarks.make(About::Worlds, remark);
+        self.environment.reset(world)?;
+        self.open_album();
+        Ok(())
+    }
+
+    /// Photographs from the first one on, if the world is for photographs.
+    pub(super) fn open_album(&mut self) {
+        let world = self.environment.world();
+        self.album = None;
+        if world.game_mode != GameMode::CollectImages {
+            return;
         }
-        Ok(self.environment.reset(world)?)
+        match Album::open(world, self.environment.scene().catalogue()) {
+            Ok(album) => self.album = Some(album),
+            Err(reason) => {
+                let remark = format!("collect_images: {reason}; the world runs as learn");
+                self.remarks.make(About::Worlds, remark);
+            }
+        }
     }
 
     /// Carries out an action; an episode that it ends is followed by the start of the next one, as Unity has it.
-    fn step(&mut self, action: [f64; ACTION_LENGTH]) -> Result<Vec<AgentInfoProto>, UnityError> {
-        let step = self.environment.step(Action::Continuous(action))?;
+    fn step(&mut self, action: Action) -> Result<Vec<AgentInfoProto>, UnityError> {
+        if let Some(album) = &mut self.album {
+            let is_over = !album.turn();
+            let mut agent = self.decision(0.0, 0)?;
+            if !is_over {
+                return Ok(vec![agent]);
+            }
+            (agent.done, agent.max_step_reached) = (true, true);
+            self.restart()?;
+            self.episodes += 1;
+            return Ok(vec![agent, self.decision(0.0, 0)?]);
+        }
+        let step = self.environment.step(action)?;
         let time = (self.clock)();
         for message in self.channels.after_step(&self.environment, &step, &time) {
             self.send(&message);
@@ -244,7 +292,10 @@ impl Session {
     /// fit, that is said at the start, not in the midst of a training.
     fn check_end_fits(&self, agent: &AgentInfoProto) -> Result<(), UnityError> {
         let world = self.environment.world();
-        let can_end = world.max_steps > 0 || !world.rules.success.is_empty() || !world.rules.failure.is_empty();
+        let can_end = self.album.is_some()
+            || world.max_steps > 0
+            || !world.rules.success.is_empty()
+            || !world.rules.failure.is_empty();
         let (found, limit) = (2 * agent.encoded_len() + ENVELOPE, MAX_OUTGOING_BYTES);
         if self.pictures == PictureForm::Floats && can_end && found > limit {
             return Err(UnityError::TooLarge { found, limit });
@@ -254,16 +305,24 @@ impl Session {
 
     /// The agent as it is now, before its next action.
     fn decision(&mut self, reward: f64, collected: usize) -> Result<AgentInfoProto, UnityError> {
-        let mut state = vec![collected as f32];
-        state.extend(self.environment.state_vector());
         let (pictures, client) = (self.pictures, self.client);
+        let observations = if let Some(album) = &mut self.album {
+            let mut state = album.state(self.environment.world());
+            // Clients were told of so many numbers.
+            state.resize(1 + self.environment.world().agent_params.state_len(), 0.0);
+            observations(album.picture()?, state, pictures, client)?
+        } else {
+            let mut state = vec![collected as f32];
+            state.extend(self.environment.state_vector());
+            observations(self.environment.observe(), state, pictures, client)?
+        };
         Ok(AgentInfoProto {
             // Clients take no infinity.
             reward: (reward as f32).clamp(f32::MIN, f32::MAX),
             done: false,
             max_step_reached: false,
             id: self.episodes,
-            observations: observations(self.environment.observe(), state, pictures, client)?,
+            observations,
         })
     }
 
@@ -271,6 +330,7 @@ impl Session {
         let agent = &self.environment.world().agent_params;
         let now = Announced {
             words: words(agent),
+            num_rows: agent.num_actions(),
             picture_size: agent.picture_size(),
             state_len: agent.state_len(),
         };
@@ -298,8 +358,8 @@ impl Session {
 }
 
 /// The one agent's action; without any, it does nothing.
-fn action(actions: &BTreeMap<String, ListAgentActionProto>) -> Result<[f64; ACTION_LENGTH], UnityError> {
-    let mut numbers = [0.0; ACTION_LENGTH];
+fn action(actions: &BTreeMap<String, ListAgentActionProto>, agent: &AgentParams) -> Result<Action, UnityError> {
+    let mut chosen = Action::Continuous([0.0; ACTION_LENGTH]);
     for (behavior, ListAgentActionProto { value }) in actions {
         let ([action], BEHAVIOR) = (value.as_slice(), behavior.as_str()) else {
             return Err(UnityError::WrongAgent {
@@ -307,17 +367,48 @@ fn action(actions: &BTreeMap<String, ListAgentActionProto>) -> Result<[f64; ACTI
                 found: value.len(),
             });
         };
-        let found = if action.continuous_actions.is_empty() {
-            &action.vector_actions
-        } else {
-            &action.continuous_actions
+        chosen = match agent.num_actions() {
+            Some(rows) => Action::Discrete(row(action, rows)?),
+            None => Action::Continuous(numbers(action)?),
         };
-        if found.len() != ACTION_LENGTH {
-            return Err(UnityError::ActionLength { found: found.len() });
-        }
-        numbers = std::array::from_fn(|place| f64::from(found[place]));
     }
-    Ok(numbers)
+    Ok(chosen)
+}
+
+fn numbers(action: &AgentActionProto) -> Result<[f64; ACTION_LENGTH], UnityError> {
+    let found = if action.continuous_actions.is_empty() {
+        &action.vector_actions
+    } else {
+        &action.continuous_actions
+    };
+    if found.len() != ACTION_LENGTH {
+        return Err(UnityError::ActionLength {
+            found: found.len(),
+            expected: ACTION_LENGTH,
+        });
+    }
+    Ok(std::array::from_fn(|place| f64::from(found[place])))
+}
+
+/// The row of a table that is asked for. Old clients say its number as a float.
+fn row(action: &AgentActionProto, rows: usize) -> Result<usize, UnityError> {
+    let found: Vec<f64> = if action.discrete_actions.is_empty() {
+        action.vector_actions.iter().copied().map(f64::from).collect()
+    } else {
+        action.discrete_actions.iter().copied().map(f64::from).collect()
+    };
+    let [number] = found[..] else {
+        let found = found.len().max(action.continuous_actions.len());
+        return Err(UnityError::ActionLength { found, expected: 1 });
+    };
+    let last = rows - 1;
+    if number.fract() != 0.0 || !(0.0..=last as f64).contains(&number) {
+        return Err(UnityError::ActionRow {
+            found: number.to_string(),
+            last,
+        });
+    }
+    Ok(number as usize)
 }
 
 /// The object that a step collected, by its number from 1: the last that paid or was destroyed; 0 for none.

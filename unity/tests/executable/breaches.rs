@@ -27,7 +27,7 @@ fn check(last: Vec<Answer>, expected: &str) {
 fn step(actions: &[(&str, &[&[f32]])]) -> Answer {
     let action = |numbers: &[f32]| AgentActionProto {
         vector_actions: numbers.to_vec(),
-        continuous_actions: Vec::new(),
+        ..AgentActionProto::default()
     };
     let list = |agents: &[&[f32]]| ListAgentActionProto {
         value: agents.iter().map(|numbers| action(numbers)).collect(),

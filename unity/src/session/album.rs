@@ -1,0 +1,73 @@
+//! [`Album`]: the photographs of a world's objects, one a step, for a world that is for them. How they are taken is in
+//! `driftworld-env`.
+
+use driftworld_env::{Catalogue, Frame, Photograph, Studio};
+use driftworld_spec::World;
+
+use crate::error::UnityError;
+
+/// The photographs of a world, and the one that is looked at.
+#[derive(Clone, Debug)]
+pub(super) struct Album {
+    studio: Studio,
+    /// Never empty.
+    photographs: Vec<Photograph>,
+    /// An index of the photographs.
+    now: usize,
+    frame: Frame,
+}
+
+impl Album {
+    /// An album at its first photograph.
+    ///
+    /// # Errors
+    /// Why there is none: no objects, or too many views of them.
+    pub(super) fn open(world: &World, catalogue: &Catalogue) -> Result<Self, String> {
+        let studio = Studio::with_catalogue(world, catalogue).map_err(|error| error.to_string())?;
+        let photographs = studio.photographs();
+        if photographs.is_empty() {
+            return Err("found no objects, expected some to photograph".to_owned());
+        }
+        let [width, height] = studio.picture_size();
+        Ok(Self {
+            studio,
+            photographs,
+            now: 0,
+            frame: Frame::new(width, height),
+        })
+    }
+
+    /// Goes on to the next photograph; says whether there is one.
+    pub(super) fn turn(&mut self) -> bool {
+        let is_there = self.now + 1 < self.photographs.len();
+        self.now += usize::from(is_there);
+        is_there
+    }
+
+    /// The photograph that is looked at.
+    pub(super) fn picture(&mut self) -> Result<&Frame, UnityError> {
+        let supersampling = self.studio.supersampling();
+        let mut target = self.frame.target();
+        target.supersampling = supersampling;
+        self.studio.take(&self.photographs[self.now], &mut target)?;
+        Ok(&self.frame)
+    }
+
+    /// What stands in the state vector: the number of the object from 1, then where the camera stands in the world, in metres, and
+    /// where it looks, in degrees.
+    pub(super) fn state(&self, world: &World) -> Vec<f32> {
+        let photograph = &self.photographs[self.now];
+        let object = &world.objects[photograph.object];
+        let yaw = (photograph.yaw_deg + object.heading as f32).rem_euclid(360.0);
+        let level = photograph.distance * libm::cosf(photograph.elevation_deg.to_radians());
+        let [x, y] = object.coordinates.map(|metres| metres as f32);
+        let (sin, cos) = (libm::sinf(yaw.to_radians()), libm::cosf(yaw.to_radians()));
+        let heading = (yaw + 180.0).rem_euclid(360.0);
+        vec![
+            (photograph.object + 1) as f32,
+            x + sin * level,
+            y + cos * level,
+            heading,
+        ]
+    }
+}

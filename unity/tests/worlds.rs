@@ -1,0 +1,259 @@
+//! What worlds ask of a session beyond three continuous numbers and an agent that acts: tables of actions, photographs, models
+//! of one's own, and objects that nobody knows.
+
+use std::collections::BTreeMap;
+
+use driftworld_env::{
+    Action, Catalogue, ColliderKind, Environment, ImportOptions, ImportSize, Library, LibraryModel, Studio,
+};
+use driftworld_spec::{ActionSpace, GameMode, ImageParams, Object, World};
+use driftworld_unity::protocol::observation_proto::ObservationData;
+use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
+use driftworld_unity::protocol::{
+    AgentActionProto, AgentInfoProto, CommandProto, SpaceTypeProto, UnityOutputProto, UnityRlCapabilitiesProto,
+    UnityRlInitializationInputProto, UnityRlInputProto,
+};
+use driftworld_unity::{BEHAVIOR, PictureForm, Screenshots, Session, Setup, Turn};
+use proptest::prelude::*;
+
+/// A session with a client of the first generation, or of the last.
+fn session(world: World, catalogue: Catalogue, is_new: bool) -> Session {
+    let setup = Setup {
+        world,
+        catalogue,
+        pictures: PictureForm::Floats,
+        ..Setup::default()
+    };
+    let clock = || "2026-01-01T00:00:00Z".to_owned();
+    let mut session = Session::new(setup, Screenshots::new("none"), clock).expect("the world can start");
+    let said = UnityRlInitializationInputProto {
+        communication_version: "1.0.0".to_owned(),
+        package_version: if is_new { "1.1.0" } else { "0.16.0" }.to_owned(),
+        capabilities: Some(UnityRlCapabilitiesProto {
+            hybrid_actions: is_new,
+            ..UnityRlCapabilitiesProto::default()
+        }),
+        ..UnityRlInitializationInputProto::default()
+    };
+    session.begin(&said).expect("the client is of version 1");
+    session
+}
+
+fn answer(session: &mut Session, command: CommandProto, action: Option<AgentActionProto>) -> UnityOutputProto {
+    let agent_actions = action.map(|action| (BEHAVIOR.to_owned(), ListAgentActionProto { value: vec![action] }));
+    let input = UnityRlInputProto {
+        command: command.into(),
+        agent_actions: agent_actions.into_iter().collect::<BTreeMap<_, _>>(),
+        ..UnityRlInputProto::default()
+    };
+    match session.answer(&input).expect("the command is sound") {
+        Turn::Output(output) => *output,
+        Turn::Quit => panic!("nobody quits"),
+    }
+}
+
+fn agents(output: &UnityOutputProto) -> &[AgentInfoProto] {
+    &output.rl_output.as_ref().expect("there is an agent").agent_infos[BEHAVIOR].value
+}
+
+fn floats(agent: &AgentInfoProto, place: usize) -> &[f32] {
+    match &agent.observations[place].observation_data {
+        Some(ObservationData::FloatData(floats)) => &floats.data,
+        other => panic!("floats were asked for: {other:?}"),
+    }
+}
+
+/// A row as clients of either generation say it.
+fn row(number: usize, is_new: bool) -> AgentActionProto {
+    let (vector_actions, discrete_actions) = if is_new {
+        (Vec::new(), vec![number as i32])
+    } else {
+        (vec![number as f32], Vec::new())
+    };
+    AgentActionProto {
+        vector_actions,
+        discrete_actions,
+        ..AgentActionProto::default()
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn rows_of_a_table_do_in_a_session_what_they_do_in_a_world(
+        table in proptest::option::of(proptest::collection::vec([-10.0..=10.0f64, -90.0..=90.0, 0.0..=1.0], 1..5)),
+        rows in proptest::collection::vec(any::<proptest::sample::Index>(), 1..12),
+        is_new in any::<bool>(),
+    ) {
+        let mut world = World::default();
+        world.agent_params.observation_size = 4;
+        world.agent_params.actions = table.map_or(ActionSpace::DefaultDiscrete, ActionSpace::Discrete);
+        let count = world.agent_params.num_actions().expect("there is a table");
+        let mut environment = Environment::new(world.clone()).expect("the world can start");
+        let mut session = session(world, Catalogue::default(), is_new);
+        let first = answer(&mut session, CommandProto::Reset, None);
+        let known = &first.rl_initialization_output.expect("the behaviour is told").brain_parameters[0];
+        prop_assert_eq!(known.vector_action_space_type, i32::from(SpaceTypeProto::Discrete));
+        prop_assert_eq!(&known.vector_action_size, &vec![count as i32]);
+        prop_assert_eq!(known.action_spec.is_some(), is_new);
+        if let Some(spec) = &known.action_spec {
+            prop_assert_eq!((spec.num_continuous_actions, spec.num_discrete_actions), (0, 1));
+            prop_assert_eq!(&spec.discrete_branch_sizes, &vec![count as i32]);
+        }
+        for number in rows {
+            let number = number.index(count);
+            environment.step(Action::Discrete(number)).expect("the row is there");
+            let output = answer(&mut session, CommandProto::Step, Some(row(number, is_new)));
+            prop_assert_eq!(&floats(&agents(&output)[0], 3)[1..], environment.state_vector());
+        }
+    }
+}
+
+#[test]
+fn rows_that_are_not_there_and_other_lengths_are_refused() {
+    let mut world = World::default();
+    world.agent_params.actions = ActionSpace::DefaultDiscrete;
+    let refused = |action: AgentActionProto| {
+        let mut session = session(world.clone(), Catalogue::default(), true);
+        let list = ListAgentActionProto { value: vec![action] };
+        let input = UnityRlInputProto {
+            agent_actions: BTreeMap::from([(BEHAVIOR.to_owned(), list)]),
+            ..UnityRlInputProto::default()
+        };
+        session.answer(&input).expect_err("there is no such action").to_string()
+    };
+    let none = "expected the number of a row of the world's table of actions, 0 to 6";
+    assert_eq!(refused(row(7, true)), format!("action: found 7, {none}"));
+    for (number, said) in [(-1.0, "-1"), (0.5, "0.5"), (f32::NAN, "NaN")] {
+        let action = AgentActionProto {
+            vector_actions: vec![number],
+            ..AgentActionProto::default()
+        };
+        assert_eq!(refused(action), format!("action: found {said}, {none}"));
+    }
+    let three = AgentActionProto {
+        continuous_actions: vec![0.0; 3],
+        ..AgentActionProto::default()
+    };
+    assert_eq!(refused(three), "action: found 3 numbers, expected 1");
+}
+
+#[test]
+fn a_world_for_photographs_shows_one_a_step_and_ends_with_the_last() {
+    let mut barrel = Object::new("barrel", [3.0, 4.0]);
+    barrel.heading = 90.0;
+    let mut world = World {
+        game_mode: GameMode::CollectImages,
+        image_params: Some(ImageParams {
+            zoom: 1.5,
+            yaw_subdivisions: 3,
+            vertical_subdivisions: 2,
+        }),
+        objects: vec![Object::new("car", [-20.0, 0.0]), barrel],
+        ..World::default()
+    };
+    world.agent_params.observation_size = 12;
+    let mut studio = Studio::new(&world).expect("there are twelve photographs");
+    let views = studio.photographs();
+    let mut session = session(world, Catalogue::default(), true);
+    let mut output = answer(&mut session, CommandProto::Reset, None);
+    for view in &views {
+        let agent = &agents(&output)[0];
+        assert!(!agent.done);
+        let mut frame = driftworld_env::Frame::new(12, 12);
+        studio
+            .take(view, &mut frame.target())
+            .expect("the view is of this studio");
+        let rgb = floats(agent, 1);
+        // Channels first, as the last generation has it.
+        let expected: Vec<f32> = (0..3)
+            .flat_map(|channel| {
+                frame
+                    .rgb
+                    .iter()
+                    .skip(channel)
+                    .step_by(3)
+                    .map(|byte| f32::from(*byte) / 255.0)
+            })
+            .collect();
+        assert_eq!(rgb, expected, "{view:?}");
+        let state = floats(agent, 3);
+        assert_eq!((state[0], state.len()), ((view.object + 1) as f32, 6));
+        output = answer(&mut session, CommandProto::Step, None);
+    }
+    let [last, next] = agents(&output) else {
+        panic!("{output:?}")
+    };
+    assert!(last.done && last.max_step_reached && !next.done);
+    assert_eq!(
+        (floats(last, 3)[0], floats(next, 3)[0]),
+        (2.0, 1.0),
+        "then it begins anew"
+    );
+    // The first photograph of the barrel, which faces east: the camera stands east of it and looks west.
+    let mut again = answer(&mut session, CommandProto::Reset, None);
+    for _ in 0..6 {
+        again = answer(&mut session, CommandProto::Step, None);
+    }
+    let state = floats(&agents(&again)[0], 3);
+    assert!(
+        state[1] > 3.5 && (state[2] - 4.0).abs() < 1e-3 && (state[3] - 270.0).abs() < 1e-3,
+        "{state:?}"
+    );
+}
+
+#[test]
+fn nothing_to_photograph_is_remarked_and_the_world_runs() {
+    let world = World {
+        game_mode: GameMode::CollectImages,
+        ..World::default()
+    };
+    let mut session = session(world, Catalogue::default(), false);
+    let remarks = session.take_remarks();
+    assert_eq!(
+        remarks,
+        ["collect_images: found no objects, expected some to photograph; the world runs as learn"]
+    );
+    let output = answer(&mut session, CommandProto::Reset, None);
+    assert!(!agents(&output)[0].done);
+}
+
+#[test]
+fn models_of_a_library_are_drawn_and_what_nobody_knows_is_remarked() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/assets/lighthouse.gltf");
+    let bytes = std::fs::read(path).expect("the example is there");
+    let options = ImportOptions {
+        class: "lighthouse".into(),
+        name: "1".into(),
+        size: ImportSize::Scale(1.0),
+        collider: ColliderKind::Cylinder,
+        main: None,
+    };
+    let imported = LibraryModel::from_gltf(&bytes, &options, &mut |_| unreachable!("the file names no other"))
+        .expect("the example is a sound model");
+    let mut library = Library::default();
+    library.insert(imported.model).expect("there is room");
+    let mut world = World {
+        objects: vec![
+            Object::new("lighthouse", [0.0, 12.0]),
+            Object::new("dragon", [5.0, 9.0]),
+        ],
+        ..World::default()
+    };
+    world.agent_params.observation_size = 32;
+    let seen = |catalogue: Catalogue| {
+        let mut session = session(world.clone(), catalogue, false);
+        let remarks = session.take_remarks();
+        let output = answer(&mut session, CommandProto::Reset, None);
+        (floats(&agents(&output)[0], 1).to_vec(), remarks)
+    };
+    let (placeholder, both) = seen(Catalogue::default());
+    let (drawn, one) = seen(Catalogue::default().with_library(&library));
+    assert_ne!(placeholder, drawn);
+    assert_eq!(
+        one,
+        ["world: /objects/1: class \"dragon\" model \"1\" is not known; a placeholder stands there"]
+    );
+    assert_eq!(both.len(), 2, "{both:?}");
+}
