@@ -145,14 +145,18 @@ proptest! {
         after in 1usize..60,
         frame_skip in 1u32..4,
         model in model(),
+        own_seed in prop::option::of(0u64..4),
     ) {
-        let mut environment = start(world(model, frame_skip));
+        let mut begun = world(model, frame_skip);
+        begun.seed = own_seed;
+        let mut environment = start(begun);
         let actions = actions(seed, &environment, before + after);
         go_on(&mut environment, &actions[..before]);
         if before % 2 == 1 && !environment.ended() {
             let mut spawned = Object::new("mushroom", [-0.8, -1.2]);
             spawned.reward = 1.0;
             spawned.reward_stimulus = vec![Stimulus::AgentCollide];
+            (spawned.motion_model, spawned.speed) = (MotionModel::RandomWaypoint, 1.0);
             environment.spawn(spawned).expect("the mushroom is sound");
             environment.destroy(3).expect("the second barrel is there");
         }
@@ -241,11 +245,12 @@ fn counters_at_their_ends_do_not_run_over() {
 
 #[test]
 fn a_state_without_its_seed_takes_that_of_its_world() {
-    let goal = |name: &str| {
+    let heading = |tag: &str, seed: Option<u64>| {
         let mut wanderer = Object::new("barrel", [3.0, 3.0]);
         (wanderer.motion_model, wanderer.speed) = (MotionModel::RandomWaypoint, 1.0);
-        wanderer.tag = Some(name.to_owned());
+        wanderer.tag = Some(tag.to_owned());
         let mut environment = start(World {
+            seed,
             objects: vec![wanderer],
             ..World::default()
         });
@@ -257,7 +262,20 @@ fn a_state_without_its_seed_takes_that_of_its_world() {
             .expect("the episode goes on");
         environment.scene().items[0].heading_deg
     };
-    assert_ne!(goal("a"), goal("b"));
+    assert_eq!(heading("a", None), heading("b", None), "its places are the same");
+    assert_ne!(heading("a", None), heading("a", Some(0)));
+    assert_ne!(heading("a", Some(1)), heading("a", Some(0)));
+}
+
+#[test]
+fn a_state_of_the_time_before_objects_had_chance_of_their_own_is_read_and_goes_on() {
+    let text = r#"{ "objects": [{ "class": "barrel", "coordinates": [3, 3], "motion_model": "random_waypoint", "speed": 1 }],
+        "progress": { "seed": "SEED", "steps": 2, "ticks": 2, "chance": 14, "objects": [{ "chance": 6, "goal": [1, 2] }] } }"#
+        .replace("SEED", &"3a".repeat(32));
+    let mut environment = start(World::from_json("old", &text).expect("old states are read"));
+    environment.step(Action::Continuous([0.0; 3])).expect("it goes on");
+    let written = environment.state().to_json();
+    assert!(!written.contains("\"chance\""), "{written}");
 }
 
 #[test]
@@ -289,7 +307,7 @@ fn a_world_whose_progress_is_a_seed_alone_is_at_its_start() {
             .collect();
         (rewards, environment.scene().items[1].position)
     };
-    let own = touched().hash();
+    let own = touched().hash_of_places();
     let mut as_its_own = touched();
     as_its_own.progress = Some(Progress {
         seed: Some(own),

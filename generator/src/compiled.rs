@@ -124,8 +124,22 @@ pub(crate) struct Group {
     pub(crate) around: Option<usize>,
     pub(crate) turned: bool,
     pub(crate) facing: Option<Look>,
+    /// Where its objects have their seeds from, if chance has a part in what becomes of them in any variant.
+    pub(crate) seeds: Option<Stream>,
     /// About how many objects it will have: room is made for them at once.
     pub(crate) expected: f64,
+}
+
+/// Whether chance has a part in what becomes of objects of a template, in any variant of its task. One answer for all of them:
+/// worlds of two variants differ in what the variants differ in, and not in who has a seed.
+fn may_take_chances(template: &Template<Object>) -> bool {
+    let opens = |hole: &Hole<Object>| ["/motion_model", "/reward_probability"].contains(&hole.pointer.as_str());
+    template.base.takes_chances() || template.holes.iter().any(opens)
+}
+
+/// The seeds of the objects of a group or fixture: by its name alone, so that they are the same in every world.
+fn seeds_of(place: &str) -> Stream {
+    Stream::new("", 0, &format!("{place}/seed"))
 }
 
 /// How many objects a group has.
@@ -206,7 +220,14 @@ impl Compiled {
             parameters,
             world: compiler.template(task.world(), "world"),
             fixtures: fixtures
-                .map(|(k, fixture)| compiler.template(fixture, &format!("fixture/{k}")))
+                .map(|(k, fixture)| {
+                    let place = format!("fixture/{k}");
+                    let mut filled = compiler.template(fixture, &place);
+                    if may_take_chances(fixture) {
+                        filled.base.seed = filled.base.seed.or_else(|| Some(seeds_of(&place).seed(0)));
+                    }
+                    filled
+                })
                 .collect(),
             groups,
         }
@@ -310,6 +331,7 @@ impl Compiler<'_> {
             expected,
             turned: spec.turned,
             facing,
+            seeds: may_take_chances(&group.object).then(|| seeds_of(&format!("group/{name}"))),
         }
     }
 }

@@ -40,6 +40,8 @@ pub struct Sampler {
     requirements: Vec<Requirement>,
     coverage: Coverage,
     spread: Stream,
+    /// Where worlds have their seeds from.
+    seeds: Stream,
     maps: Option<Arc<MapLibrary>>,
     /// The ground, where it is the same in every world.
     ground: Option<Ground>,
@@ -71,6 +73,7 @@ impl Sampler {
             requirements,
             coverage: Coverage::Independent,
             spread: Stream::new(variant.task().name(), seed, "coverage"),
+            seeds: Stream::new(variant.task().name(), seed, "seed"),
             maps: None,
             ground: None,
             start_varies: false,
@@ -234,6 +237,7 @@ impl Sampler {
     /// too many objects.
     pub fn world(&self, index: u64) -> Result<World, GeneratorError> {
         let (mut world, values, own_ground) = self.empty_world(index)?;
+        world.seed = Some(self.seeds.seed(index));
         let ground = self
             .ground
             .as_ref()
@@ -329,6 +333,9 @@ impl Sampler {
                 },
                 draft.values,
             )?;
+            if let Some(seeds) = &group.seeds {
+                object.seed = object.seed.or_else(|| Some(seeds.seed(first + turn)));
+            }
             let mut chance = group.placement.stream.at(index, first + turn, 0);
             let placement = &group.placement.distribution;
             let request = Request {

@@ -2,6 +2,7 @@
 
 use std::convert::Infallible;
 
+use driftworld_spec::MAX_SEED;
 use rand::TryRng;
 use sha2::{Digest, Sha256};
 
@@ -39,6 +40,11 @@ impl Stream {
             numbers: [0; 4],
             used: 4,
         }
+    }
+
+    /// A seed of number `number`: a whole number up to [`MAX_SEED`].
+    pub(crate) fn seed(&self, number: u64) -> u64 {
+        philox(self.key, [number, 0, 0, 0])[0] & MAX_SEED
     }
 
     /// A number that is the same for all worlds of the stream.

@@ -4,8 +4,8 @@
 //! The original's files stay where they are: their test is skipped, visibly, without them.
 
 use driftworld_spec::{
-    ActionModel, ActionSpace, AgentParams, Color, EndCondition, EnvironmentParams, GameMode, ImageParams, Modality,
-    Model, MotionModel, Object, Pushable, Respawn, Rules, Shaping, Stimulus, WORLD_VERSION, Wall, World,
+    ActionModel, ActionSpace, AgentParams, Color, EndCondition, EnvironmentParams, GameMode, ImageParams, MAX_SEED,
+    Modality, Model, MotionModel, Object, Pushable, Respawn, Rules, Shaping, Stimulus, WORLD_VERSION, Wall, World,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -175,6 +175,7 @@ fn sayable() -> impl Strategy<Value = World> {
                 World {
                     schema: None,
                     version: WORLD_VERSION,
+                    seed: None,
                     game_mode,
                     max_steps,
                     environment_params,
@@ -199,11 +200,15 @@ fn with_extras(object: Object) -> impl Strategy<Value = Object> {
         proptest::option::of("\\PC{1,100}"),
         proptest::option::of(prop_oneof![Just(BLACK), color()]),
         proptest::option::of("\\PC{1,100}"),
-        (any::<bool>(), proptest::option::of((0.01..=1e6, 0.0..=10.0))),
+        (
+            any::<bool>(),
+            proptest::option::of((0.01..=1e6, 0.0..=10.0)),
+            proptest::option::of(0..=MAX_SEED),
+        ),
         [-300.0..=300.0, -300.0..=300.0],
     )
         .prop_map(
-            move |(numbers, waypoints, order, respawn, tag, color, class, (patrol, pushable), place)| {
+            move |(numbers, waypoints, order, respawn, tag, color, class, (patrol, pushable, seed), place)| {
                 let mut object = object.clone();
                 (
                     object.heading,
@@ -215,6 +220,7 @@ fn with_extras(object: Object) -> impl Strategy<Value = Object> {
                 object.waypoints = waypoints;
                 object.order = order;
                 object.respawn = respawn.map(|(delay, radius)| Respawn { delay, radius });
+                object.seed = seed;
                 object.tag = tag;
                 object.pushable = pushable.map(|(mass, friction)| Pushable { mass, friction });
                 object.color = color;
@@ -243,6 +249,7 @@ fn rules() -> impl Strategy<Value = Rules> {
         discount,
     });
     (
+        -1e9..=1e9,
         -1e9..=1e9,
         -1e9..=0.0,
         proptest::option::of(shaping),

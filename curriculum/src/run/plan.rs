@@ -81,6 +81,8 @@ pub(super) struct Planned {
     first_index: u64,
     max_steps: Option<u32>,
     source: Source,
+    /// How many regimes of learning before it begin with the same variant under the same seed.
+    learned_before: u64,
     /// The regime that the agent learned in last before this one.
     pub(super) learned: Option<usize>,
     /// The label of its variant, and of the one that its drift leads to.
@@ -128,10 +130,12 @@ impl Plan {
             worlds: BTreeMap::new(),
         };
         let mut log_names: BTreeMap<String, String> = BTreeMap::new();
+        // For each variant and seed, the regimes in which it was learned.
+        let mut rounds: BTreeMap<(String, u64), u64> = BTreeMap::new();
         let (mut first, mut learned) = (0, None);
         for (b, block) in scenario.blocks.iter().enumerate() {
             for (r, regime) in block.regimes.iter().enumerate() {
-                let planned = plan.planned(&mut finder, (b, block), (r, regime), first, learned)?;
+                let mut planned = plan.planned(&mut finder, (b, block), (r, regime), first, learned)?;
                 first += u64::from(planned.count);
                 let called = called(regime);
                 if let Some(other) = log_names.insert(planned.log_name.clone(), called.clone())
@@ -145,6 +149,10 @@ impl Plan {
                 }
                 if planned.kind == BlockKind::Learning {
                     learned = Some(plan.regimes.len());
+                    let [begins, _] = planned.ends();
+                    let rounds = rounds.entry((begins, planned.seed)).or_insert(0);
+                    planned.learned_before = *rounds;
+                    *rounds += 1;
                 }
                 plan.regimes.push(planned);
             }
@@ -253,6 +261,7 @@ impl Plan {
             first_index: regime.first_index,
             max_steps: regime.max_steps,
             source,
+            learned_before: 0,
             learned,
             labels: None,
         };
@@ -372,17 +381,19 @@ impl Planned {
 
     /// The number that an agent begins an experience with.
     ///
-    /// Every evaluation of a world has the same, so that an agent that has not changed earns the same in it; what is learned in
-    /// the same world again has another, so that a learner does not try the same again.
+    /// It is of the task, the seed and the world's number, and not of the variant: whoever acts by chance acts alike in two
+    /// variants under one seed. Every evaluation of a world has the same, so that an agent that has not changed earns the
+    /// same in it; what is learned in the same world again has another, so that a learner does not try the same again.
     pub(super) fn chance(&self, number: u64) -> u64 {
         let index = self.first_index + (number - self.first);
         let mut hash = Sha256::new();
-        hash.update(self.log_name.as_bytes());
+        let task = self.id.rsplit_once('#').map_or(self.id.as_str(), |(task, _)| task);
+        hash.update(task.as_bytes());
         hash.update([0]);
         hash.update(self.seed.to_le_bytes());
         hash.update(index.to_le_bytes());
         if self.kind == BlockKind::Learning {
-            hash.update(number.to_le_bytes());
+            hash.update(self.learned_before.to_le_bytes());
         }
         let digest = hash.finalize();
         digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte))

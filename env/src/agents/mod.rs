@@ -25,7 +25,8 @@ pub trait Agent {
     /// Told before each episode, with a number to draw all chance in it from.
     ///
     /// In a lifetime, every evaluation of the same world comes with the same number, so that an agent that has not changed acts
-    /// alike in it; every experience of learning comes with a number of its own.
+    /// alike in it; what is learned in the same world again comes with another. The worlds of one number under one seed
+    /// come with one number in all variants of a task.
     fn begin(&mut self, _seed: u64) {}
 
     /// Told before [`begin`](Self::begin) what the coming task is called, where the scenario lets the agent know.

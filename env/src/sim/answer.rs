@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use driftworld_spec::{Object, Stimulus};
-use rand::RngExt;
 
 use super::action::Intent;
+use super::chance::Luck;
 use super::environment::Environment;
 use super::event::{Event, Step};
 
@@ -95,9 +95,10 @@ impl Environment {
         // Out of its turn an object neither pays nor goes: the sequence could not be finished otherwise.
         let due = self.is_due(object.order);
         let destroyed = due && object.destroy_stimulus.contains(&stimulus);
-        let pays = would_pay
-            && due
-            && (object.reward_probability >= 1.0 || self.episode.chance.random::<f64>() < object.reward_probability);
+        let odds = object.reward_probability;
+        // An arm that always pays has no luck of its own, and needs none.
+        let lucky = |luck: &mut Luck| luck.pull(odds);
+        let pays = would_pay && due && self.episode.luck_of(index).is_none_or(lucky);
         let reward = if pays {
             self.episode.objects[index].reward
         } else if would_pay && !due {

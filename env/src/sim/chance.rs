@@ -1,66 +1,202 @@
-//! A world's own chance: streams of random numbers that depend on the world alone. Who draws from them is in `answer.rs`,
+//! A world's own chance: streams of random numbers, one for each object and purpose. Who draws from them is in `answer.rs`,
 //! `objects.rs` and `motion.rs`.
+//!
+//! Every draw has a number, and is had without the draws before it: what an object draws for the third time depends on the
+//! world's seed, on the object's own and on the 3, and on nothing else that is in the world or happens in it.
+
+use std::collections::BTreeMap;
 
 use driftworld_spec::{MotionModel, Object, World};
-use rand::SeedableRng;
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// The stream of bandit arms and of objects that come back; an object that moves has the stream of its number plus one.
-const ARMS: u64 = 0;
+/// What the key of a world with a seed is filled up with.
+const DOMAIN: [u8; 24] = *b"driftworld chance 1\0\0\0\0\0";
 
-/// What all chance of a world grows from: the hash of the world at its start, 64 hexadecimal letters.
+/// What all chance of a world grows from: its `seed`, or the hash of where things stood at its start.
 ///
-/// Hashing costs as much as writing the world down, so it waits until something needs chance.
+/// Hashing costs as much as reading the world, so it waits until something needs chance.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Seed(Option<String>);
+pub(super) enum Seed {
+    /// A world without a seed in which nothing has needed chance yet.
+    #[default]
+    Unknown,
+    /// The world's own.
+    Own(u64),
+    /// The hash of its places, 64 hexadecimal letters.
+    Places(String),
+}
 
 impl Seed {
-    /// The seed of a world at its start: there only if one of its objects needs it.
-    pub(super) fn of(world: &World) -> Self {
-        let needed = world.objects.iter().any(needs_chance);
-        Self(needed.then(|| world.hash()))
+    /// The seed of a world at its start: known if it has one, or if one of its objects needs it.
+    pub(super) fn of(world: &World, written: Option<String>) -> Self {
+        let needed = || world.objects.iter().any(Object::takes_chances);
+        match (world.seed, written) {
+            (Some(seed), _) => Self::Own(seed),
+            (None, Some(hash)) => Self::Places(hash),
+            (None, None) if needed() => Self::Places(world.hash_of_places()),
+            (None, None) => Self::Unknown,
+        }
     }
 
-    /// A seed that was written down.
-    pub(super) fn known(hash: String) -> Self {
-        Self(Some(hash))
-    }
-
-    /// The hash, if it is known.
+    /// The hash of places, if that is the seed.
     pub(super) fn hash(&self) -> Option<&str> {
-        self.0.as_deref()
+        match self {
+            Self::Places(hash) => Some(hash),
+            Self::Unknown | Self::Own(_) => None,
+        }
     }
 
-    /// Finds the seed if it is not known yet, and says whether it was not; `start` is the world before anything was spawned.
-    pub(super) fn learn(&mut self, start: &World) -> bool {
-        let unknown = self.0.is_none();
-        self.0.get_or_insert_with(|| start.hash());
-        unknown
+    /// Finds the seed if it is not known yet; `start` is the world before anything was spawned.
+    pub(super) fn learn(&mut self, start: &World) {
+        if *self == Self::Unknown {
+            *self = Self::Places(start.hash_of_places());
+        }
     }
 
-    /// The stream of bandit arms and of objects that come back, at its beginning.
-    pub(super) fn arms(&self) -> ChaCha8Rng {
-        self.stream(ARMS)
-    }
-
-    /// The stream of an object that moves, at its beginning.
-    pub(super) fn mover(&self, object: usize) -> ChaCha8Rng {
-        self.stream(object as u64 + 1)
-    }
-
-    fn stream(&self, number: u64) -> ChaCha8Rng {
-        let mut seed = [0; 32];
-        let letters = self.0.as_deref().unwrap_or_default().bytes();
-        seed.iter_mut().zip(letters).for_each(|(byte, letter)| *byte = letter);
-        let mut chance = ChaCha8Rng::from_seed(seed);
-        chance.set_stream(number);
-        chance
+    fn key(&self) -> [u8; 32] {
+        let mut key = [0; 32];
+        match self {
+            Self::Unknown => {}
+            Self::Own(seed) => {
+                key[..8].copy_from_slice(&seed.to_le_bytes());
+                key[8..].copy_from_slice(&DOMAIN);
+            }
+            // The letters, not the bytes that they stand for: half of them is as good a key as any.
+            Self::Places(hash) => key
+                .iter_mut()
+                .zip(hash.bytes())
+                .for_each(|(byte, letter)| *byte = letter),
+        }
+        key
     }
 }
 
-/// Whether an object ever draws: a bandit arm, one that comes back, one that moves.
-fn needs_chance(object: &Object) -> bool {
-    object.reward_probability < 1.0 || object.respawn.is_some() || moves(object)
+/// What an object draws for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Purpose {
+    /// Where a wanderer goes.
+    Goals = 1,
+    /// Whether a bandit arm pays.
+    Pulls = 2,
+    /// Where an object comes back.
+    Returns = 3,
+}
+
+/// Which of a world's objects is meant, by what it is and not by where it stands in the list.
+///
+/// Objects with one seed, or without one at one place, are told apart by their order among each other.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Identities {
+    /// How many objects there are of each so far.
+    taken: BTreeMap<u64, u64>,
+}
+
+impl Identities {
+    /// The identity of the next object of a world; `object` is as it was at its start.
+    pub(super) fn take(&mut self, object: &Object) -> u64 {
+        let own = match object.seed {
+            Some(seed) => mix(mix(1) ^ seed),
+            None => object
+                .coordinates
+                .iter()
+                // 0 has one form.
+                .fold(mix(2), |mixed, metres| mix(mixed ^ (metres + 0.0).to_bits())),
+        };
+        let before = self.taken.entry(own).or_insert(0);
+        *before += 1;
+        mix(own ^ *before)
+    }
+}
+
+/// The numbers that one object draws for one purpose.
+#[derive(Clone, Debug)]
+pub(super) struct Stream {
+    key: [u8; 32],
+    number: u64,
+}
+
+impl Stream {
+    pub(super) fn new(seed: &Seed, identity: u64, purpose: Purpose) -> Self {
+        Self {
+            key: seed.key(),
+            number: mix(identity ^ purpose as u64),
+        }
+    }
+
+    /// Draw number `draw`: two numbers, from 0 up to but not including 1.
+    pub(super) fn draw(&self, draw: u64) -> [f64; 2] {
+        self.redraw(draw, 0)
+    }
+
+    /// What draw number `draw` is replaced by for the `attempt`th time; the first is number 0.
+    pub(super) fn redraw(&self, draw: u64, attempt: u64) -> [f64; 2] {
+        /// Words of 32 bits that one draw takes.
+        const WORDS: u128 = 4;
+        let mut rng = ChaCha8Rng::from_seed(self.key);
+        rng.set_stream(self.number);
+        // Attempts in the lower half, so that neither runs into the other's numbers.
+        rng.set_word_pos(WORDS * (u128::from(draw) << 32 | u128::from(attempt)));
+        [rng.random(), rng.random()]
+    }
+}
+
+/// What a bandit arm, or an object that comes back, has drawn.
+#[derive(Clone, Debug)]
+pub(super) struct Luck {
+    /// The object's number in the world.
+    pub(super) object: usize,
+    pulling: Stream,
+    returning: Stream,
+    /// Pulls so far.
+    pub(super) pulls: u64,
+    /// Returns so far.
+    pub(super) returns: u64,
+    /// Places tried for the next return.
+    pub(super) tries: u64,
+}
+
+impl Luck {
+    /// The luck of an object that needs any.
+    pub(super) fn new(index: usize, object: &Object, seed: &Seed, identity: u64) -> Option<Self> {
+        (object.reward_probability < 1.0 || object.respawn.is_some()).then(|| Self {
+            object: index,
+            pulling: Stream::new(seed, identity, Purpose::Pulls),
+            returning: Stream::new(seed, identity, Purpose::Returns),
+            pulls: 0,
+            returns: 0,
+            tries: 0,
+        })
+    }
+
+    /// Whether the next pull pays, at odds of `probability`: more luck is needed for less of it, so that whoever lowers the
+    /// odds takes payments away and adds none.
+    pub(super) fn pull(&mut self, probability: f64) -> bool {
+        let [luck, _] = self.pulling.draw(self.pulls);
+        self.pulls += 1;
+        luck < probability
+    }
+
+    /// Two numbers for the next place that is tried.
+    pub(super) fn place(&mut self) -> [f64; 2] {
+        let place = self.returning.redraw(self.returns, self.tries);
+        self.tries += 1;
+        place
+    }
+
+    /// Notes that the object has come back.
+    pub(super) fn came_back(&mut self) {
+        self.returns += 1;
+        self.tries = 0;
+    }
+}
+
+/// Spreads 64 bits over 64 bits, one to one (the finaliser of `SplitMix64`).
+fn mix(bits: u64) -> u64 {
+    let mut z = bits.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
 }
 
 /// Whether an object moves by itself.

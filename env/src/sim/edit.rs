@@ -8,7 +8,6 @@ use driftworld_spec::{MAX_OBJECTS, Object};
 
 use super::environment::Environment;
 use super::episode::ObjectState;
-use super::motion::Mover;
 use super::pushing::Pushed;
 use super::walls;
 use crate::EnvError;
@@ -64,16 +63,15 @@ impl Environment {
             let name = name.clone();
             return Err(EnvError::NameTaken { name, object: first });
         }
-        // Chance depends on the world without what was spawned, so the seed is taken before the first spawning. Where it
-        // was not known, nothing has drawn from it.
-        if self.seed.learn(&self.world) {
-            self.episode.chance = self.seed.arms();
-        }
+        // Without a seed, chance depends on where things stood before anything was spawned. Where it was not known, nothing
+        // has drawn from it.
+        self.seed.learn(&self.world);
         self.scene.add(&object);
         self.ground
             .add_object(index as u32, &self.scene.items[index], object.solid);
         self.episode.objects.push(ObjectState::new(&object));
-        self.episode.movers.extend(Mover::new(index, &object, &self.seed));
+        self.episode
+            .add_motives(index, &object, &self.seed, &mut self.identities);
         self.episode.pushed.extend(Pushed::new(index, &object));
         self.tags.push(object.tag.as_deref().map(Arc::from));
         self.had_targets |= object.is_target();

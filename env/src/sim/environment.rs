@@ -6,7 +6,7 @@ use std::sync::Arc;
 use driftworld_spec::{GameMode, Object, Stimulus, World};
 
 use super::body::Ground;
-use super::chance::Seed;
+use super::chance::{Identities, Seed};
 use super::episode::{AgentState, Episode, ObjectState};
 use super::event::Warning;
 use super::pushing::is_pushed;
@@ -34,6 +34,8 @@ pub struct Environment {
     /// The world at its start, and with it what was spawned later.
     pub(super) world: Arc<World>,
     pub(super) seed: Seed,
+    /// Who the objects are to chance.
+    pub(super) identities: Identities,
     pub(super) scene: Scene,
     pub(super) ground: Ground,
     pub(super) episode: Episode,
@@ -122,15 +124,16 @@ impl Environment {
         let came = world.progress.is_some().then(|| Came::out_of(&mut world));
         let scene = Scene::from_world_with(&world, catalogue);
         let ground = Ground::new(&world, &scene);
-        let written = came.as_ref().and_then(Came::seed);
-        let seed = written.map_or_else(|| Seed::of(&world), Seed::known);
+        let seed = Seed::of(&world, came.as_ref().and_then(Came::seed));
+        let mut identities = Identities::default();
         let mut environment = Self {
-            episode: Episode::new(&world, &seed),
+            episode: Episode::new(&world, &seed, &mut identities),
             had_targets: world.objects.iter().any(Object::is_target),
             tags: tags(&world),
             scratch: Scratch::default(),
             world,
             seed,
+            identities,
             scene,
             ground,
             renderer,

@@ -1,9 +1,8 @@
 //! All that changes while a world runs, in one value: what a snapshot copies. What changes it is in the files beside this one.
 
 use driftworld_spec::{ActionModel, LastEvent, Object, World};
-use rand_chacha::ChaCha8Rng;
 
-use super::chance::Seed;
+use super::chance::{Identities, Luck, Seed};
 use super::motion::Mover;
 use super::pushing::Pushed;
 use crate::agents::OnRailsAgent;
@@ -73,8 +72,8 @@ pub(crate) struct Episode {
     pub(super) last_reward: f64,
     pub(super) last_event: Option<LastEvent>,
     pub(super) ended: bool,
-    /// What bandit arms and returning objects draw from.
-    pub(super) chance: ChaCha8Rng,
+    /// What bandit arms and returning objects draw, in rising order of their objects.
+    pub(super) luck: Vec<Luck>,
     /// Objects in contact at the end of the last step, in rising order.
     pub(super) contacts: Vec<u32>,
     /// The objects that move by themselves.
@@ -88,9 +87,9 @@ pub(crate) struct Episode {
 
 impl Episode {
     /// The start of a world. What is touched or near is found later, when there are bodies.
-    pub(super) fn new(world: &World, seed: &Seed) -> Self {
+    pub(super) fn new(world: &World, seed: &Seed, identities: &mut Identities) -> Self {
         let start = &world.agent_params;
-        Self {
+        let mut episode = Self {
             agent: AgentState {
                 position: start.coordinates.map(|metres| metres as f32),
                 heading_deg: wrapped(start.heading as f32),
@@ -104,12 +103,34 @@ impl Episode {
             last_reward: 0.0,
             last_event: None,
             ended: false,
-            chance: seed.arms(),
+            luck: Vec::new(),
             contacts: Vec::new(),
-            movers: Mover::all(world, seed),
+            movers: Vec::new(),
             pushed: Pushed::all(world),
             returning: Vec::new(),
             rails: (start.action_model == ActionModel::OnRails).then(OnRailsAgent::new),
+        };
+        for (index, object) in world.objects.iter().enumerate() {
+            episode.add_motives(index, object, seed, identities);
         }
+        episode
+    }
+
+    /// Adds what moves an object and what it draws; `object` is as it was at its start.
+    pub(super) fn add_motives(&mut self, index: usize, object: &Object, seed: &Seed, identities: &mut Identities) {
+        // Most objects of most worlds take no chances, and then nobody asks who they are.
+        let identity = if object.takes_chances() {
+            identities.take(object)
+        } else {
+            0
+        };
+        self.movers.extend(Mover::new(index, object, seed, identity));
+        self.luck.extend(Luck::new(index, object, seed, identity));
+    }
+
+    /// What an object draws, if it draws for pulls or returns.
+    pub(super) fn luck_of(&mut self, object: usize) -> Option<&mut Luck> {
+        let found = self.luck.binary_search_by_key(&object, |luck| luck.object).ok()?;
+        self.luck.get_mut(found)
     }
 }

@@ -1,11 +1,8 @@
 //! How objects move by themselves: where each wants to go. How far it comes is found in `moving_body.rs`.
 
-use driftworld_spec::{MotionModel, Object, World};
-use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
+use driftworld_spec::{MotionModel, Object};
 
-use super::chance::{self, Seed};
-use super::state::words;
+use super::chance::{self, Purpose, Seed, Stream};
 
 /// Distance at which a waypoint counts as reached, in metres.
 const REACHED: f32 = 0.3;
@@ -22,8 +19,10 @@ pub(super) struct Mover {
     next: usize,
     /// Where a wanderer is going.
     goal: Option<[f32; 2]>,
-    /// The wanderer's own chance: it depends on the world and the object alone.
-    chance: ChaCha8Rng,
+    /// The wanderer's own chance: it depends on the world's seed and the object alone.
+    chance: Stream,
+    /// How many goals it has drawn.
+    goals: u64,
 }
 
 /// What a mover sees before it decides.
@@ -51,35 +50,28 @@ pub(super) struct Stride {
 }
 
 impl Mover {
-    /// The movers of a world: all objects with a motion model and a speed.
-    pub(super) fn all(world: &World, seed: &Seed) -> Vec<Self> {
-        let objects = world.objects.iter().enumerate();
-        objects
-            .filter_map(|(index, object)| Self::new(index, object, seed))
-            .collect()
-    }
-
     /// The mover of an object, if it moves.
-    pub(super) fn new(index: usize, object: &Object, seed: &Seed) -> Option<Self> {
+    pub(super) fn new(index: usize, object: &Object, seed: &Seed, identity: u64) -> Option<Self> {
         chance::moves(object).then(|| Self {
             object: index,
             next: 0,
             goal: None,
-            chance: seed.mover(index),
+            chance: Stream::new(seed, identity, Purpose::Goals),
+            goals: 0,
         })
     }
 
-    /// The number of its next point, where it is going, and the words that it has drawn.
+    /// The number of its next point, where it is going, and how many goals it has drawn.
     pub(super) fn progress(&self) -> (u32, Option<[f64; 2]>, u64) {
         let goal = self.goal.map(|goal| goal.map(f64::from));
-        (self.next as u32, goal, words(&self.chance))
+        (self.next as u32, goal, self.goals)
     }
 
     /// Goes on from what [`Mover::progress`] said.
-    pub(super) fn resume(&mut self, next: u32, goal: Option<[f64; 2]>, words: u64) {
+    pub(super) fn resume(&mut self, next: u32, goal: Option<[f64; 2]>, goals: u64) {
         self.next = next as usize;
         self.goal = goal.map(|goal| goal.map(|metres| metres as f32));
-        self.chance.set_word_pos(u128::from(words));
+        self.goals = goals;
     }
 
     /// What the object means to do; `None` if it stands still.
@@ -124,9 +116,10 @@ impl Mover {
             }
             MotionModel::RandomWaypoint => {
                 if self.goal.is_none_or(|goal| length(to(goal)) < REACHED) {
-                    let [x, y] = view.half.map(|half| (half - 1.0).max(0.0));
-                    let mut draw = |side: f32| (self.chance.random::<f32>() * 2.0 - 1.0) * side;
-                    self.goal = Some([draw(x), draw(y)]);
+                    let sides = view.half.map(|half| (half - 1.0).max(0.0));
+                    let units = self.chance.draw(self.goals);
+                    self.goals += 1;
+                    self.goal = Some([0, 1].map(|axis| (units[axis] * 2.0 - 1.0) as f32 * sides[axis]));
                 }
                 to(self.goal?)
             }

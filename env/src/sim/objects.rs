@@ -1,7 +1,5 @@
 //! What objects do by themselves between the agent's steps: moving, and coming back. Where each wants to go is in `motion.rs`.
 
-use rand::RngExt;
-
 use super::environment::Environment;
 use super::motion::View;
 use super::walls;
@@ -71,8 +69,13 @@ impl Environment {
         let radius = self.scene.items[index].asset.collider.radius() * self.scene.items[index].scale;
         let first = object.coordinates.map(|metres| metres as f32);
         for _ in 0..TRIES {
-            let distance = respawn.radius as f32 * self.episode.chance.random::<f32>().sqrt();
-            let angle = std::f32::consts::TAU * self.episode.chance.random::<f32>();
+            // What comes back has luck: it is made with the episode, or when it is spawned.
+            let Some(luck) = self.episode.luck_of(index) else {
+                return true;
+            };
+            let [out, around] = luck.place().map(|unit| unit as f32);
+            let distance = respawn.radius as f32 * out.sqrt();
+            let angle = std::f32::consts::TAU * around;
             let place = [
                 first[0] + distance * libm::cosf(angle),
                 first[1] + distance * libm::sinf(angle),
@@ -88,6 +91,9 @@ impl Environment {
                 self.ground.add_object(index as u32, item, object.solid);
                 let state = &mut self.episode.objects[index];
                 (state.present, state.reward, state.in_range) = (true, object.reward, false);
+                if let Some(luck) = self.episode.luck_of(index) {
+                    luck.came_back();
+                }
                 if let Some(body) = self.episode.pushed.iter_mut().find(|body| body.object == index) {
                     (body.velocity, body.spin_deg) = ([0.0; 2], 0.0);
                 }

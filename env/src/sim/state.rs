@@ -63,7 +63,7 @@ impl Environment {
             ended: episode.ended,
             velocity: agent.velocity.map(f64::from),
             origin,
-            chance: words(&episode.chance),
+            chance: None,
             rails: episode.rails.as_ref().map(OnRailsAgent::progress),
             objects,
         });
@@ -117,7 +117,8 @@ impl Environment {
         let mover = self.episode.movers.iter().find(|mover| mover.object == index);
         let pushed = self.episode.pushed.iter().find(|body| body.object == index);
         let returns = self.episode.returning.iter().find(|(other, _)| *other == index);
-        let (waypoint, goal, chance) = mover.map_or((0, None, 0), Mover::progress);
+        let luck = self.episode.luck.iter().find(|luck| luck.object == index);
+        let (waypoint, goal, goals) = mover.map_or((0, None, 0), Mover::progress);
         ObjectProgress {
             present: state.present,
             collected: state.collected,
@@ -127,7 +128,11 @@ impl Environment {
             returns_at: returns.map(|(_, tick)| *tick),
             goal,
             waypoint,
-            chance,
+            goals,
+            pulls: luck.map_or(0, |luck| luck.pulls),
+            returns: luck.map_or(0, |luck| luck.returns),
+            tries: luck.map_or(0, |luck| luck.tries),
+            chance: None,
             velocity: pushed
                 .filter(|body| body.velocity != [0.0; 2])
                 .map(|body| body.velocity.map(f64::from)),
@@ -145,7 +150,6 @@ impl Environment {
         (episode.earned, episode.unshaped) = (progress.episode_return, progress.unshaped_return);
         (episode.last_reward, episode.last_event) = (progress.last_reward, progress.last_event);
         episode.ended = progress.ended;
-        episode.chance.set_word_pos(u128::from(progress.chance));
         if episode.rails.is_some()
             && let Some(rails) = &progress.rails
         {
@@ -171,7 +175,10 @@ impl Environment {
         }
         self.episode.returning.extend(own.returns_at.map(|tick| (index, tick)));
         if let Some(mover) = self.episode.movers.iter_mut().find(|mover| mover.object == index) {
-            mover.resume(own.waypoint, own.goal, own.chance);
+            mover.resume(own.waypoint, own.goal, own.goals);
+        }
+        if let Some(luck) = self.episode.luck_of(index) {
+            (luck.pulls, luck.returns, luck.tries) = (own.pulls, own.returns, own.tries);
         }
         if let Some(body) = self.episode.pushed.iter_mut().find(|body| body.object == index) {
             body.velocity = own
@@ -229,13 +236,8 @@ impl Came {
         self.progress != only_seed
     }
 
-    /// The hash of the world at its start, if its chance has been asked for.
+    /// The hash of the places of things at the start of the world, if chance depends on it and has been asked for.
     pub(super) fn seed(&self) -> Option<String> {
         self.progress.seed.clone()
     }
-}
-
-/// Words drawn from a stream; as many as a document can hold, which no world draws.
-pub(super) fn words(stream: &rand_chacha::ChaCha8Rng) -> u64 {
-    u64::try_from(stream.get_word_pos()).unwrap_or(u64::MAX)
 }

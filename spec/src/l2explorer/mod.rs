@@ -167,6 +167,7 @@ fn moves(model: MotionModel) -> bool {
 
 /// Whether black on this class (in lower case) is a choice; on all others it is the default and means the asset's own
 /// colours.
+        "seed",
 fn black_is_chosen(class: &str) -> bool {
     matches!(class, "geometric" | "cube" | "icosphere")
 }

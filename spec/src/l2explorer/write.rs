@@ -75,11 +75,16 @@ impl Writer {
                 "environment_params" => Some(self.part("/environment_params", &ENVIRONMENT, &world.environment_params)),
                 "agent_params" => Some(self.part("/agent_params", &AGENT, &world.agent_params)),
                 "objects" => Some(self.objects(&world.objects)),
+                "max_steps" => Some(json!(self.max_steps(world))),
                 key => full.get(key).cloned(),
             };
             payload.extend(value.map(|value| ((*key).to_owned(), value)));
         }
         self.part("/rules", &RULES, &world.rules);
+        if let Some(seed) = world.seed {
+            let text = format!("seed ({seed}): {LEFT_OUT}");
+            self.warnings.push(warning("/seed".to_owned(), text));
+        }
         if world.progress.is_some() {
             let text = format!("progress: {LEFT_OUT}; the file is a start from where things are now");
             self.warnings.push(warning("/progress".to_owned(), text));

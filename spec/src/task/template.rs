@@ -200,7 +200,7 @@ static SCHEMAS: LazyLock<TemplateSchemas> = LazyLock::new(|| {
     world["description"] =
         json!("The world, but for its groups. Any leaf may be a value, a parameter, or a distribution.");
     if let Some(properties) = world["properties"].as_object_mut() {
-        for key in ["$schema", "version", "progress"] {
+        for key in ["$schema", "version", "seed", "progress"] {
             properties.shift_remove(key);
         }
     }

@@ -5,6 +5,7 @@ mod check;
 mod environment;
 mod features;
 mod object;
+mod places;
 mod progress;
 mod remarks;
 mod rules;
@@ -30,6 +31,9 @@ use crate::{schema, version};
 /// The most objects that one world may hold.
 pub const MAX_OBJECTS: usize = 100_000;
 
+/// The largest seed of a world or an object, 2⁵³ − 1: the largest whole number that every reader of JSON keeps.
+pub const MAX_SEED: u64 = (1 << 53) - 1;
+
 /// The most points of one picture: 4096 × 4096 pixels with 2 × 2 points each.
 pub const MAX_POINTS: u64 = 1 << 26;
 
@@ -54,6 +58,12 @@ pub struct World {
     /// The version of this form of document. Older ones are read, newer ones refused; without it, it is taken to be 1.
     #[schemars(range(min = 1, max = 1))]
     pub version: u32,
+    /// What all chance in the running world grows from: where wanderers go, which pulls of a bandit arm pay, where objects come
+    /// back. A sampled world has one of its task, seed and number, so that all variants of the task share it. Without it
+    /// the places of things decide.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = MAX_SEED))]
+    pub seed: Option<u64>,
     /// What the world is for.
     pub game_mode: GameMode,
     /// Steps until the episode is truncated; 0 is never.
@@ -86,6 +96,7 @@ impl Default for World {
             environment_params: EnvironmentParams::default(),
             agent_params: AgentParams::default(),
             image_params: None,
+            seed: None,
             rules: Rules::default(),
             objects: Vec::new(),
             progress: None,

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
+use super::MAX_SEED;
 use crate::Color;
 
 /// An object: its look, its place, what it is worth.
@@ -90,6 +91,12 @@ pub struct Object {
     /// How the object comes back after it was destroyed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub respawn: Option<Respawn>,
+    /// Which part of the world's chance is its own, whatever else stands in the world and in which order. Sampled objects
+    /// have one of their group's name and their number in it; without it the place where it starts decides. Objects
+    /// that share one are told apart by their order.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0, max = MAX_SEED))]
+    pub seed: Option<u64>,
     /// A free word that rules and logs refer to; the name of the group for sampled objects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(length(min = 1, max = 100))]
@@ -125,6 +132,7 @@ impl Object {
             waypoints: Vec::new(),
             order: None,
             respawn: None,
+            seed: None,
             tag: None,
             unique_name: None,
         }
@@ -133,6 +141,11 @@ impl Object {
     /// Whether the agent can earn something by this object: a positive reward and a stimulus that pays it.
     pub fn is_target(&self) -> bool {
         self.reward > 0.0 && !(self.reward_stimulus.is_empty() && self.reward_once_stimulus.is_empty())
+    }
+
+    /// Whether chance has a part in what becomes of it: it wanders, pays now and then, or comes back somewhere.
+    pub fn takes_chances(&self) -> bool {
+        self.motion_model == MotionModel::RandomWaypoint || self.reward_probability < 1.0 || self.respawn.is_some()
     }
 }
 

@@ -14,7 +14,8 @@ use crate::error::Problem;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Progress {
-    /// Hash of the world at its start, which its chance grows from: 64 hexadecimal letters; absent if nothing depends on chance.
+    /// In a world without a `seed`, what its chance grows from: the hash of where things stood at the start, 64 hexadecimal
+    /// letters. Absent if nothing depends on chance.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
     pub seed: Option<String>,
@@ -46,10 +47,10 @@ pub struct Progress {
     /// Where the agent set out; absent if it is there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub origin: Option<Origin>,
-    /// Words drawn from the stream of bandit arms and returning objects.
-    #[serde(skip_serializing_if = "is_none_drawn")]
+    /// What documents of Driftworld before objects had chance of their own say. It is read, and means nothing.
+    #[serde(skip_serializing)]
     #[schemars(range(min = 0, max = MOST))]
-    pub chance: u64,
+    pub chance: Option<u64>,
     /// What an agent on rails is about to do.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rails: Option<RailsProgress>,
@@ -60,6 +61,9 @@ pub struct Progress {
 
 /// The largest whole number that every reader of JSON keeps: 2⁵³ − 1.
 const MOST: u64 = (1 << 53) - 1;
+
+/// The most draws of one kind: leaves room for as many again.
+const MOST_DRAWN: u64 = 1 << 31;
 
 /// Leaves room for as many again.
 const MOST_TICKS: u64 = 1 << 52;
@@ -128,10 +132,26 @@ pub struct ObjectProgress {
     #[serde(skip_serializing_if = "is_first")]
     #[schemars(range(min = 0, max = 999))]
     pub waypoint: u32,
-    /// Words drawn from its own stream of chance.
+    /// How many goals a wanderer has drawn.
     #[serde(skip_serializing_if = "is_none_drawn")]
+    #[schemars(range(min = 0, max = MOST_DRAWN))]
+    pub goals: u64,
+    /// How often a bandit arm has been pulled: each pull is one draw, whatever it pays.
+    #[serde(skip_serializing_if = "is_none_drawn")]
+    #[schemars(range(min = 0, max = MOST_DRAWN))]
+    pub pulls: u64,
+    /// How often it has come back.
+    #[serde(skip_serializing_if = "is_none_drawn")]
+    #[schemars(range(min = 0, max = MOST_DRAWN))]
+    pub returns: u64,
+    /// Places that were tried for its next return.
+    #[serde(skip_serializing_if = "is_none_drawn")]
+    #[schemars(range(min = 0, max = MOST_DRAWN))]
+    pub tries: u64,
+    /// As `chance` of the whole: it is read, and means nothing.
+    #[serde(skip_serializing)]
     #[schemars(range(min = 0, max = MOST))]
-    pub chance: u64,
+    pub chance: Option<u64>,
     /// Velocity of what was pushed, in metres per second.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(inner(inner(range(min = -1e6, max = 1e6))))]
@@ -153,7 +173,11 @@ impl Default for ObjectProgress {
             returns_at: None,
             goal: None,
             waypoint: 0,
-            chance: 0,
+            goals: 0,
+            pulls: 0,
+            returns: 0,
+            tries: 0,
+            chance: None,
             velocity: None,
             spin: 0.0,
         }
