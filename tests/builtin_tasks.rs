@@ -14,8 +14,8 @@ const WORLDS: u64 = 3;
 /// is earned but what the steps pay.
 const COSTLY: [&str; 2] = ["find_objects#penalty", "moving_object#stings"];
 
-/// An episode from the first step to the last: what it earned, and its last step.
-fn live(variant: &Variant, index: u64, agent: &mut dyn Agent) -> (f64, u32, Step) {
+/// An episode from the first step to the last: what it earned, its seconds, and its last step.
+fn live(variant: &Variant, index: u64, agent: &mut dyn Agent) -> (f64, f64, Step) {
     let name = variant.id();
     let world = Sampler::new(variant, 11).world(index);
     let world = world.unwrap_or_else(|error| panic!("{name}, world {index}: {error}"));
@@ -28,7 +28,7 @@ fn live(variant: &Variant, index: u64, agent: &mut dyn Agent) -> (f64, u32, Step
             .step(action)
             .unwrap_or_else(|error| panic!("{name}: {error}"));
     }
-    (environment.episode_return(), environment.num_steps(), last)
+    (environment.episode_return(), environment.seconds(), last)
 }
 
 fn check(task: &str) {
@@ -38,12 +38,12 @@ fn check(task: &str) {
         for index in 0..WORLDS {
             let solved = if COSTLY.contains(&name.as_str()) {
                 let mut still = ScriptedAgent::parse("still", "step").expect("the script is sound");
-                let (earned, steps, last) = live(&variant, index, &mut still);
+                let (earned, seconds, last) = live(&variant, index, &mut still);
                 let haste = variant
                     .value("haste")
                     .and_then(driftworld::spec::Value::as_number)
-                    .unwrap_or(-0.1);
-                !last.success && (earned - haste * f64::from(steps)).abs() < 1e-6
+                    .unwrap_or(-1.0);
+                !last.success && (earned - haste * seconds).abs() < 1e-6
             } else {
                 let (earned, _, last) = live(&variant, index, &mut OnRailsAgent::new());
                 last.success && earned > 0.0

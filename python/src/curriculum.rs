@@ -89,15 +89,20 @@ impl PyPlan {
         Ok(to_python(py, &told)?)
     }
 
-    /// The JSON of the world of experience `number`, its time step in seconds, and for how many of these each action is held; a world
-    /// without a limit of steps has one here.
-    fn world(&self, py: Python<'_>, number: Whole) -> Result<(String, f64, u32)> {
+    /// The JSON of the world of experience `number`, its time step in seconds, for how many of these each action is held, and its
+    /// limit of seconds, 0 for none; a world without any limit has one of steps here.
+    fn world(&self, py: Python<'_>, number: Whole) -> Result<(String, f64, u32, f64)> {
         let mut world = py.detach(|| self.plan.world(number.0))?;
-        if world.max_steps == 0 {
+        if world.step_limit().is_none() {
             world.max_steps = MOST_STEPS;
         }
         let agent = &world.agent_params;
-        Ok((world.to_json(), agent.time_step, agent.frame_skip.max(1)))
+        Ok((
+            world.to_json(),
+            agent.time_step,
+            agent.frame_skip.max(1),
+            world.max_seconds,
+        ))
     }
 
     /// Notes what else its lifetime depends on: a log is taken up only if it is the same.

@@ -35,7 +35,9 @@ impl Dress {
         lay(&mut agent.interact, self.interact);
         lay(&mut agent.frame_skip, self.frame_skip);
         lay(&mut agent.supersampling, self.supersampling);
-        lay(&mut world.max_steps, self.max_steps);
+        if let Some(max_steps) = self.max_steps {
+            world.limit_steps(max_steps);
+        }
     }
 
     /// Whether a world is sound with these options, and what an environment of it looks like from outside.
@@ -65,7 +67,7 @@ fn layout(world: &World) -> Value {
         "modalities": agent.modalities,
         "state_features": agent.state_features,
         "state_len": agent.state_len(),
-        "max_steps": world.max_steps,
+        "max_steps": world.step_limit().unwrap_or(0),
         "seconds_per_step": agent.time_step * f64::from(agent.frame_skip.max(1)),
         "action_model": agent.action_model,
         "action": action(agent, world.environment_params.arena_size()),

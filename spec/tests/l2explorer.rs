@@ -178,6 +178,7 @@ fn sayable() -> impl Strategy<Value = World> {
                     seed: None,
                     game_mode,
                     max_steps,
+                    max_seconds: 0.0,
                     environment_params,
                     agent_params,
                     image_params,
@@ -219,8 +220,8 @@ fn with_extras(object: Object) -> impl Strategy<Value = Object> {
                 ) = numbers;
                 object.waypoints = waypoints;
                 object.order = order;
-                object.respawn = respawn.map(|(delay, radius)| Respawn { delay, radius });
                 object.seed = seed;
+                object.respawn = respawn.map(|(delay, radius)| Respawn { delay, radius });
                 object.tag = tag;
                 object.pushable = pushable.map(|(mass, friction)| Pushable { mass, friction });
                 object.color = color;
@@ -256,13 +257,16 @@ fn rules() -> impl Strategy<Value = Rules> {
         conditions.clone(),
         conditions,
     )
-        .prop_map(|(step_reward, order_penalty, shaping, success, failure)| Rules {
-            step_reward,
-            order_penalty,
-            shaping,
-            success,
-            failure,
-        })
+        .prop_map(
+            |(step_reward, reward_per_second, order_penalty, shaping, success, failure)| Rules {
+                step_reward,
+                reward_per_second,
+                order_penalty,
+                shaping,
+                success,
+                failure,
+            },
+        )
 }
 
 /// Any world that reads: one that the original can describe, with anything of ours on top.
@@ -283,8 +287,10 @@ fn any_world() -> impl Strategy<Value = World> {
     ];
     let modalities = proptest::sample::subsequence(vec![Modality::Rgb, Modality::Depth, Modality::Segmentation], 0..=3);
     let senses = (0.001..=10.0, 1.0..=170.0, modalities, actions);
-    (sayable(), arena, 0.0..=1.0, senses, rules())
-        .prop_flat_map(|(world, arena, ambient_light, senses, rules)| {
+    let of_the_world = (proptest::option::of(0..=MAX_SEED), prop_oneof![Just(0.0), 0.0..=1e9]);
+    (sayable(), arena, 0.0..=1.0, senses, rules(), of_the_world)
+        .prop_flat_map(|(mut world, arena, ambient_light, senses, rules, own)| {
+            (world.seed, world.max_seconds) = own;
             let objects: Vec<_> = world.objects.iter().cloned().map(with_extras).collect();
             (Just((world, arena, ambient_light, senses, rules)), objects)
         })
@@ -325,8 +331,15 @@ fn what_remains(world: &World) -> World {
             ..Object::new(class, object.coordinates)
         }
     };
+    // The original counts steps, of a tenth of a second.
+    let by_time = (world.max_seconds > 0.0)
+        .then(|| (world.max_seconds / 0.1 - 1e-6).ceil().clamp(1.0, f64::from(u32::MAX)) as u32);
+    let limits = [by_time, (world.max_steps > 0).then_some(world.max_steps)];
     World {
         schema: None,
+        seed: None,
+        max_steps: limits.into_iter().flatten().min().unwrap_or(0).min(1_000_000_000),
+        max_seconds: 0.0,
         environment_params: EnvironmentParams {
             bounding_wall_color: environment.bounding_wall_color,
             light_intensity: environment.light_intensity,

@@ -73,8 +73,8 @@ fn broken_tasks_are_refused_and_the_message_says_how_to_mend_them() {
         ("\"value\": 5, ", ""),
         ("\"count\": 4", "\"count\": 1000000000"),
         ("\"class\": \"rock\"", "\"clas\": \"rock\""),
-        ("\"max_steps\": 300", "\"max_step\": 300"),
-        ("\"max_steps\": 300", "\"max_steps\": { \"param\": \"light\" }"),
+        ("\"max_seconds\": 30", "\"max_second\": 30"),
+        ("\"max_seconds\": 30", "\"max_steps\": { \"param\": \"light\" }"),
         ("\"role\": \"fixed\"", "\"role\": \"constant\""),
         ("\"gaussian\"", "\"gausian\""),
         (

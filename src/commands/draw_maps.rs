@@ -8,6 +8,9 @@ use crate::spec::{Regime, Scenario};
 
 use super::{Failure, output};
 
+/// The most that a regime may say.
+const MOST_STEPS: u32 = 1_000_000_000;
+
 /// The most map files that one scenario becomes.
 const MAX_MAPS: u64 = 10_000;
 
@@ -93,7 +96,7 @@ impl Maps<'_> {
         let variant = path.rsplit('/').next().unwrap_or(path).trim_end_matches(".json");
         Ok(Regime {
             world: Some(path.clone()),
-            max_steps: Some(world.max_steps),
+            max_steps: Some(world.step_limit().unwrap_or(0).min(MOST_STEPS)),
             ..Regime::new(name, variant, 1)
         })
     }

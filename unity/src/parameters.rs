@@ -50,12 +50,12 @@ impl Parameters {
 
     /// Lays the numbers over a world.
     pub(crate) fn apply(&self, world: &mut World) {
-        let agent = &mut world.agent_params;
         for (key, number) in &self.0 {
+            let agent = &mut world.agent_params;
             match *key {
                 "time_step" => agent.time_step = *number,
                 "frame_skip" => agent.frame_skip = *number as u32,
-                "max_steps" => world.max_steps = *number as u32,
+                "max_steps" => world.limit_steps(*number as u32),
                 "field_of_view" => agent.field_of_view = *number,
                 "supersampling" => agent.supersampling = *number as u32,
                 "light_intensity" => world.environment_params.light_intensity = *number,

@@ -22,7 +22,7 @@ pub struct Experience {
     pub success: bool,
     /// Its steps.
     pub steps: u32,
-    /// The seconds of the world's time that it took: steps times time step times `frame_skip`.
+    /// The seconds of the world's time that it took: steps times time step times `frame_skip`, at most the world's limit of seconds.
     pub seconds: f64,
     /// Cut off by a limit of steps, not ended by what happened.
     pub truncated: bool,
@@ -42,11 +42,7 @@ pub(super) fn live(
     }
     agent.begin(briefing.seed);
     // A world without a limit of steps and without an end would never be over.
-    let limit = if environment.world().max_steps == 0 {
-        MOST_STEPS
-    } else {
-        u32::MAX
-    };
+    let limit = environment.world().step_limit().map_or(MOST_STEPS, |_| u32::MAX);
     let mut last = Step::default();
     while !environment.ended() && environment.num_steps() < limit {
         let action = agent.act(environment);
@@ -57,12 +53,19 @@ pub(super) fn live(
         }
     }
     let steps = environment.num_steps();
-    let params = &environment.world().agent_params;
+    let world = environment.world();
+    let step_seconds = world.agent_params.time_step * f64::from(world.agent_params.frame_skip.max(1));
+    // A limit of seconds cuts the last step short.
+    let most = if world.max_seconds > 0.0 {
+        world.max_seconds
+    } else {
+        f64::INFINITY
+    };
     Ok(Experience {
         reward: environment.episode_return(),
         success: last.success,
         steps,
-        seconds: f64::from(steps) * params.time_step * f64::from(params.frame_skip.max(1)),
+        seconds: (f64::from(steps) * step_seconds).min(most),
         truncated: last.truncated,
     })
 }

@@ -374,7 +374,7 @@ impl Planned {
         };
         let mut world = drawn.map_err(|source| self.wrong(source))?;
         if let Some(max_steps) = self.max_steps {
-            world.max_steps = max_steps;
+            world.limit_steps(max_steps);
         }
         Ok(Assignment { world, between })
     }

@@ -203,3 +203,83 @@ fn mix(bits: u64) -> u64 {
 pub(super) fn moves(object: &Object) -> bool {
     object.motion_model != MotionModel::Stationary && object.speed > 0.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(place: [f64; 2], seed: Option<u64>) -> Object {
+        Object {
+            seed,
+            ..Object::new("rock", place)
+        }
+    }
+
+    #[test]
+    fn every_draw_of_every_object_for_every_purpose_is_another() {
+        let mut drawn = Vec::new();
+        for seed in [Seed::Own(1), Seed::Own(2), Seed::Places("ab".repeat(32))] {
+            let mut identities = Identities::default();
+            for object in [
+                at([0.0, 0.0], None),
+                at([0.0, 0.0], None),
+                at([0.0, 1.0], None),
+                at([0.0, 0.0], Some(0)),
+                at([0.0, 1.0], Some(0)),
+                at([0.0, 0.0], Some(1)),
+            ] {
+                let identity = identities.take(&object);
+                for purpose in [Purpose::Goals, Purpose::Pulls, Purpose::Returns] {
+                    let stream = Stream::new(&seed, identity, purpose);
+                    let draws = [stream.draw(0), stream.draw(1), stream.redraw(0, 1)];
+                    drawn.extend(draws.iter().flatten().map(|unit| unit.to_bits()));
+                }
+            }
+        }
+        let count = drawn.len();
+        drawn.sort_unstable();
+        drawn.dedup();
+        assert_eq!((drawn.len(), count), (324, 324));
+    }
+
+    #[test]
+    fn an_object_is_known_by_its_seed_wherever_it_stands_in_the_list() {
+        let objects: Vec<Object> = (0..5).map(|seed| at([1.0, 2.0], Some(seed))).collect();
+        let identities = |order: &[usize]| -> BTreeMap<usize, u64> {
+            let mut identities = Identities::default();
+            let of = |number: &usize| (*number, identities.take(&objects[*number]));
+            order.iter().map(of).collect()
+        };
+        let all = identities(&[0, 1, 2, 3, 4]);
+        assert_eq!(identities(&[4, 2, 0, 1, 3]), all);
+        assert_eq!(identities(&[3]), [(3, all[&3])].into());
+    }
+
+    /// Pinned: if it changes, so does every world that moves by chance.
+    #[test]
+    fn the_numbers_stay_as_they_are() {
+        let identity = Identities::default().take(&at([3.0, 4.0], Some(7)));
+        let stream = Stream::new(&Seed::Own(5), identity, Purpose::Goals);
+        assert_eq!(
+            (identity, stream.draw(2)),
+            (
+                17_452_601_307_055_861_954,
+                [0.604_290_513_060_048_8, 0.225_097_670_981_466_5]
+            )
+        );
+    }
+
+    #[test]
+    fn luck_is_spread_evenly() {
+        let identity = Identities::default().take(&at([3.0, 4.0], None));
+        let stream = Stream::new(&Seed::Own(5), identity, Purpose::Pulls);
+        for axis in 0..2 {
+            let mut units: Vec<f64> = (0..20_000).map(|draw| stream.draw(draw)[axis]).collect();
+            units.sort_unstable_by(f64::total_cmp);
+            // Kolmogorov and Smirnov: 1.95 / √n is α = 0.001.
+            let gap = |(number, unit): (usize, &f64)| (unit - (number as f64 + 0.5) / 20_000.0).abs();
+            let most = units.iter().enumerate().map(gap).fold(0.0, f64::max);
+            assert!(most < 1.95 / 20_000_f64.sqrt(), "{most}");
+        }
+    }
+}

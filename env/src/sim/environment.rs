@@ -182,6 +182,11 @@ impl Environment {
         self.episode.steps
     }
 
+    /// Seconds of the world's own time since the start.
+    pub fn seconds(&self) -> f64 {
+        self.episode.ticks as f64 * self.world.agent_params.time_step
+    }
+
     /// The sum of rewards since the start.
     pub fn episode_return(&self) -> f64 {
         self.episode.earned

@@ -76,7 +76,7 @@ impl Environment {
                 [number, event.reward as f32, f32::from(u8::from(event.destroyed))]
             }),
             StateFeature::StepsLeft => {
-                let most = self.world.max_steps;
+                let most = self.world.step_limit().unwrap_or(0);
                 let left = f64::from(most.saturating_sub(self.episode.steps)) / f64::from(most.max(1));
                 [if most == 0 { 1.0 } else { left as f32 }, 0.0, 0.0]
             }

@@ -30,17 +30,21 @@ impl Environment {
         step.clear();
         let potential_before = self.potential();
         step.reward = self.world.rules.step_reward;
+        let pay = self.world.rules.reward_per_second * self.world.agent_params.time_step;
+        let max_ticks = self.world.max_ticks().unwrap_or(u64::MAX);
         for _ in 0..self.world.agent_params.frame_skip.max(1) {
+            step.reward += pay;
             self.tick(intent, step);
             self.judge(step);
-            if step.terminated {
+            if step.terminated || self.episode.ticks >= max_ticks {
                 break;
             }
             intent.interact = false;
         }
         self.episode.steps = self.episode.steps.saturating_add(1);
         self.episode.unshaped += step.reward;
-        step.truncated = !step.terminated && self.world.max_steps > 0 && self.episode.steps >= self.world.max_steps;
+        let steps_are_over = self.world.max_steps > 0 && self.episode.steps >= self.world.max_steps;
+        step.truncated = !step.terminated && (steps_are_over || self.episode.ticks >= max_ticks);
         if let Some(shaping) = &self.world.rules.shaping {
             let after = if step.terminated { 0.0 } else { self.potential() };
             step.reward += shaping.discount * after - potential_before;

@@ -6,6 +6,7 @@ Which experiences there are is said by ``curricula.py``, what a log holds by the
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import shutil
@@ -178,8 +179,11 @@ class Lifetime:
         begin = getattr(self._agent, "begin", None)
         if begin is not None:
             begin(None if now.label is None else now.label["name"], now.chance)
-        world, time_step, skip = self._plan.world(now.number)
+        world, time_step, skip, max_seconds = self._plan.world(now.number)
         seconds_per_step = time_step * (self._options.get("frame_skip") or skip)
+        # A limit of seconds cuts the last step short; one of steps stands in its place.
+        limited = max_seconds > 0 and self._options.get("max_steps") is None
+        most = max_seconds if limited else math.inf
         observation, info = env.reset(options={"world": world, "label": now.label})
         earned, steps, terminated, truncated = 0.0, 0, False, False
         while not (terminated or truncated):
@@ -192,7 +196,7 @@ class Lifetime:
                     Transition(observation, action, float(reward), terminated, truncated, following, info)
                 )
             observation = following
-        return earned, bool(info["is_success"]), steps, steps * seconds_per_step, truncated and not terminated
+        return earned, bool(info["is_success"]), steps, min(steps * seconds_per_step, most), truncated and not terminated
 
     def _own_saves(self, done: int, lifetime: dict[str, Any]) -> None:
         """Sees to it that what is saved beside the log is of this lifetime: what another one left there goes."""

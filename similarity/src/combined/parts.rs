@@ -261,12 +261,7 @@ fn reward(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
         share(raw, 2.0 * larger),
     );
     same(part!("shaping and endings", R, "same or not"), a.rules, b.rules, sink);
-    same(
-        part!("limit of steps", R, "same or not"),
-        a.max_steps,
-        b.max_steps,
-        sink,
-    );
+    same(part!("limit of steps", R, "same or not"), a.limit, b.limit, sink);
 }
 
 fn observation(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {

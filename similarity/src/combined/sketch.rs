@@ -33,9 +33,11 @@ pub(super) struct Sketch {
     pub(super) agent_width: f64,
     pub(super) walls: u32,
     pub(super) area: f64,
+    /// What time pays, in a second.
     pub(super) step_reward: f64,
     pub(super) rules: u32,
-    pub(super) max_steps: u32,
+    /// The limit of steps, by how long it lets an episode last.
+    pub(super) limit: u32,
     pub(super) light: f64,
     /// Wall, sky, ground, sunlight.
     pub(super) surroundings: [Oklab; 4],
@@ -88,6 +90,11 @@ impl Sketcher {
         cells.dedup();
         let (agent, around, rules) = (&world.agent_params, &world.environment_params, &world.rules);
         let [width, depth] = around.arena_size();
+        let step_seconds = agent.time_step * f64::from(agent.frame_skip);
+        let limits = [world.max_seconds, f64::from(world.max_steps) * step_seconds];
+        let least = limits.into_iter().filter(|seconds| *seconds > 0.0).reduce(f64::min);
+        // To the microsecond: 100 steps of 0.3 s are 300 of 0.1 s.
+        let limit = least.map(|seconds| (seconds * 1e6).round() as u64);
         Sketch {
             objects,
             classes,
@@ -98,11 +105,11 @@ impl Sketcher {
             action_space: self.number(("action space", &agent.actions, agent.interact)),
             linear_speed: agent.max_linear_speed,
             angular_speed: agent.max_angular_speed,
-            time_step: agent.time_step * f64::from(agent.frame_skip),
+            time_step: step_seconds,
             agent_width: agent.agent_width,
             walls: self.number(("walls", around.predefined_map, &around.map_regions, &around.walls)),
             area: width * depth,
-            step_reward: rules.step_reward,
+            step_reward: rules.step_reward / step_seconds + rules.reward_per_second,
             rules: self.number((
                 "rules",
                 &rules.success,
@@ -110,7 +117,7 @@ impl Sketcher {
                 rules.order_penalty,
                 &rules.shaping,
             )),
-            max_steps: world.max_steps,
+            limit: self.number(("limit", limit)),
             light: around.light_intensity,
             surroundings: [
                 around.bounding_wall_color,

@@ -67,7 +67,7 @@ const WORLD: Keys = Keys {
         "image_params",
         "objects",
     ],
-    ours: &["version", "rules", "progress"],
+    ours: &["version", "seed", "max_seconds", "rules", "progress"],
     old: &[],
 };
 
@@ -121,7 +121,14 @@ const IMAGE: Keys = Keys {
 /// Nothing of the rules is known to the original.
 const RULES: Keys = Keys {
     original: &[],
-    ours: &["step_reward", "order_penalty", "shaping", "success", "failure"],
+    ours: &[
+        "step_reward",
+        "reward_per_second",
+        "order_penalty",
+        "shaping",
+        "success",
+        "failure",
+    ],
     old: &[],
 };
 
@@ -151,6 +158,7 @@ const OBJECT: Keys = Keys {
         "waypoints",
         "order",
         "respawn",
+        "seed",
         "tag",
     ],
     old: &["collectible", "reward_on", "interaction_distance"],
@@ -167,7 +175,6 @@ fn moves(model: MotionModel) -> bool {
 
 /// Whether black on this class (in lower case) is a choice; on all others it is the default and means the asset's own
 /// colours.
-        "seed",
 fn black_is_chosen(class: &str) -> bool {
     matches!(class, "geometric" | "cube" | "icosphere")
 }

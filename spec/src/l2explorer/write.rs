@@ -92,6 +92,24 @@ impl Writer {
         Json::Object(payload)
     }
 
+    /// The limit in the original's steps, each of which is a time step.
+    fn max_steps(&mut self, world: &World) -> u32 {
+        if world.max_seconds == 0.0 {
+            return world.max_steps;
+        }
+        // The time step is the original's own there, since it cannot be said; what it was is lost with a warning of its own.
+        let mut timed = World {
+            max_steps: world.max_steps,
+            max_seconds: world.max_seconds,
+            ..World::default()
+        };
+        timed.max_steps = timed.step_limit().unwrap_or(0).min(1_000_000_000);
+        let (seconds, steps) = (describe(&json!(world.max_seconds)), timed.max_steps);
+        let text = format!("max_seconds ({seconds}): written as max_steps {steps}, L2Explorer counts steps");
+        self.warnings.push(warning("/max_seconds".to_owned(), text));
+        steps
+    }
+
     /// The original's keys of a part of the world; each of ours that is not at its default gets a warning.
     fn part<T: Serialize + Default>(&mut self, at: &str, keys: &Keys, part: &T) -> Json {
         let full = map_of(part);

@@ -53,6 +53,7 @@ macro_rules! row {
 /// Where a world's template may vary, its objects apart.
 pub(crate) const WORLD: &[Slot<World>] = &[
     row!("/max_steps", Integer, max_steps, whole),
+    row!("/max_seconds", Number, max_seconds, number),
     row!(
         "/environment_params/bounding_wall_color",
         Color,
@@ -169,6 +170,7 @@ pub(crate) const WORLD: &[Slot<World>] = &[
     ),
     row!("/agent_params/modalities/*", String, agent_params.modalities[], word::<Modality>),
     row!("/rules/step_reward", Number, rules.step_reward, number),
+    row!("/rules/reward_per_second", Number, rules.reward_per_second, number),
     row!("/rules/order_penalty", Number, rules.order_penalty, number),
     slot("/rules/shaping/scale", Number, |world, _, value| {
         world.rules.shaping.as_mut()?.scale = number(value)?;

@@ -69,6 +69,11 @@ pub struct World {
     /// Steps until the episode is truncated; 0 is never.
     #[schemars(range(min = 0, max = 1_000_000_000))]
     pub max_steps: u32,
+    /// Seconds of the world's own time until the episode is truncated, be it in the midst of an action that is held; 0 is never.
+    /// Of two limits the earlier holds. Unlike `max_steps` it does not depend on how long a step lasts.
+    #[serde(skip_serializing_if = "is_zero")]
+    #[schemars(range(min = 0.0, max = 1e9))]
+    pub max_seconds: f64,
     /// The arena and its light.
     pub environment_params: EnvironmentParams,
     /// The agent.
@@ -91,12 +96,13 @@ impl Default for World {
         Self {
             schema: None,
             version: WORLD_VERSION,
+            seed: None,
             game_mode: GameMode::default(),
             max_steps: 0,
+            max_seconds: 0.0,
             environment_params: EnvironmentParams::default(),
             agent_params: AgentParams::default(),
             image_params: None,
-            seed: None,
             rules: Rules::default(),
             objects: Vec::new(),
             progress: None,
@@ -169,12 +175,40 @@ impl World {
 
     /// The world's name by its content: the SHA-256 of [`World::to_json`] in hexadecimal, 64 characters.
     pub fn hash(&self) -> String {
-        Sha256::digest(self.to_json())
-            .iter()
-            .fold(String::with_capacity(64), |mut hash, byte| {
-                write!(hash, "{byte:02x}").expect("writing to a String does not fail");
-                hash
-            })
+        hexadecimal(&Sha256::digest(self.to_json()))
+    }
+
+    /// Time steps until `max_seconds` have passed: the first at whose end they have. `None` without such a limit.
+    pub fn max_ticks(&self) -> Option<u64> {
+        // A little less, so that 60 s are 600 time steps of 0.1 s, which is no number of binary digits.
+        let ticks = || (self.max_seconds / self.agent_params.time_step - 1e-6).ceil();
+        (self.max_seconds > 0.0).then(|| ticks().max(1.0) as u64)
+    }
+
+    /// Steps until the episode is truncated at the latest, by `max_steps` or by `max_seconds`; `None` for never.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::World;
+    /// let mut world = World { max_seconds: 20.0, ..World::default() };
+    /// assert_eq!(world.step_limit(), Some(200));
+    /// world.agent_params.frame_skip = 3;
+    /// assert_eq!(world.step_limit(), Some(67), "the last is cut short");
+    /// world.max_steps = 50;
+    /// assert_eq!(world.step_limit(), Some(50));
+    /// ```
+    pub fn step_limit(&self) -> Option<u32> {
+        let held = u64::from(self.agent_params.frame_skip.max(1));
+        let by_time = self
+            .max_ticks()
+            .map(|ticks| u32::try_from(ticks.div_ceil(held)).unwrap_or(u32::MAX));
+        let by_steps = (self.max_steps > 0).then_some(self.max_steps);
+        by_steps.into_iter().chain(by_time).min()
+    }
+
+    /// Sets a limit of steps, 0 for never, in place of all limits that the world has.
+    pub fn limit_steps(&mut self, max_steps: u32) {
+        (self.max_steps, self.max_seconds) = (max_steps, 0.0);
     }
 
     /// What the schema cannot say: checks that look at several values at once.
@@ -225,6 +259,21 @@ impl World {
         problems.extend(duplicate_names(&self.objects));
         problems
     }
+}
+
+/// Bytes as hexadecimal letters, two for each.
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes
+        .iter()
+        .fold(String::with_capacity(2 * bytes.len()), |mut letters, byte| {
+            write!(letters, "{byte:02x}").expect("writing to a String does not fail");
+            letters
+        })
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 fn duplicate_names(objects: &[Object]) -> impl Iterator<Item = Problem> {

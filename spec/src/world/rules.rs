@@ -10,6 +10,11 @@ pub struct Rules {
     /// Paid at every step; a small negative number makes haste worth while.
     #[schemars(range(min = -1e9, max = 1e9))]
     pub step_reward: f64,
+    /// Paid for every second of the world's own time, in each time step its share. Unlike `step_reward` it does not depend on how
+    /// long a step lasts.
+    #[serde(skip_serializing_if = "is_zero")]
+    #[schemars(range(min = -1e9, max = 1e9))]
+    pub reward_per_second: f64,
     /// Paid, in place of its reward, for setting off an object before its turn in a sequence; at most 0 makes it a penalty.
     #[serde(skip_serializing_if = "is_zero")]
     #[schemars(range(min = -1e9, max = 1e9))]

@@ -45,9 +45,9 @@ impl Session<'_> {
             }
         };
         let modalities = agent.modalities.iter().map(|it| Kind::from(*it).name().to_owned());
-        let limit = match world.max_steps {
-            0 => "no limit".to_owned(),
-            steps => format!("at most {steps}"),
+        let limit = match world.step_limit() {
+            None => "no limit".to_owned(),
+            Some(steps) => format!("at most {steps}"),
         };
         let mut text = format!(
             "world      {}\nsteps      {}, {limit}\nreturn     {}{}\narena      {:?} m, map {}\nobjects    {}, of which {there} are there\n\

@@ -293,7 +293,7 @@ impl Session {
     fn check_end_fits(&self, agent: &AgentInfoProto) -> Result<(), UnityError> {
         let world = self.environment.world();
         let can_end = self.album.is_some()
-            || world.max_steps > 0
+            || world.step_limit().is_some()
             || !world.rules.success.is_empty()
             || !world.rules.failure.is_empty();
         let (found, limit) = (2 * agent.encoded_len() + ENVELOPE, MAX_OUTGOING_BYTES);

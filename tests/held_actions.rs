@@ -1,0 +1,127 @@
+//! How long an action is held changes the transitions and nothing else: the same motion over the same seconds is paid the same
+//! for time, and ends at the same second.
+
+use driftworld::env::{Action, Environment};
+use driftworld::generator::Sampler;
+use driftworld::similarity::{Weights, world_distance};
+use driftworld::spec::{ActionModel, Element, StateFeature, Variant, World};
+use driftworld::tasks;
+
+/// What an episode came to: the agent at its end, its seconds, what it paid, whether a limit cut it off.
+#[derive(Debug)]
+struct Course {
+    end: ([f32; 2], f32),
+    seconds: f64,
+    paid: f64,
+    truncated: bool,
+}
+
+/// An episode of one motion from the first step to the last.
+fn live(world: &World, motion: [f64; 3]) -> Course {
+    let mut environment = Environment::new(world.clone()).unwrap_or_else(|error| panic!("{error}"));
+    let mut truncated = false;
+    while !environment.ended() {
+        let step = environment.step(Action::Continuous(motion));
+        truncated = step.unwrap_or_else(|error| panic!("{error}")).truncated;
+    }
+    let agent = environment.agent();
+    Course {
+        end: (agent.position, agent.heading_deg),
+        seconds: environment.seconds(),
+        paid: environment.episode_return(),
+        truncated,
+    }
+}
+
+fn draw(variant: &Variant) -> World {
+    let mut world = Sampler::new(variant, 5)
+        .world(1)
+        .unwrap_or_else(|error| panic!("{error}"));
+    world.agent_params.action_model = ActionModel::ByVelocity;
+    world
+}
+
+#[test]
+fn a_held_action_is_paid_and_cut_off_by_the_second() {
+    let mut cut_off = 0;
+    for task in tasks::built_in_names() {
+        let variants = tasks::variants(task).expect("built-in tasks are sound");
+        for (number, variant) in variants.iter().enumerate().step_by(3) {
+            let mut world = draw(variant);
+            for motion in [[0.0; 3], [1.0 + number as f64 / 4.0, 9.0, 0.0], [5.0, -40.0, 0.0]] {
+                world.agent_params.frame_skip = 1;
+                let free = live(&world, motion);
+                for hold in [2, 3, 7, 10] {
+                    world.agent_params.frame_skip = hold;
+                    let held = live(&world, motion);
+                    let name = format!("{} held {hold} in {motion:?}: {free:?}, {held:?}", variant.id());
+                    assert_eq!((free.end, free.truncated), (held.end, held.truncated), "{name}");
+                    assert!((free.seconds - held.seconds).abs() < 1e-9, "{name}");
+                    assert!((free.paid - held.paid).abs() < 1e-6, "{name}");
+                    cut_off += usize::from(held.truncated);
+                }
+            }
+        }
+    }
+    assert!(cut_off > 100, "limits of time are met, too: {cut_off} times");
+}
+
+#[test]
+fn a_time_step_of_any_length_is_paid_and_cut_off_by_the_second() {
+    for task in tasks::built_in_names() {
+        let variants = tasks::variants(task).expect("built-in tasks are sound");
+        let mut world = draw(&variants[0]);
+        world.objects.clear();
+        let most = world.max_seconds;
+        assert!(most > 0.0 && world.max_steps == 0, "{task} has a limit of seconds");
+        for time_step in [0.02, 0.05, 0.1, 0.25] {
+            world.agent_params.time_step = time_step;
+            let course = live(&world, [0.0; 3]);
+            let pay = world.rules.reward_per_second * most;
+            assert!(
+                (course.seconds - most).abs() < 1e-6 && course.truncated,
+                "{task}: {course:?}"
+            );
+            assert!((course.paid - pay).abs() < 1e-6, "{task}: {course:?}, expected {pay}");
+        }
+    }
+}
+
+#[test]
+fn held_variants_differ_from_the_first_in_the_transitions_alone() {
+    let mut compared = 0;
+    for task in tasks::built_in_names() {
+        let variants = tasks::variants(task).expect("built-in tasks are sound");
+        let first = draw(&variants[0]);
+        for held in variants.iter().filter(|variant| variant.name().ends_with("held")) {
+            let mut world = draw(held);
+            assert!(world.agent_params.frame_skip > 1, "{}", held.id());
+            let distance = world_distance(&first, &world, &Weights::default());
+            assert_eq!(distance.differs_in(), [Element::T], "{}", held.id());
+            world.agent_params.frame_skip = 1;
+            assert_eq!(world, first, "{}", held.id());
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 6);
+}
+
+#[test]
+fn steps_left_count_the_steps_that_a_limit_of_seconds_leaves() {
+    let mut world = World {
+        max_seconds: 1.0,
+        ..World::default()
+    };
+    world.agent_params.frame_skip = 4;
+    world.agent_params.state_features = vec![StateFeature::StepsLeft];
+    let mut environment = Environment::new(world).unwrap_or_else(|error| panic!("{error}"));
+    let mut left = vec![environment.state_vector()[0]];
+    while !environment.ended() {
+        environment
+            .step(Action::Continuous([0.0; 3]))
+            .unwrap_or_else(|error| panic!("{error}"));
+        left.push(environment.state_vector()[0]);
+    }
+    assert_eq!(left, [1.0, 2.0 / 3.0, 1.0 / 3.0, 0.0]);
+    assert!((environment.seconds() - 1.0).abs() < 1e-12);
+}
