@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use driftworld_spec::Scenario;
+use driftworld_spec::{MAX_BYTES, Scenario};
 use serde_json::Value;
 
 /// What a file or folder holds.
@@ -42,6 +42,10 @@ impl Contents {
 
     /// What a JSON text shows itself to be; `None` for one that shows nothing, or is no JSON.
     pub fn of_text(text: &str) -> Option<Self> {
+        // A text that is too long is refused by whoever reads it.
+        if text.len() > MAX_BYTES {
+            return None;
+        }
         let json: Value = serde_json::from_str(text.trim_start_matches('\u{feff}')).ok()?;
         let map = json.as_object()?;
         let has = |keys: &[&str]| keys.iter().any(|key| map.contains_key(*key));

@@ -355,7 +355,7 @@ fn colored(between: Distribution, from: &Distribution, to: &Distribution, t: f64
         ) => {
             let (middle, other) = (f64::midpoint(*a, *b), f64::midpoint(*c, *d));
             let turn = (other - middle + 180.0).rem_euclid(360.0) - 180.0;
-            let (middle, half) = (middle + turn * t, ((b - a) + ((d - c) - (b - a)) * t) / 2.0);
+            let (middle, half) = (middle + turn * t, 0.5 * ((b - a) + ((d - c) - (b - a)) * t));
             // Where a document may have them, which is within a turn of 0..360.
             let middle = middle.rem_euclid(360.0);
             ColorHsv {

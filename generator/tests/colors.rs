@@ -265,7 +265,7 @@ fn a_drift_between_two_laws_goes_through_oklab_and_round_the_shorter_way_of_hues
     let silver = Color::from_name("silver").expect("a CSS name").0;
     assert_eq!(
         (value, high),
-        (Channels(gray), Some(Channels(silver.map(|c| (1.0 + c) / 2.0))))
+        (Channels(gray), Some(Channels(silver.map(|c| f64::midpoint(1.0, c)))))
     );
     for (from, to) in [("box", "line"), ("default", "loose"), ("cut", "after")] {
         let Distribution::Mixture { parts, weights } = at(from, to, 0.25) else {

@@ -15,11 +15,10 @@ import driftworld
 import gymnasium as gym
 import numpy as np
 import pytest
+from conftest import TASKS
 from driftworld._equality import first_difference
 from driftworld.errors import DriftworldError, EnvError, SpecError, TaskError
 from gymnasium.utils.env_checker import check_env
-
-from conftest import TASKS
 
 FIND = "driftworld/FindObjects-v0"
 TABLE = [[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [0.0, 90.0, 0.0]]

@@ -276,3 +276,40 @@ def test_a_drift_survives_being_copied(lamps: TaskSpec, copied: Any, schedule: A
 def test_what_is_odd_about_a_document_is_warned_of() -> None:
     with pytest.warns(UserWarning, match='the key "oddity" has no meaning here'):
         assert validate({"environment_params": {}, "oddity": 1}, kind="l2explorer-world") == []
+
+
+LAWS = {
+    "color_uniform": {"from": [0.0, 0.5, 0.0], "to": [1.0, 1.0, 0.25]},
+    "color_normal": {"mean": {"param": "leaf"}, "std": {"param": "loose"}},
+    "color_perturb": {"value": [0.0, 0.5, 0.5], "noise": 0.2, "channels": "together"},
+    "color_hsv": {"hue": [-20.0, 40.0], "value": [0.5, 1.0]},
+}
+
+
+@pytest.mark.parametrize("family", LAWS)
+def test_laws_of_colours_go_out_and_in_again(family: str) -> None:
+    law = {family: LAWS[family]}
+    document = {
+        "version": 2,
+        "name": "sky",
+        "parameters": {
+            "leaf": {
+                "role": "variant",
+                "type": "color",
+                "affects": ["O"],
+                "choices": [[0, 0.5, 0], [1, 0.5, 0]],
+                "default": [0, 0.5, 0],
+            },
+            "loose": {"role": "variant", "type": "number", "affects": ["O"], "range": [0, 1], "default": 0.1},
+            "sky": {"role": "randomized", "type": "color", "affects": ["O"], "distribution": law},
+        },
+        "world": {"environment_params": {"sky_color": {"param": "sky"}}},
+        "variants": {"autumn": {"leaf": [1, 0.5, 0], "loose": 0}},
+    }
+    task = TaskSpec.from_dict(document)
+    again = TaskSpec.from_dict(task.to_dict())
+    assert again == task and again.to_dict()["parameters"]["sky"]["distribution"] == law
+    colors = [task.variant("autumn").sample(3, index)["environment_params"]["sky_color"] for index in range(5)]
+    assert colors == [again.variant("autumn").sample(3, index)["environment_params"]["sky_color"] for index in range(5)]
+    assert all(0 <= channel <= 1 for color in colors for channel in color)
+    assert (colors[0] == colors[1]) == (family == "color_normal")

@@ -419,6 +419,11 @@ fn what_cannot_be_scored_is_told() {
     );
     check(
         1,
+        &["mine/run0", "-p", "rewrd"],
+        "--perf-measure: log run0: found no metrics column \"rewrd\", expected one of reward; did you mean \"reward\"?",
+    );
+    check(
+        1,
         &["mine/run0", "mine/run2", "--confidence", "1.5"],
         "option confidence: found 1.5, expected a number between 0 and 1, as 0.95",
     );

@@ -48,13 +48,14 @@ impl DrawnMeasure {
                 corners = Some([[x[0], y[0]], [x[1], y[1]]]);
             }
         }
-        let colors = kinds[1] || (parameter.kind == ParameterType::Color && asks_for_ways(measure));
+        let has_ways = kinds[1] || (parameter.kind == ParameterType::Color && asks_for_ways(measure));
+        let colors = has_ways && measure != Some(MeasureName::SameOrNot);
         Self {
             measure,
             colors: colors.then(|| ways_of(measure)),
             headings,
             width: corners.map(|[low, high]| (high[0] - low[0]).hypot(high[1] - low[1])),
-            mixed: families.iter().flatten().count() > 1 || kinds == [true; 2],
+            mixed: families.iter().flatten().count() > 1 || (colors && kinds == [true; 2]),
         }
     }
 
@@ -76,7 +77,7 @@ impl DrawnMeasure {
             let raw = choice_mismatch(a, b);
             ("same or not", None, raw, raw)
         };
-        if let Some(colors) = self.colors.filter(|_| self.measure != Some(MeasureName::SameOrNot)) {
+        if let Some(colors) = self.colors {
             return between_colors(a, b, colors, self.measure).unwrap_or_else(same_or_not);
         }
         let asked = match self.measure {

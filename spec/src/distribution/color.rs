@@ -252,7 +252,7 @@ impl Distribution<f64> {
                 for k in (0..3).filter(|k| noise[*k] > 0.0) {
                     let low = low.as_ref().map_or(0.0, |low| low.0[k]);
                     let high = high.as_ref().map_or(1.0, |high| high.0[k]);
-                    knots.extend([low, high].map(|limit| ((limit - value.0[k]) / noise[k] + 1.0) / 2.0));
+                    knots.extend([low, high].map(|limit| 0.5 * ((limit - value.0[k]) / noise[k] + 1.0)));
                 }
             }
             _ => return None,
@@ -463,7 +463,7 @@ mod tests {
                 0.528_286_179_236_649_6,
             ],
         ] {
-            let chance = ((tree[1] - 0.5) / 0.25 + 1.0) / 2.0;
+            let chance = f64::midpoint((tree[1] - 0.5) / 0.25, 1.0);
             let found = template.color_at([chance, 0.5, 0.5]).expect("it draws colours").0;
             assert!(
                 (0..3).all(|k| (found[k] - tree[k]).abs() < 1e-12),

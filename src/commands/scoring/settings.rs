@@ -8,7 +8,7 @@ use crate::metrics::{DataRange, Options};
 use crate::spec::nearest;
 use serde_json::{Map, Value, json};
 
-use crate::commands::{Failure, input};
+use crate::commands::Failure;
 
 /// Keys of l2metrics' settings that say what is read, written or drawn, not how a lifetime is scored.
 const NOT_SCORING: [&str; 13] = [
@@ -37,8 +37,12 @@ pub(super) struct Loaded {
 
 /// Reads a settings file, of l2metrics or ours.
 pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
-    documents::text_of(path, &[Contents::Settings])?;
-    let mut settings = object(path, "an object of settings, such as {\"perf_measure\": \"reward\"}")?;
+    let text = documents::text_of(path, &[Contents::Settings])?;
+    let mut settings = object(
+        path,
+        &text,
+        "an object of settings, such as {\"perf_measure\": \"reward\"}",
+    )?;
     let log_dir = settings.get("log_dir").and_then(Value::as_str);
     let log_dir = log_dir.filter(|dir| !dir.is_empty()).map(PathBuf::from);
     if let Some(smooth) = settings.shift_remove("do_smooth_eval_data") {
@@ -91,7 +95,7 @@ fn noise_of_l2metrics(noise: &Value) -> Value {
 pub(super) fn data_range(path: &Path) -> Result<Vec<(String, DataRange)>, Failure> {
     let expected = "an object of ranges, such as {\"find_red\": {\"min\": 0, \"max\": 10}}";
     let mut ranges = Vec::new();
-    for (task, range) in object(path, expected)? {
+    for (task, range) in object(path, &documents::text(path)?, expected)? {
         let range = serde_json::from_value(range)
             .map_err(|error| Failure::input(format!("{}, {task:?}: {error}; expected {expected}", path.display())))?;
         ranges.push((task.to_lowercase(), range));
@@ -99,9 +103,8 @@ pub(super) fn data_range(path: &Path) -> Result<Vec<(String, DataRange)>, Failur
     Ok(ranges)
 }
 
-fn object(path: &Path, expected: &str) -> Result<Map<String, Value>, Failure> {
-    let text = input::text(path)?;
-    match serde_json::from_str(&text) {
+fn object(path: &Path, text: &str, expected: &str) -> Result<Map<String, Value>, Failure> {
+    match serde_json::from_str(text) {
         Ok(Value::Object(object)) => Ok(object),
         Ok(_) => Err(Failure::input(format!(
             "{}: found other JSON, expected {expected}",

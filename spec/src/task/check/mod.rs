@@ -13,6 +13,7 @@ use super::template::Source;
 use super::value::{ParameterType, Value};
 use super::variant::{self, DEFAULT_VARIANT};
 use super::{PlacedGroup, TaskDocument, TaskSpec};
+use crate::distribution::Distribution;
 use crate::document::escape;
 use crate::error::Problem;
 
@@ -156,7 +157,7 @@ impl<'a> Check<'a> {
         else {
             return;
         };
-        if self.distributions_of(source).iter().any(|law| law.draws_colors()) {
+        if self.distributions_of(source).iter().any(Distribution::draws_colors) {
             self.report(Problem::new("spec/compare", pointer, measure.name(), expected));
         }
     }
