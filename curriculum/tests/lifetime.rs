@@ -583,8 +583,16 @@ fn every_evaluation_of_a_variant_has_the_same_chance_and_learning_has_its_own() 
     live(&varied(), &mut pupil, &folder.path().join("seeds"), u64::MAX).unwrap_or_else(|error| panic!("{error}"));
     let told = pupil.told.lock().expect("no test panics with it");
     let mut seeds: Vec<u64> = told.iter().map(|(seed, _)| *seed).collect();
-    assert_eq!(seeds[..2], seeds[6..8], "two variants share the numbers of worlds under one seed");
-    assert_eq!(seeds[2..6], seeds[11..], "evaluations come with the same numbers each time");
+    assert_eq!(
+        seeds[..2],
+        seeds[6..8],
+        "two variants share the numbers of worlds under one seed"
+    );
+    assert_eq!(
+        seeds[2..6],
+        seeds[11..],
+        "evaluations come with the same numbers each time"
+    );
     seeds.sort_unstable();
     seeds.dedup();
     // Two worlds of learning, three that are learned again on the way to another variant, four of evaluation.
