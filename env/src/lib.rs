@@ -18,8 +18,9 @@ mod vector;
 
 pub use agents::{Agent, Label, OnRailsAgent, RandomAgent, ScriptedAgent};
 pub use assets::{
-    Asset, Catalogue, ColliderShape, Library, LibraryModel, MAX_LIBRARY_MODELS, MAX_MODEL_LEVELS, MAX_MODEL_PARTS,
-    MAX_MODEL_REACH, MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES, MAX_NAME_BYTES, Mesh, Paint, Part, asset, classes,
+    Asset, Catalogue, ColliderShape, FIRST_LIBRARY_CLASS, Library, LibraryModel, MAX_LIBRARY_MODELS, MAX_MODEL_LEVELS,
+    MAX_MODEL_PARTS, MAX_MODEL_REACH, MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES, MAX_NAME_BYTES, Mesh, Paint, Part,
+    UNKNOWN_CLASS, asset, classes,
 };
 #[cfg(feature = "import")]
 pub use assets::{

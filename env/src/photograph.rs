@@ -315,7 +315,10 @@ mod tests {
                 two.instance.iter().all(|id| [0, 2].contains(id)),
                 "numbers are the world's"
             );
-            assert!(two.class.contains(&2) && !two.class.contains(&1));
+            assert!(
+                two.class.contains(&6) && !two.class.contains(&5),
+                "a car and no building"
+            );
         }
     }
 

@@ -19,8 +19,8 @@ pub struct Scene {
     pub walls: Vec<WallPanel>,
     arena_size: [f32; 2],
     panels: Vec<PanelGroup>,
-    /// Classes in order of first appearance: the place in this list, from 1, is the class's number.
-    classes: Vec<String>,
+    /// The highest number of a class among its items.
+    highest_class: u16,
     catalogue: Catalogue,
 }
 
@@ -56,7 +56,7 @@ pub struct Item {
     pub building: bool,
     /// What it is worth now: decides its category.
     pub reward: f32,
-    /// Number of its class in the scene, from 1, in order of first appearance.
+    /// Number of its class, the same in every world: [`Catalogue::class_number`].
     pub class_id: u16,
     /// Whether it is there at all.
     pub visible: bool,
@@ -108,7 +108,7 @@ impl Scene {
             walls: Vec::new(),
             arena_size: environment.arena_size().map(|side| side as f32),
             panels: Vec::new(),
-            classes: Vec::new(),
+            highest_class: 0,
             catalogue: catalogue.clone(),
         };
         scene.add_walls(world);
@@ -121,8 +121,8 @@ impl Scene {
     /// Puts one more object into the scene, as it is at its start.
     pub(crate) fn add(&mut self, object: &Object) {
         let class = object.class.to_lowercase();
-        let known = self.classes.iter().position(|other| *other == class);
-        let class_index = known.unwrap_or(self.classes.len());
+        let class_id = self.catalogue.class_number(&class);
+        self.highest_class = self.highest_class.max(class_id);
         self.items.push(Item {
             asset: self.catalogue.asset(&class, &object.model),
             position: object.coordinates.map(|metres| metres as f32),
@@ -131,12 +131,9 @@ impl Scene {
             color: object.color.map(driftworld_spec::Color::to_f32),
             building: class == "building",
             reward: object.reward as f32,
-            class_id: u16::try_from(class_index + 1).unwrap_or(u16::MAX),
+            class_id,
             visible: true,
         });
-        if known.is_none() {
-            self.classes.push(class);
-        }
     }
 
     /// Where the assets of its objects come from.
@@ -154,9 +151,9 @@ impl Scene {
         &self.panels
     }
 
-    /// How many classes the scene's items are of.
-    pub(crate) fn num_classes(&self) -> usize {
-        self.classes.len()
+    /// The highest number of a class that the scene's items are of; 0 without items.
+    pub(crate) fn highest_class(&self) -> u16 {
+        self.highest_class
     }
 
     fn add_walls(&mut self, world: &World) {

@@ -4,6 +4,7 @@
 #![expect(clippy::needless_pass_by_value, reason = "PyO3 hands arguments over by value")]
 
 mod batch;
+mod classes;
 mod command;
 mod curriculum;
 mod distances;
@@ -24,6 +25,8 @@ mod native {
 
     #[pymodule_export]
     use super::batch::PyBatch;
+    #[pymodule_export]
+    use super::classes::class_numbers;
     #[pymodule_export]
     use super::command::{ask, main};
     #[pymodule_export]

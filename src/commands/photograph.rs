@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use crate::env::{
-    CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, Environment,
-    Frame, Photograph as View, Studio, Warning, category_color,
+    CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, Catalogue,
+    Environment, Frame, Photograph as View, Studio, Warning, category_color,
 };
 use crate::spec::{Object, World};
 use clap::Args;
@@ -177,19 +177,11 @@ fn manifest<'a>(world: &'a World, photographs: Vec<Entry<'a>>) -> Manifest<'a> {
     }
 }
 
-/// Class numbers: from 1, in order of first appearance, whatever the case of their letters.
+/// The numbers of the classes that stand in the world.
 fn classes(world: &World) -> BTreeMap<&str, u16> {
-    let mut seen: Vec<String> = Vec::new();
-    let mut classes = BTreeMap::new();
-    for object in &world.objects {
-        let lower = object.class.to_lowercase();
-        let index = seen.iter().position(|other| *other == lower).unwrap_or_else(|| {
-            seen.push(lower);
-            seen.len() - 1
-        });
-        classes.insert(object.class.as_str(), u16::try_from(index + 1).unwrap_or(u16::MAX));
-    }
-    classes
+    let catalogue = Catalogue::default();
+    let classes = world.objects.iter().map(|object| object.class.as_str());
+    classes.map(|class| (class, catalogue.class_number(class))).collect()
 }
 
 /// Folder and name of a picture, such as `000_barrel_2/yaw_090_up_30_rgb.png`.

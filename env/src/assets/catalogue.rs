@@ -7,7 +7,13 @@ use std::sync::{Arc, OnceLock};
 use driftworld_spec::Model;
 
 use super::library::{Library, LibraryModel};
-use super::{Asset, asset};
+use super::{Asset, asset, builtin};
+
+/// The number in class segmentation of every class that a catalogue does not know, which is drawn as a placeholder.
+pub const UNKNOWN_CLASS: u16 = 31;
+
+/// The number in class segmentation of the first class of libraries.
+pub const FIRST_LIBRARY_CLASS: u16 = 32;
 
 /// The models that worlds may refer to by class and model: the built-in ones, and in front of them those of libraries.
 ///
@@ -28,6 +34,8 @@ use super::{Asset, asset};
 pub struct Catalogue {
     /// By class and model as [`key`] writes them.
     models: Arc<BTreeMap<(String, String), Arc<Entry>>>,
+    /// The classes that are not built in, in rising order.
+    own_classes: Arc<Vec<String>>,
 }
 
 /// A library's model, and the asset that it becomes when somebody asks for it.
@@ -55,7 +63,47 @@ impl Catalogue {
             };
             models.insert(key(&model.class, &model.name), Arc::new(entry));
         }
+        let mut own: Vec<String> = models.keys().map(|(class, _)| class.clone()).collect();
+        own.retain(|class| builtin::class_number(class).is_none());
+        own.dedup();
+        self.own_classes = Arc::new(own);
         self
+    }
+
+    /// The number of a class in class segmentation, the same in every world; capitals do not matter.
+    ///
+    /// Built-in classes have 1 to 23, those of libraries follow each other from [`FIRST_LIBRARY_CLASS`] on in the order of
+    /// their names, and whatever is not known has [`UNKNOWN_CLASS`]. A library's models of a built-in class have that
+    /// class's number. 0 is where there is no object.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_env::{Catalogue, UNKNOWN_CLASS};
+    /// let catalogue = Catalogue::default();
+    /// assert_eq!((catalogue.class_number("barrel"), catalogue.class_number("Tree")), (2, 23));
+    /// assert_eq!(catalogue.class_number("dragon"), UNKNOWN_CLASS);
+    /// ```
+    pub fn class_number(&self, class: &str) -> u16 {
+        // Most classes are written as they are known, and then no copy is made.
+        if let Some(number) = self.find_number(class) {
+            return number;
+        }
+        self.find_number(&class.trim().to_lowercase()).unwrap_or(UNKNOWN_CLASS)
+    }
+
+    fn find_number(&self, class: &str) -> Option<u16> {
+        builtin::class_number(class).or_else(|| {
+            let place = self.own_classes.binary_search_by(|own| own.as_str().cmp(class)).ok()?;
+            Some(u16::try_from(place).map_or(u16::MAX, |place| place.saturating_add(FIRST_LIBRARY_CLASS)))
+        })
+    }
+
+    /// All classes that it knows with their numbers in class segmentation, in rising order of the numbers.
+    pub fn class_numbers(&self) -> impl Iterator<Item = (&str, u16)> {
+        let built_in = builtin::CLASSES.iter().map(|(class, _)| *class);
+        built_in
+            .chain(self.own_classes.iter().map(String::as_str))
+            .map(|class| (class, self.class_number(class)))
     }
 
     /// The asset of a class and model; what nobody knows is a placeholder.
@@ -97,6 +145,82 @@ mod tests {
         let paints = vec![Paint::Fixed([0.5; 3])];
         LibraryModel::checked(class.into(), "1".into(), collider, corners, paints, vec![whole])
             .expect("a cube is a sound model")
+    }
+
+    /// Pinned: pictures that were stored mean these numbers.
+    #[test]
+    fn the_numbers_of_the_originals_classes_stay_as_they_are() {
+        let numbers: Vec<String> = Catalogue::default()
+            .class_numbers()
+            .map(|(class, number)| format!("{number} {class}"))
+            .collect();
+        assert_eq!(
+            numbers.join(", "),
+            "1 bag, 2 barrel, 3 bed, 4 bench, 5 building, 6 car, 7 castleruin, 8 chair, 9 cube, 10 fence, 11 geometric, \
+             12 icosphere, 13 mushroom, 14 nature, 15 pot, 16 roadblock, 17 rock, 18 shelf, 19 shrub, 20 streetsign, 21 table, \
+             22 tent, 23 tree"
+        );
+    }
+
+    #[test]
+    fn classes_of_libraries_follow_in_the_order_of_their_names_however_they_are_loaded() {
+        let library = |classes: &[&str]| {
+            let mut library = Library::default();
+            for class in classes {
+                library.insert(model(class)).expect("there is room");
+            }
+            library
+        };
+        let (town, sea) = (library(&["lamp", "kiosk", "tree"]), library(&["buoy", "lamp"]));
+        let numbers = |catalogue: Catalogue| {
+            let of = |class: &str| catalogue.class_number(class);
+            [of("buoy"), of("KIOSK"), of(" lamp"), of("tree"), of("dragon")]
+        };
+        let one_way = Catalogue::default().with_library(&town).with_library(&sea);
+        let all: Vec<(String, u16)> = one_way
+            .class_numbers()
+            .map(|(class, number)| (class.to_owned(), number))
+            .collect();
+        assert_eq!(
+            all[23..],
+            [
+                ("buoy".to_owned(), 32),
+                ("kiosk".to_owned(), 33),
+                ("lamp".to_owned(), 34)
+            ]
+        );
+        assert_eq!(numbers(one_way), [32, 33, 34, 23, UNKNOWN_CLASS]);
+        let other_way = Catalogue::default().with_library(&sea).with_library(&town);
+        assert_eq!(numbers(other_way), [32, 33, 34, 23, UNKNOWN_CLASS]);
+    }
+
+    #[test]
+    fn pictures_show_the_same_number_of_a_class_in_every_world_also_beyond_what_a_label_holds() {
+        let mut library = Library::default();
+        for class in ["kiosk", "lamp"] {
+            library.insert(model(class)).expect("there is room");
+        }
+        let catalogue = Catalogue::default().with_library(&library);
+        let seen = |classes: &[&str]| {
+            let objects = classes.iter().enumerate();
+            let at =
+                |(place, class): (usize, &&str)| driftworld_spec::Object::new(*class, [3.0 * place as f64 - 3.0, 8.0]);
+            let mut world = driftworld_spec::World {
+                objects: objects.map(at).collect(),
+                ..driftworld_spec::World::default()
+            };
+            world.agent_params.modalities = vec![driftworld_spec::Modality::Class];
+            let environment = crate::Environment::with_catalogue(world, catalogue.clone());
+            let mut environment = environment.expect("a sound world starts");
+            let mut seen = environment.observe().class.clone();
+            seen.sort_unstable();
+            seen.dedup();
+            seen
+        };
+        assert_eq!(seen(&["barrel", "tree", "rock"]), [0, 2, 17, 23]);
+        assert_eq!(seen(&["rock", "Barrel"]), [0, 2, 17]);
+        assert_eq!(seen(&["dragon", "barrel"]), [0, 2, UNKNOWN_CLASS]);
+        assert_eq!(seen(&["lamp", "barrel", "dragon"]), [0, 2, UNKNOWN_CLASS, 33]);
     }
 
     #[test]

@@ -19,7 +19,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use driftworld_spec::Model;
 
 pub(crate) use blocks::{BLOCK, Block, Coat};
-pub use catalogue::Catalogue;
+pub use catalogue::{Catalogue, FIRST_LIBRARY_CLASS, UNKNOWN_CLASS};
 #[cfg(feature = "import")]
 pub use import::{
     ColliderKind, ImportOptions, ImportSize, ImportWarning, Imported, MAX_IMPORT_BYTES, MAX_IMPORT_DEPTH,

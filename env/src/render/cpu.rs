@@ -165,7 +165,7 @@ impl CpuRenderer {
     #[inline(always)]
     fn draw_any<L: Lanes>(&mut self, lanes: L, scene: &Scene, camera: &Camera, target: &mut Target<'_>) {
         // Where class and category do not fit into a label together, pixels remember their item.
-        let fits = scene.num_classes() < 1 << (8 - CATEGORY_BITS);
+        let fits = scene.highest_class() < 1 << (8 - CATEGORY_BITS);
         if target.instance.is_some() || (target.class.is_some() && !fits) {
             self.draw_with::<L, true>(lanes, scene, camera, target);
         } else {

@@ -6,6 +6,7 @@ Importing it registers the environments with Gymnasium and does nothing else.
 from __future__ import annotations
 
 from driftworld import _native
+from driftworld.classes import segmentation_classes
 from driftworld.curricula import Block, Curriculum, Experience
 from driftworld.distances import Distance, DistanceMatrix, Order, distance, distance_matrix, order
 from driftworld.envs import DriftworldEnv, DriftworldVectorEnv, register_envs
@@ -59,6 +60,7 @@ __all__ = [
     "order",
     "read_log",
     "report",
+    "segmentation_classes",
     "validate",
     "validate_log",
     "variant",

@@ -66,6 +66,7 @@ fn built_in() -> String {
         let bodies: BTreeSet<&str> = assets().map(|asset| name(&asset.collider)).collect();
         [
             class.to_owned(),
+            catalogue.class_number(class).to_string(),
             if models == 1 {
                 "1".into()
             } else {
@@ -84,9 +85,9 @@ fn built_in() -> String {
         ]
     });
     table(
-        ["class", "models", "triangles", "height", "body"],
+        ["class", "number", "models", "triangles", "height", "body"],
         rows.collect(),
-        &[1, 2, 3],
+        &[1, 2, 3, 4],
     )
 }
 

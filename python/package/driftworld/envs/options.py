@@ -100,7 +100,7 @@ class Options:
             depth=depth,
             renderer=renderer,
             task_label=task_label,
-            libraries=_libraries(assets),
+            libraries=library_bytes(assets),
             dress=json.dumps({name: value for name, value in dress.items() if value is not None}),
         )
 
@@ -240,6 +240,6 @@ def _actions(actions: Any) -> Any:
     return {"discrete": table}
 
 
-def _libraries(assets: Any) -> tuple[bytes, ...]:
+def library_bytes(assets: Any) -> tuple[bytes, ...]:
     paths = [assets] if isinstance(assets, (str, PathLike)) else list(assets or ())
     return tuple(Path(path).read_bytes() for path in paths)
