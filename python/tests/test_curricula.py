@@ -208,6 +208,8 @@ def test_blocks_and_experiences_are_iterated() -> None:
         "find_objects", "find_objects#blue", 1, 1, False
     )  # fmt: skip
     expected = driftworld.variant("find_objects#blue").sample(1, 1)
+    # A limit of steps stands in place of the task's limit of seconds.
+    assert expected.pop("max_seconds") == 30
     assert second.world() == {**expected, "max_steps": 40}
     assert curriculum[1][-1] == curriculum[1][2] == curriculum[1][2:][0]
     with pytest.raises(IndexError, match="expected one of 3"):
@@ -255,9 +257,11 @@ def test_an_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
     assert agent.frozen == [False, True, False, True, False, True]
     assert len(agent.learned) == 7 * (2 + 5 + 3) and len(agent.begun) == 19
     assert {label for label, _ in agent.begun} == {None}
-    # Every evaluation of a world has the same chance, learning one of its own.
+    # Every evaluation of a world has the same chance, learning another; variants share that of a world's number under a seed.
     chances = [seed for _, seed in agent.begun]
-    assert chances[2:5] == chances[10:13] == chances[16:19] and len(set(chances)) == 19 - 6
+    assert chances[2:5] == chances[10:13] == chances[16:19]
+    assert chances[2] == chances[4] and chances[5:7] == chances[7:9]
+    assert len(set(chances)) == 2 + 2 + 3 + 3
 
 
 def test_a_transition_is_what_a_step_said() -> None:
@@ -352,7 +356,7 @@ def test_tasks_and_worlds_are_found_from_the_scenarios_folder(tmp_path: Path) ->
     for curriculum in (Curriculum.load(tmp_path / "s.json"), Curriculum.from_dict(document, folder=tmp_path)):
         experience = curriculum.experience(1)
         assert (experience.seed, experience.index) == (None, None)
-        assert experience.world() == {**world, "max_steps": 4}
+        assert experience.world() == {**{key: world[key] for key in world if key != "max_seconds"}, "max_steps": 4}
     with pytest.raises(CurriculumError, match="expected a world file"):
         Curriculum.from_dict(document, folder=tmp_path / "elsewhere")
     document["blocks"][0]["regimes"][0]["world"] = "yrad.json"  # type: ignore[index]

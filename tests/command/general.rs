@@ -256,7 +256,7 @@ fn photographs_are_where_their_manifest_says() {
         let file = entry["file"].as_str().expect("each has its file");
         assert!(!file.contains("..") && out.join(file).is_file(), "{file}");
     }
-    assert_eq!(manifest["classes"]["Car"], 2);
+    assert_eq!(manifest["classes"]["Car"], 6);
     assert_eq!(listed[12]["file"], "001_car_1/yaw_000_up_00_rgb.png");
     let inside = std::fs::read_dir(folder.path().join("deep"))
         .expect("the folder is there")
