@@ -104,6 +104,24 @@ class Client:
         self.env.step()
         return self.moment()
 
+    def choose(self, row: int) -> Moment:
+        """A step of a world with a table of actions."""
+        if GENERATION < (0, 17):
+            self.env.set_actions(BEHAVIOR, np.array([[row]], dtype=np.int32))
+        else:
+            from mlagents_envs.base_env import ActionTuple
+
+            self.env.set_actions(BEHAVIOR, ActionTuple(discrete=np.array([[row]], dtype=np.int32)))
+        self.env.step()
+        return self.moment()
+
+    def branches(self) -> tuple[int, ...]:
+        """How many choices each discrete number of an action has."""
+        spec = self.spec()
+        if GENERATION < (0, 17):
+            return tuple(spec.discrete_action_branches or ())
+        return tuple(spec.action_spec.discrete_branches)
+
     def act(self, actions: Floats) -> None:
         """Sets the actions of all agents."""
         if GENERATION < (0, 17):
