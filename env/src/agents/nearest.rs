@@ -28,7 +28,7 @@ pub(super) struct Marks {
     /// For each cell the place of its first mark, from 1.
     first: Vec<u32>,
     /// Number of a goal, and the place of the next mark of the cell.
-    marks: Vec<(u32, u32)>,
+    links: Vec<(u32, u32)>,
     marked: Vec<usize>,
     /// For each cell the way from it to a goal, while that is being found.
     back: Vec<u32>,
@@ -44,20 +44,20 @@ impl Marks {
                 *first = 0;
             }
         }
-        self.marks.clear();
+        self.links.clear();
         self.first.resize(grid.num_cells(), 0);
         self.back.resize(grid.num_cells(), u32::MAX);
     }
 
     fn add(&mut self, cell: usize, goal: usize) {
-        self.marks.push((goal as u32, self.first[cell]));
-        self.first[cell] = self.marks.len() as u32;
+        self.links.push((goal as u32, self.first[cell]));
+        self.first[cell] = self.links.len() as u32;
         self.marked.push(cell);
     }
 
     fn of(&self, cell: usize, mut each: impl FnMut(usize)) {
         let mut next = self.first[cell];
-        while let Some(&(goal, after)) = (next as usize).checked_sub(1).and_then(|place| self.marks.get(place)) {
+        while let Some(&(goal, after)) = (next as usize).checked_sub(1).and_then(|place| self.links.get(place)) {
             each(goal as usize);
             next = after;
         }

@@ -214,9 +214,7 @@ fn is_same(a: &Json, b: &Json) -> bool {
 fn pair(value: &Json, default: Option<&Json>) -> Option<Json> {
     let items = value.as_array()?;
     let number = |axis: usize| items.get(axis).filter(|item| item.is_number());
-    if number(0).or(number(1)).is_none() {
-        return None;
-    }
+    number(0).or(number(1))?;
     let own = |axis: usize| default.and_then(|default| default.get(axis));
     Some(
         [0, 1]

@@ -137,8 +137,10 @@ fn original_pointer(pointer: &str, kept: &[usize]) -> String {
 /// Keys may be spelled otherwise in the file: the place there of a place under our names.
 fn as_spelled(pointer: String, spelled: &BTreeMap<String, String>) -> String {
     let ends = pointer.match_indices('/').map(|(end, _)| end).chain([pointer.len()]);
-    let known = ends.filter_map(|end| Some((end, spelled.get(&pointer[..end])?)));
-    match known.last() {
+    let longest_known = ends
+        .filter_map(|end| Some((end, spelled.get(&pointer[..end])?)))
+        .next_back();
+    match longest_known {
         Some((end, place)) => format!("{place}{}", &pointer[end..]),
         None => pointer,
     }
@@ -399,12 +401,12 @@ impl Reader {
     fn old_reward(&mut self, at: &str, object: &mut Map<String, Json>) {
         let distance = [("interaction_distance", Entry::Number(0.0, 1000.0))];
         self.mend(at, object, &distance, &Map::new());
-        if let Some(range) = object.shift_remove("interaction_distance") {
-            if !object.contains_key("range_stimulus_distance") {
-                let early = format!("{at}/interaction_distance");
-                self.spelled.insert(format!("{at}/range_stimulus_distance"), early);
-                object.insert("range_stimulus_distance".into(), range);
-            }
+        if let Some(range) = object.shift_remove("interaction_distance")
+            && !object.contains_key("range_stimulus_distance")
+        {
+            let early = format!("{at}/interaction_distance");
+            self.spelled.insert(format!("{at}/range_stimulus_distance"), early);
+            object.insert("range_stimulus_distance".into(), range);
         }
         let collectible = object.shift_remove("collectible");
         let Some(reward_on) = object.shift_remove("reward_on") else {
