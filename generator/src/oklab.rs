@@ -7,7 +7,7 @@ use driftworld_spec::Color;
 /// The colour at fraction `t` of the straight line between two colours in Oklab; where that leaves what a screen can show,
 /// each channel is cut off. Source: Ottosson 2020.
 pub(crate) fn between(from: Color, to: Color, t: f64) -> Color {
-    let (a, b) = (from_srgb(from), from_srgb(to));
+    let (a, b) = (from.to_oklab(), to.to_oklab());
     to_srgb(std::array::from_fn(|k| a[k] + (b[k] - a[k]) * t))
 }
 
@@ -16,18 +16,6 @@ type Matrix = [[f64; 3]; 3];
 fn times(matrix: &Matrix, v: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
 }
-
-const LMS_FROM_LINEAR: Matrix = [
-    [0.412_221_470_8, 0.536_332_536_3, 0.051_445_992_9],
-    [0.211_903_498_2, 0.680_699_545_1, 0.107_396_956_6],
-    [0.088_302_461_9, 0.281_718_837_6, 0.629_978_700_5],
-];
-
-const LAB_FROM_ROOTS: Matrix = [
-    [0.210_454_255_3, 0.793_617_785_0, -0.004_072_046_8],
-    [1.977_998_495_1, -2.428_592_205_0, 0.450_593_709_9],
-    [0.025_904_037_1, 0.782_771_766_2, -0.808_675_766_0],
-];
 
 const ROOTS_FROM_LAB: Matrix = [
     [1.0, 0.396_337_777_4, 0.215_803_757_3],
@@ -40,17 +28,6 @@ const LINEAR_FROM_LMS: Matrix = [
     [-1.268_438_004_6, 2.609_757_401_1, -0.341_319_396_5],
     [-0.004_196_086_3, -0.703_418_614_7, 1.707_614_701_0],
 ];
-
-fn from_srgb(color: Color) -> [f64; 3] {
-    let linear = color.0.map(|c| {
-        if c <= 0.040_45 {
-            c / 12.92
-        } else {
-            libm::pow((c + 0.055) / 1.055, 2.4)
-        }
-    });
-    times(&LAB_FROM_ROOTS, times(&LMS_FROM_LINEAR, linear).map(libm::cbrt))
-}
 
 fn to_srgb(lab: [f64; 3]) -> Color {
     let linear = times(
@@ -92,7 +69,7 @@ mod tests {
     fn lightness_changes_evenly_between_blue_and_yellow() {
         let (blue, yellow) = (Color([0.0, 0.0, 1.0]), Color([1.0, 1.0, 0.0]));
         let steps: Vec<f64> = (0..=4)
-            .map(|k| from_srgb(between(blue, yellow, f64::from(k) / 4.0))[0])
+            .map(|k| between(blue, yellow, f64::from(k) / 4.0).to_oklab()[0])
             .collect();
         for pair in steps.windows(2) {
             assert!(

@@ -1,13 +1,14 @@
 //! Finding a free place for each object. Where a place lies is drawn in `draw.rs`; what walls leave free is in `regions.rs`.
 
-use driftworld_spec::Distribution;
+use driftworld_spec::{Distribution, Turns};
 
 use crate::crowd::Crowd;
 use crate::draw::{self, Place};
 use crate::regions::Ground;
 use crate::stream::Chance;
 
-/// How many places are tried for one object.
+/// How many places are tried for one object; where places are taken in turn and stray in their cells, so many in its own cell, and as
+/// many again in all others together.
 pub(crate) const TRIES: u32 = 1000;
 
 /// What is known of the ground while objects are placed on it.
@@ -62,7 +63,7 @@ pub(crate) struct Request<'a> {
     pub(crate) anchor: Anchor,
     /// The group's number.
     pub(crate) group: usize,
-    /// The object's number around its anchor: lists of places are taken in turn.
+    /// The object's number around its anchor: lists of places are taken in turn, as [`Turns`] says.
     pub(crate) number: u64,
 }
 
@@ -139,28 +140,77 @@ impl<'a> Plot<'a> {
     }
 
     /// A free place for an object, which it takes; else how many were tried, and why none was free.
-    pub(crate) fn find(&mut self, request: &Request, chance: &mut Chance) -> Result<[f64; 2], (u32, String)> {
-        let tries = if is_certain(request.placement) { 1 } else { TRIES };
-        let mut failed = [0_u32; Condition::ALL.len()];
-        let mut closest: Option<Miss> = None;
-        for _ in 0..tries {
-            let Place { at, own_distance } = draw::place(request.placement, request.number, chance);
-            let at = request.anchor.world(at);
-            match self.miss(at, own_distance, request) {
-                None => {
-                    self.everything.push(at);
-                    self.groups[request.group].push(at);
-                    return Ok(at);
-                }
-                Some(miss) => {
-                    failed[miss.condition as usize] += 1;
-                    if closest.is_none_or(|closest| miss.wants - miss.has < closest.wants - closest.has) {
-                        closest = Some(miss);
-                    }
-                }
+    ///
+    /// `turns` are the places of a `points` or `grid` in turn that the objects before it left around the same anchor.
+    pub(crate) fn find(
+        &mut self,
+        request: &Request,
+        turns: Option<&mut Turns>,
+        chance: &mut Chance,
+    ) -> Result<[f64; 2], (u32, String)> {
+        if let Some(turns) = turns {
+            return self.find_in_turn(request, turns, chance);
+        }
+        let mut tried = Tried::default();
+        let tries = if matches!(request.placement, Distribution::Constant { .. }) {
+            1
+        } else {
+            TRIES
+        };
+        let mixed = request.placement.needs_group();
+        for turn in 0..tries {
+            // Among other distributions a list goes on from the object's own place once half of the tries came to nothing.
+            let on = if mixed { turn.saturating_sub(TRIES / 2) } else { 0 };
+            if let Some(at) = self.try_at(request, request.number + u64::from(on), chance, &mut tried) {
+                return Ok(at);
             }
         }
-        Err((tries, reason(failed, closest)))
+        Err(tried.told())
+    }
+
+    /// As [`Plot::find`], where places are taken in turn: the object's own, then the next ones on.
+    fn find_in_turn(
+        &mut self,
+        request: &Request,
+        turns: &mut Turns,
+        chance: &mut Chance,
+    ) -> Result<[f64; 2], (u32, String)> {
+        let strays = matches!(request.placement, Distribution::Grid { jitter, .. } if jitter.unwrap_or(0.0) > 0.0);
+        let others = request.placement.num_turns().unwrap_or(1).clamp(2, TRIES as usize) as u32 - 1;
+        let mut tried = Tried::default();
+        let found = turns.candidates(request.number).enumerate().find_map(|(rank, place)| {
+            let tries = match (strays, rank) {
+                (false, _) => 1,
+                (true, 0) => TRIES,
+                (true, _) => TRIES / others,
+            };
+            let at = (0..tries).find_map(|_| self.try_at(request, place as u64, chance, &mut tried))?;
+            Some((place, at))
+        });
+        let Some((place, at)) = found else {
+            return Err(tried.told());
+        };
+        turns.take(request.number, place);
+        Ok(at)
+    }
+
+    /// Draws a place and takes it if it is free; `number` is that of the place, where places are taken in turn.
+    fn try_at(&mut self, request: &Request, number: u64, chance: &mut Chance, tried: &mut Tried) -> Option<[f64; 2]> {
+        let Place { at, own_distance } = draw::place(request.placement, number, chance);
+        let at = request.anchor.world(at);
+        let Some(miss) = self.miss(at, own_distance, request) else {
+            self.everything.push(at);
+            self.groups[request.group].push(at);
+            return Some(at);
+        };
+        tried.failed[miss.condition as usize] += 1;
+        if tried
+            .closest
+            .is_none_or(|closest| miss.wants - miss.has < closest.wants - closest.has)
+        {
+            tried.closest = Some(miss);
+        }
+        None
     }
 
     /// The first condition that a place breaks.
@@ -207,13 +257,23 @@ impl<'a> Plot<'a> {
     }
 }
 
-/// Whether another try would give the same place.
-fn is_certain(placement: &Distribution) -> bool {
-    match placement {
-        Distribution::Constant { .. } => true,
-        Distribution::Grid { jitter, .. } => placement.needs_group() && jitter.unwrap_or(0.0) == 0.0,
-        Distribution::Points { .. } => placement.needs_group(),
-        _ => false,
+/// What the places that were tried lacked.
+#[derive(Default)]
+struct Tried {
+    failed: [u32; Condition::ALL.len()],
+    closest: Option<Miss>,
+}
+
+impl Tried {
+    /// How many were tried, and why none was free.
+    fn told(self) -> (u32, String) {
+        let tries = self.failed.iter().sum();
+        if tries == 0 {
+            // Only where places are taken in turn, and others that found theirs taken went on to those that were left.
+            let reason = "every place of the list is taken; add places, or lower the count".to_owned();
+            return (tries, reason);
+        }
+        (tries, reason(self.failed, self.closest))
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use driftworld_spec::maps::MapLibrary;
-use driftworld_spec::{MAX_OBJECTS, ParameterType, Requirement, Value, Variant, World};
+use driftworld_spec::{MAX_OBJECTS, ParameterType, Requirement, Turns, Value, Variant, World};
 
 use crate::GeneratorError;
 use crate::compiled::{Address, Compiled, Filled, Group, GroupCount, Look};
@@ -323,6 +323,7 @@ impl Sampler {
                 limit: MAX_OBJECTS,
             });
         }
+        let mut turns = group.placement.distribution.num_turns().map(Turns::new);
         for turn in 0..u64::from(count) {
             let mut object = self.fill(
                 &group.object,
@@ -347,7 +348,7 @@ impl Sampler {
             };
             let place = draft
                 .plot
-                .find(&request, &mut chance)
+                .find(&request, turns.as_mut(), &mut chance)
                 .map_err(|(tries, reason)| GeneratorError::NoPlace {
                     variant: self.variant.id(),
                     seed: self.seed,

@@ -295,3 +295,86 @@ fn an_agent_never_starts_inside_a_region_that_cannot_be_entered() {
         .expect_err("a metre around the origin is all ridge");
     assert!(matches!(error, GeneratorError::NoStart { tries: 1000, .. }), "{error}");
 }
+
+/// A row of stalls that are placed in turn, with a fixture in the way of some.
+fn row(placement: &str, count: u32, fixtures: &str) -> Arc<TaskSpec> {
+    load(&format!(
+        r#"{{ "version": 2, "name": "row", "world": {{ "environment_params": {{ "map_size": [60, 60] }}, "objects": [{fixtures}],
+            "agent_params": {{ "coordinates": [0, -20] }} }},
+          "groups": [{{ "name": "stalls", "count": {count}, "object": {{ "class": "table" }}, "separation": 1.5,
+            "keep_out": {{ "agent": 0 }}, "placement": {placement} }}] }}"#
+    ))
+}
+
+fn places(world: &World) -> Vec<[f64; 2]> {
+    tagged(world, "stalls")
+        .iter()
+        .map(|object| object.coordinates)
+        .collect()
+}
+
+#[test]
+fn an_object_whose_place_in_turn_is_taken_takes_the_next_free_one() {
+    let list = r#"{ "points": { "values": [[0, 0], [4, 0], [8, 0], [12, 0]] } }"#;
+    let blocked = r#"{ "class": "rock", "coordinates": [4, 1] }"#;
+    assert_eq!(
+        places(&world(&row(list, 3, ""), 0)),
+        [[0.0, 0.0], [4.0, 0.0], [8.0, 0.0]]
+    );
+    assert_eq!(
+        places(&world(&row(list, 3, blocked), 0)),
+        [[0.0, 0.0], [8.0, 0.0], [12.0, 0.0]]
+    );
+    // The last goes on from the beginning of the list; where all is taken, it says so.
+    let late = r#"{ "class": "rock", "coordinates": [0, 1] }"#;
+    assert_eq!(
+        places(&world(&row(list, 3, late), 0)),
+        [[4.0, 0.0], [8.0, 0.0], [12.0, 0.0]]
+    );
+    let error = sampler(&row(list, 4, blocked), 7).world(0).unwrap_err();
+    let GeneratorError::NoPlace { object, .. } = &error else {
+        panic!("{error}")
+    };
+    assert_eq!(*object, 4, "{error}");
+    // The same on a grid, whose cells are the places; with jitter, each in its cell first.
+    let grid = r#"{ "grid": { "low": [-2, -2], "high": [14, 2], "columns": 4, "rows": 1 } }"#;
+    assert_eq!(
+        places(&world(&row(grid, 3, blocked), 0)),
+        [[0.0, 0.0], [8.0, 0.0], [12.0, 0.0]]
+    );
+    let strays = r#"{ "grid": { "low": [-2, -2], "high": [14, 2], "columns": 4, "rows": 1, "jitter": 0.2 } }"#;
+    let cells: Vec<f64> = places(&world(&row(strays, 3, blocked), 3))
+        .iter()
+        .map(|[x, _]| (x / 4.0).round())
+        .collect();
+    assert_eq!(cells, [0.0, 2.0, 3.0]);
+}
+
+#[test]
+fn a_list_that_cannot_hold_its_group_is_refused_when_the_task_is_loaded() {
+    let said = |placement: &str, count: &str| {
+        let text = format!(
+            r#"{{ "version": 2, "name": "row", "groups": [{{ "name": "stalls", "count": {count}, "object": {{ "class": "table" }},
+                "separation": 3, "placement": {placement} }}] }}"#
+        );
+        TaskSpec::from_json("row.json", &text)
+            .err()
+            .map(|error| error.to_string())
+    };
+    let near = r#"{ "points": { "values": [[0, 0], [2, 0], [4, 0], [6, 0]] } }"#;
+    assert_eq!(said(near, "2"), None);
+    let refused = said(near, "3").expect("only two are 3 m apart");
+    assert!(
+        refused.contains("4 places, of which 2 are free in turn 3 m apart"),
+        "{refused}"
+    );
+    assert!(said(near, r#"{ "integer_uniform": { "low": 3, "high": 5 } }"#).is_some());
+    assert_eq!(
+        said(near, r#"{ "integer_uniform": { "low": 1, "high": 5 } }"#),
+        None,
+        "some worlds have few"
+    );
+    let grid = r#"{ "grid": { "low": [-9, -9], "high": [9, 9], "columns": 6, "rows": 6 } }"#;
+    assert_eq!(said(grid, "36"), None);
+    assert!(said(grid, "37").is_some(), "there are 36 cells");
+}

@@ -3,22 +3,25 @@
 //! Read, checked and handed on as plain values; nothing here samples, measures or runs anything. Start with [`World`].
 //! Units everywhere are SI; headings are degrees clockwise from +y; colours are sRGB in 0..1; x is east, y north, z up.
 
+mod classes;
 mod color;
 mod distribution;
 mod document;
 mod error;
 mod l2explorer;
 pub mod maps;
+mod oklab;
 mod scenario;
 pub mod schema;
 mod task;
 mod version;
 mod world;
 
+pub use classes::Classes;
 pub use color::Color;
 pub use distribution::{
     Channel, ChannelChance, ChannelSpread, Channels, ColorMoments, Distribution, Number, Order, ParamRef,
-    PlanarMoments, Spread,
+    PlanarMoments, Spread, Turns,
 };
 pub use document::MAX_BYTES;
 pub use error::{Problem, SpecError, nearest};

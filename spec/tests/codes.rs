@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use driftworld_spec::{Scenario, SpecError, TaskSpec, World};
+use driftworld_spec::{Classes, Scenario, SpecError, TaskSpec, World};
 
 fn world(text: &str) -> SpecError {
     World::from_json("w.json", text).expect_err("the world is broken on purpose")
@@ -79,6 +79,16 @@ fn cases() -> Vec<SpecError> {
             r#""groups": [{ "name": "fences", "count": 1, "object": { "class": "fence" }, "around": "houses",
                "placement": { "disc": { "center": [0, 0], "radius": 9 } } }]"#,
         ),
+        task(
+            r#""groups": [{ "name": "stalls", "count": 5, "object": { "class": "table" }, "separation": 3,
+               "placement": { "points": { "values": [[0, 0], [2, 0], [4, 0], [6, 0], [8, 0]] } } }]"#,
+        ),
+        World::from_json_with(
+            "w.json",
+            r#"{ "objects": [{ "class": "shrb", "coordinates": [1, 1] }] }"#,
+            Some(&Classes::new(["shrub", "tree"]).with_advice("name the library that has it")),
+        )
+        .expect_err("there is no such class"),
         limited
             .variant("default")
             .expect_err("the default breaks the requirement"),

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-use driftworld_spec::Model;
+use driftworld_spec::{Classes, Model};
 
 use super::library::{Library, LibraryModel};
 use super::{Asset, asset, builtin};
@@ -104,6 +104,12 @@ impl Catalogue {
         built_in
             .chain(self.own_classes.iter().map(String::as_str))
             .map(|class| (class, self.class_number(class)))
+    }
+
+    /// The classes that it has models of: the built-in ones, and those of its libraries.
+    pub fn classes(&self) -> Classes {
+        let built_in = super::classes().map(|(class, _)| class);
+        Classes::new(built_in.chain(self.models.keys().map(|(class, _)| class.as_str())))
     }
 
     /// The asset of a class and model; what nobody knows is a placeholder.
@@ -235,6 +241,13 @@ mod tests {
             entries.filter(|entry| entry.asset.get().is_some()).count()
         };
         assert_eq!(made(&catalogue), 0, "nobody asked yet");
+        let classes = catalogue.classes();
+        assert!(
+            ["kiosk", "Lamp", "tree", " Barrel"]
+                .iter()
+                .all(|class| classes.has(class))
+        );
+        assert!(!classes.has("bushh") && !Catalogue::default().classes().has("kiosk"));
         let number = Model("1".into());
         let first = catalogue.clone().asset("Lamp", &number);
         assert_eq!(made(&catalogue), 1, "the lamp, and no kiosk");

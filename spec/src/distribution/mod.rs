@@ -13,6 +13,7 @@ mod quantile;
 mod reference;
 mod special;
 mod support;
+mod turn;
 mod von_mises;
 
 use schemars::JsonSchema;
@@ -23,6 +24,7 @@ pub use channels::{Channel, ChannelChance, ChannelSpread, Channels};
 pub use color::ColorMoments;
 pub use planar::PlanarMoments;
 pub use reference::{Number, ParamRef};
+pub use turn::Turns;
 
 use crate::task::Value;
 
@@ -349,7 +351,7 @@ pub enum Spread<N = f64> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Order {
-    /// The first object takes the first place, and so on, round and round.
+    /// The first object takes the first place, and so on, round and round; one whose place is not free takes the next free one.
     #[default]
     Turn,
     /// Each object takes one at random.

@@ -28,6 +28,7 @@ pub use template::{Hole, Source, Template};
 pub use value::{ParameterType, Value};
 pub use variant::{DEFAULT_VARIANT, Resolved, Variant, VariantSpec};
 
+use crate::classes::Classes;
 use crate::distribution::Number;
 use crate::document::Document;
 use crate::error::{Problem, SpecError};
@@ -64,7 +65,7 @@ pub(crate) struct TaskDocument {
     #[schemars(length(max = 1000))]
     pub(crate) groups: Vec<Group>,
     /// Conditions over parameters that every variant and every world must meet, such as `"min_size < max_size"`: comparisons,
-    /// arithmetic, min, max, abs, and, or, not. A world that breaks one is drawn again, a bounded number of times.
+    /// arithmetic, min, max, abs, and, or, not; colours by `==`, `!=` and `distance(a, b)` in Oklab, 0 to 1. A world that breaks one is drawn again, a bounded number of times.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 100), inner(length(min = 1, max = 500)))]
     pub(crate) require: Vec<String>,
@@ -156,17 +157,36 @@ impl TaskSpec {
     /// # Errors
     /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
     pub fn from_json(name: &str, text: &str) -> Result<Arc<Self>, SpecError> {
+        Self::from_json_with(name, text, None)
+    }
+
+    /// As [`TaskSpec::from_json`], and refuses objects whose classes are none of these, where it is told any.
+    ///
+    /// # Errors
+    /// As [`TaskSpec::from_json`].
+    pub fn from_json_with(name: &str, text: &str, classes: Option<&Classes>) -> Result<Arc<Self>, SpecError> {
         let mut document = Document::parse(name, text)?;
         document.upgrade(&version::TASK)?;
-        document.check_schema(schema::task())?;
+        let refused = schema::task().problems(&document.value);
+        if !refused.is_empty() {
+            document.fail_on(check::partial::problems(&document.value, refused, classes))?;
+        }
         let spec: TaskDocument = document.deserialize()?;
-        match check::compile(spec) {
+        match check::compile(spec, classes, check::Unsound::default()) {
             Ok(task) => Ok(Arc::new(task)),
             Err(problems) => {
                 document.fail_on(problems)?;
                 unreachable!("a task that does not compile has problems")
             }
         }
+    }
+
+    /// Every object whose class is, or can be, none of these.
+    pub fn unknown_classes(&self, classes: &Classes) -> Vec<Problem> {
+        // All else has been found sound.
+        check::compile(self.document.clone(), Some(classes), check::Unsound::default())
+            .err()
+            .unwrap_or_default()
     }
 
     /// The task's name.

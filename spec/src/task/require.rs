@@ -7,9 +7,10 @@ use super::value::Value;
 
 /// A condition over parameters, such as `min_size < max_size and (count <= 5 or light >= 1)`.
 ///
-/// Numbers, `true`, `false`, texts in single quotes, and parameters of type number, integer, heading, boolean or string, or
+/// Numbers, `true`, `false`, texts in single quotes, and parameters of type number, integer, heading, boolean, string or color, or
 /// `name[0]` of a vector or point; `+ - * / %`, `min(a, b, …)`, `max(a, b, …)`, `abs(a)`, `< <= > >= == !=`, `and`, `or`,
-/// `not` and brackets. It can neither loop nor read or write anything.
+/// `not` and brackets. Colours are equal or not, to each other and to CSS names in quotes, and `distance(a, b)` is how far two are
+/// apart in Oklab ([`Color::distance`](crate::Color::distance)). It can neither loop nor read or write anything.
 #[derive(Clone, Debug)]
 pub struct Requirement {
     text: String,
@@ -44,7 +45,7 @@ impl Requirement {
             .collect::<Option<Vec<_>>>()?;
         match self.expression.evaluate(&values)? {
             Term::Truth(truth) => Some(truth),
-            Term::Number(_) | Term::Text(_) => None,
+            Term::Number(_) | Term::Text(_) | Term::Color(_) => None,
         }
     }
 
@@ -77,6 +78,8 @@ mod tests {
             "day" => Some(Value::Boolean(true)),
             "order" => Some(Value::Text("random".into())),
             "start" => Some(Value::Point([3.0, 4.0])),
+            "good" => Some(Value::Color(crate::Color([1.0, 0.0, 0.0]))),
+            "bad" => Some(Value::Color(crate::Color([0.0, 0.0, 1.0]))),
             _ => None,
         });
         assert_eq!(found, expected, "{text}");
@@ -97,6 +100,24 @@ mod tests {
         check("day or day and false", Some(true));
         check("start[1] >= 4 and start[0] == 3.0e0", Some(true));
         check("not a < b", Some(false));
+    }
+
+    #[test]
+    fn colours_are_compared_with_each_other_and_with_names() {
+        check("good != bad and good == 'red' and 'blue' == bad", Some(true));
+        check("good == bad or good != 'red'", Some(false));
+        check("distance(good, bad) > 0.5 and distance(good, 'red') == 0", Some(true));
+        check(
+            "distance('black', 'white') > 0.999 and distance('black', 'white') < 1.001",
+            Some(true),
+        );
+        check("distance(good, bad) == distance(bad, good)", Some(true));
+        check("good < bad", None);
+        check("good == 'rde'", None);
+        check("good == 3", None);
+        check("distance(good, 3) < 1", None);
+        check("distance(order, 'red') < 1", None);
+        check("good", None);
     }
 
     #[test]
@@ -124,9 +145,10 @@ mod tests {
         refused("'open", "a closing ' for the text that begins at character 1");
         refused(
             "fact(3) > 1",
-            "one of min, max, abs at character 1, found the function \"fact\"",
+            "one of min, max, abs, distance at character 1, found the function \"fact\"",
         );
         refused("abs(1, 2) > 1", "one value for abs at character 1, found 2");
+        refused("distance(a) > 1", "two colours for distance at character 1, found 1");
         refused("a & b", "an operator or the end at character 3, found \"&\"");
         refused(
             "a < b < 3",

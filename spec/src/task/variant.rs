@@ -356,18 +356,24 @@ fn unknown_parent(origin: &str, parent: &str, variants: &Variants) -> Problem {
     .suggest(parent, known)
 }
 
-/// Everything wrong with what the variants say.
+/// Everything wrong with what the variants say, but for values of parameters of which nothing is known.
 pub(crate) fn problems(
     parameters: &IndexMap<String, Parameter>,
     document: &IndexMap<String, VariantSpec>,
     variants: &Variants,
+    is_unsound: impl Fn(&str) -> bool,
 ) -> Vec<Problem> {
     let mut problems: Vec<Problem> = variants
         .keys()
         .filter_map(|name| values_of(parameters, variants, name).err())
         .collect();
     problems.dedup();
-    let check = |pointer: &str, parameter: &str, value: &Value| problem_of(parameters, pointer, parameter, value);
+    let check = |pointer: &str, parameter: &str, value: &Value| {
+        let known = !is_unsound(parameter);
+        known
+            .then(|| problem_of(parameters, pointer, parameter, value))
+            .flatten()
+    };
     for (name, variant) in document {
         for (parameter, value) in &variant.values {
             problems.extend(check(

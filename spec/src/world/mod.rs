@@ -23,6 +23,7 @@ pub use object::{Model, MotionModel, Object, Pushable, Respawn, Stimulus};
 pub use progress::{LastEvent, ObjectProgress, Origin, Progress, RailsProgress};
 pub use rules::{EndCondition, Rules, Shaping};
 
+use crate::classes::Classes;
 use crate::document::Document;
 use crate::error::{Problem, SpecError};
 use crate::version::WORLD_VERSION;
@@ -152,11 +153,21 @@ impl World {
     /// # Errors
     /// [`SpecError::Document`] with every problem of the text at once, sorted by place.
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
+        Self::from_json_with(name, text, None)
+    }
+
+    /// As [`World::from_json`], and refuses objects whose classes are none of these, where it is told any.
+    ///
+    /// # Errors
+    /// As [`World::from_json`].
+    pub fn from_json_with(name: &str, text: &str, classes: Option<&Classes>) -> Result<Self, SpecError> {
         let mut document = Document::parse(name, text)?;
         document.upgrade(&version::WORLD)?;
         document.check_schema(schema::world())?;
         let world: Self = document.deserialize()?;
-        document.fail_on(world.problems())?;
+        let mut problems = world.problems();
+        problems.extend(classes.into_iter().flat_map(|classes| world.unknown_classes(classes)));
+        document.fail_on(problems)?;
         Ok(world)
     }
 

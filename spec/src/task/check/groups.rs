@@ -1,16 +1,20 @@
 //! Groups: their counts, placements, distances, and the groups that they refer to.
 
+use indexmap::IndexMap;
 use serde_json::{Value as Json, json};
 
 use super::super::group::{Facing, Group};
 use super::super::template::Source;
-use super::super::value::ParameterType;
+use super::super::value::{ParameterType, Value};
 use super::super::{Count, PlacedGroup, variant};
 use super::Check;
 use crate::MAX_OBJECTS;
 use crate::distribution::{Distribution, Number};
 use crate::document::{describe, escape, plain_number};
 use crate::error::{Problem, nearest};
+
+/// The most placements of a group that are looked at for room: families have thousands of variants.
+const MOST_CASES: usize = 64;
 
 impl Check<'_> {
     pub(super) fn group(&mut self, index: usize, groups: &[Group]) -> Option<PlacedGroup> {
@@ -29,6 +33,9 @@ impl Check<'_> {
             self.report(problem.advise("name them together by \"tag\""));
         }
         self.placement(&format!("{root}/placement"), &group.placement);
+        if self.problems.len() == before {
+            self.room(&root, group, count.as_ref());
+        }
         let around = group
             .around
             .as_ref()
@@ -60,6 +67,9 @@ impl Check<'_> {
     }
 
     fn placement(&mut self, pointer: &str, placement: &Source) {
+        if self.is_unsound(placement) {
+            return;
+        }
         if let Source::Param(reference) = placement
             && let Some(parameter) = self.parameters.get(&reference.param)
             && parameter.kind != ParameterType::Distribution
@@ -89,6 +99,71 @@ impl Check<'_> {
             let expected = format!("one of {}", Distribution::<f64>::PLANAR);
             self.report(Problem::new("spec/type", pointer, found, expected));
         }
+    }
+
+    /// Whether places that are taken in turn are enough for the fewest objects that the group can have, on an empty field.
+    fn room(&mut self, root: &str, group: &Group, count: Option<&Count>) {
+        let Some(count) = count else { return };
+        let mut seen: Vec<(Distribution, u64, f64)> = Vec::new();
+        for (name, values) in &self.variants {
+            let placement = match &group.placement {
+                Source::Distribution(distribution) => Some(&**distribution),
+                Source::Param(reference) => match values.get(&reference.param) {
+                    Some(Value::Distribution(distribution)) => Some(&**distribution),
+                    _ => None,
+                },
+            };
+            let placement = placement.and_then(|placement| variant::settle(values, placement).ok());
+            let separation = variant::settle_number(values, &group.separation).unwrap_or(0.0);
+            let (Some(placement), Some(least)) = (placement, self.least(count, values)) else {
+                continue;
+            };
+            let case = (placement, least, separation);
+            if seen.contains(&case) {
+                continue;
+            }
+            if let Some(room) = case.0.room_in_turn(least, separation).filter(|room| *room < least) {
+                let places = case.0.num_turns().unwrap_or_default();
+                let found = format!(
+                    "{places} places, of which {room} are free in turn {separation} m apart, in variant {name:?}"
+                );
+                let expected = format!("places for {least} objects {separation} m apart");
+                let problem = Problem::new("spec/no-room", format!("{root}/placement"), found, expected);
+                return self.report(problem.advise("add places, or lower the count or the separation"));
+            }
+            seen.push(case);
+            if seen.len() > MOST_CASES {
+                return;
+            }
+        }
+    }
+
+    /// The fewest objects that a group can have in a variant, where that is known.
+    fn least(&self, count: &Count, values: &IndexMap<String, Value>) -> Option<u64> {
+        let source = match count {
+            Count::Fixed(count) => return Some(u64::from(*count)),
+            Count::Drawn(source) => source,
+        };
+        let own = match source {
+            Source::Param(reference) => values.get(&reference.param).and_then(|value| value.at(reference.index)),
+            Source::Distribution(_) => None,
+        };
+        let law = match (source, &own) {
+            (_, Some(Value::Distribution(distribution))) | (Source::Distribution(distribution), None) => {
+                variant::settle(values, distribution).ok()
+            }
+            (_, Some(value)) => return u64::try_from(value.as_integer()?).ok(),
+            (Source::Param(reference), None) => match self.parameters.get(&reference.param)?.distribution.as_ref()? {
+                Source::Distribution(distribution) => variant::settle(values, distribution).ok(),
+                Source::Param(_) => None,
+            },
+        };
+        let numbers = law?.support()?;
+        let least = numbers
+            .iter()
+            .filter_map(Value::as_number)
+            .fold(f64::INFINITY, f64::min);
+        least.is_finite().then_some(least.max(0.0) as u64)
     }
 
     /// The number of an earlier group of this name; reports that there is none.
@@ -164,6 +239,9 @@ impl Check<'_> {
     fn number(&mut self, pointer: &str, number: &Number, [low, high]: [f64; 2]) {
         let before = self.problems.len();
         if let Number::Param(reference) = number {
+            if self.unsound.parameters.contains(&reference.param) {
+                return;
+            }
             self.number_reference(pointer, reference);
         }
         let settled = self
@@ -195,6 +273,9 @@ impl Check<'_> {
             self.report(Problem::new("spec/value", pointer, describe(json), expected));
             return None;
         };
+        if self.is_unsound(&source) {
+            return None;
+        }
         let sound = self.source(pointer, &source, ParameterType::Integer) && {
             let candidates = self.candidates(&source, ParameterType::Integer);
             self.in_range(pointer, &candidates, [0.0, MAX_OBJECTS as f64])

@@ -1,8 +1,11 @@
 //! From a task's document to a checked task: references, types and ranges that the schema cannot see.
 
 mod groups;
+pub(super) mod partial;
 mod sources;
 mod templates;
+
+use std::collections::BTreeSet;
 
 use indexmap::IndexMap;
 
@@ -13,31 +16,49 @@ use super::template::Source;
 use super::value::{ParameterType, Value};
 use super::variant::{self, DEFAULT_VARIANT};
 use super::{PlacedGroup, TaskDocument, TaskSpec};
-use crate::distribution::Distribution;
+use crate::classes::Classes;
+use crate::distribution::{Distribution, Number};
 use crate::document::escape;
 use crate::error::Problem;
+pub(super) use partial::Unsound;
 
-/// The checked task, or everything that is wrong with it.
-pub(super) fn compile(document: TaskDocument) -> Result<TaskSpec, Vec<Problem>> {
-    let mut problems: Vec<Problem> = document
-        .parameters
-        .iter()
-        .flat_map(|(name, parameter)| parameter.problems(name))
-        .collect();
-    problems.extend(reserved_names(&document.parameters));
-    let variants = match family::unfold(&document.parameters, &document.variants) {
-        Ok(variants) => variants,
-        Err(found) => {
-            problems.extend(found);
-            Variants::new()
+/// The checked task, or everything that is wrong with it; `classes` are those that objects may be of, where they are known.
+///
+/// Checks go on behind what is wrong, as far as it does not matter to them: `unsound` is what the schema has refused already.
+pub(super) fn compile(
+    document: TaskDocument,
+    classes: Option<&Classes>,
+    mut unsound: Unsound,
+) -> Result<TaskSpec, Vec<Problem>> {
+    let mut problems: Vec<Problem> = reserved_names(&document.parameters).collect();
+    for (name, parameter) in &document.parameters {
+        let found = parameter.problems(name);
+        if !found.is_empty() {
+            unsound.parameters.insert(name.clone());
         }
-    };
-    if problems.is_empty() {
-        problems.extend(variant::problems(&document.parameters, &document.variants, &variants));
+        problems.extend(found);
     }
-    fail_on(problems)?;
+    let (variants, found) = family::unfold(&document.parameters, &document.variants);
+    let unfolded = found.is_empty();
+    problems.extend(found);
+    let is_unsound = |name: &str| unsound.parameters.contains(name);
+    let told: BTreeSet<String> = problems.iter().map(|problem| problem.pointer.clone()).collect();
+    let more = variant::problems(&document.parameters, &document.variants, &variants, is_unsound);
+    problems.extend(more.into_iter().filter(|problem| !told.contains(&problem.pointer)));
+    for name in document.variants.keys() {
+        let (own, inside) = (
+            format!("/variants/{}", escape(name)),
+            format!("/variants/{}/", escape(name)),
+        );
+        if problems
+            .iter()
+            .any(|problem| problem.pointer == own || problem.pointer.starts_with(&inside))
+        {
+            unsound.variants.insert(name.clone());
+        }
+    }
 
-    let mut check = Check::new(&document, &variants);
+    let mut check = Check::new(&document, &variants, classes, unsound);
     check.parameters();
     let (world, fixtures) = check.world(&document.world);
     let groups: Vec<Option<PlacedGroup>> = (0..document.groups.len())
@@ -45,12 +66,16 @@ pub(super) fn compile(document: TaskDocument) -> Result<TaskSpec, Vec<Problem>> 
         .collect();
     let requirements = check.requirements(&document.require);
     check.variants_meet(&requirements, &variants);
-    let problems = std::mem::take(&mut check.problems);
+    problems.append(&mut check.problems);
     fail_on(problems)?;
-    let (Some(world), Some(fixtures), Some(groups)) =
-        (world, fixtures.into_iter().collect(), groups.into_iter().collect())
-    else {
-        unreachable!("what could not be built left a problem")
+    let (Some(world), Some(fixtures), Some(groups), true) = (
+        world,
+        fixtures.into_iter().collect(),
+        groups.into_iter().collect(),
+        unfolded,
+    ) else {
+        // It hangs on what was refused before: that is the problem.
+        return Err(Vec::new());
     };
     Ok(TaskSpec {
         document,
@@ -81,28 +106,70 @@ fn reserved_names(parameters: &IndexMap<String, Parameter>) -> impl Iterator<Ite
         })
 }
 
+/// Whether a variant, or one that it extends, is among these.
+fn is_built_on(variants: &Variants, name: &str, unsound: &BTreeSet<String>) -> bool {
+    let mut next = Some(name);
+    // A chain that bites its own tail is longer than there are variants.
+    for _ in 0..=variants.len() {
+        let Some(name) = next else { return false };
+        let declared = variants.get(name);
+        if unsound.contains(name) || declared.is_some_and(|declared| unsound.contains(&declared.origin)) {
+            return true;
+        }
+        next = declared.and_then(|declared| declared.extends.as_deref());
+    }
+    next.is_some()
+}
+
 /// A check of one document: gathers problems on its way.
 struct Check<'a> {
     parameters: &'a IndexMap<String, Parameter>,
-    /// The values of every variant, by name; the default variant first.
+    /// The values of every variant, by name; the default variant first. Without those that something is wrong with.
     variants: Vec<(String, IndexMap<String, Value>)>,
+    /// The classes that objects may be of, where they are known.
+    classes: Option<&'a Classes>,
+    unsound: Unsound,
     problems: Vec<Problem>,
 }
 
 impl<'a> Check<'a> {
-    fn new(document: &'a TaskDocument, variants: &Variants) -> Self {
+    fn new(document: &'a TaskDocument, variants: &Variants, classes: Option<&'a Classes>, unsound: Unsound) -> Self {
         let names = std::iter::once(DEFAULT_VARIANT).chain(variants.keys().map(String::as_str));
-        let variants = names
+        let settled = names
+            .filter(|name| !is_built_on(variants, name, &unsound.variants))
             .filter_map(|name| {
-                let values = variant::values_of(&document.parameters, variants, name).ok()?;
+                let mut values = variant::values_of(&document.parameters, variants, name).ok()?;
+                values.retain(|parameter, _| !unsound.parameters.contains(parameter));
                 Some((name.to_owned(), values))
             })
             .collect();
         Self {
             parameters: &document.parameters,
-            variants,
+            variants: settled,
+            classes,
+            unsound,
             problems: Vec::new(),
         }
+    }
+
+    /// Whether a source depends on a parameter that something is wrong with: then nothing can be said of it.
+    fn is_unsound(&self, source: &Source) -> bool {
+        if self.unsound.parameters.is_empty() {
+            return false;
+        }
+        let is_named = matches!(source, Source::Param(reference) if self.unsound.parameters.contains(&reference.param));
+        is_named || self.distributions_of(source).iter().any(|law| self.has_unsound(law))
+    }
+
+    /// Whether a distribution has a number of a parameter that something is wrong with.
+    fn has_unsound(&self, distribution: &Distribution<Number>) -> bool {
+        let mut found = false;
+        let settled: Result<Distribution<f64>, ()> = distribution.try_map(&mut |number| {
+            found |= matches!(number, Number::Param(reference) if self.unsound.parameters.contains(&reference.param));
+            Ok(0.0)
+        });
+        drop(settled);
+        found
     }
 
     fn report(&mut self, problem: Problem) {
@@ -112,6 +179,9 @@ impl<'a> Check<'a> {
     /// Parameters that are, or are drawn from, distributions: their numbers and what they yield.
     fn parameters(&mut self) {
         for (name, parameter) in self.parameters {
+            if self.unsound.parameters.contains(name) {
+                continue;
+            }
             let pointer = format!("/parameters/{}", escape(name));
             let mut own: Vec<(String, &Value)> = Vec::new();
             own.extend(parameter.value.iter().map(|value| (format!("{pointer}/value"), value)));
@@ -124,7 +194,9 @@ impl<'a> Check<'a> {
             let choices = parameter.choices.iter().flatten().enumerate();
             own.extend(choices.map(|(index, value)| (format!("{pointer}/choices/{index}"), value)));
             for (pointer, value) in own {
-                if let (ParameterType::Distribution, Value::Distribution(distribution)) = (parameter.kind, value) {
+                if let (ParameterType::Distribution, Value::Distribution(distribution)) = (parameter.kind, value)
+                    && !self.has_unsound(distribution)
+                {
                     self.distribution(&pointer, distribution);
                 }
             }
@@ -145,7 +217,10 @@ impl<'a> Check<'a> {
                 return self.report(Problem::new("spec/type", pointer, found, expected));
             }
         }
-        if self.source(pointer, source, parameter.kind) && matches!(source, Source::Param(_)) {
+        if !self.is_unsound(source)
+            && self.source(pointer, source, parameter.kind)
+            && matches!(source, Source::Param(_))
+        {
             self.compared_by(&format!("{parameter_pointer}/compare/measure"), parameter, source);
         }
     }
@@ -181,15 +256,22 @@ impl<'a> Check<'a> {
 
     /// Whether a requirement speaks of parameters that it can compare, and is true or false for them.
     fn requirement(&mut self, pointer: &str, requirement: &Requirement) -> bool {
+        if requirement
+            .names()
+            .iter()
+            .any(|name| self.unsound.parameters.contains(name))
+        {
+            return false;
+        }
         let before = self.problems.len();
         for name in requirement.names() {
             let Some(parameter) = self.parameters.get(name) else {
                 self.unknown_parameter(pointer, name);
                 continue;
             };
-            if matches!(parameter.kind, ParameterType::Color | ParameterType::Distribution) {
+            if parameter.kind == ParameterType::Distribution {
                 let found = format!("the parameter {name:?} of type {}", parameter.kind.name());
-                let expected = "numbers, headings, true or false, texts, or one number of a vector or point";
+                let expected = "numbers, headings, true or false, texts, colours, or one number of a vector or point";
                 self.report(Problem::new("spec/type", pointer, found, expected));
             }
         }
@@ -209,7 +291,7 @@ impl<'a> Check<'a> {
         let sound = requirement.holds(example).is_some();
         if !sound {
             let found = format!("{:?}, which is neither true nor false", requirement.text());
-            let expected = "a condition: numbers compared with numbers, joined by and, or, not";
+            let expected = "a condition: numbers compared with numbers, colours with colours, joined by and, or, not";
             self.report(Problem::new("spec/requirement", pointer, found, expected));
         }
         sound

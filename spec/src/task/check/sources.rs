@@ -117,7 +117,13 @@ impl Check<'_> {
     }
 
     pub(super) fn unknown_parameter(&mut self, pointer: &str, name: &str) {
-        let known: Vec<&str> = self.parameters.keys().map(String::as_str).collect();
+        // One that was refused is there all the same.
+        let refused = self
+            .unsound
+            .parameters
+            .iter()
+            .filter(|name| !self.parameters.contains_key(*name));
+        let known: Vec<&str> = self.parameters.keys().chain(refused).map(String::as_str).collect();
         let expected = if known.is_empty() {
             "a declared parameter; there is none".into()
         } else {

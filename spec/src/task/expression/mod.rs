@@ -6,6 +6,7 @@
 mod token;
 
 use super::value::Value;
+use crate::Color;
 use token::{Token, tokens};
 
 /// The longest text, in characters.
@@ -28,6 +29,18 @@ pub(super) enum Term {
     Number(f64),
     Truth(bool),
     Text(String),
+    Color(Color),
+}
+
+impl Term {
+    /// The colour that it is, or that CSS gives its name to.
+    fn color(&self) -> Option<Color> {
+        match self {
+            Self::Color(color) => Some(*color),
+            Self::Text(name) => Color::from_name(name),
+            _ => None,
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -68,6 +81,8 @@ enum Function {
     Min,
     Max,
     Abs,
+    /// Of two colours.
+    Distance,
 }
 
 /// The operators with their symbols and how tightly they bind.
@@ -132,6 +147,7 @@ impl Node {
             Self::Name(name, index) => match values.get(*name)?.at(*index)? {
                 Value::Boolean(truth) => Some(Term::Truth(truth)),
                 Value::Text(text) => Some(Term::Text(text)),
+                Value::Color(color) => Some(Term::Color(color)),
                 other => other.as_number().map(Term::Number),
             },
             Self::Unary(operator, node) => match (operator, node.evaluate(values)?) {
@@ -139,7 +155,12 @@ impl Node {
                 (Unary::Not, Term::Truth(truth)) => Some(Term::Truth(!truth)),
                 _ => None,
             },
-            Self::Binary(operator, a, b) => operator.apply(a.evaluate(values)?, b.evaluate(values)?),
+            Self::Binary(operator, a, b) => operator.apply(&a.evaluate(values)?, &b.evaluate(values)?),
+            Self::Call(Function::Distance, nodes) => {
+                let color = |node: &Self| node.evaluate(values)?.color();
+                let (a, b) = (color(nodes.first()?)?, color(nodes.get(1)?)?);
+                Some(Term::Number(a.distance(b)))
+            }
             Self::Call(function, nodes) => {
                 let number = |node: &Self| match node.evaluate(values)? {
                     Term::Number(number) => Some(number),
@@ -150,6 +171,7 @@ impl Node {
                     Function::Min => numbers.into_iter().fold(f64::INFINITY, f64::min),
                     Function::Max => numbers.into_iter().fold(f64::NEG_INFINITY, f64::max),
                     Function::Abs => numbers.first()?.abs(),
+                    Function::Distance => return None,
                 }))
             }
         }
@@ -157,7 +179,7 @@ impl Node {
 }
 
 impl Binary {
-    fn apply(self, a: Term, b: Term) -> Option<Term> {
+    fn apply(self, a: &Term, b: &Term) -> Option<Term> {
         match (a, b) {
             (Term::Number(a), Term::Number(b)) => Some(match self {
                 Self::Less => Term::Truth(a < b),
@@ -174,8 +196,8 @@ impl Binary {
                 Self::Or | Self::And => return None,
             }),
             (Term::Truth(a), Term::Truth(b)) => Some(Term::Truth(match self {
-                Self::Or => a || b,
-                Self::And => a && b,
+                Self::Or => *a || *b,
+                Self::And => *a && *b,
                 Self::Equal => a == b,
                 Self::NotEqual => a != b,
                 _ => return None,
@@ -185,6 +207,14 @@ impl Binary {
                 Self::NotEqual => a != b,
                 _ => return None,
             })),
+            (Term::Color(_), _) | (_, Term::Color(_)) => {
+                let (a, b) = (a.color()?, b.color()?);
+                Some(Term::Truth(match self {
+                    Self::Equal => a == b,
+                    Self::NotEqual => a != b,
+                    _ => return None,
+                }))
+            }
             _ => None,
         }
     }
@@ -308,9 +338,10 @@ impl Parser {
             "min" => Function::Min,
             "max" => Function::Max,
             "abs" => Function::Abs,
+            "distance" => Function::Distance,
             other => {
                 return Err(format!(
-                    "one of min, max, abs at character {at}, found the function {other:?}"
+                    "one of min, max, abs, distance at character {at}, found the function {other:?}"
                 ));
             }
         };
@@ -321,9 +352,13 @@ impl Parser {
             nodes.push(self.expression(0, depth + 1)?);
         }
         self.expect(")")?;
-        if function == Function::Abs && nodes.len() != 1 {
-            return Err(format!("one value for abs at character {at}, found {}", nodes.len()));
-        }
+        match (function, nodes.len()) {
+            (Function::Abs, found) if found != 1 => Err(format!("one value for abs at character {at}, found {found}")),
+            (Function::Distance, found) if found != 2 => {
+                Err(format!("two colours for distance at character {at}, found {found}"))
+            }
+            _ => Ok(()),
+        }?;
         Ok(Node::Call(function, nodes))
     }
 }

@@ -1,0 +1,240 @@
+//! Places that a group takes in turn: which one an object takes when its own is not free, and whether there are enough of them. Drawing
+//! and the rest of the world are the generator's.
+
+use std::collections::HashMap;
+
+use super::{Distribution, Order};
+
+/// The most places that one object is tried at.
+const TRIES: usize = 1000;
+
+/// The most tries of a check whether a group fits; what takes longer is left to whoever draws.
+const MOST_CHECKED: usize = 200_000;
+
+/// Which of the places of a `points` or `grid` in turn are taken by the objects of one group around one anchor.
+///
+/// Object number `n` of a group has place `n` of the list, round and round. Where it is not free, the object takes the next one
+/// that is, in the order of the list and on from its beginning; a place that another object has taken in this round is not free. No
+/// object is tried at more than 1,000 places.
+///
+/// # Example
+/// ```
+/// use driftworld_spec::Turns;
+/// let mut turns = Turns::new(3);
+/// let first = turns.candidates(0).find(|place| *place != 0).unwrap();
+/// turns.take(0, first);
+/// assert_eq!(turns.candidates(1).collect::<Vec<_>>(), [2, 0], "place 1 is taken");
+/// ```
+#[derive(Clone, Debug)]
+pub struct Turns {
+    places: usize,
+    /// How many objects took each place; none of it while every object took its own.
+    taken: Option<Vec<u32>>,
+}
+
+impl Turns {
+    /// So many places, from 1 on, none of them taken.
+    pub fn new(places: usize) -> Self {
+        Self {
+            places: places.max(1),
+            taken: None,
+        }
+    }
+
+    /// The places that an object is tried at, in order.
+    pub fn candidates(&self, number: u64) -> impl Iterator<Item = usize> + '_ {
+        let places = self.places as u64;
+        let (own, round) = ((number % places) as usize, number / places);
+        let free = move |place: &usize| match &self.taken {
+            // Those before it took their own: in this round the places before its own.
+            None => *place >= own,
+            Some(taken) => u64::from(taken[*place]) <= round,
+        };
+        (own..self.places).chain(0..own).filter(free).take(TRIES)
+    }
+
+    /// Object `number`, which comes after all those before it, takes a place.
+    pub fn take(&mut self, number: u64, place: usize) {
+        let places = self.places as u64;
+        if self.taken.is_none() && place as u64 == number % places {
+            return;
+        }
+        let taken = self.taken.get_or_insert_with(|| {
+            let before = |place: u64| (number / places + u64::from(place < number % places)) as u32;
+            (0..places).map(before).collect()
+        });
+        taken[place] += 1;
+    }
+}
+
+impl Distribution {
+    /// How many places there are, where they are taken in turn; `None` for every other distribution.
+    pub fn num_turns(&self) -> Option<usize> {
+        match self {
+            Self::Points {
+                values,
+                order: Order::Turn,
+            } => Some(values.len()),
+            Self::Grid {
+                columns,
+                rows,
+                order: Order::Turn,
+                ..
+            } => Some(*columns as usize * *rows as usize),
+            _ => None,
+        }
+    }
+
+    /// Place `number` of a `points` or `grid` in turn, in metres; `None` where places are not certain.
+    fn certain_place(&self, number: usize) -> Option<[f64; 2]> {
+        match self {
+            Self::Points { values, .. } => values.get(number).copied(),
+            Self::Grid {
+                low,
+                high,
+                columns,
+                rows,
+                jitter,
+                ..
+            } if jitter.unwrap_or(0.0) == 0.0 => {
+                let (column, row) = (number as u64 % *columns as u64, number as u64 / *columns as u64);
+                let axis = |k: usize, cell: u64, count: f64| low[k] + (high[k] - low[k]) * (cell as f64 + 0.5) / count;
+                Some([axis(0, column, *columns), axis(1, row, *rows)])
+            }
+            _ => None,
+        }
+    }
+
+    /// How many of `count` objects find a place in turn on an empty field, at least `separation` metres apart; `None` where that is
+    /// not certain, or takes too long to find out.
+    pub(crate) fn room_in_turn(&self, count: u64, separation: f64) -> Option<u64> {
+        let places = self.num_turns()?;
+        self.certain_place(0)?;
+        if separation <= 0.0 {
+            return Some(count);
+        }
+        let (mut turns, mut field) = (Turns::new(places), Field::new(separation));
+        let mut checked = 0;
+        for number in 0..count {
+            let candidates = turns.candidates(number).inspect(|_| checked += 1);
+            let free = candidates
+                .filter_map(|place| Some((place, self.certain_place(place)?)))
+                .find(|(_, at)| !field.is_near(*at));
+            let Some((place, at)) = free else { return Some(number) };
+            if checked > MOST_CHECKED {
+                return None;
+            }
+            field.push(at);
+            turns.take(number, place);
+        }
+        Some(count)
+    }
+}
+
+/// Points in square cells as wide as the distance that is kept.
+struct Field {
+    separation: f64,
+    cells: HashMap<[i64; 2], Vec<[f64; 2]>>,
+}
+
+impl Field {
+    fn new(separation: f64) -> Self {
+        Self {
+            separation,
+            cells: HashMap::new(),
+        }
+    }
+
+    fn cell(&self, at: [f64; 2]) -> [i64; 2] {
+        at.map(|metres| (metres / self.separation).floor() as i64)
+    }
+
+    fn push(&mut self, at: [f64; 2]) {
+        self.cells.entry(self.cell(at)).or_default().push(at);
+    }
+
+    /// Whether a point is nearer than the distance.
+    fn is_near(&self, [x, y]: [f64; 2]) -> bool {
+        let [column, row] = self.cell([x, y]);
+        let around = (-1..=1).flat_map(|a| (-1..=1).map(move |b| [column.saturating_add(a), row.saturating_add(b)]));
+        let near = |[a, b]: &[f64; 2]| ((a - x) * (a - x) + (b - y) * (b - y)).sqrt() < self.separation;
+        around.filter_map(|cell| self.cells.get(&cell)).flatten().any(near)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The rule in the plainest way: counts of every place from the beginning.
+    struct Plain(Vec<u64>);
+
+    impl Plain {
+        fn take(&mut self, number: u64, blocked: &[bool]) -> Option<usize> {
+            let places = self.0.len();
+            let own = number as usize % places;
+            let ways = (0..places).map(|step| (own + step) % places);
+            let place = ways
+                .filter(|place| self.0[*place] <= number / places as u64)
+                .find(|place| !blocked[*place])?;
+            self.0[place] += 1;
+            Some(place)
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn objects_take_their_own_place_or_the_next_free_one(
+            blocked in prop::collection::vec(any::<bool>(), 1..30), count in 0_u64..70,
+        ) {
+            let (mut turns, mut plain) = (Turns::new(blocked.len()), Plain(vec![0; blocked.len()]));
+            for number in 0..count {
+                let place = turns.candidates(number).find(|place| !blocked[*place]);
+                prop_assert_eq!(place, plain.take(number, &blocked));
+                let Some(place) = place else { break };
+                turns.take(number, place);
+            }
+        }
+
+        #[test]
+        fn as_many_fit_as_a_plain_search_finds(
+            points in prop::collection::vec([-4_i32..4, -4..4], 1..12), count in 0_u64..16, separation in 0.0_f64..3.0,
+        ) {
+            let values: Vec<[f64; 2]> = points.iter().map(|point| point.map(f64::from)).collect();
+            let far = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) >= separation;
+            let (mut taken, mut places): (Vec<[f64; 2]>, _) = (Vec::new(), Plain(vec![0; values.len()]));
+            let mut room = 0;
+            for number in 0..count {
+                let blocked: Vec<bool> =
+                    values.iter().map(|at| separation > 0.0 && !taken.iter().all(|other| far(*at, *other))).collect();
+                let Some(place) = places.take(number, &blocked) else { break };
+                taken.push(values[place]);
+                room += 1;
+            }
+            let list = Distribution::Points { values, order: Order::Turn };
+            prop_assert_eq!(list.room_in_turn(count, separation), Some(room));
+        }
+    }
+
+    #[test]
+    fn a_grid_has_room_for_its_cells_and_no_more() {
+        let grid = |jitter| Distribution::Grid {
+            low: [-6.0, -4.0],
+            high: [6.0, 4.0],
+            columns: 3.0,
+            rows: 2.0,
+            jitter,
+            order: Order::Turn,
+        };
+        assert_eq!(grid(None).room_in_turn(6, 4.0), Some(6));
+        assert_eq!(grid(None).room_in_turn(7, 4.0), Some(6));
+        assert_eq!(grid(None).room_in_turn(6, 4.5), Some(3), "every other cell");
+        assert_eq!(
+            grid(None).room_in_turn(60, 0.0),
+            Some(60),
+            "they may stand in each other"
+        );
+        assert_eq!(grid(Some(0.5)).room_in_turn(7, 4.0), None, "cells are wide");
+    }
+}

@@ -1,0 +1,99 @@
+//! Mistakes in different parts of a task are named at once, whatever kinds they are of, and nothing is said that only follows from them.
+
+use std::collections::BTreeSet;
+
+use driftworld_spec::{Classes, TaskSpec};
+use proptest::prelude::*;
+use serde_json::{Value, json};
+
+/// A mistake: where something is put in place of what stands there.
+type Mistake = (&'static str, Value);
+
+/// Mistakes that the schema finds and mistakes that only later checks can find, each in a part of its own.
+fn mistakes() -> Vec<Mistake> {
+    vec![
+        ("/groups/0/colour", json!("red")),
+        ("/groups/0/separation", json!("far")),
+        ("/groups/1/count", json!(-1)),
+        ("/groups/1/object/class", json!("bushh")),
+        ("/parameters/light/default", json!(60)),
+        ("/parameters/spread/type", json!("numbr")),
+        ("/parameters/trigger/chioces", json!([])),
+        ("/variants/green/target_color", json!("bleu")),
+        ("/variants/dusk/extends", json!("rde")),
+        ("/variants/penalty/target_reward", json!({ "a": 1 })),
+        ("/world/max_steps", json!({ "param": "stepps" })),
+        ("/world/rules/step_reward", json!("none")),
+        ("/world/agent_params/agent_width", json!({ "param": "agent_widht" })),
+        ("/world/agent_params/colour", json!(1)),
+        ("/require", json!(["hold +"])),
+        ("/element_weights", json!({ "S": "much" })),
+    ]
+}
+
+fn sound() -> Value {
+    let path = format!("{}/../examples/tasks/find_objects.json", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(path).expect("the example tasks ship with the project");
+    serde_json::from_str(&text).expect("it is JSON")
+}
+
+/// What is said of a task with these mistakes, each problem without its line and column.
+fn said(chosen: &[&Mistake]) -> BTreeSet<String> {
+    let mut task = sound();
+    for (pointer, value) in chosen {
+        let (parent, key) = pointer.rsplit_once('/').expect("it is a pointer");
+        let parent = task
+            .pointer_mut(parent)
+            .unwrap_or_else(|| panic!("{pointer}: nothing there"));
+        parent
+            .as_object_mut()
+            .expect("it is an object")
+            .insert(key.to_owned(), value.clone());
+    }
+    let classes = Classes::new(["geometric", "tree", "rock"]);
+    let error = TaskSpec::from_json_with("t.json", &task.to_string(), Some(&classes)).err();
+    let problems = error.as_ref().map_or(&[][..], |error| error.problems());
+    problems
+        .iter()
+        .map(|problem| format!("{} {}", problem.pointer, problem.found))
+        .collect()
+}
+
+#[test]
+fn each_mistake_alone_is_named_where_it_stands() {
+    assert!(said(&[]).is_empty(), "{:?}", said(&[]));
+    for mistake in &mistakes() {
+        let found = said(&[mistake]);
+        let near = |problem: &String| {
+            problem.starts_with(mistake.0) || mistake.0.starts_with(problem.split(' ').next().unwrap_or("-"))
+        };
+        assert!(!found.is_empty() && found.iter().all(near), "{}: {found:?}", mistake.0);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    #[test]
+    fn mistakes_together_are_what_they_are_alone(chosen in prop::sample::subsequence((0..mistakes().len()).collect::<Vec<_>>(), 1..7)) {
+        let all = mistakes();
+        // A group that the schema refuses is not looked into any further.
+        let hidden = |mistake: &Mistake| mistake.0 == "/groups/1/object/class" && chosen.iter().any(|other| all[*other].0 == "/groups/1/count");
+        let chosen: Vec<&Mistake> = chosen.iter().map(|number| &all[*number]).filter(|mistake| !hidden(mistake)).collect();
+        let alone: BTreeSet<String> = chosen.iter().flat_map(|mistake| said(&[mistake])).collect();
+        prop_assert_eq!(said(&chosen), alone);
+    }
+}
+
+#[test]
+fn the_two_mistakes_of_the_readme_are_told_together() {
+    let variant = ("/variants/dusk/light", json!(60));
+    let reference = ("/world/environment_params/light_intensity", json!({ "param": "ligth" }));
+    let found: Vec<String> = said(&[&variant, &reference]).into_iter().collect();
+    assert_eq!(found.len(), 2, "{found:?}");
+    assert!(found[0].starts_with("/variants/dusk/light 60"), "{found:?}");
+    assert!(
+        found[1].starts_with("/world/environment_params/light_intensity"),
+        "{found:?}"
+    );
+}
