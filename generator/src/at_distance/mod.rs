@@ -1,12 +1,19 @@
 //! A variant at a wanted distance from another. The distance is handed in; what it measures is `similarity`'s to say.
 
+mod scan;
+
 use driftworld_spec::{Domain, Element, Parameter, ParameterType, Role, Value, Variant};
 
 use crate::GeneratorError;
 use crate::drift::interpolate;
+use scan::{Scan, Space};
 
 /// The most combinations of choices that are tried.
 const MOST_COMBINATIONS: usize = 4096;
+
+/// The most variants that are looked at where requirements cut off the straight way, and the fewest for each combination.
+const MOST_LOOKS: usize = 60_000;
+const FEWEST_LOOKS: usize = 1500;
 
 /// Halvings of a stretch before it is given up.
 const HALVINGS: u32 = 80;
@@ -32,8 +39,10 @@ pub struct Found {
 /// Finds a variant whose distance from `from` is `target` within `tolerance`.
 ///
 /// First without changing any choice, then with as few changed choices as will do, the numbers of the subject move together
-/// from where they are towards the ends of their ranges that lie farthest, and the stretch between is halved. The same
-/// arguments always find the same variant. `distance` is asked some hundred times, at most 80 for each of 4,096 combinations; it returns finite numbers, 0 for `from`.
+/// from where they are towards the ends of their ranges that lie farthest, and the stretch between is halved. Where the task's
+/// requirements cut that way off, all that they leave of the ranges is looked through, in every direction, each number by itself. The same
+/// arguments always find the same variant. `distance` is asked some hundred times, at most 80 for each of 4,096 combinations; where
+/// requirements cut, some ten thousand times. It returns finite numbers, 0 for `from`.
 ///
 /// # Errors
 /// [`GeneratorError::NothingToVary`] if the subject has no parameter that could change; [`GeneratorError::TooFar`] with the
@@ -67,21 +76,32 @@ pub fn at_distance(
         distance,
         nearest: None,
         farthest: None,
+        num_refused: 0,
     };
     let ends = search.farthest_ends(&smooth);
+    // The way is also cut off for every combination if the ends themselves had to be left out.
+    let ends_refused = search.num_refused > 0;
+    let mut cut: Vec<Changes> = Vec::new();
     for combination in combinations(from, &listed) {
-        let Some(base) = search.look(combination.clone()) else {
-            continue;
-        };
-        if search.meets(&base) {
+        let refused = search.num_refused;
+        if search.straight(&combination, &ends) {
             return search.finish();
         }
-        let Some(end) = search.look(with(&combination, &ends)) else {
-            continue;
+        if ends_refused || search.num_refused > refused {
+            cut.push(combination);
+        }
+    }
+    let space = Space::new(from, &smooth);
+    let share = (MOST_LOOKS / cut.len().max(1)).max(FEWEST_LOOKS);
+    for combination in cut.iter().take(MOST_LOOKS / FEWEST_LOOKS) {
+        let scan = Scan {
+            search: &mut search,
+            space: &space,
+            combination,
+            budget: share,
         };
-        let crosses = (base.distance - target) * (end.distance - target) <= 0.0;
-        if search.meets(&end) || (crosses && search.halve(&combination, &ends)) {
-            return search.finish();
+        if scan.run() {
+            break;
         }
     }
     search.finish()
@@ -159,13 +179,38 @@ struct Search<'a, D> {
     distance: D,
     nearest: Option<Found>,
     farthest: Option<Found>,
+    /// How many variants the task did not allow.
+    num_refused: u64,
 }
 
 impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
+    /// Goes straight from a combination of choices to the ends; true if it meets the target.
+    fn straight(&mut self, combination: &Changes, ends: &Changes) -> bool {
+        let Some(base) = self.look(combination.clone()) else {
+            return false;
+        };
+        if self.meets(&base) {
+            return true;
+        }
+        let Some(end) = self.look(with(combination, ends)) else {
+            return false;
+        };
+        let crosses = (base.distance - self.target) * (end.distance - self.target) <= 0.0;
+        self.meets(&end) || (crosses && self.halve(combination, ends))
+    }
+
+    /// Whether the nearest variant so far is near enough.
+    fn is_met(&self) -> bool {
+        self.nearest.as_ref().is_some_and(|nearest| self.meets(nearest))
+    }
+
     /// Measures a variant and remembers it; `None` if the task does not allow it.
     fn look(&mut self, changes: Changes) -> Option<Found> {
         let name = format!("{}@{}", self.from.name(), (self.target * 1e6).round() / 1e6);
-        let variant = self.from.with(&name, changes).ok()?;
+        let Ok(variant) = self.from.with(&name, changes) else {
+            self.num_refused += 1;
+            return None;
+        };
         let distance = (self.distance)(&variant);
         let found = Found { variant, distance };
         let miss = |found: &Found| (found.distance - self.target).abs();

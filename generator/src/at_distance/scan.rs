@@ -1,0 +1,392 @@
+//! Looking through all that a task's requirements leave of the ranges, where the straight way to their ends is cut off. Which
+//! variants are compared and when a search ends is in `mod.rs`.
+//!
+//! Lines along every axis are walked through the whole box; where a line leaves what is allowed, its border is found by halving, and so
+//! is the wanted distance between two points on either side of it. From the points that came nearest it goes on in all directions by
+//! ever smaller steps. Nothing is drawn by chance: the same arguments find the same variant.
+
+use driftworld_spec::{Domain, ParameterType, Value, Variant};
+
+use super::{Changes, Free, Search, with};
+
+/// Points on each line but the first.
+const PARTS: usize = 32;
+
+/// Halvings towards a border, and towards the wanted distance.
+const HALVINGS: u32 = 48;
+
+/// From how many points the search goes on in small steps.
+const STARTS: usize = 12;
+
+/// How often the small steps are halved.
+const FINENESS: u32 = 30;
+
+/// How many pairs of points on either side of the wanted distance are tried.
+const PAIRS: usize = 24;
+
+/// The most axes whose diagonals are tried, too.
+const MOST_DIAGONAL: usize = 8;
+
+/// One number that may move.
+pub(super) struct Axis {
+    /// The parameter, by its place among those that move.
+    owner: usize,
+    place: Option<usize>,
+    here: f64,
+    low: f64,
+    high: f64,
+    is_whole: bool,
+}
+
+/// The numbers that may move, and the parameters that they are of.
+pub(super) struct Space<'a> {
+    from: &'a Variant,
+    owners: Vec<Free<'a>>,
+    axes: Vec<Axis>,
+}
+
+/// A number for each axis.
+type Point = Vec<f64>;
+
+/// A point that the task allows, and its distance.
+type Seen = (Point, f64);
+
+impl<'a> Space<'a> {
+    pub(super) fn new(from: &'a Variant, smooth: &[Free<'a>]) -> Self {
+        let mut axes = Vec::new();
+        for (owner, (name, parameter)) in smooth.iter().enumerate() {
+            let (Some(Domain::Range([low, high])), Some(value)) = (parameter.domain(), from.value(name)) else {
+                continue;
+            };
+            let mut axis = |place, here, high| {
+                axes.push(Axis {
+                    owner,
+                    place,
+                    here,
+                    low,
+                    high,
+                    is_whole: matches!(value, Value::Integer(_)),
+                });
+            };
+            match value {
+                Value::Vector(numbers) => {
+                    for (place, here) in numbers.iter().enumerate() {
+                        axis(Some(place), *here, high);
+                    }
+                }
+                // An arc may lead across north: along it, from its low end.
+                Value::Number(here) if parameter.kind == ParameterType::Heading => {
+                    let arc = (high - low).min(360.0);
+                    axis(None, low + (here - low).rem_euclid(360.0).min(arc), low + arc);
+                }
+                other => axis(None, other.as_number().unwrap_or(low), high),
+            }
+        }
+        Self {
+            from,
+            owners: smooth.to_vec(),
+            axes,
+        }
+    }
+
+    fn here(&self) -> Point {
+        self.axes.iter().map(|axis| axis.here).collect()
+    }
+
+    /// What a point changes.
+    fn changes(&self, point: &[f64]) -> Changes {
+        let mut changes = Changes::new();
+        for (axis, number) in self.axes.iter().zip(point) {
+            if *number == axis.here {
+                continue;
+            }
+            let (name, parameter) = self.owners[axis.owner];
+            if axis.place.is_some() && changes.last().is_none_or(|(last, _)| last != name) {
+                changes.extend(self.from.value(name).map(|value| (name.to_owned(), value.clone())));
+            }
+            match (axis.place, changes.last_mut()) {
+                (Some(place), Some((_, Value::Vector(numbers)))) => numbers[place] = *number,
+                _ if axis.is_whole => changes.push((name.to_owned(), Value::Integer(number.round() as i64))),
+                _ if parameter.kind == ParameterType::Heading => {
+                    changes.push((name.to_owned(), Value::Number(number.rem_euclid(360.0))));
+                }
+                _ => changes.push((name.to_owned(), Value::Number(*number))),
+            }
+        }
+        changes
+    }
+
+    /// How many different numbers an axis is looked at by: all of a short range of whole numbers.
+    fn parts(&self, axis: usize, most: usize) -> usize {
+        let Axis {
+            low, high, is_whole, ..
+        } = &self.axes[axis];
+        if *is_whole {
+            (((high - low) as usize).max(1)).min(most)
+        } else {
+            most
+        }
+    }
+
+    fn at(&self, axis: usize, part: usize, parts: usize) -> f64 {
+        let Axis { low, high, .. } = &self.axes[axis];
+        if part == parts {
+            return *high;
+        }
+        low + (high - low) * part as f64 / parts as f64
+    }
+
+    /// Points that lines along one axis lead through: those of a grid over all other axes, coarser the more axes there are.
+    fn anchors(&self, along: usize) -> Vec<Point> {
+        let most = match self.axes.len() {
+            0..=2 => 16,
+            3 => 6,
+            4 => 3,
+            5 => 2,
+            // Too many for a grid: the axes through where the variant is, and through the middle and both corners.
+            _ => {
+                let of = |part: usize| (0..self.axes.len()).map(|axis| self.at(axis, part, 2)).collect();
+                return vec![of(0), of(1), of(2)];
+            }
+        };
+        let mut anchors = vec![self.here()];
+        for axis in (0..self.axes.len()).filter(|axis| *axis != along) {
+            let parts = self.parts(axis, most);
+            let moved = |anchor: Point| {
+                (0..=parts).map(move |part| {
+                    let mut moved = anchor.clone();
+                    moved[axis] = self.at(axis, part, parts);
+                    moved
+                })
+            };
+            anchors = anchors.into_iter().flat_map(moved).collect();
+        }
+        anchors
+    }
+}
+
+/// The directions of small steps: along each axis, and along the diagonals of each pair of few.
+fn directions(axes: usize) -> Vec<Vec<(usize, f64)>> {
+    let mut found = Vec::new();
+    for a in 0..axes {
+        found.extend([1.0, -1.0].map(|sign| vec![(a, sign)]));
+        for b in (0..a).filter(|_| axes <= MOST_DIAGONAL) {
+            let signs = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+            found.extend(signs.map(|(first, second)| vec![(a, first), (b, second)]));
+        }
+    }
+    found
+}
+
+/// A search through one combination of choices.
+pub(super) struct Scan<'s, 'a, D> {
+    pub(super) search: &'s mut Search<'a, D>,
+    pub(super) space: &'s Space<'a>,
+    pub(super) combination: &'s Changes,
+    /// How many variants it may still look at.
+    pub(super) budget: usize,
+}
+
+/// The search is over: the wanted distance was met, or there was too much to look at.
+struct Over;
+
+impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
+    /// Looks through it all; true if the wanted distance was met.
+    pub(super) fn run(mut self) -> bool {
+        // Whether it was met or was too much is what the search remembers of the nearest variant.
+        let _over = self.all();
+        self.search.is_met()
+    }
+
+    fn all(&mut self) -> Result<(), Over> {
+        let mut seen: Vec<Seen> = Vec::new();
+        let here = self.space.here();
+        if self.space.axes.is_empty() {
+            return Ok(());
+        }
+        seen.extend(self.look(&here)?.map(|distance| (here.clone(), distance)));
+        for along in 0..self.space.axes.len() {
+            self.line(&here, along, 4 * PARTS, &mut seen)?;
+        }
+        // First from what lies around, which is most often enough, then through all of the box.
+        self.nearer(&mut seen, 1)?;
+        for along in 0..self.space.axes.len() {
+            for anchor in self.space.anchors(along) {
+                self.line(&anchor, along, PARTS, &mut seen)?;
+            }
+        }
+        self.nearer(&mut seen, STARTS)
+    }
+
+    /// Goes on from the points that came nearest.
+    fn nearer(&mut self, seen: &mut [Seen], starts: usize) -> Result<(), Over> {
+        self.pairs(seen)?;
+        let target = self.search.target;
+        seen.sort_by(|a, b| (a.1 - target).abs().total_cmp(&(b.1 - target).abs()));
+        for start in spread(seen, self.space, starts) {
+            self.climb(start)?;
+        }
+        Ok(())
+    }
+
+    /// The distance of a point; `None` if the task does not allow it.
+    fn look(&mut self, point: &[f64]) -> Result<Option<f64>, Over> {
+        if self.budget == 0 {
+            return Err(Over);
+        }
+        self.budget -= 1;
+        let changes = with(self.combination, &self.space.changes(point));
+        let Some(found) = self.search.look(changes) else {
+            return Ok(None);
+        };
+        if self.search.meets(&found) {
+            return Err(Over);
+        }
+        Ok(Some(found.distance))
+    }
+
+    /// Walks along an axis through a point, from end to end.
+    fn line(&mut self, through: &[f64], along: usize, parts: usize, seen: &mut Vec<Seen>) -> Result<(), Over> {
+        let parts = self.space.parts(along, parts);
+        let mut before: Option<(Point, Option<f64>)> = None;
+        for part in 0..=parts {
+            let mut point = through.to_vec();
+            point[along] = self.space.at(along, part, parts);
+            let distance = self.look(&point)?;
+            match (&before, distance) {
+                (Some((last, Some(near))), Some(far)) => self.between((last, *near), (&point, far))?,
+                (Some((last, Some(inside))), None) => self.border((last, *inside), &point, seen)?,
+                (Some((last, None)), Some(inside)) => {
+                    let last = last.clone();
+                    self.border((&point, inside), &last, seen)?;
+                }
+                _ => {}
+            }
+            seen.extend(distance.map(|distance| (point.clone(), distance)));
+            before = Some((point, distance));
+        }
+        Ok(())
+    }
+
+    /// Goes from a point inside towards one that is not allowed, as far as it may.
+    fn border(&mut self, inside: (&[f64], f64), outside: &[f64], seen: &mut Vec<Seen>) -> Result<(), Over> {
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut last = None;
+        for _ in 0..HALVINGS {
+            let t = f64::midpoint(low, high);
+            let point = between(inside.0, outside, t);
+            match self.look(&point)? {
+                Some(distance) => {
+                    last = Some((point, distance));
+                    low = t;
+                }
+                None => high = t,
+            }
+        }
+        if let Some((point, distance)) = last {
+            self.between(inside, (&point, distance))?;
+            seen.push((point, distance));
+        }
+        Ok(())
+    }
+
+    /// Halves the stretch between two points on either side of the wanted distance.
+    fn between(&mut self, a: (&[f64], f64), b: (&[f64], f64)) -> Result<(), Over> {
+        let target = self.search.target;
+        if (a.1 < target) == (b.1 < target) {
+            return Ok(());
+        }
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let t = f64::midpoint(low, high);
+            // Where nothing is allowed in between, the two are not on one way.
+            let Some(distance) = self.look(&between(a.0, b.0, t))? else {
+                return Ok(());
+            };
+            if (distance < target) == (a.1 < target) {
+                low = t;
+            } else {
+                high = t;
+            }
+        }
+        Ok(())
+    }
+
+    /// Tries the straight ways between points that are nearer and points that are farther than wanted.
+    fn pairs(&mut self, seen: &[Seen]) -> Result<(), Over> {
+        let target = self.search.target;
+        let side = |far: bool| {
+            let mut side: Vec<&Seen> = seen
+                .iter()
+                .filter(|(_, distance)| (*distance >= target) == far)
+                .collect();
+            side.sort_by(|a, b| (a.1 - target).abs().total_cmp(&(b.1 - target).abs()));
+            side
+        };
+        let (near, far) = (side(false), side(true));
+        for a in near.iter().take(PAIRS / 4) {
+            for b in far.iter().take(PAIRS / 4) {
+                self.between((&a.0, a.1), (&b.0, b.1))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes from a point by ever smaller steps in whatever direction brings it nearer to the wanted distance.
+    fn climb(&mut self, (start, distance): Seen) -> Result<(), Over> {
+        let target = self.search.target;
+        let directions = directions(self.space.axes.len());
+        let (mut at, mut distance, mut step) = (start, distance, 0.25);
+        for _ in 0..FINENESS {
+            let mut moved = true;
+            while moved {
+                moved = false;
+                for direction in &directions {
+                    let mut point = at.clone();
+                    for (axis, sign) in direction {
+                        let Axis {
+                            low, high, is_whole, ..
+                        } = &self.space.axes[*axis];
+                        let least = if *is_whole { 1.0 } else { 0.0 };
+                        point[*axis] = (point[*axis] + sign * ((high - low) * step).max(least)).clamp(*low, *high);
+                    }
+                    if point == at {
+                        continue;
+                    }
+                    let Some(found) = self.look(&point)? else { continue };
+                    self.between((&at, distance), (&point, found))?;
+                    if (found - target).abs() < (distance - target).abs() {
+                        (at, distance, moved) = (point, found, true);
+                    }
+                }
+            }
+            step /= 2.0;
+        }
+        Ok(())
+    }
+}
+
+/// The nearest points, of which no two lie close together.
+fn spread(sorted: &[Seen], space: &Space, most: usize) -> Vec<Seen> {
+    let mut kept: Vec<Seen> = Vec::new();
+    for (point, distance) in sorted {
+        let is_close = |(other, _): &Seen| {
+            let mut apart = space.axes.iter().zip(point.iter().zip(other));
+            apart.all(|(axis, (a, b))| (a - b).abs() <= 0.1 * (axis.high - axis.low))
+        };
+        if !kept.iter().any(is_close) {
+            kept.push((point.clone(), *distance));
+            if kept.len() == most {
+                break;
+            }
+        }
+    }
+    kept
+}
+
+fn between(a: &[f64], b: &[f64], t: f64) -> Point {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| if a == b { *a } else { a + (b - a) * t })
+        .collect()
+}
