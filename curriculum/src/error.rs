@@ -249,13 +249,34 @@ pub enum CurriculumError {
         /// What the scenario has there.
         expected: String,
     },
+    /// A variant that was named for a probe differs in something else.
+    #[error(
+        "probing the {element}: found {a} and {b}, which differ in {differs}, expected variants that differ in the {element} alone; \
+         name others, or the task to have them chosen"
+    )]
+    NotAlone {
+        /// The one.
+        a: String,
+        /// The other.
+        b: String,
+        /// The element.
+        element: &'static str,
+        /// What they differ in.
+        differs: String,
+    },
     /// A world of the scenario cannot be drawn.
-    #[error("block {block}, regime {regime}: {source}")]
+    #[error("block {block}, regime {regime}, experience {experience}, {variant}{}: {source}", on_its_way(*progress))]
     World {
         /// The block, from 0.
         block: usize,
         /// The regime in it, from 0.
         regime: usize,
+        /// The experience, from 0 over the whole lifetime.
+        experience: u64,
+        /// What it is called: `task#variant`, in a drift with both ends.
+        variant: String,
+        /// How far on its way a drift is, 0..=1; 0 where nothing drifts.
+        progress: f64,
         /// Why.
         source: GeneratorError,
     },
@@ -323,6 +344,14 @@ fn and_blocks(blocks: Option<u32>) -> String {
     blocks.map_or_else(String::new, |blocks| format!(" and {blocks} learning blocks"))
 }
 
+fn on_its_way(progress: f64) -> String {
+    if progress == 0.0 {
+        String::new()
+    } else {
+        format!(" at {progress} of its way")
+    }
+}
+
 impl CurriculumError {
     /// The stable name of this kind of error.
     pub fn code(&self) -> &'static str {
@@ -350,6 +379,7 @@ impl CurriculumError {
             Self::NoSuchExperience { .. } => "curriculum/no-such-experience",
             Self::OtherRun { .. } => "curriculum/other-run",
             Self::OtherRow { .. } => "curriculum/other-row",
+            Self::NotAlone { .. } => "curriculum/not-alone",
             Self::World { .. } => "curriculum/world",
             Self::Episode { .. } => "curriculum/episode",
             Self::NoEvaluations { .. } => "curriculum/no-evaluations",
@@ -463,9 +493,18 @@ mod tests {
                 found: "experience 9 in block 1-test, t_v {}".into(),
                 expected: "experience 7 in block 0-train, t_v {}".into(),
             },
+            CurriculumError::NotAlone {
+                a: "t#blue".into(),
+                b: "t#dusk".into(),
+                element: "reward",
+                differs: "reward, observation".into(),
+            },
             CurriculumError::World {
                 block: 1,
                 regime: 0,
+                experience: 37,
+                variant: "t#v..w".into(),
+                progress: 0.25,
                 source: GeneratorError::TooMany {
                     variant: "t#v".into(),
                     seed: 1,

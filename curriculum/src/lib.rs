@@ -11,12 +11,12 @@ mod transfer;
 
 pub use design::{
     Choice, Control, Design, Drifting, Evaluate, Hypothesis, MAX_BLOCKS, MAX_PROBED, MAX_SEED, MAX_STEPS, Picked,
-    Steps, arrange, control, design, design_control, distances, experts, probe, steps,
+    Steps, arrange, control, design, design_control, distances, experts, probe, probe_named, steps,
 };
 pub use error::CurriculumError;
 pub use run::{
-    COLUMNS, Due, Experience, FoundWorld, Journal, MOST_STEPS, Plan, Progress, RegimeSummary, Sources, Summary,
-    Surroundings, log_name, run,
+    COLUMNS, Due, Experience, Failed, FoundWorld, Journal, LeftOut, MOST_STEPS, Plan, Progress, RegimeSummary, Sources,
+    Summary, Surroundings, Trial, Tried, Undrawable, log_name, run, same_log_name, try_worlds,
 };
 pub use transfer::{
     DirectionReport, PairTransfer, TransferOptions, TransferReport, log_name_of_label, transfer_report,

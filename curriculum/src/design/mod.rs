@@ -20,7 +20,7 @@ pub use evaluation::Evaluate;
 pub use form::MAX_BLOCKS;
 pub use hypothesis::{Control, Hypothesis, arrange, control};
 pub use picked::{Picked, distances};
-pub use probe::{MAX_PROBED, probe};
+pub use probe::{MAX_PROBED, probe, probe_named};
 pub use steps::{MAX_STEPS, Steps, steps};
 
 use crate::CurriculumError;

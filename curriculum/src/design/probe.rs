@@ -84,6 +84,54 @@ pub fn probe(
     }
 }
 
+/// Variants for a curriculum that probes one element, where somebody has named which: the anchor first, then all others named, in their
+/// order; if more are `wanted`, others are made as [`probe`] does.
+///
+/// # Errors
+/// [`CurriculumError::NotAlone`] for a variant that differs from the anchor or another named one in something else, or not at all; else
+/// as [`probe`].
+pub fn probe_named(
+    task: &str,
+    named: &[Variant],
+    anchor: &Variant,
+    element: Element,
+    wanted: Option<usize>,
+) -> Result<Vec<Picked>, CurriculumError> {
+    let measure = measure_of(anchor);
+    let mut met = vec![anchor];
+    for variant in named.iter().filter(|variant| variant.name() != anchor.name()) {
+        if variant.task().name() != anchor.task().name() {
+            return Err(CurriculumError::SeveralTasks {
+                a: anchor.id(),
+                b: variant.id(),
+            });
+        }
+        for before in &met {
+            let apart = measure.between(before, variant)?;
+            if in_element(&apart, Some(element)) <= ALIKE || !is_alone(&apart, element) {
+                let differs = Element::ALL
+                    .into_iter()
+                    .filter(|one| in_element(&apart, Some(*one)) > ALIKE);
+                let differs: Vec<&str> = differs.map(Element::name).collect();
+                return Err(CurriculumError::NotAlone {
+                    a: before.id(),
+                    b: variant.id(),
+                    element: element.name(),
+                    differs: if differs.is_empty() {
+                        "nothing".to_owned()
+                    } else {
+                        differs.join(", ")
+                    },
+                });
+            }
+        }
+        met.push(variant);
+    }
+    let count = wanted.unwrap_or(met.len()).max(met.len());
+    let named: Vec<Variant> = met.into_iter().cloned().collect();
+    probe(task, &named, anchor, element, Some(count))
+}
+
 /// The `wanted` that lie farthest apart, in the order they had.
 fn spread_out(found: Vec<Picked>, element: Element, wanted: usize) -> Result<Vec<Picked>, CurriculumError> {
     let matrix = distances(&found, Some(element))?;

@@ -1,7 +1,8 @@
 //! The numbers that every experience is logged with. What the file looks like is `metrics`'.
 
-use driftworld_metrics::{BlockType, Record, Timestamp};
+use driftworld_metrics::{BlockType, Record, TaskParams, Timestamp};
 use driftworld_spec::BlockKind;
+use serde_json::{Map, Value};
 
 use super::episode::Experience;
 use super::gap::Gap;
@@ -24,6 +25,10 @@ use super::plan::Planned;
 ///   element of the decision process; 0 where nothing can differ in it.
 ///
 /// Variants of one task are compared by what they declare, others by their first 16 worlds under seed 0.
+///
+/// An experience that was left out because its world cannot be drawn has a row, too, so that numbers go on without a gap: all its columns
+/// are `nan` but for `world_index` and `progress`, and its parameters say under `"skipped"` why. Programs that score a log leave rows
+/// without a value out.
 pub const COLUMNS: [&str; 13] = [
     "reward",
     "success",
@@ -65,6 +70,33 @@ pub(super) fn record(planned: &Planned, number: u64, experience: &Experience, ga
         .zip(values)
         .fold(record, |record, (name, value)| record.with_metric(name, value))
         .with_task_params(planned.params())
+}
+
+/// The key of a row's parameters that says why its experience was left out.
+pub(super) const SKIPPED: &str = "skipped";
+
+/// The row of experience `number`, which was left out.
+pub(super) fn skipped(planned: &Planned, number: u64, reason: &str, now: Timestamp) -> Record {
+    let kind = block_type(planned.kind);
+    let record = Record::new(planned.block as u64, number, kind, &planned.log_name, now);
+    COLUMNS
+        .into_iter()
+        .fold(record, |record, name| {
+            let value = match name {
+                "world_index" => planned.world_index(number),
+                "progress" => planned.progress(number),
+                _ => f64::NAN,
+            };
+            record.with_metric(name, value)
+        })
+        .with_task_params(skipped_params(planned, reason))
+}
+
+/// What a log says of an experience that was left out.
+pub(super) fn skipped_params(planned: &Planned, reason: &str) -> TaskParams {
+    let mut params = Map::clone(&planned.params());
+    params.insert(SKIPPED.to_owned(), Value::from(reason));
+    TaskParams::from(params)
 }
 
 pub(super) fn block_type(kind: BlockKind) -> BlockType {

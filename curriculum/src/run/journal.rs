@@ -82,7 +82,7 @@ impl Journal {
             };
             take(plan, &mut summary, number, row).map_err(|(found, expected)| wrong(found, expected))?;
         }
-        summary.finished = summary.experiences == plan.num_experiences();
+        summary.finished = summary.num_over() == plan.num_experiences();
         Ok(Self::new(writer, summary))
     }
 
@@ -100,19 +100,66 @@ impl Journal {
     ///
     /// # Errors
     /// [`CurriculumError::NoSuchExperience`] when all are in the log; [`CurriculumError::Log`] if it cannot be written;
-    /// [`CurriculumError::World`] if the worlds that tell how far it is from what was learned last cannot be drawn.
+    /// [`CurriculumError::World`] if a drift has no variant there.
     pub fn record(
         &mut self,
         plan: &Plan,
         experience: &Experience,
         now: Timestamp,
     ) -> Result<Progress, CurriculumError> {
-        let (number, total) = (self.summary.experiences, plan.num_experiences());
+        let number = self.next(plan)?;
+        let between = plan.regimes[plan.regime_of(number)].between(number)?;
+        self.take(plan, number, experience, between.as_ref(), now)
+    }
+
+    /// Logs that the next experience of the plan is left out, because its world cannot be drawn; false, and nothing is logged, if it
+    /// can. [`run`](crate::run) does this by itself where the plan says [`Undrawable::Skipped`](crate::Undrawable); this is for whoever
+    /// lives experiences elsewhere.
+    ///
+    /// # Errors
+    /// [`CurriculumError::NoSuchExperience`] when all are in the log; [`CurriculumError::Log`] if it cannot be written.
+    pub fn skip(&mut self, plan: &Plan, now: Timestamp) -> Result<bool, CurriculumError> {
+        let number = self.next(plan)?;
+        let drawn = plan.regimes[plan.regime_of(number)].draw(number, None);
+        let Err(why) = drawn else { return Ok(false) };
+        self.leave_out(plan, number, &why.to_string(), now)?;
+        Ok(true)
+    }
+
+    fn next(&self, plan: &Plan) -> Result<u64, CurriculumError> {
+        let (number, total) = (self.num_experiences(), plan.num_experiences());
         if number >= total {
             return Err(CurriculumError::NoSuchExperience { found: number, total });
         }
-        let between = plan.regimes[plan.regime_of(number)].between(number)?;
-        self.take(plan, number, experience, between.as_ref(), now)
+        Ok(number)
+    }
+
+    /// Logs that experience `number`, which is the next, is left out.
+    pub(super) fn leave_out(
+        &mut self,
+        plan: &Plan,
+        number: u64,
+        reason: &str,
+        now: Timestamp,
+    ) -> Result<Progress, CurriculumError> {
+        let planned = &plan.regimes[plan.regime_of(number)];
+        self.writer.write(&columns::skipped(planned, number, reason, now))?;
+        self.summary.leave_out(planned, number, reason);
+        Ok(self.progress(plan, number, f64::NAN))
+    }
+
+    /// How far the run has come with experience `number`; also notes whether that was the last.
+    fn progress(&mut self, plan: &Plan, number: u64, reward: f64) -> Progress {
+        let (planned, total) = (&plan.regimes[plan.regime_of(number)], plan.num_experiences());
+        self.summary.finished = self.num_experiences() == total;
+        Progress {
+            done: self.num_experiences(),
+            total,
+            block: planned.block,
+            kind: planned.kind,
+            variant: planned.id.clone(),
+            reward,
+        }
     }
 
     /// Logs experience `number`, which is the next; `between` is its variant where its regime drifts.
@@ -125,39 +172,30 @@ impl Journal {
         now: Timestamp,
     ) -> Result<Progress, CurriculumError> {
         let planned = &plan.regimes[plan.regime_of(number)];
-        let gap = self.gap(plan, number, between)?;
+        let gap = self.gap(plan, number, between);
         self.writer
             .write(&columns::record(planned, number, experience, &gap, now))?;
         let success = f64::from(u8::from(experience.success));
         let steps = u64::from(experience.steps);
         self.summary
             .count(planned, number == planned.first, experience.reward, success, steps);
-        self.summary.finished = self.summary.experiences == plan.num_experiences();
-        Ok(Progress {
-            done: self.summary.experiences,
-            total: plan.num_experiences(),
-            block: planned.block,
-            kind: planned.kind,
-            variant: planned.id.clone(),
-            reward: experience.reward,
-        })
+        Ok(self.progress(plan, number, experience.reward))
     }
 
     /// How far an experience is from what was learned last before its regime began.
-    fn gap(&mut self, plan: &Plan, number: u64, between: Option<&Variant>) -> Result<Gap, CurriculumError> {
+    fn gap(&mut self, plan: &Plan, number: u64, between: Option<&Variant>) -> Gap {
         let planned = &plan.regimes[plan.regime_of(number)];
         let Some(index) = planned.learned else {
-            return Ok(Gap::UNKNOWN);
+            return Gap::UNKNOWN;
         };
         let learned = &plan.regimes[index];
         if self.learned.as_ref().is_none_or(|(known, _)| *known != index) {
-            self.learned = Some((index, learned.last()?));
+            self.learned = Some((index, learned.last()));
         }
         let end = self.learned.as_ref().and_then(|(_, end)| end.as_ref());
         let before = learned.subject(learned.first + u64::from(learned.count) - 1, end);
         let here = planned.subject(number, between);
-        let gap = self.gaps.between((&before.0, before.1), (&here.0, here.1));
-        gap.map_err(|source| planned.wrong(source))
+        self.gaps.between((&before.0, before.1), (&here.0, here.1))
     }
 
     /// What the lifetime came to so far.
@@ -165,9 +203,9 @@ impl Journal {
         &self.summary
     }
 
-    /// How many experiences are in the log.
+    /// How many experiences are in the log, those that were left out included.
     pub fn num_experiences(&self) -> u64 {
-        self.summary.experiences
+        self.summary.num_over()
     }
 
     /// Ends the log: asks the disk to have all of it.
@@ -189,6 +227,8 @@ fn take(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> Result
     }
     let planned = &plan.regimes[plan.regime_of(number)];
     let value = |name: &str| row.metric(name).unwrap_or(f64::NAN);
+    let why = row.task_params().get(columns::SKIPPED).and_then(Value::as_str);
+    let params = why.map_or_else(|| planned.params(), |why| columns::skipped_params(planned, why));
     let told = |block: u64, experience: u64, kind, name: &str, params: &TaskParams, [index, progress]: [f64; 2]| {
         let params = Value::Object(Map::clone(params));
         let drift = if progress == 0.0 {
@@ -203,7 +243,7 @@ fn take(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> Result
         number,
         block_type(planned.kind),
         &planned.log_name,
-        &planned.params(),
+        &params,
         [planned.world_index(number), planned.progress(number)],
     );
     let found = told(
@@ -216,6 +256,10 @@ fn take(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> Result
     );
     if found != expected {
         return Err((found, expected));
+    }
+    if let Some(why) = why {
+        summary.leave_out(planned, number, why);
+        return Ok(());
     }
     let steps = value("episode_step_count") as u64;
     summary.count(

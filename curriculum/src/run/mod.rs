@@ -7,8 +7,10 @@ mod episode;
 mod gap;
 mod in_order;
 mod journal;
+mod log_names;
 mod plan;
 mod summary;
+mod undrawable;
 
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -21,8 +23,10 @@ use driftworld_spec::{BlockKind, Variant};
 pub use columns::COLUMNS;
 pub use episode::{Experience, MOST_STEPS};
 pub use journal::Journal;
+pub use log_names::same_log_name;
 pub use plan::{Due, FoundWorld, Plan, Sources, log_name};
-pub use summary::{Progress, RegimeSummary, Summary};
+pub use summary::{LeftOut, Progress, RegimeSummary, Summary};
+pub use undrawable::{Failed, Trial, Tried, Undrawable, try_worlds};
 
 use crate::CurriculumError;
 use episode::Briefing;
@@ -40,6 +44,9 @@ pub struct Surroundings<'a> {
 }
 
 /// Lives a scenario from the first experience that is not in the log to its last, and logs each as soon as it is over.
+///
+/// An experience whose world cannot be drawn ends the run, or is left out, as the plan says ([`Undrawable`]); a log that ended there goes
+/// on with a plan that leaves it out.
 ///
 /// The order of experiences, their worlds and the numbers that the agent begins them with depend on the scenario alone:
 /// a run that was interrupted and taken up again writes what an undisturbed one does. [`Agent::learn`] is called in learning
@@ -59,7 +66,7 @@ pub fn run(
     let (jobs, catalogue) = (around.jobs.get(), around.catalogue.clone());
     let mut life = Life { plan, journal, around };
     let mut desk = Desk::new(plan, catalogue.clone());
-    let mut next = life.journal.summary().experiences;
+    let mut next = life.journal.num_experiences();
     while next < total {
         let learns = agent.learns();
         let end = if learns { plan.end_of_kind(next) } else { total };
@@ -86,10 +93,15 @@ pub fn run(
     Ok(life.journal.summary().clone())
 }
 
-/// An experience that was lived, with the variant that it was an experience of where its regime drifts.
-struct Lived {
-    experience: Experience,
-    between: Option<Variant>,
+/// What became of an experience.
+enum Outcome {
+    /// It was lived; with the variant that it was an experience of where its regime drifts.
+    Lived {
+        experience: Experience,
+        between: Option<Box<Variant>>,
+    },
+    /// It was left out, since its world cannot be drawn.
+    LeftOut { reason: String },
 }
 
 /// Where experiences are lived, one at a time.
@@ -111,14 +123,21 @@ impl<'a> Desk<'a> {
         }
     }
 
-    fn live(&mut self, agent: &mut dyn Agent, number: u64) -> Result<Lived, CurriculumError> {
+    fn live(&mut self, agent: &mut dyn Agent, number: u64) -> Result<Outcome, CurriculumError> {
         let index = self.plan.regime_of(number);
         let planned = &self.plan.regimes[index];
         let sampler = match &mut self.sampler {
             Some((regime, sampler)) if *regime == index => sampler,
             old => &mut old.insert((index, planned.sampler())).1,
         };
-        let assignment = planned.assignment(number, sampler.as_ref())?;
+        let assignment = match planned.draw(number, sampler.as_ref()) {
+            Ok(assignment) => assignment,
+            Err(source) if self.plan.undrawable() == Undrawable::Skipped => {
+                let reason = source.to_string();
+                return Ok(Outcome::LeftOut { reason });
+            }
+            Err(source) => return Err(planned.wrong(number, source)),
+        };
         let failed = |source| CurriculumError::Episode {
             block: planned.block,
             regime: planned.regime,
@@ -137,9 +156,9 @@ impl<'a> Desk<'a> {
             label: planned.label(number),
             learn: planned.kind == BlockKind::Learning,
         };
-        Ok(Lived {
+        Ok(Outcome::Lived {
             experience: episode::live(agent, environment, &briefing).map_err(failed)?,
-            between: assignment.between,
+            between: assignment.between.map(Box::new),
         })
     }
 }
@@ -168,11 +187,15 @@ impl Life<'_, '_> {
     }
 
     /// Logs an experience, counts it and tells whoever watches.
-    fn take(&mut self, number: u64, lived: &Lived) -> Result<ControlFlow<()>, CurriculumError> {
+    fn take(&mut self, number: u64, outcome: &Outcome) -> Result<ControlFlow<()>, CurriculumError> {
         let now = (self.around.now)();
-        let progress = self
-            .journal
-            .take(self.plan, number, &lived.experience, lived.between.as_ref(), now)?;
+        let progress = match outcome {
+            Outcome::Lived { experience, between } => {
+                self.journal
+                    .take(self.plan, number, experience, between.as_deref(), now)?
+            }
+            Outcome::LeftOut { reason } => self.journal.leave_out(self.plan, number, reason, now)?,
+        };
         Ok((self.around.watch)(&progress))
     }
 }

@@ -12,6 +12,8 @@ use serde_json::{Map, Value, json};
 use sha2::{Digest, Sha256};
 
 use super::gap::Subject;
+use super::log_names::LogNames;
+use super::undrawable::Undrawable;
 use crate::CurriculumError;
 
 /// Where the tasks and worlds of a scenario come from, since nothing here reads files. An error is its message.
@@ -40,6 +42,9 @@ pub struct Plan {
     pub(super) prints: BTreeMap<String, Value>,
     /// What has to be known about world files, by path.
     pub(super) notes: BTreeMap<String, String>,
+    /// What becomes of experiences whose worlds cannot be drawn.
+    pub(super) undrawable: Undrawable,
+    tasks: BTreeMap<String, Arc<TaskSpec>>,
 }
 
 /// An experience that is to be lived, for whoever lives it elsewhere than [`run`](crate::run) does.
@@ -77,8 +82,8 @@ pub(super) struct Planned {
     /// The number of its first experience over the whole lifetime.
     pub(super) first: u64,
     pub(super) count: u32,
-    seed: u64,
-    first_index: u64,
+    pub(super) seed: u64,
+    pub(super) first_index: u64,
     max_steps: Option<u32>,
     source: Source,
     /// How many regimes of learning before it begin with the same variant under the same seed.
@@ -118,18 +123,33 @@ impl Plan {
     /// [`CurriculumError::Unknown`], [`CurriculumError::WorldFile`], [`CurriculumError::World`] where the first world of a
     /// variant cannot be drawn, [`CurriculumError::SameLogName`].
     pub fn new(scenario: &Scenario, sources: &mut Sources) -> Result<Self, CurriculumError> {
+        Self::with_undrawable(scenario, sources, Undrawable::Refused)
+    }
+
+    /// As [`Plan::new`], and says what becomes of experiences whose worlds cannot be drawn: where they are skipped, no world that
+    /// cannot be drawn is an error.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn with_undrawable(
+        scenario: &Scenario,
+        sources: &mut Sources,
+        undrawable: Undrawable,
+    ) -> Result<Self, CurriculumError> {
         let mut plan = Self {
             scenario: scenario.clone(),
             regimes: Vec::new(),
             prints: BTreeMap::new(),
             notes: BTreeMap::new(),
+            undrawable,
+            tasks: BTreeMap::new(),
         };
         let mut finder = Finder {
             sources,
             tasks: BTreeMap::new(),
             worlds: BTreeMap::new(),
         };
-        let mut log_names: BTreeMap<String, String> = BTreeMap::new();
+        let mut log_names = LogNames::default();
         // For each variant and seed, the regimes in which it was learned.
         let mut rounds: BTreeMap<(String, u64), u64> = BTreeMap::new();
         let (mut first, mut learned) = (0, None);
@@ -137,16 +157,7 @@ impl Plan {
             for (r, regime) in block.regimes.iter().enumerate() {
                 let mut planned = plan.planned(&mut finder, (b, block), (r, regime), first, learned)?;
                 first += u64::from(planned.count);
-                let called = called(regime);
-                if let Some(other) = log_names.insert(planned.log_name.clone(), called.clone())
-                    && other != called
-                {
-                    return Err(CurriculumError::SameLogName {
-                        a: other,
-                        b: called,
-                        name: planned.log_name,
-                    });
-                }
+                log_names.take(regime, &planned.log_name)?;
                 if planned.kind == BlockKind::Learning {
                     learned = Some(plan.regimes.len());
                     let [begins, _] = planned.ends();
@@ -158,6 +169,7 @@ impl Plan {
             }
         }
         plan.put_labels();
+        plan.tasks = finder.tasks;
         Ok(plan)
     }
 
@@ -206,7 +218,7 @@ impl Plan {
             kind: planned.kind,
             variant: &planned.id,
             seed: is_drawn.then_some(planned.seed),
-            index: is_drawn.then(|| planned.first_index + (number - planned.first)),
+            index: is_drawn.then(|| planned.index_of(number)),
             progress: planned.progress(number),
             chance: planned.chance(number),
             label: planned.label(number),
@@ -217,6 +229,16 @@ impl Plan {
     pub(super) fn regime_of(&self, number: u64) -> usize {
         // The first regime begins with experience 0.
         self.regimes.partition_point(|planned| planned.first <= number) - 1
+    }
+
+    /// What becomes of experiences whose worlds cannot be drawn.
+    pub fn undrawable(&self) -> Undrawable {
+        self.undrawable
+    }
+
+    /// Every task that it draws worlds of, by the name that the scenario calls it by.
+    pub fn tasks(&self) -> &BTreeMap<String, Arc<TaskSpec>> {
+        &self.tasks
     }
 
     /// Where the unbroken stretch of blocks of one kind that an experience belongs to ends.
@@ -276,25 +298,33 @@ impl Plan {
 
     /// Takes down what a regime's worlds are made from.
     fn print(&mut self, planned: &Planned) -> Result<(), CurriculumError> {
-        let draw = |variant: &Variant| {
-            let world = Sampler::new(variant, planned.seed).world(planned.first_index);
-            let world = world.map_err(|source| planned.wrong(source))?.hash();
+        let undrawable = self.undrawable;
+        let mut take = |variant: &Variant, is_lived: bool| {
+            let Entry::Vacant(place) = self.prints.entry(variant.id()) else {
+                return Ok(());
+            };
             // The variant says what all worlds are made from, the first world that they are still made in the same way.
-            Ok(json!({ "variant": variant.hash(), "first_world": world }))
-        };
-        let mut take = |id: String, hash: &dyn Fn() -> Result<Value, CurriculumError>| {
-            if let Entry::Vacant(place) = self.prints.entry(id) {
-                place.insert(hash()?);
-            }
+            let world = match Sampler::new(variant, planned.seed).world(planned.first_index) {
+                Ok(world) => Some(world.hash()),
+                Err(source) if is_lived && undrawable == Undrawable::Refused => {
+                    return Err(planned.wrong(planned.first, source));
+                }
+                Err(_) => None,
+            };
+            place.insert(json!({ "variant": variant.hash(), "first_world": world }));
             Ok(())
         };
         match &planned.source {
-            Source::Variant(variant) => take(variant.id(), &|| draw(variant)),
+            Source::Variant(variant) => take(variant, true),
             Source::Drift { from, to, .. } => {
-                take(from.id(), &|| draw(from))?;
-                take(to.id(), &|| draw(to))
+                take(from, planned.progress(planned.first) == 0.0)?;
+                take(to, false)
             }
-            Source::World { world, .. } => take(planned.id.clone(), &|| Ok(json!(world.hash()))),
+            Source::World { world, .. } => {
+                let hash = || json!(world.hash());
+                self.prints.entry(planned.id.clone()).or_insert_with(hash);
+                Ok(())
+            }
         }
     }
 
@@ -344,12 +374,33 @@ impl Planned {
         Some(if come < 0.5 { from } else { to })
     }
 
-    pub(super) fn wrong(&self, source: GeneratorError) -> CurriculumError {
+    pub(super) fn wrong(&self, number: u64, source: GeneratorError) -> CurriculumError {
         CurriculumError::World {
             block: self.block,
             regime: self.regime,
+            experience: number,
+            variant: self.id.clone(),
+            progress: self.progress(number),
             source,
         }
+    }
+
+    /// Whether its worlds are drawn, not read from a file.
+    pub(super) fn is_drawn(&self) -> bool {
+        !matches!(self.source, Source::World { .. })
+    }
+
+    /// What tells its drift from others between the same variants; nothing where it does not drift.
+    pub(super) fn way(&self) -> String {
+        match &self.source {
+            Source::Drift { drift, .. } => format!(" {drift:?}"),
+            _ => String::new(),
+        }
+    }
+
+    /// The number of an experience's world under its seed.
+    pub(super) fn index_of(&self, number: u64) -> u64 {
+        self.first_index + (number - self.first)
     }
 
     /// The sampler of its worlds, where they are all drawn from one variant.
@@ -362,17 +413,21 @@ impl Planned {
 
     /// What experience `number` of the lifetime is made of. `sampler` is this regime's own.
     pub(super) fn assignment(&self, number: u64, sampler: Option<&Sampler>) -> Result<Assignment, CurriculumError> {
-        let index = self.first_index + (number - self.first);
-        let between = self.between(number)?;
-        let drawn = match &self.source {
-            Source::World { world, .. } => Ok(World::clone(world)),
+        self.draw(number, sampler).map_err(|source| self.wrong(number, source))
+    }
+
+    /// As [`Planned::assignment`], with the error as the generator says it.
+    pub(super) fn draw(&self, number: u64, sampler: Option<&Sampler>) -> Result<Assignment, GeneratorError> {
+        let index = self.index_of(number);
+        let between = self.variant_of(number)?;
+        let mut world = match &self.source {
+            Source::World { world, .. } => World::clone(world),
             Source::Variant(variant) => match sampler {
-                Some(sampler) => sampler.world(index),
-                None => Sampler::new(variant, self.seed).world(index),
+                Some(sampler) => sampler.world(index)?,
+                None => Sampler::new(variant, self.seed).world(index)?,
             },
-            Source::Drift { from, .. } => Sampler::new(between.as_ref().unwrap_or(from), self.seed).world(index),
+            Source::Drift { from, .. } => Sampler::new(between.as_ref().unwrap_or(from), self.seed).world(index)?,
         };
-        let mut world = drawn.map_err(|source| self.wrong(source))?;
         if let Some(max_steps) = self.max_steps {
             world.limit_steps(max_steps);
         }
@@ -385,7 +440,7 @@ impl Planned {
     /// variants under one seed. Every evaluation of a world has the same, so that an agent that has not changed earns the
     /// same in it; what is learned in the same world again has another, so that a learner does not try the same again.
     pub(super) fn chance(&self, number: u64) -> u64 {
-        let index = self.first_index + (number - self.first);
+        let index = self.index_of(number);
         let mut hash = Sha256::new();
         let task = self.id.rsplit_once('#').map_or(self.id.as_str(), |(task, _)| task);
         hash.update(task.as_bytes());
@@ -401,13 +456,17 @@ impl Planned {
 
     /// The variant of an experience of a drift.
     pub(super) fn between(&self, number: u64) -> Result<Option<Variant>, CurriculumError> {
+        self.variant_of(number).map_err(|source| self.wrong(number, source))
+    }
+
+    /// As [`Planned::between`], with the error as the generator says it.
+    pub(super) fn variant_of(&self, number: u64) -> Result<Option<Variant>, GeneratorError> {
         let Source::Drift { way, drift, .. } = &self.source else {
             return Ok(None);
         };
         let experience = (number - self.first) as u32;
-        let index = self.first_index + (number - self.first);
-        let variant = way.at(drift.progress(experience, self.count), index);
-        variant.map(Some).map_err(|source| self.wrong(source))
+        way.at(drift.progress(experience, self.count), self.index_of(number))
+            .map(Some)
     }
 
     /// What experience `number` is an experience of, under a name that is its own; `between` is its variant in a drift.
@@ -426,15 +485,16 @@ impl Planned {
         }
     }
 
-    /// The variant of its last experience, where it drifts.
-    pub(super) fn last(&self) -> Result<Option<Variant>, CurriculumError> {
-        self.between(self.first + u64::from(self.count) - 1)
+    /// The variant of its last experience that has one, where it drifts: on the way of a drift the task may forbid some.
+    pub(super) fn last(&self) -> Option<Variant> {
+        let mut numbers = (self.first..self.first + u64::from(self.count)).rev();
+        numbers.find_map(|number| self.variant_of(number).transpose()?.ok())
     }
 
     /// The number of an experience's world among those of its variant and seed; NaN for a world from a file.
     pub(super) fn world_index(&self, number: u64) -> f64 {
         match self.source {
-            Source::Variant(_) | Source::Drift { .. } => (self.first_index + (number - self.first)) as f64,
+            Source::Variant(_) | Source::Drift { .. } => self.index_of(number) as f64,
             Source::World { .. } => f64::NAN,
         }
     }
@@ -527,11 +587,7 @@ impl Finder<'_, '_> {
             .map_err(|error| unknown(&drift.to, error.to_string()))?
             .expect("a regime with a drift has its end");
         let way = Drift::declared(drift, from.clone(), to.clone(), regime.seed);
-        let way = way.map_err(|source| CurriculumError::World {
-            block,
-            regime: regime_number,
-            source,
-        })?;
+        let way = way.map_err(|error| unknown(&drift.to, error.to_string()))?;
         Ok(Source::Drift {
             from,
             to,
@@ -539,15 +595,6 @@ impl Finder<'_, '_> {
             drift: Box::new(drift.clone()),
         })
     }
-}
-
-/// What a regime's variant is called in the scenario.
-fn called(regime: &Regime) -> String {
-    let to = regime
-        .drift
-        .as_ref()
-        .map_or_else(String::new, |drift| format!("..{}", drift.variant_name()));
-    format!("{}#{}{to}", regime.task, regime.variant_name())
 }
 
 /// The name of a variant in a log: letters and digits of the task's name, an underscore, those of the variant's.

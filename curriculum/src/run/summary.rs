@@ -17,7 +17,7 @@ pub struct Progress {
     pub kind: BlockKind,
     /// Its variant, as `task#variant`.
     pub variant: String,
-    /// What it paid.
+    /// What it paid; NaN for one that was left out.
     pub reward: f64,
 }
 
@@ -26,12 +26,32 @@ pub struct Progress {
 pub struct Summary {
     /// Experiences that were lived.
     pub experiences: u64,
-    /// Steps in all of them.
+    /// Experiences that were left out because their worlds could not be drawn.
+    pub skipped: u64,
+    /// The first of those, 100 at most.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<LeftOut>,
+    /// Steps in all that were lived.
     pub steps: u64,
     /// Whether the whole scenario was lived.
     pub finished: bool,
     /// One row for each regime that was begun.
     pub regimes: Vec<RegimeSummary>,
+}
+
+/// An experience that was left out.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct LeftOut {
+    /// The experience, from 0 over the whole lifetime.
+    pub experience: u64,
+    /// The block, from 0.
+    pub block: usize,
+    /// The variant, as `task#variant`.
+    pub variant: String,
+    /// How far on its way a drift is, 0..=1; 0 where nothing drifts.
+    pub progress: f64,
+    /// Why its world could not be drawn.
+    pub reason: String,
 }
 
 /// What a regime came to.
@@ -43,35 +63,64 @@ pub struct RegimeSummary {
     pub kind: BlockKind,
     /// The variant, as `task#variant`.
     pub variant: String,
-    /// Experiences.
+    /// Experiences that were lived.
     pub experiences: u32,
-    /// Mean of their rewards.
+    /// Experiences that were left out.
+    pub skipped: u32,
+    /// Mean of the rewards of those that were lived.
     pub mean_reward: f64,
     /// Share of them that were successes.
     pub success_rate: f64,
 }
 
+/// The most experiences that a summary names as left out.
+const MOST_NAMED: usize = 100;
+
 impl Summary {
+    /// Experiences that are over, lived or left out.
+    pub fn num_over(&self) -> u64 {
+        self.experiences + self.skipped
+    }
+
     /// Takes the next experience into account; `first` says that its regime begins with it.
     pub(super) fn count(&mut self, planned: &Planned, first: bool, reward: f64, success: f64, steps: u64) {
-        if first {
+        self.experiences += 1;
+        self.steps += steps;
+        let row = self.row(planned, first);
+        let before = f64::from(row.experiences);
+        row.experiences += 1;
+        let mean = |old: f64, new: f64| (old * before + new) / (before + 1.0);
+        row.mean_reward = mean(row.mean_reward, reward);
+        row.success_rate = mean(row.success_rate, success);
+    }
+
+    /// Takes into account that the next experience, `number`, is left out.
+    pub(super) fn leave_out(&mut self, planned: &Planned, number: u64, reason: &str) {
+        self.skipped += 1;
+        self.row(planned, number == planned.first).skipped += 1;
+        if self.left_out.len() < MOST_NAMED {
+            self.left_out.push(LeftOut {
+                experience: number,
+                block: planned.block,
+                variant: planned.id.clone(),
+                progress: planned.progress(number),
+                reason: reason.to_owned(),
+            });
+        }
+    }
+
+    fn row(&mut self, planned: &Planned, first: bool) -> &mut RegimeSummary {
+        if first || self.regimes.is_empty() {
             self.regimes.push(RegimeSummary {
                 block: planned.block,
                 kind: planned.kind,
                 variant: planned.id.clone(),
                 experiences: 0,
+                skipped: 0,
                 mean_reward: 0.0,
                 success_rate: 0.0,
             });
         }
-        self.experiences += 1;
-        self.steps += steps;
-        if let Some(row) = self.regimes.last_mut() {
-            let before = f64::from(row.experiences);
-            row.experiences += 1;
-            let mean = |old: f64, new: f64| (old * before + new) / (before + 1.0);
-            row.mean_reward = mean(row.mean_reward, reward);
-            row.success_rate = mean(row.success_rate, success);
-        }
+        self.regimes.last_mut().expect("there is one, or one was pushed above")
     }
 }

@@ -1,0 +1,79 @@
+//! Variants that a log could not tell apart: names that are one when cut to letters and digits. How they are cut is in `plan.rs`.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use driftworld_spec::{Regime, Scenario, TaskSpec};
+
+use super::plan::log_name;
+use crate::CurriculumError;
+
+/// The names that a log has so far, and what the scenario calls what they stand for.
+#[derive(Default)]
+pub(super) struct LogNames(BTreeMap<String, String>);
+
+impl LogNames {
+    /// Takes a name for what a regime is about; an error if it stands for something else already.
+    pub(super) fn take(&mut self, regime: &Regime, name: &str) -> Result<(), CurriculumError> {
+        let called = called(regime);
+        match self.0.insert(name.to_owned(), called.clone()) {
+            Some(other) if other != called => Err(CurriculumError::SameLogName {
+                a: other,
+                b: called,
+                name: name.to_owned(),
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The first two variants of a scenario that its log could not tell apart, as an error. `task` is asked for the tasks that the scenario
+/// names; where it has none, the name in the scenario is taken for the task's own.
+///
+/// # Example
+/// ```
+/// use driftworld_curriculum::same_log_name;
+/// use driftworld_spec::Scenario;
+/// let regime = |variant: &str| format!(r#"{{ "task": "t", "variant": "{variant}", "count": 1 }}"#);
+/// let text = format!(
+///     r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{}, {}] }}] }}"#,
+///     regime("two-a"), regime("twoa")
+/// );
+/// let scenario = Scenario::from_json("s", &text)?;
+/// let error = same_log_name(&scenario, |_| None).expect("both are t_twoa");
+/// assert!(error.to_string().contains("t_twoa"));
+/// # Ok::<(), driftworld_spec::SpecError>(())
+/// ```
+pub fn same_log_name(
+    scenario: &Scenario,
+    mut task: impl FnMut(&str) -> Option<Arc<TaskSpec>>,
+) -> Option<CurriculumError> {
+    let mut names = LogNames::default();
+    let mut tasks: BTreeMap<&str, String> = BTreeMap::new();
+    for regime in scenario.blocks.iter().flat_map(|block| &block.regimes) {
+        // A world from a file is filed under what the scenario calls its task.
+        let own = match &regime.world {
+            Some(_) => regime.task.as_str(),
+            None => tasks.entry(&regime.task).or_insert_with(|| {
+                task(&regime.task).map_or_else(|| regime.task.clone(), |task| task.name().to_owned())
+            }),
+        };
+        let variant = match &regime.drift {
+            Some(drift) => format!("{}to{}", regime.variant_name(), drift.variant_name()),
+            None => regime.variant_name().to_owned(),
+        };
+        if let Err(error) = names.take(regime, &log_name(own, &variant)) {
+            return Some(error);
+        }
+    }
+    None
+}
+
+/// What a regime's variant is called in the scenario.
+fn called(regime: &Regime) -> String {
+    let to = regime
+        .drift
+        .as_ref()
+        .map_or_else(String::new, |drift| format!("..{}", drift.variant_name()));
+    format!("{}#{}{to}", regime.task, regime.variant_name())
+}

@@ -1,0 +1,195 @@
+//! Worlds that cannot be drawn: what a run does with them, and trying them before it. Why one cannot be drawn is the generator's to say.
+
+use std::collections::BTreeSet;
+
+use driftworld_generator::{GeneratorError, Sampler};
+use driftworld_spec::Variant;
+use serde::Serialize;
+
+use super::plan::{Plan, Planned};
+
+/// The most experiences of a drift whose variants are looked at, and the most failures that are told one by one.
+const MOST_ON_THE_WAY: u32 = 100_000;
+const MOST_TOLD: usize = 100;
+
+/// What becomes of an experience whose world cannot be drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Undrawable {
+    /// The run stops there.
+    #[default]
+    Refused,
+    /// It is left out: the log has a row for it in which every number of what was lived is no value, and the reason.
+    Skipped,
+}
+
+/// A world that cannot be drawn.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Failed {
+    /// The experience, from 0 over the whole lifetime; nothing outside of a scenario.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub experience: Option<u64>,
+    /// The number of the world under its seed.
+    pub index: u64,
+    /// How far on its way a drift is, 0..=1; 0 where nothing drifts.
+    pub progress: f64,
+    /// The code of the error, such as `generator/no-place`.
+    pub code: &'static str,
+    /// Why.
+    pub reason: String,
+}
+
+/// What came of drawing some worlds of a variant, or of a regime of a scenario.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Trial {
+    /// The block, from 0; nothing outside of a scenario.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub block: Option<usize>,
+    /// The variant as `task#variant`, in a drift with both ends.
+    pub variant: String,
+    /// The seed of its worlds.
+    pub seed: u64,
+    /// How many worlds were drawn, those that failed included.
+    pub worlds: u64,
+    /// How many failed because an object or the agent found no place.
+    pub placement: u64,
+    /// How many failed because what the task requires did not hold.
+    pub requirement: u64,
+    /// How many failed for another reason.
+    pub other: u64,
+    /// The first that failed, 100 at most.
+    pub failed: Vec<Failed>,
+}
+
+impl Trial {
+    fn new(block: Option<usize>, variant: String, seed: u64) -> Self {
+        Self {
+            block,
+            variant,
+            seed,
+            worlds: 0,
+            placement: 0,
+            requirement: 0,
+            other: 0,
+            failed: Vec::new(),
+        }
+    }
+
+    /// How many worlds could not be drawn.
+    pub fn num_failed(&self) -> u64 {
+        self.placement + self.requirement + self.other
+    }
+
+    fn count(&mut self, error: &GeneratorError, experience: Option<u64>, index: u64, progress: f64) {
+        let kind = match error {
+            GeneratorError::NoPlace { .. } | GeneratorError::NoStart { .. } => &mut self.placement,
+            GeneratorError::Requirement { .. } | GeneratorError::Between(_) => &mut self.requirement,
+            _ => &mut self.other,
+        };
+        *kind += 1;
+        if self.failed.len() < MOST_TOLD {
+            self.failed.push(Failed {
+                experience,
+                index,
+                progress,
+                code: error.code(),
+                reason: error.to_string(),
+            });
+        }
+    }
+}
+
+/// Draws the first `worlds` worlds of a variant under a seed.
+pub fn try_worlds(variant: &Variant, seed: u64, worlds: u64) -> Trial {
+    let sampler = Sampler::new(variant, seed);
+    let mut trial = Trial::new(None, variant.id(), seed);
+    for index in 0..worlds {
+        trial.worlds += 1;
+        if let Err(error) = sampler.world(index) {
+            trial.count(&error, None, index, 0.0);
+        }
+    }
+    trial
+}
+
+/// What was tried already: scenarios evaluate the same worlds again and again.
+#[derive(Debug, Default)]
+pub struct Tried(BTreeSet<(String, u64, u64, u32)>);
+
+impl Plan {
+    /// Draws so many worlds of each regime, evenly over its experiences from the first to the last, and looks whether every experience
+    /// of a drift has a variant at all: of 100,000 at most, evenly again. Regimes with the same worlds are tried once; those with world
+    /// files have nothing to draw.
+    ///
+    /// A plan that refuses what cannot be drawn has refused the first world of each regime before this is asked: make one with
+    /// [`Undrawable::Skipped`].
+    pub fn try_worlds(&self, worlds: u32, tried: &mut Tried) -> Vec<Trial> {
+        let mut trials = Vec::new();
+        for planned in self.regimes.iter().filter(|planned| planned.is_drawn()) {
+            let way = planned.way();
+            let key = (
+                format!("{}{way}", planned.id),
+                planned.seed,
+                planned.first_index,
+                planned.count,
+            );
+            if worlds > 0 && tried.0.insert(key) {
+                trials.push(planned.try_worlds(worlds));
+            }
+        }
+        trials
+    }
+}
+
+impl Planned {
+    fn try_worlds(&self, worlds: u32) -> Trial {
+        let mut trial = Trial::new(Some(self.block), self.id.clone(), self.seed);
+        let sampler = self.sampler();
+        let drawn: BTreeSet<u32> = evenly(self.count, worlds).collect();
+        let looked: BTreeSet<u32> = match &sampler {
+            Some(_) => BTreeSet::new(),
+            None => evenly(self.count, MOST_ON_THE_WAY).collect(),
+        };
+        for step in drawn.union(&looked) {
+            let number = self.first + u64::from(*step);
+            let result = if drawn.contains(step) {
+                self.draw(number, sampler.as_ref()).map(drop)
+            } else {
+                self.variant_of(number).map(drop)
+            };
+            trial.worlds += u64::from(drawn.contains(step) || result.is_err());
+            if let Err(error) = result {
+                trial.count(&error, Some(number), self.index_of(number), self.progress(number));
+            }
+        }
+        trial
+    }
+}
+
+/// So many of `0..count`, evenly from the first to the last.
+fn evenly(count: u32, wanted: u32) -> impl Iterator<Item = u32> {
+    let wanted = wanted.min(count);
+    let last = u64::from(wanted.max(2) - 1);
+    (0..u64::from(wanted)).map(move |step| (step * u64::from(count - 1) / last) as u32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_lie_evenly_from_the_first_to_the_last() {
+        let check = |count, wanted, expected: &[u32]| {
+            assert_eq!(
+                evenly(count, wanted).collect::<Vec<_>>(),
+                expected,
+                "{wanted} of {count}"
+            );
+        };
+        check(10, 1, &[0]);
+        check(10, 2, &[0, 9]);
+        check(10, 4, &[0, 3, 6, 9]);
+        check(3, 5, &[0, 1, 2]);
+        check(1, 5, &[0]);
+        check(u32::MAX, 3, &[0, u32::MAX / 2, u32::MAX - 1]);
+    }
+}

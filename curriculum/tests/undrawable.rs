@@ -1,0 +1,211 @@
+//! Worlds that cannot be drawn: they stop a run or are left out of it, the same however it is lived, and are found before it.
+
+use std::fs;
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+use driftworld_curriculum::{
+    Choice, CurriculumError, Design, Drifting, Journal, Plan, Progress, Sources, Summary, Surroundings, Tried,
+    Undrawable, design, run, try_worlds,
+};
+use driftworld_env::{Catalogue, RandomAgent};
+use driftworld_generator::sample;
+use driftworld_metrics::{Options, Timestamp, read_log, score, validate_log};
+use driftworld_spec::{DriftSchedule, DriftSwitch, Scenario, TaskSpec};
+
+/// Rocks that find no place in some worlds, and a number whose middle is forbidden.
+fn task() -> Arc<TaskSpec> {
+    let text = r#"{ "version": 2, "name": "quarry", "require": ["x <= 4 or x >= 6"],
+        "parameters": { "x": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 10], "default": 0 } },
+        "world": { "max_steps": 3, "environment_params": { "map_size": [40, 40] } },
+        "groups": [{ "name": "rocks", "count": 4, "object": { "class": "rock" }, "separation": 5,
+            "keep_out": { "walls": 0, "agent": 0 }, "placement": { "box": { "low": [10, 10], "high": [18, 18] } } }],
+        "variants": { "low": {}, "high": { "x": 10 } } }"#;
+    TaskSpec::from_json("quarry.json", text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn scenario(drifting: bool) -> Scenario {
+    let options = Design {
+        learn: 21,
+        evaluate: 4,
+        seed: 3,
+        drifting: drifting.then_some(Drifting {
+            schedule: DriftSchedule::Linear,
+            switch: DriftSwitch::AtPoint,
+        }),
+        ..Design::default()
+    };
+    design(&[Choice::new("quarry", "low"), Choice::new("quarry", "high")], &options).expect("the design is sound")
+}
+
+fn plan(scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, CurriculumError> {
+    let task = task();
+    let mut sources = Sources {
+        task: &mut |_| Ok(Arc::clone(&task)),
+        world: &mut |path| Err(format!("{path}: not there")),
+    };
+    Plan::with_undrawable(scenario, &mut sources, undrawable)
+}
+
+/// Lives at most so many experiences on, by a clock that stands still.
+fn live(plan: &Plan, folder: &Path, jobs: usize, most: u64) -> Result<Summary, CurriculumError> {
+    let mut journal = Journal::resume(folder, plan, "test")?;
+    let end = journal.num_experiences().saturating_add(most);
+    let mut around = Surroundings {
+        now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020"),
+        watch: &mut |progress: &Progress| {
+            if progress.done < end {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        },
+        catalogue: Catalogue::default(),
+        jobs: NonZeroUsize::new(jobs).expect("somebody has to live it"),
+    };
+    let summary = run(plan, &mut RandomAgent::new(0), &mut journal, &mut around)?;
+    journal.finish()?;
+    Ok(summary)
+}
+
+/// Every byte of a log, by file.
+fn bytes(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).expect("it is a folder").flatten() {
+            let path = entry.path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path
+                    .strip_prefix(folder)
+                    .expect("it lies in the folder")
+                    .display()
+                    .to_string();
+                files.push((name, fs::read(&path).expect("it can be read")));
+            }
+        }
+    }
+    files.sort();
+    files
+}
+
+/// The numbers of the experiences that cannot be lived, by drawing each world by itself.
+fn undrawable(plan: &Plan) -> Vec<u64> {
+    (0..plan.num_experiences())
+        .filter(|number| plan.world(*number).is_err())
+        .collect()
+}
+
+#[test]
+fn a_run_leaves_out_what_cannot_be_drawn_and_its_log_is_sound() {
+    for drifting in [false, true] {
+        let scenario = scenario(drifting);
+        let plan = plan(&scenario, Undrawable::Skipped).expect("nothing is refused");
+        let missing = undrawable(&plan);
+        let total = plan.num_experiences();
+        assert!(
+            !missing.is_empty() && (missing.len() as u64) < total,
+            "{missing:?} of {total}"
+        );
+        let folder = tempfile::tempdir().expect("there is room");
+        let log = folder.path().join("log");
+        let summary = live(&plan, &log, 1, u64::MAX).expect("it is lived");
+        assert!(summary.finished);
+        assert_eq!(
+            (summary.skipped, summary.experiences),
+            (missing.len() as u64, total - missing.len() as u64)
+        );
+        let left_out: Vec<u64> = summary.left_out.iter().map(|one| one.experience).collect();
+        assert_eq!(left_out, missing);
+        let told: u32 = summary.regimes.iter().map(|regime| regime.skipped).sum();
+        assert_eq!(u64::from(told), summary.skipped);
+
+        let rows = read_log(&log).expect("the log can be read").rows;
+        assert_eq!(rows.len() as u64, total, "a row for every experience");
+        for (number, row) in (0..).zip(rows.iter()) {
+            assert_eq!(row.exp_num(), number);
+            let is_missing = missing.contains(&number);
+            assert_eq!(row.metric("reward").expect("it is a column").is_nan(), is_missing);
+            assert_eq!(row.task_params().contains_key("skipped"), is_missing);
+        }
+        let report = validate_log(&log);
+        assert!(report.problems.is_empty(), "{:?}", report.problems);
+        score(&read_log(&log).expect("it can be read"), &[], &Options::default()).expect("what was lived is scored");
+        // Taken up again it is as it was.
+        assert_eq!(live(&plan, &log, 1, u64::MAX).expect("all is in it"), summary);
+    }
+}
+
+#[test]
+fn however_it_is_lived_the_log_is_the_same() {
+    let scenario = scenario(true);
+    let folder = tempfile::tempdir().expect("there is room");
+    let skipping = plan(&scenario, Undrawable::Skipped).expect("nothing is refused");
+    let [whole, jobs, pieces, stopped] = ["whole", "jobs", "pieces", "stopped"].map(|name| folder.path().join(name));
+    live(&skipping, &whole, 1, u64::MAX).expect("it is lived");
+    live(&skipping, &jobs, 3, u64::MAX).expect("it is lived");
+    while !live(&skipping, &pieces, 1, 4).expect("it is lived").finished {}
+    assert!(bytes(&whole) == bytes(&jobs), "lived by three at a time");
+    assert!(bytes(&whole) == bytes(&pieces), "lived in pieces");
+    // A run that refuses stops there, says where, and goes on when it may leave it out.
+    if let Ok(refusing) = plan(&scenario, Undrawable::Refused) {
+        let error = live(&refusing, &stopped, 1, u64::MAX).expect_err("some worlds cannot be drawn");
+        let CurriculumError::World { experience, .. } = &error else {
+            panic!("{error}")
+        };
+        assert_eq!(Some(experience), undrawable(&skipping).first(), "{error}");
+        let again = live(&refusing, &stopped, 1, u64::MAX).expect_err("it stops there again");
+        assert_eq!(again.to_string(), error.to_string());
+    }
+    live(&skipping, &stopped, 1, u64::MAX).expect("it is lived");
+    assert!(bytes(&whole) == bytes(&stopped), "stopped and gone on with");
+}
+
+#[test]
+fn worlds_are_tried_before_they_are_lived() {
+    let variant = task().variant("low").expect("it is declared");
+    let trial = try_worlds(&variant, 5, 40);
+    let failed: Vec<u64> = (0..40).filter(|index| sample(&variant, 5, *index).is_err()).collect();
+    assert!(!failed.is_empty());
+    assert_eq!(
+        (trial.worlds, trial.placement, trial.requirement),
+        (40, failed.len() as u64, 0)
+    );
+    assert_eq!(trial.failed.iter().map(|one| one.index).collect::<Vec<_>>(), failed);
+
+    let plan = plan(&scenario(true), Undrawable::Skipped).expect("nothing is refused");
+    let mut tried = Tried::default();
+    // Two worlds of each regime; of the drift every variant: from 4 to 6 none is allowed.
+    let trials = plan.try_worlds(2, &mut tried);
+    let drift = trials
+        .iter()
+        .find(|trial| trial.variant == "quarry#low..high")
+        .expect("it drifts");
+    assert_eq!(drift.requirement, 3, "{drift:?}");
+    let way: Vec<f64> = drift
+        .failed
+        .iter()
+        .filter(|one| one.code == "generator/between")
+        .map(|one| one.progress)
+        .collect();
+    assert!(way.iter().all(|progress| *progress > 0.4 && *progress < 0.6), "{way:?}");
+    assert!(plan.try_worlds(2, &mut tried).is_empty(), "all has been tried");
+    // As many as there are: each that cannot be lived is found, those of the second evaluation with those of the first.
+    let all = plan.try_worlds(u32::MAX, &mut Tried::default());
+    let found: Vec<u64> = all
+        .iter()
+        .flat_map(|trial| trial.failed.iter().filter_map(|one| one.experience))
+        .collect();
+    let missing = undrawable(&plan);
+    assert!(found.iter().all(|number| missing.contains(number)));
+    assert!(
+        missing
+            .iter()
+            .filter(|number| **number < 29)
+            .all(|number| found.contains(number))
+    );
+}
