@@ -1,11 +1,13 @@
 //! Documents as files and texts: what one is, seen from its keys, and all that is wrong with it. What may stand in each is `spec`'s.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
 
+use driftworld_curriculum::{CurriculumError, log_name};
 use driftworld_spec::maps::MapLibrary;
-use driftworld_spec::{Scenario, SpecError, TaskSpec, World, nearest};
+use driftworld_spec::{Classes, Scenario, SpecError, TaskSpec, World, nearest};
 use serde_json::Value;
 
 use crate::contents::{Contents, OtherContents};
@@ -165,21 +167,32 @@ pub struct Checked {
     pub warnings: Vec<String>,
     /// What is wrong with it; nothing where it is valid.
     pub error: Option<SpecError>,
+    /// Two variants of a scenario that is else valid and that no log could tell apart.
+    pub same_log_name: Option<CurriculumError>,
 }
 
 /// Checks a document. `name` is what messages call it; `task` finds the tasks that a scenario names, whose variants are checked
-/// where it finds them.
+/// where it finds them; `classes` are those that objects of tasks and of our worlds may be of.
 pub fn check(
     name: &str,
     text: &str,
     kind: Kind,
     task: &mut dyn FnMut(&str) -> Result<Arc<TaskSpec>, TaskError>,
+    classes: &Classes,
 ) -> Checked {
     let mut warnings = Vec::new();
+    let mut same_log_name = None;
     let error = match kind {
-        Kind::Task => TaskSpec::from_json(name, text).err(),
+        Kind::Task => match TaskSpec::from_json_with(name, text, Some(classes)) {
+            Ok(task) => {
+                warnings.extend(alike_in_logs(name, &task));
+                None
+            }
+            Err(error) => Some(error),
+        },
         Kind::World => told(
-            World::from_json(name, text).and_then(|world| world.remarks(name, text).map(|odd| (world, odd))),
+            World::from_json_with(name, text, Some(classes))
+                .and_then(|world| world.remarks(name, text).map(|odd| (world, odd))),
             &mut warnings,
         ),
         Kind::Maps => MapLibrary::from_json(name, text).err(),
@@ -188,12 +201,37 @@ pub fn check(
                 let unchecked = |error| format!("{name}: the variants of {called} are not checked: {error}");
                 task(called).map_err(|error| warnings.push(unchecked(error))).ok()
             });
-            read.err()
+            match read {
+                Ok(scenario) => {
+                    same_log_name = driftworld_curriculum::same_log_name(&scenario, |called| task(called).ok());
+                    None
+                }
+                Err(error) => Some(error),
+            }
         }
         Kind::L2ExplorerWorld => told(World::from_l2explorer(name, text), &mut warnings),
         Kind::L2ExplorerScenario => told(Scenario::from_l2explorer(name, text), &mut warnings),
     };
-    Checked { kind, warnings, error }
+    Checked {
+        kind,
+        warnings,
+        error,
+        same_log_name,
+    }
+}
+
+/// Variants of a task that no scenario can hold together: a log would call them by one name.
+fn alike_in_logs(document: &str, task: &TaskSpec) -> Vec<String> {
+    let mut known: BTreeMap<String, &str> = BTreeMap::new();
+    let names = task.variant_names().into_iter();
+    let alike = names.filter_map(|variant| {
+        let name = log_name(task.name(), variant);
+        let other = known.insert(name.clone(), variant)?;
+        Some(format!(
+            "{document}: the variants {other:?} and {variant:?} have one name in logs, {name}, so no scenario can hold both; rename one"
+        ))
+    });
+    alike.collect()
 }
 
 /// What is wrong with a document; what is odd about it goes to the warnings.
@@ -255,7 +293,7 @@ mod tests {
     fn variants_of_a_scenario_are_checked_where_its_task_is_found() {
         let text = r#"{ "name": "s", "blocks": [{ "type": "learning", "regimes": [
             { "task": "find_objects", "variant": "rde", "count": 1 }, { "task": "nowhere", "variant": "x", "count": 1 }] }] }"#;
-        let found = check("s.json", text, Kind::Scenario, &mut tasks::task);
+        let found = check("s.json", text, Kind::Scenario, &mut tasks::task, &Classes::default());
         let error = found.error.expect("there is no such variant").to_string();
         assert!(error.contains("did you mean \"red\"?"), "{error}");
         assert_eq!(found.warnings.len(), 1, "{:?}", found.warnings);

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use driftworld_curriculum::{CurriculumError, FoundWorld, Plan, Sources};
+use driftworld_curriculum::{CurriculumError, FoundWorld, Plan, Sources, Undrawable};
 use driftworld_spec::{Scenario, SpecError, TaskSpec, World, nearest};
 use serde_json::Value;
 
@@ -75,11 +75,19 @@ impl ScenarioFile {
     /// # Errors
     /// As [`Plan::new`].
     pub fn plan(&self, missing: Missing, warn: Warn) -> Result<Plan, CurriculumError> {
+        self.plan_with(missing, Undrawable::Refused, warn)
+    }
+
+    /// The same, and says what becomes of experiences whose worlds cannot be drawn.
+    ///
+    /// # Errors
+    /// As [`Plan::with_undrawable`].
+    pub fn plan_with(&self, missing: Missing, undrawable: Undrawable, warn: Warn) -> Result<Plan, CurriculumError> {
         let mut sources = Sources {
             task: &mut |name| task_from(&self.path, name).map_err(|error| error.to_string()),
             world: &mut |path| self.world(path, missing, warn),
         };
-        Plan::new(&self.scenario, &mut sources)
+        Plan::with_undrawable(&self.scenario, &mut sources, undrawable)
     }
 
     /// The world file that a regime names, from the scenario's folder; beside the scenario if it is not there.
@@ -223,6 +231,22 @@ pub fn plan(
         world,
     };
     Plan::new(scenario, &mut sources)
+}
+
+/// As [`plan`], for a scenario without world files whose worlds are to be tried.
+///
+/// # Errors
+/// As [`Plan::with_undrawable`].
+pub fn plan_to_try(scenario: &Scenario) -> Result<Plan, CurriculumError> {
+    let mut sources = Sources {
+        task: &mut |name| tasks::task(name).map_err(|error| error.to_string()),
+        world: &mut |path| {
+            Err(format!(
+                "found the world file {path:?}, expected variants of tasks alone"
+            ))
+        },
+    };
+    Plan::with_undrawable(scenario, &mut sources, Undrawable::Skipped)
 }
 
 /// Whether a text is a scenario of the original's.

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use crate::contents::Contents;
 use crate::documents::{self, DocumentError};
-use driftworld_spec::{DEFAULT_VARIANT, SpecError, TaskSpec, Variant, nearest};
+use driftworld_env::Catalogue;
+use driftworld_spec::{Classes, DEFAULT_VARIANT, SpecError, TaskSpec, Variant, nearest};
 
 /// The tasks that are built in: name and text. The files are `examples/tasks/`.
 pub const BUILT_IN: [(&str, &str); 6] = [
@@ -45,6 +46,26 @@ pub enum TaskError {
     /// The document is wrong, or has no such variant.
     #[error(transparent)]
     Spec(#[from] SpecError),
+}
+
+/// The classes that worlds can have objects of, by the libraries at hand; where one is not known, messages say how a library is named.
+pub fn classes(catalogue: &Catalogue) -> Classes {
+    catalogue
+        .classes()
+        .with_advice("name the library that has it: --assets LIBRARY, in Python assets=LIBRARY")
+}
+
+/// Refuses a task with objects of a class that is not known.
+///
+/// # Errors
+/// [`SpecError::Document`] with every such object.
+pub fn check_classes(name: &str, task: &TaskSpec, classes: &Classes) -> Result<(), SpecError> {
+    let problems = task.unknown_classes(classes);
+    if problems.is_empty() {
+        return Ok(());
+    }
+    let name = name.to_owned();
+    Err(SpecError::Document { name, problems })
 }
 
 /// The names of the built-in tasks.

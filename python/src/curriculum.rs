@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use driftworld::scenarios::{Missing, ScenarioFile, task_from};
 use driftworld::tasks::TaskError;
-use driftworld_curriculum::{CurriculumError, Experience, Journal, MOST_STEPS, Plan};
+use driftworld_curriculum::{CurriculumError, Experience, Journal, MOST_STEPS, Plan, Tried, Undrawable};
 use driftworld_spec::BlockKind;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -22,14 +22,15 @@ pub(crate) struct PyPlan {
     plan: Plan,
     warnings: Vec<String>,
     /// What it was made from.
-    made: (PathBuf, String, Option<bool>),
+    made: (PathBuf, String, Option<bool>, bool),
 }
 
 #[pymethods]
 impl PyPlan {
-    /// The plan of a scenario's text; what it names by paths is looked for as if it stood at `path`.
+    /// The plan of a scenario's text; what it names by paths is looked for as if it stood at `path`. Worlds that cannot be drawn are
+    /// an error where the first of a regime is one, unless they are left out.
     #[new]
-    fn new(py: Python<'_>, path: PathBuf, text: &str, stand_in: Option<bool>) -> Result<Self> {
+    fn new(py: Python<'_>, path: PathBuf, text: &str, stand_in: Option<bool>, skip_undrawable: bool) -> Result<Self> {
         let mut warnings = Vec::new();
         let plan = py.detach(|| {
             let mut warn = |warning| warnings.push(warning);
@@ -40,17 +41,23 @@ impl PyPlan {
             } else {
                 Missing::Refused
             };
-            file.plan(missing, &mut warn).map_err(|error| because(&path, error))
+            let undrawable = if skip_undrawable {
+                Undrawable::Skipped
+            } else {
+                Undrawable::Refused
+            };
+            file.plan_with(missing, undrawable, &mut warn)
+                .map_err(|error| because(&path, error))
         })?;
         Ok(Self {
             plan,
             warnings,
-            made: (path, text.to_owned(), stand_in),
+            made: (path, text.to_owned(), stand_in, skip_undrawable),
         })
     }
 
     /// The plan in another process.
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (PathBuf, String, Option<bool>)) {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (PathBuf, String, Option<bool>, bool)) {
         (slf.get_type(), slf.borrow().made.clone())
     }
 
@@ -105,6 +112,12 @@ impl PyPlan {
         ))
     }
 
+    /// Draws so many worlds of each regime, and says how often that fails, and why: a list of dictionaries.
+    fn try_worlds<'py>(&self, py: Python<'py>, worlds: u32) -> Result<Bound<'py, PyAny>> {
+        let trials = py.detach(|| self.plan.try_worlds(worlds, &mut Tried::default()));
+        Ok(told(py, &trials)?)
+    }
+
     /// Notes what else its lifetime depends on: a log is taken up only if it is the same.
     fn made_from(&mut self, what: &str, print: &Bound<'_, PyAny>) -> Result<()> {
         self.plan.made_from(what, from_python(print)?);
@@ -154,6 +167,13 @@ impl PyJournal {
         };
         self.open()?.record(&plan.borrow().plan, &experience, now()?)?;
         Ok(())
+    }
+
+    /// Logs that the next experience is left out; false if its world can be drawn.
+    fn skip(&mut self, py: Python<'_>, plan: &Bound<'_, PyPlan>) -> Result<bool> {
+        let (plan, now) = (&plan.borrow().plan, now()?);
+        let journal = self.open()?;
+        Ok(py.detach(|| journal.skip(plan, now))?)
     }
 
     /// How many experiences are in the log.

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use driftworld::documents::{self, Kind};
 use driftworld::{scenarios, tasks};
+use driftworld_env::{Catalogue, Library};
 use pyo3::exceptions::{PyOverflowError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
@@ -76,12 +77,25 @@ type Verdict<'py> = (&'static str, Bound<'py, PyList>, Vec<String>, Option<Py<Py
 
 /// What a document was taken for, its problems and its warnings. `name` is what messages call it: a path where it has one, from
 /// whose folder a scenario's tasks are looked for.
+///
+/// `libraries` are the bytes of asset libraries, whose classes are known beside the built-in ones.
 #[pyfunction]
-pub(crate) fn check<'py>(py: Python<'py>, name: &str, text: &str, kind: Option<&str>) -> Result<Verdict<'py>> {
+pub(crate) fn check<'py>(
+    py: Python<'py>,
+    name: &str,
+    text: &str,
+    kind: Option<&str>,
+    libraries: Vec<Vec<u8>>,
+) -> Result<Verdict<'py>> {
     let kind = match kind {
         Some(word) => word.parse::<Kind>().map_err(PyValueError::new_err)?,
         None => Kind::of(text),
     };
+    let mut catalogue = Catalogue::default();
+    for bytes in &libraries {
+        catalogue = catalogue.with_library(&Library::from_bytes(bytes)?);
+    }
+    let classes = tasks::classes(&catalogue);
     let path = Path::new(name);
     let checked = py.detach(|| {
         let mut task = |called: &str| {
@@ -91,7 +105,7 @@ pub(crate) fn check<'py>(py: Python<'py>, name: &str, text: &str, kind: Option<&
                 tasks::task(called)
             }
         };
-        documents::check(name, text, kind, &mut task)
+        documents::check(name, text, kind, &mut task, &classes)
     });
     let problems = PyList::empty(py);
     let mut error = None;
@@ -104,6 +118,11 @@ pub(crate) fn check<'py>(py: Python<'py>, name: &str, text: &str, kind: Option<&
         if problems.is_empty() {
             problems.append(alone(py, &raised)?)?;
         }
+        error = Some(raised.into_value(py).into_any());
+    }
+    if let Some(found) = checked.same_log_name {
+        let raised = PyErr::from(crate::errors::Error::from(found));
+        problems.append(alone(py, &raised)?)?;
         error = Some(raised.into_value(py).into_any());
     }
     Ok((kind.word(), problems, checked.warnings, error))

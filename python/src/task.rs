@@ -296,6 +296,13 @@ impl PyVariant {
         Ok(drawn)
     }
 
+    /// Draws the first ``count`` worlds under a seed, and says how often that fails, and why.
+    #[pyo3(signature = (count, *, seed=Whole(0)))]
+    fn try_worlds<'py>(&self, py: Python<'py>, count: Whole, seed: Whole) -> Result<Bound<'py, PyAny>> {
+        let trial = py.detach(|| driftworld_curriculum::try_worlds(&self.0, seed.0, count.0));
+        Ok(crate::document::told(py, &trial)?)
+    }
+
     fn __repr__(&self) -> String {
         format!("<Variant {:?}>", self.0.id())
     }

@@ -495,3 +495,64 @@ def test_a_design_takes_only_what_it_knows(options: dict[str, Any], message: str
     if "lern" not in options:
         with pytest.raises(TypeError, match=message):
             Curriculum.design("find_objects#red", **options)
+
+
+#: Rocks that find no place in some worlds, and a number whose middle is forbidden.
+QUARRY = {
+    "version": 2,
+    "name": "quarry",
+    "require": ["x <= 4 or x >= 6"],
+    "parameters": {
+        "x": {"role": "variant", "type": "number", "affects": ["T"], "range": [0, 10], "default": 0},
+        "rocks": {"role": "variant", "type": "integer", "affects": ["S"], "range": [0, 4], "default": 0},
+    },
+    "world": {"max_steps": 3, "environment_params": {"map_size": [40, 40]}},
+    "groups": [
+        {
+            "name": "rocks",
+            "count": {"param": "rocks"},
+            "object": {"class": "rock"},
+            "separation": 5,
+            "keep_out": {"walls": 0, "agent": 0},
+            "placement": {"box": {"low": [10, 10], "high": [18, 18]}},
+        }
+    ],
+    "variants": {"low": {}, "high": {"x": 10}, "full": {"rocks": 4}},
+}
+
+
+def test_what_cannot_be_drawn_is_found_and_left_out(tmp_path: Path) -> None:
+    task = tmp_path / "quarry.json"
+    task.write_text(json.dumps(QUARRY), encoding="utf-8")
+    trial = TaskSpec.load(task).variant("full").try_worlds(30)
+    assert trial["worlds"] == 30 and 0 < trial["placement"] == len(trial["failed"])
+    with pytest.raises(CurriculumError, match="worlds cannot be drawn"):
+        Curriculum.design(f"{task}#low", f"{task}#high", drift="linear", learn=21)
+    curriculum = Curriculum.design(f"{task}#low", f"{task}#high", drift="linear", learn=21, eval_episodes=1, worlds=0)
+    drift = next(trial for trial in curriculum.try_worlds(2) if trial["variant"].endswith("low..high"))
+    assert drift["requirement"] == 3 and drift["failed"][0]["progress"] == 0.45
+    log = tmp_path / "log"
+    with pytest.raises(CurriculumError, match=r"quarry#low\.\.high at 0\.45 of its way"):
+        curriculum.run(Circler(), log, modalities="rgb", size=8)
+    paid: list[float] = []
+    summary = curriculum.run(
+        Circler(), log, skip_undrawable=True, modalities="rgb", size=8, watch=lambda now, reward: paid.append(reward)
+    )
+    assert summary.finished and summary.skipped == 3 and summary.experiences == 22
+    assert [one["experience"] for one in summary.left_out] == [11, 12, 13]
+    assert [np.isnan(reward) for reward in paid[:4]] == [True, True, True, False]
+    assert validate_log(log)["valid"]
+    rewards = read_log(log).columns["reward"]
+    assert len(rewards) == 25 and np.isnan(rewards).sum() == 3
+    again = curriculum.run(Circler(), log, skip_undrawable=True, modalities="rgb", size=8)
+    assert again == summary
+
+
+def test_unknown_classes_and_names_that_collide_are_problems(tmp_path: Path) -> None:
+    world = {"objects": [{"class": "shrb", "coordinates": [3, 4]}]}
+    (problem,) = driftworld.validate(world)
+    assert problem["code"] == "spec/unknown-class" and "shrub" in problem["message"]
+    regimes = [{"task": "find_objects", "variant": "red", "count": 1}, {"task": "Find-Objects", "variant": "r-ed", "count": 1}]
+    with pytest.warns(UserWarning, match="not checked"):
+        (problem,) = driftworld.validate({"name": "s", "blocks": [{"type": "learning", "regimes": regimes}]})
+    assert problem["code"] == "curriculum/same-log-name"

@@ -36,6 +36,7 @@ mod table;
 mod tasks;
 mod temporary;
 mod transfer_report;
+mod trials;
 mod unity;
 mod validate;
 mod vary;

@@ -4,11 +4,12 @@ use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use crate::curriculum::{CurriculumError, Journal, Plan, Progress, Summary, Surroundings, run};
+use crate::curriculum::{CurriculumError, Journal, Plan, Progress, Summary, Surroundings, Undrawable, run};
 use crate::env::Catalogue;
 use crate::metrics::{MetricsError, Timestamp};
 use crate::scenarios::{Missing, ScenarioFile};
 use crate::spec::BlockKind;
+use crate::tasks;
 use clap::Args;
 
 use super::assets::LibraryChoice;
@@ -45,6 +46,10 @@ pub(crate) struct Run {
     /// How many experiences are lived at the same time, from 1 to 256; as many as there are processors if not given. The log is the same.
     #[arg(long, value_name = "N", value_parser = jobs)]
     jobs: Option<NonZeroUsize>,
+    /// Leave out experiences whose worlds cannot be drawn: each has a row without numbers in the log, which says why, and is counted in the
+    /// summary. A run that stopped at one goes on with this and --resume.
+    #[arg(long)]
+    skip_undrawable: bool,
     #[command(flatten)]
     missing: MissingChoice,
     #[command(flatten)]
@@ -79,7 +84,23 @@ impl Run {
         } else {
             Missing::Refused
         };
-        let mut plan = file.plan(missing, &mut output::warning)?;
+        let undrawable = if self.skip_undrawable {
+            Undrawable::Skipped
+        } else {
+            Undrawable::Refused
+        };
+        let plan = file.plan_with(missing, undrawable, &mut output::warning);
+        let mut plan = plan.map_err(|error| match &error {
+            CurriculumError::World { .. } => Failure::input(format!(
+                "{error}\nnothing is lived: mend the task (driftworld validate SCENARIO --worlds 100 finds what cannot be drawn), or leave such \
+                 experiences out with --skip-undrawable"
+            )),
+            _ => error.into(),
+        })?;
+        let classes = tasks::classes(&self.libraries.catalogue()?);
+        for (name, task) in plan.tasks() {
+            tasks::check_classes(name, task, &classes)?;
+        }
         let hired = self.agent.agent()?;
         if let Some(script) = &hired.script {
             plan.made_from("script", script.as_str());
@@ -101,6 +122,9 @@ impl Run {
             return output::json(&summary);
         }
         output::line(regimes(&summary))?;
+        if let Some(skipped) = skipped(&summary) {
+            output::line(format!("\n{skipped}"))?;
+        }
         output::line(format!(
             "\n{} experiences, {} steps; log in {}",
             summary.experiences,
@@ -110,10 +134,45 @@ impl Run {
     }
 }
 
+/// What was left out, and why; nothing where all was lived.
+fn skipped(summary: &Summary) -> Option<String> {
+    const SHOWN: usize = 10;
+    if summary.skipped == 0 {
+        return None;
+    }
+    let told = summary.left_out.iter().take(SHOWN).map(|left_out| {
+        let way = if left_out.progress == 0.0 {
+            String::new()
+        } else {
+            format!(" at {} of its way", left_out.progress)
+        };
+        format!(
+            "  block {}, experience {}, {}{way}: {}",
+            left_out.block, left_out.experience, left_out.variant, left_out.reason
+        )
+    });
+    let mut lines = vec![format!(
+        "left out: {} experiences whose worlds cannot be drawn",
+        summary.skipped
+    )];
+    lines.extend(told);
+    if summary.skipped > SHOWN as u64 {
+        lines.push(format!(
+            "  and {} more; the log has them all",
+            summary.skipped - SHOWN as u64
+        ));
+    }
+    Some(lines.join("\n"))
+}
+
 pub(crate) fn processors() -> NonZeroUsize {
     let jobs = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
     jobs.min(NonZeroUsize::new(MAX_JOBS).unwrap_or(NonZeroUsize::MIN))
 }
+
+/// What to do about a world that cannot be drawn once there is a log.
+const UNDRAWABLE: &str = "this one cannot be lived: go on with the same command, --resume and --skip-undrawable, which leaves such \
+     experiences out; or mend the task, and begin a new log";
 
 /// How a log is begun.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -166,6 +225,13 @@ impl Life<'_> {
                 .map(|()| summary)
                 .map_err(|error| self.stopped(&error.to_string(), done)),
             Ok(_) => Err(self.stopped("interrupted", done)),
+            // The same command would stop there again, and again.
+            Err(error @ CurriculumError::World { .. }) => Err(Failure::input(format!(
+                "{error}\n{}: holds {done} of {} experiences, each of them whole; {}",
+                self.logs.display(),
+                self.plan.num_experiences(),
+                UNDRAWABLE
+            ))),
             Err(error) => Err(self.stopped(&error.to_string(), done)),
         }
     }

@@ -3,20 +3,29 @@
 use std::path::{Path, PathBuf};
 
 use crate::contents::Contents;
+use crate::curriculum::{Trial, Tried, Undrawable, try_worlds};
 use crate::documents::{self, Checked, Kind};
-use crate::scenarios::task_from;
-use crate::spec::Problem;
+use crate::scenarios::{Missing, ScenarioFile, task_from};
+use crate::spec::{Classes, Problem, TaskSpec};
+use crate::tasks;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::{Failure, input, output};
+use super::assets::LibraryChoice;
+use super::{Failure, input, output, trials};
 
 /// Check task specs, worlds, scenarios and maps files, and name every problem with its place.
 ///
 /// What a file is, is seen from its keys: "blocks" make a scenario, "scenario" one of L2Explorer's, "maps" a maps file, "name" a
 /// task spec, anything else a world. The variants that a scenario names are checked against its tasks, where those can be found.
+///
+/// With --worlds some worlds are drawn, too: of every variant of a task; of every regime of a scenario, along its drift where it has one,
+/// whose variants are looked at one by one. A task or scenario with a world that cannot be drawn is refused.
 #[derive(Args)]
-#[command(after_help = "Example:\n  driftworld validate examples/tasks\n  driftworld validate --l2explorer map.json")]
+#[command(after_help = "Examples:
+  driftworld validate examples/tasks
+  driftworld validate my_task.json scenario.json --worlds 100
+  driftworld validate --l2explorer map.json")]
 pub(crate) struct Validate {
     /// Files, or folders of .json files.
     #[arg(required = true, value_name = "FILE")]
@@ -24,6 +33,14 @@ pub(crate) struct Validate {
     /// Read worlds as L2Explorer wrote them, with warnings.
     #[arg(long)]
     l2explorer: bool,
+    /// Draw so many worlds of each variant and of each regime, and say how often that fails, and why.
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    worlds: u32,
+    /// The seed that the worlds of a task's variants are drawn under; scenarios have their own.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    #[command(flatten)]
+    libraries: LibraryChoice,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
@@ -36,12 +53,21 @@ const DOCUMENTS: [Contents; 4] = [Contents::Task, Contents::World, Contents::Sce
 struct Verdict {
     path: PathBuf,
     /// What the document came to, or why there is none.
-    found: Result<Checked, Failure>,
+    found: Result<Found, Failure>,
+}
+
+/// What a document that could be read came to.
+struct Found {
+    checked: Checked,
+    /// What else is wrong with a scenario, with its code.
+    failure: Option<(&'static str, String)>,
+    trials: Vec<Trial>,
 }
 
 impl Validate {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let verdicts: Vec<Verdict> = self.files.iter().flat_map(|path| self.judge(path)).collect();
+        let classes = tasks::classes(&self.libraries.catalogue()?);
+        let verdicts: Vec<Verdict> = self.files.iter().flat_map(|path| self.judge(path, &classes)).collect();
         if self.json {
             output::json(&verdicts.iter().map(Verdict::to_json).collect::<Vec<_>>())?;
         } else {
@@ -56,14 +82,14 @@ impl Validate {
     }
 
     /// The verdicts on a file, or on the files of a folder; also on what cannot be read, so that no file goes without.
-    fn judge(&self, path: &Path) -> Vec<Verdict> {
+    fn judge(&self, path: &Path, classes: &Classes) -> Vec<Verdict> {
         let files = match Contents::of_folder(path) {
             // What lies in a log is no document of ours, and `logs validate` judges it.
             Some(Contents::Log) => Ok(vec![path.to_owned()]),
             _ => input::json_files(path),
         };
         match files {
-            Ok(files) => files.into_iter().map(|path| self.verdict(path)).collect(),
+            Ok(files) => files.into_iter().map(|path| self.verdict(path, classes)).collect(),
             Err(failure) => vec![Verdict {
                 path: path.to_owned(),
                 found: Err(failure),
@@ -71,56 +97,131 @@ impl Validate {
         }
     }
 
-    fn verdict(&self, path: PathBuf) -> Verdict {
-        let found = self.check(&path);
+    fn verdict(&self, path: PathBuf, classes: &Classes) -> Verdict {
+        let found = self.check(&path, classes);
         Verdict { path, found }
     }
 
-    fn check(&self, path: &Path) -> Result<Checked, Failure> {
+    fn check(&self, path: &Path, classes: &Classes) -> Result<Found, Failure> {
         let text = documents::text_of(path, &DOCUMENTS)?;
         let name = path.display().to_string();
         let kind = match Kind::of(&text) {
             Kind::World if self.l2explorer => Kind::L2ExplorerWorld,
             kind => kind,
         };
-        Ok(documents::check(&name, &text, kind, &mut |task| task_from(path, task)))
+        let checked = documents::check(&name, &text, kind, &mut |task| task_from(path, task), classes);
+        let mut failure = checked
+            .same_log_name
+            .as_ref()
+            .map(|error| (error.code(), format!("{name}: {error}")));
+        let mut trials = Vec::new();
+        if self.worlds > 0 && checked.error.is_none() && failure.is_none() {
+            match self.try_worlds(path, &text, checked.kind, classes) {
+                Ok(found) => trials = found,
+                Err((code, why)) => failure = Some((code, format!("{name}: {why}"))),
+            }
+        }
+        Ok(Found {
+            checked,
+            failure,
+            trials,
+        })
+    }
+
+    /// Draws some worlds of what a valid document describes; else why that cannot begin, with the error's code.
+    fn try_worlds(
+        &self,
+        path: &Path,
+        text: &str,
+        kind: Kind,
+        classes: &Classes,
+    ) -> Result<Vec<Trial>, (&'static str, String)> {
+        let name = path.display().to_string();
+        match kind {
+            Kind::Task => {
+                let task = TaskSpec::from_json(&name, text).map_err(|error| (error.code(), error.to_string()))?;
+                let variants = task.all_variants();
+                let tried = variants
+                    .iter()
+                    .map(|variant| try_worlds(variant, self.seed, u64::from(self.worlds)));
+                Ok(tried.collect())
+            }
+            Kind::Scenario | Kind::L2ExplorerScenario => {
+                // Warnings were told when the document was checked.
+                let warn = &mut |_| {};
+                let file =
+                    ScenarioFile::from_text(path, text, warn).map_err(|error| (error.code(), error.to_string()))?;
+                let missing = if file.original {
+                    Missing::StandIn
+                } else {
+                    Missing::Refused
+                };
+                let plan = file.plan_with(missing, Undrawable::Skipped, warn);
+                let plan = plan.map_err(|error| (error.code(), error.to_string()))?;
+                for (task, spec) in plan.tasks() {
+                    tasks::check_classes(task, spec, classes).map_err(|error| (error.code(), error.to_string()))?;
+                }
+                Ok(plan.try_worlds(self.worlds, &mut Tried::default()))
+            }
+            Kind::World | Kind::Maps | Kind::L2ExplorerWorld => Ok(Vec::new()),
+        }
+    }
+}
+
+impl Found {
+    fn is_valid(&self) -> bool {
+        let is_drawn = self.trials.iter().all(|trial| trial.num_failed() == 0);
+        self.checked.error.is_none() && self.failure.is_none() && is_drawn
     }
 }
 
 impl Verdict {
     fn is_valid(&self) -> bool {
-        self.found.as_ref().is_ok_and(|checked| checked.error.is_none())
+        self.found.as_ref().is_ok_and(Found::is_valid)
     }
 
     fn print(&self) -> Result<(), Failure> {
-        let checked = match &self.found {
-            Ok(checked) => checked,
+        let found = match &self.found {
+            Ok(found) => found,
             Err(failure) => {
                 output::note(failure.text());
                 return Ok(());
             }
         };
+        let checked = &found.checked;
         checked
             .warnings
             .iter()
             .for_each(|warning| output::note(format!("warning: {warning}")));
-        match &checked.error {
-            None => output::line(format!("{}: a valid {}", self.path.display(), checked.kind.name())),
-            Some(error) => {
-                output::note(error.to_string());
-                Ok(())
-            }
+        let wrong = checked.error.as_ref().map(ToString::to_string);
+        if let Some(wrong) = wrong.or_else(|| found.failure.as_ref().map(|(_, text)| text.clone())) {
+            output::note(wrong);
+            return Ok(());
         }
+        let (path, kind) = (self.path.display(), checked.kind.name());
+        match trials::told(&found.trials) {
+            Some(told) => output::note(format!("{path}: a {kind} of which {told}")),
+            None => output::line(format!("{path}: a valid {kind}"))?,
+        }
+        if found.trials.is_empty() {
+            return Ok(());
+        }
+        output::line(trials::shown(&found.trials))
     }
 
     fn to_json(&self) -> Value {
-        let checked = match &self.found {
-            Ok(checked) => checked,
+        let found = match &self.found {
+            Ok(found) => found,
             Err(failure) => {
                 let problem = json!({ "code": "document/unreadable", "message": failure.text() });
                 return json!({ "file": self.path, "kind": null, "valid": false, "problems": [problem], "warnings": [] });
             }
         };
+        let checked = &found.checked;
+        let failure = found
+            .failure
+            .iter()
+            .map(|(code, text)| json!({ "code": code, "message": text }));
         let problems = checked.error.as_ref().map(|error| {
             let listed: Vec<Value> = error.problems().iter().map(problem_json).collect();
             if listed.is_empty() {
@@ -129,10 +230,14 @@ impl Verdict {
                 listed
             }
         });
-        json!({
-            "file": self.path, "kind": checked.kind.name(), "valid": checked.error.is_none(),
-            "problems": problems.unwrap_or_default(), "warnings": checked.warnings,
-        })
+        let mut told = json!({
+            "file": self.path, "kind": checked.kind.name(), "valid": found.is_valid(),
+            "problems": problems.unwrap_or_else(|| failure.collect()), "warnings": checked.warnings,
+        });
+        if !found.trials.is_empty() {
+            told["worlds"] = json!(found.trials);
+        }
+        told
     }
 }
 

@@ -15,4 +15,5 @@ mod report;
 mod run;
 mod terminal;
 mod transfer_report;
+mod undrawable;
 mod unity;

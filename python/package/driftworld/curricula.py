@@ -143,8 +143,9 @@ class Curriculum(Sequence[Block]):
             self._blocks.append(Block(number, block["type"], phase, first, count, self._plan))
             first += count
 
-    def _new_plan(self) -> _native.Plan:
-        return _native.Plan(self._path, self._text, self._stand_in)
+    def _new_plan(self, skip_undrawable: bool = True) -> _native.Plan:
+        # A world that cannot be drawn matters to who lives it, not to who looks through the others.
+        return _native.Plan(self._path, self._text, self._stand_in, skip_undrawable)
 
     @classmethod
     def load(cls, path: PathLike, *, stand_in: bool | None = None) -> Curriculum:
@@ -191,6 +192,8 @@ class Curriculum(Sequence[Block]):
         mix: bool = False,
         task_label: str | None = None,
         seed: int | None = None,
+        worlds: int | None = None,
+        assets: PathLike | None = None,
         controls: PathLike | None = None,
         plot: PathLike | None = None,
     ) -> Curriculum:
@@ -207,10 +210,10 @@ class Curriculum(Sequence[Block]):
             form: ``"condensed"``, ``"dispersed"``, ``"permuted"``, ``"alternating"`` or ``"custom"``.
             blocks: How many learning blocks; as many as the form has of itself if not given.
             method: The method of the order, as for :func:`driftworld.order`.
-            start: The variant that comes first.
+            start: The variant that comes first; if not given, the one that is named first.
             end: The variant that comes last.
             target_step: The step that the method ``target-step`` wants.
-            order: From ``start`` on: ``"gradual"``, ``"abrupt"``, ``"path"`` or ``"farthest"``.
+            order: From ``start`` on: ``"gradual"``, ``"abrupt"``, ``"path"``, ``"farthest"``, or as they are ``"named"``.
             probe: Take variants that differ from the start in this element alone: ``"state"``, ``"action"``, ``"transition"``,
                 ``"reward"`` or ``"observation"``.
             variants: How many the probe takes.
@@ -221,6 +224,9 @@ class Curriculum(Sequence[Block]):
             mix: Values with nothing in between switch by chance.
             task_label: Whether the learner is told its task: ``"none"`` (default), ``"info"`` or ``"observation"``.
             seed: What all worlds follow from.
+            worlds: Draw so many worlds of each regime first, and refuse a design that could not be lived; 5 if not given, 0 for
+                none.
+            assets: An asset library whose classes the tasks use.
             controls: A folder to write the controls into: the same variants in reversed, random and contrasting order.
             plot: A PNG file to draw the blocks into.
 
@@ -305,6 +311,21 @@ class Curriculum(Sequence[Block]):
         """Writes the scenario file. What it names by paths is not moved with it."""
         write_whole(Path(path), self._plan.text().encode())
 
+    def try_worlds(self, count: int = 5) -> list[dict[str, Any]]:
+        """Draws so many worlds of each regime, along its drift where it has one, and says how often that fails, and why.
+
+        Every variant on the way of a drift is looked at, too. Regimes with the same worlds are tried once.
+
+        Args:
+            count: How many worlds of each regime, evenly over its experiences.
+
+        Returns:
+            One dictionary for each regime: ``block``, ``variant``, ``seed`` and ``worlds``; how many failed for want of a
+            ``placement``, by a ``requirement``, or for an ``other`` reason; and ``failed``, the first 100 of them: ``experience``,
+            ``index``, ``progress``, ``code`` and ``reason``.
+        """
+        return self._plan.try_worlds(count)
+
     def environment(self, **options: Any) -> gymnasium.Env[Any, Any]:
         """The environment that :meth:`run` lives it in, for agents that are made for its spaces.
 
@@ -319,6 +340,7 @@ class Curriculum(Sequence[Block]):
         log: PathLike | None = None,
         *,
         resume: bool = True,
+        skip_undrawable: bool = False,
         watch: Callable[[Experience, float], Any] | None = None,
         **options: Any,
     ) -> Summary:
@@ -333,7 +355,10 @@ class Curriculum(Sequence[Block]):
             agent: See :class:`driftworld.Agent`.
             log: The folder of the log; without one nothing is kept.
             resume: Go on with the log in the folder, if there is one; else the folder must hold nothing.
-            watch: Told each experience and its reward as soon as it is logged; ``False`` from it ends the run there.
+            skip_undrawable: Leave out experiences whose worlds cannot be drawn: each has a row without numbers in the log, and is
+                counted in the summary. If not, the run stops there; the same call with this goes on.
+            watch: Told each experience and its reward as soon as it is logged, NaN for one that is left out; ``False`` from it ends
+                the run there.
             options: Options of the environment, as for :class:`driftworld.DriftworldEnv`: ``modalities``, ``size``, ``actions`` and
                 so on. A log is taken up only with the same ones.
 
@@ -344,8 +369,8 @@ class Curriculum(Sequence[Block]):
             TypeError: If the agent lacks a method.
             ValueError: If an option is wrong; then no log is begun.
         """
-        plan = self._new_plan()
-        lifetime = Lifetime(plan, agent, options, log, resume, watch)
+        plan = self._new_plan(skip_undrawable)
+        lifetime = Lifetime(plan, agent, options, log, resume, watch, skip_undrawable)
         return lifetime.live(lambda number: _experience(plan, number))
 
     def __len__(self) -> int:
@@ -370,7 +395,7 @@ def _curriculum_again(text: str, path: str, stand_in: bool | None) -> Curriculum
 
 
 #: Options of a design that are whole numbers.
-_WHOLE = ("learn", "eval_episodes", "pre_deployment", "blocks", "variants", "steps", "seed", "lifetimes")
+_WHOLE = ("learn", "eval_episodes", "pre_deployment", "blocks", "variants", "steps", "seed", "worlds", "lifetimes")
 
 
 def _is_whole(value: Any) -> bool:

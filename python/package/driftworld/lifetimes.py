@@ -13,7 +13,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
@@ -25,6 +25,7 @@ from driftworld import _native
 from driftworld._files import write_whole
 from driftworld._plain import plain
 from driftworld.envs import DriftworldEnv
+from driftworld.errors import CurriculumError
 
 if TYPE_CHECKING:
     from driftworld.curricula import Experience
@@ -87,9 +88,11 @@ class Summary:
 
     Attributes:
         experiences: How many were lived, those of earlier runs included.
-        steps: Steps in all of them.
+        skipped: How many were left out because their worlds cannot be drawn.
+        left_out: The first 100 of those: dictionaries with ``experience``, ``block``, ``variant``, ``progress`` and ``reason``.
+        steps: Steps in all that were lived.
         finished: Whether the whole curriculum was lived.
-        regimes: One dictionary for each regime that was begun: ``block``, ``kind``, ``variant``, ``experiences``,
+        regimes: One dictionary for each regime that was begun: ``block``, ``kind``, ``variant``, ``experiences``, ``skipped``,
             ``mean_reward`` and ``success_rate``.
         log: The folder of the log, if it was kept.
     """
@@ -99,6 +102,8 @@ class Summary:
     finished: bool
     regimes: list[dict[str, Any]]
     log: Path | None
+    skipped: int = 0
+    left_out: list[dict[str, Any]] = field(default_factory=list)
 
     def __str__(self) -> str:
         rows = [("block", "kind", "variant", "experiences", "mean reward", "success")]
@@ -122,6 +127,7 @@ class Lifetime:
         log: The folder to log into; without one the log is forgotten.
         resume: Go on with the log in the folder if there is one.
         watch: Told each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
+        skip_undrawable: Leave out experiences whose worlds cannot be drawn.
     """
 
     def __init__(
@@ -132,6 +138,7 @@ class Lifetime:
         log: str | PathLike[str] | None,
         resume: bool,
         watch: Callable[[Experience, float], Any] | None,
+        skip_undrawable: bool = False,
     ) -> None:
         missing = [name for name in ("act", "learn", "freeze") if not callable(getattr(agent, name, None))]
         if missing:
@@ -144,6 +151,7 @@ class Lifetime:
         self._saves = None if self._log is None else _beside(self._log)
         self._whose = ""
         self._block: int | None = None
+        self._skips = skip_undrawable
 
     def live(self, experience: Callable[[int], Experience]) -> Summary:
         """Lives it from the first experience that is not in the log to the last; ``experience`` finds one by its number."""
@@ -162,14 +170,30 @@ class Lifetime:
             self._take_up(env, experience, done)
             for number in range(done, total):
                 now = experience(number)
-                outcome = self._live_one(env, now)
-                journal.record(self._plan, outcome)
+                outcome = self._outcome(env, now)
+                if outcome is None:
+                    journal.skip(self._plan)
+                else:
+                    journal.record(self._plan, outcome)
                 if now.learning and (number + 1 == total or experience(number + 1).block != now.block):
                     self._save(number + 1)
-                if self._watch is not None and self._watch(now, outcome[0]) is False:
+                if self._watch is not None and self._watch(now, math.nan if outcome is None else outcome[0]) is False:
                     break
             said = journal.summary()
         return Summary(**said, log=self._log)
+
+    def _outcome(
+        self, env: gymnasium.Env[Any, Any], now: Experience
+    ) -> tuple[float, bool, int, float, bool] | None:
+        """One experience, lived; nothing if its world cannot be drawn and such are left out."""
+        if self._skips:
+            try:
+                self._plan.world(now.number)
+            except CurriculumError as error:
+                if error.code != "curriculum/world":
+                    raise
+                return None
+        return self._live_one(env, now)
 
     def _live_one(self, env: gymnasium.Env[Any, Any], now: Experience) -> tuple[float, bool, int, float, bool]:
         """One experience: reward, success, steps, seconds and whether a limit cut it off."""
@@ -247,7 +271,7 @@ class Lifetime:
             break
         for lived in range(number, done):
             if experience(lived).learning:
-                self._live_one(env, experience(lived))
+                self._outcome(env, experience(lived))
 
 
 def environment(plan: _native.Plan, options: Mapping[str, Any]) -> gymnasium.Env[Any, Any]:
@@ -255,8 +279,19 @@ def environment(plan: _native.Plan, options: Mapping[str, Any]) -> gymnasium.Env
     refused = [name for name in ("task", "world", "variant", "drift", "task_label") if name in options]
     if refused:
         raise TypeError(f"{refused[0]}: found it among the options, expected none: the curriculum says what is lived")
-    env = DriftworldEnv(world=plan.world(0)[0], **options)
+    env = DriftworldEnv(world=_first_world(plan), **options)
     return Labelled(env, plan.due(0)["label"])
+
+
+def _first_world(plan: _native.Plan) -> str:
+    """The first world of a plan that can be drawn; the spaces of all others are the same."""
+    for number in range(len(plan)):
+        try:
+            return plan.world(number)[0]
+        except CurriculumError as error:
+            if error.code != "curriculum/world" or number + 1 == len(plan):
+                raise
+    raise ValueError("curriculum: found no experience, expected at least one")
 
 
 class Labelled(gymnasium.Wrapper[Any, Any, Any, Any]):

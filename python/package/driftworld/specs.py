@@ -77,6 +77,7 @@ def validate(
     kind: str | None = None,
     *,
     check: bool = False,
+    assets: str | os.PathLike[str] | Iterable[str | os.PathLike[str]] = (),
 ) -> list[dict[str, Any]]:
     """Every problem of a document, in the order of places; none if it is valid.
 
@@ -85,6 +86,7 @@ def validate(
         kind: ``"task"``, ``"world"``, ``"scenario"``, ``"maps"``, ``"l2explorer-world"`` or ``"l2explorer-scenario"``; seen from
             the document's keys if not given, as ``driftworld validate`` does.
         check: Raise what is wrong instead of handing it back.
+        assets: Paths of asset libraries, whose classes objects may have beside the built-in ones.
 
     What is odd about it, without being wrong, is warned of.
 
@@ -94,11 +96,14 @@ def validate(
 
     Raises:
         SpecError: With ``check``, and something is wrong: with all problems, and pointer, line and column of the first.
+        CurriculumError: With ``check``, for a scenario with two variants that no log could tell apart.
         FileNotFoundError: If there is no such file.
         ValueError: If there is no such kind.
     """
     name, text = document_text(document)
-    _, problems, notes, error = _native.check(name, text, kind)
+    paths = [assets] if isinstance(assets, (str, os.PathLike)) else list(assets)
+    libraries = [Path(path).read_bytes() for path in paths]
+    _, problems, notes, error = _native.check(name, text, kind, libraries)
     for note in notes:
         warnings.warn(note, stacklevel=2)
     if check and error is not None:

@@ -1,10 +1,11 @@
 //! The variants of a curriculum and their order: all that are named, those of a probe, or a sequence of steps.
 
-use crate::curriculum::{Choice, Hypothesis, Picked, Steps, arrange, distances, probe, steps};
-use crate::similarity::DistanceMatrix;
+use crate::curriculum::{Choice, Hypothesis, Picked, Steps, arrange, distances, probe, probe_named, steps};
+use crate::similarity::{DistanceMatrix, Method};
 use crate::spec::{DEFAULT_VARIANT, Element, Variant};
+use crate::tasks;
 
-use super::{Curriculum, tables};
+use super::{Curriculum, Order, tables};
 use crate::commands::order::matrix;
 use crate::commands::weights::WeightArgs;
 use crate::commands::{Failure, input};
@@ -43,13 +44,32 @@ impl Curriculum {
         }
         if let Some(element) = self.probe {
             let (task, pool, anchor) = self.one_task(&named)?;
-            let picked = probe(&task, &pool, &anchor, element, self.variants)?;
+            let picked = if self.names_variants() && pool.len() > 1 {
+                if let Some(wanted) = self.variants.filter(|wanted| *wanted < pool.len()) {
+                    return Err(Failure::usage(format!(
+                        "--variants: found {wanted} and {} variants named, expected at least as many as are named; name fewer, or \
+                         leave it out",
+                        pool.len()
+                    )));
+                }
+                let anchor = if self.ordering.start.is_some() {
+                    &anchor
+                } else {
+                    &pool[0]
+                };
+                probe_named(&task, &pool, anchor, element, self.variants)?
+            } else {
+                probe(&task, &pool, &anchor, element, self.variants)?
+            };
             let matrix = distances(&picked, Some(element))?;
             // A method or an end that was asked for, or the order of a hypothesis: by default the gradual one.
             let order = if self.ordering.method.is_some() || self.ordering.end.is_some() {
                 self.ordering.order(&matrix, self.seed)?.1.indices
             } else {
-                arrange(&matrix, self.order.map_or(Hypothesis::Gradual, Hypothesis::from), 0)?
+                match self.order {
+                    Some(Order::Named) => (0..picked.len()).collect(),
+                    order => arrange(&matrix, order.map_or(Hypothesis::Gradual, Order::hypothesis), 0)?,
+                }
             };
             let shown: Vec<&Picked> = order.iter().map(|index| &picked[*index]).collect();
             let proof = tables::probe(&shown, &picked[0], element)?;
@@ -57,11 +77,24 @@ impl Curriculum {
         }
         let matrix = matrix(&named, &WeightArgs::default())?;
         let order = match self.order {
+            Some(Order::Named) => {
+                let all = 0..matrix.len();
+                let first = self.ordering.options(&matrix, self.seed)?.first;
+                first
+                    .into_iter()
+                    .chain(all.filter(|index| Some(*index) != first))
+                    .collect()
+            }
             Some(order) => {
                 let first = self.ordering.options(&matrix, self.seed)?.first.unwrap_or(0);
-                arrange(&matrix, order.into(), first)?
+                arrange(&matrix, order.hypothesis(), first)?
             }
-            None => self.ordering.order(&matrix, self.seed)?.1.indices,
+            None => {
+                self.ordering
+                    .order_from(&matrix, self.seed, &self.firsts(&named))?
+                    .1
+                    .indices
+            }
         };
         let variants = named
             .iter()
@@ -73,6 +106,21 @@ impl Curriculum {
             order,
             proof: None,
         })
+    }
+
+    /// Whether every argument names a variant or a family, not a whole task.
+    fn names_variants(&self) -> bool {
+        self.tasks.iter().all(|name| tasks::split(name).1.is_some())
+    }
+
+    /// The variants that may come first where nobody says which: those of the first argument, if there are others.
+    fn firsts(&self, named: &[(String, Variant)]) -> Vec<usize> {
+        let (Some(first), true) = (self.tasks.first(), self.ordering.method != Some(Method::Random)) else {
+            return Vec::new();
+        };
+        let many = tasks::variants(first).map_or(0, |variants| variants.len());
+        // Arguments are unfolded in their order, each variant once.
+        (0..many.min(named.len())).collect()
     }
 
     /// The task that all variants are of, by the name that it was called by; its variants; and the one to begin with.

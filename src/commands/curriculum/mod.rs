@@ -2,6 +2,7 @@
 //! order is found in `choose.rs`, what is shown of them in `tables.rs` and `timeline.rs`; the design is the library's.
 
 mod choose;
+mod proof;
 mod tables;
 mod timeline;
 mod words;
@@ -12,15 +13,22 @@ use crate::curriculum::{Control, Design, Drifting, Evaluate, Hypothesis, control
 use crate::spec::{DriftSchedule, DriftSwitch, Element, Scenario, ScenarioForm, TaskLabel};
 use clap::{Args, ValueEnum};
 
+use super::assets::LibraryChoice;
 use super::order::OrderArgs;
 use super::{Failure, output};
+use proof::Proof;
 pub(crate) use tables::{blocks, choices};
 
 /// Design learning and evaluation blocks from variants and their distances.
 ///
-/// By default the variants named are learned one after the other in the order that --method finds. --probe takes, and where the
-/// task declares too few makes, variants that differ in one element of the decision process only, and prints the proof;
-/// --step-distance makes a sequence of even steps; --form arranges the blocks as lifelong learning knows them.
+/// By default the variants named are learned one after the other, from the one that is named first, in the order that --method finds; of
+/// one task named whole, whichever variant is best comes first. --order named keeps the order in which they are named. --probe takes, and
+/// where the task declares too few makes, variants that differ in one element of the decision process only, and prints the proof; of several
+/// variants named, each must be such a one. --step-distance makes a sequence of even steps; --form arranges the blocks as lifelong learning
+/// knows them.
+///
+/// A few worlds of everything are drawn before a scenario is written, and every variant on the way of a drift is looked at: what could not be
+/// run is refused.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld curriculum find_objects --start find_objects#blue -o scenario.json
@@ -94,6 +102,11 @@ pub(crate) struct Curriculum {
     /// What all worlds of the scenario follow from; evaluation and learning never share one.
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Draw so many worlds of each regime first, and refuse to write what cannot be drawn; 0 writes it unseen.
+    #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    worlds: u32,
+    #[command(flatten)]
+    libraries: LibraryChoice,
     /// Write the controls into this folder: the same variants, worlds and counts in reversed, random and contrasting order,
     /// after the same block before deployment.
     #[arg(long, value_name = "DIR", conflicts_with = "lifetimes")]
@@ -126,6 +139,8 @@ enum Order {
     Path,
     /// Each time what is farthest from everything met so far.
     Farthest,
+    /// As they are named, whatever their distances.
+    Named,
 }
 
 /// How learning blocks are arranged.
@@ -161,6 +176,7 @@ impl Curriculum {
         let several = self.form == Some(Form::Expert) || self.lifetimes.is_some();
         self.check_arguments(several)?;
         let chosen = self.choose()?;
+        let mut proof = Proof::new(self.worlds, &self.libraries)?;
         // What is printed beside a scenario on standard output would spoil it.
         let say = |text: String| {
             if self.output.as_os_str() == "-" {
@@ -175,9 +191,10 @@ impl Curriculum {
         let options = self.design();
         let picked = chosen.in_order(&chosen.order);
         if several {
-            return self.write_several(&chosen, &options);
+            return self.write_several(&chosen, &options, &mut proof);
         }
         let scenario = design(&picked, &options)?;
+        proof.check(&scenario)?;
         write_checked(&self.output, &scenario)?;
         if self.output.as_os_str() != "-" {
             output::line(blocks(&scenario, Some(&chosen.matrix)))?;
@@ -197,6 +214,7 @@ impl Curriculum {
                 let order: Vec<usize> = order.iter().filter_map(place).collect();
                 let scenario = design_control(&picked, &order, &options)?;
                 let path = folder.join(format!("{}.json", options.name));
+                proof.check(&scenario)?;
                 write_checked(&path, &scenario)?;
                 say(format!(
                     "{}: {}",
@@ -275,7 +293,7 @@ impl Curriculum {
     }
 
     /// Experts, or lifetimes of the permuted form: each in a file named after it.
-    fn write_several(&self, chosen: &choose::Chosen, options: &Design) -> Result<(), Failure> {
+    fn write_several(&self, chosen: &choose::Chosen, options: &Design, proof: &mut Proof) -> Result<(), Failure> {
         let picked = chosen.in_order(&chosen.order);
         let lifetime = |lifetime: u64| {
             let options = Design {
@@ -291,6 +309,7 @@ impl Curriculum {
         };
         for scenario in &scenarios {
             let path = self.output.join(format!("{}.json", scenario.name));
+            proof.check(scenario)?;
             write_checked(&path, scenario)?;
             output::line(format!("{}: {}", path.display(), tables::learned(scenario)))?;
         }
@@ -305,13 +324,14 @@ fn write_checked(path: &Path, scenario: &Scenario) -> Result<(), Failure> {
     output::write_or_print(path, &text)
 }
 
-impl From<Order> for Hypothesis {
-    fn from(order: Order) -> Self {
-        match order {
-            Order::Gradual => Self::Gradual,
-            Order::Abrupt => Self::Abrupt,
-            Order::Path => Self::Path,
-            Order::Farthest => Self::Farthest,
+impl Order {
+    /// The order by distances that is meant.
+    fn hypothesis(self) -> Hypothesis {
+        match self {
+            Self::Gradual | Self::Named => Hypothesis::Gradual,
+            Self::Abrupt => Hypothesis::Abrupt,
+            Self::Path => Hypothesis::Path,
+            Self::Farthest => Hypothesis::Farthest,
         }
     }
 }

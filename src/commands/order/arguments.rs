@@ -35,6 +35,34 @@ impl OrderArgs {
         Ok((method, ordering))
     }
 
+    /// The same, from whichever of some items makes the shortest path, where neither end is asked for.
+    pub(crate) fn order_from(
+        &self,
+        matrix: &DistanceMatrix,
+        seed: u64,
+        firsts: &[usize],
+    ) -> Result<(Method, Ordering), Failure> {
+        if self.start.is_some() || firsts.is_empty() || firsts.len() == matrix.len() {
+            return self.order(matrix, seed);
+        }
+        let last = self.options(matrix, seed)?.last;
+        let mut best: Option<(Method, Ordering)> = None;
+        // What was asked for as the last cannot be the first, too.
+        for first in firsts.iter().filter(|first| Some(**first) != last) {
+            let from = Self {
+                method: self.method,
+                start: Some(matrix.labels()[*first].clone()),
+                end: self.end.clone(),
+                target_step: self.target_step,
+            };
+            let found = from.order(matrix, seed)?;
+            if best.as_ref().is_none_or(|(_, best)| found.1.length < best.length) {
+                best = Some(found);
+            }
+        }
+        best.map_or_else(|| self.order(matrix, seed), Ok)
+    }
+
     /// The options that hold for every method.
     pub(crate) fn options(&self, matrix: &DistanceMatrix, seed: u64) -> Result<OrderOptions, Failure> {
         let position = |option: &str, name: &String| {

@@ -1,0 +1,248 @@
+//! What can be validated can be run: worlds that cannot be drawn, forbidden drifts, names that collide and unknown classes are found by
+//! `validate` and `curriculum`, and `run` leaves them out when it is told to.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use crate::lived::write;
+use crate::terminal::{driftworld_in, fail_in, output, scratch, succeed, succeed_in, text};
+
+/// Rocks that find no place in some worlds, a number whose middle is forbidden, and variants with one name in logs.
+fn quarry(folder: &Path) -> PathBuf {
+    let path = folder.join("quarry.json");
+    write(
+        &path,
+        r#"{ "version": 2, "name": "quarry", "require": ["x <= 4 or x >= 6"],
+        "parameters": {
+            "x": { "role": "variant", "type": "number", "affects": ["T"], "range": [0, 10], "default": 0 },
+            "rocks": { "role": "variant", "type": "integer", "affects": ["S"], "range": [0, 4], "default": 0 } },
+        "world": { "max_steps": 3, "environment_params": { "map_size": [40, 40] } },
+        "groups": [{ "name": "rocks", "count": { "param": "rocks" }, "object": { "class": "rock" }, "separation": 5,
+            "keep_out": { "walls": 0, "agent": 0 }, "placement": { "box": { "low": [10, 10], "high": [18, 18] } } }],
+        "variants": { "low": {}, "high": { "x": 10 }, "full": { "rocks": 4 }, "l-ow": { "x": 1 } } }"#,
+    );
+    path
+}
+
+#[test]
+fn validate_draws_worlds_of_every_variant_and_says_what_fails() {
+    let folder = scratch();
+    let task = quarry(folder.path());
+    succeed(&["validate", text(&task)]);
+    let told = output(&mut driftworld_in(
+        folder.path(),
+        &["validate", "quarry.json", "--worlds", "30", "--json"],
+    ));
+    assert_eq!(told.status.code(), Some(1));
+    let told: Value = serde_json::from_slice(&told.stdout).expect("it is JSON");
+    assert_eq!(told[0]["valid"], false);
+    let trials = told[0]["worlds"].as_array().expect("there is a list");
+    assert_eq!(trials.len(), 4);
+    for trial in trials {
+        let failed = trial["placement"].as_u64().expect("it is a count");
+        assert_eq!(failed > 0, trial["variant"] == "quarry#full", "{trial}");
+        assert_eq!(trial["worlds"], 30);
+        assert_eq!(trial["failed"].as_array().map_or(0, Vec::len) as u64, failed);
+    }
+    let error = fail_in(folder.path(), 1, &["validate", "quarry.json", "--worlds", "30"]);
+    assert!(
+        error.contains("of which") && error.contains("of 120 worlds cannot be drawn"),
+        "{error}"
+    );
+    let fine = succeed(&["validate", "examples/tasks", "--worlds", "2"]);
+    assert!(fine.contains("find_objects#red"), "{fine}");
+}
+
+#[test]
+fn a_drift_across_a_forbidden_value_is_found_before_it_is_run() {
+    let folder = scratch();
+    quarry(folder.path());
+    let design = [
+        "curriculum",
+        "quarry.json#low",
+        "quarry.json#high",
+        "--drift",
+        "linear",
+        "--learn",
+        "41",
+        "-o",
+        "s.json",
+    ];
+    let error = fail_in(folder.path(), 1, &design);
+    assert!(
+        error.contains("quarry#low..high") && error.contains("x <= 4 or x >= 6"),
+        "{error}"
+    );
+    assert!(
+        !folder.path().join("s.json").exists(),
+        "what could not be run is not written"
+    );
+    let way = |number: &str| error.contains(&format!("at {number} of its way"));
+    assert!(way("0.425"), "the first that is forbidden is named: {error}");
+
+    succeed_in(folder.path(), &[&design[..], &["--worlds", "0"]].concat());
+    let error = fail_in(folder.path(), 1, &["validate", "s.json", "--worlds", "2"]);
+    assert!(error.contains("worlds cannot be drawn"), "{error}");
+
+    // It stops there, says so, and offers what goes on.
+    let run = ["run", "s.json", "--agent", "random", "--logs", "log"];
+    let error = fail_in(folder.path(), 1, &run);
+    assert!(
+        error.contains("experience 27, quarry#low..high at 0.425 of its way"),
+        "{error}"
+    );
+    assert!(error.contains("--resume and --skip-undrawable"), "{error}");
+    let again = fail_in(folder.path(), 1, &[&run[..], &["--resume"]].concat());
+    assert!(again.contains("--skip-undrawable"), "{again}");
+    let told = succeed_in(
+        folder.path(),
+        &[&run[..], &["--resume", "--skip-undrawable", "--json"]].concat(),
+    );
+    let told: Value = serde_json::from_str(&told).expect("it is JSON");
+    // 0.425 to 0.575 of the way in steps of a fortieth.
+    assert_eq!(
+        (told["skipped"].as_u64(), told["experiences"].as_u64()),
+        (Some(7), Some(54)),
+        "{told}"
+    );
+    assert_eq!(told["left_out"][0]["experience"], 27);
+    let shown = succeed_in(folder.path(), &[&run[..], &["--resume"]].concat());
+    assert!(shown.contains("left out: 7 experiences"), "{shown}");
+    let checked = succeed_in(folder.path(), &["logs", "validate", "log"]);
+    assert!(checked.contains("valid; 61 rows"), "{checked}");
+    succeed_in(folder.path(), &["metrics", "log"]);
+}
+
+#[test]
+fn a_first_world_that_cannot_be_drawn_begins_no_log_unless_it_may_be_left_out() {
+    let folder = scratch();
+    quarry(folder.path());
+    let design = [
+        "curriculum",
+        "quarry.json#full",
+        "--worlds",
+        "0",
+        "--learn",
+        "12",
+        "-o",
+        "s.json",
+        "--seed",
+        "1",
+    ];
+    succeed_in(folder.path(), &design);
+    let run = ["run", "s.json", "--agent", "random", "--logs", "log"];
+    let summary = succeed_in(folder.path(), &[&run[..], &["--skip-undrawable", "--json"]].concat());
+    let summary: Value = serde_json::from_str(&summary).expect("it is JSON");
+    let (lived, skipped) = (summary["experiences"].as_u64(), summary["skipped"].as_u64());
+    assert_eq!(lived.unwrap_or_default() + skipped.unwrap_or_default(), 22);
+    assert!(lived > Some(0) && skipped > Some(0), "{summary}");
+}
+
+#[test]
+fn names_that_a_log_cannot_tell_apart_are_found_by_validate_and_curriculum() {
+    let folder = scratch();
+    quarry(folder.path());
+    let design = ["curriculum", "quarry.json#low", "quarry.json#l-ow", "-o", "s.json"];
+    let error = fail_in(folder.path(), 1, &design);
+    assert!(error.contains("quarry_low"), "{error}");
+    let scenario = r#"{ "name": "s", "blocks": [{ "type": "learning", "regimes": [
+        { "task": "quarry.json", "variant": "low", "count": 1 }, { "task": "quarry.json", "variant": "l-ow", "count": 1 }] }] }"#;
+    write(&folder.path().join("s.json"), scenario);
+    let error = fail_in(folder.path(), 1, &["validate", "s.json"]);
+    assert!(error.contains("quarry_low"), "{error}");
+    let task = output(&mut driftworld_in(folder.path(), &["validate", "quarry.json"]));
+    let warned = String::from_utf8_lossy(&task.stderr).into_owned();
+    assert!(
+        task.status.success() && warned.contains("\"low\" and \"l-ow\" have one name in logs"),
+        "{warned}"
+    );
+}
+
+#[test]
+fn a_class_that_nobody_knows_is_an_error_that_says_how_a_library_is_named() {
+    let folder = scratch();
+    let here = folder.path();
+    write(
+        &here.join("w.json"),
+        r#"{ "objects": [{ "class": "shrb", "coordinates": [3, 4] }] }"#,
+    );
+    write(
+        &here.join("t.json"),
+        r#"{ "version": 2, "name": "t", "world": { "max_steps": 3 }, "groups": [{ "name": "bushes", "count": 2, "object": { "class": "bushh" },
+            "placement": { "disc": { "center": [0, 0], "radius": 9 } } }] }"#,
+    );
+    let error = fail_in(here, 1, &["validate", "w.json", "t.json"]);
+    assert!(
+        error.contains("did you mean \"shrub\"?")
+            && error.contains("(/groups/0/object/class): found the unknown class \"bushh\""),
+        "{error}"
+    );
+    assert!(error.contains("--assets LIBRARY"), "{error}");
+    assert!(fail_in(here, 1, &["curriculum", "t.json", "-o", "s.json"]).contains("bushh"));
+    // What a library has is known where it is named.
+    let model = format!("{}/examples/assets/lighthouse.gltf", env!("CARGO_MANIFEST_DIR"));
+    succeed_in(here, &["assets", "pack", &model, "-o", "h.assets"]);
+    let harbour = format!("{}/examples/assets/harbour.json", env!("CARGO_MANIFEST_DIR"));
+    fs::copy(harbour, here.join("harbour.json")).expect("it can be copied");
+    assert!(fail_in(here, 1, &["validate", "harbour.json"]).contains("unknown class"));
+    succeed_in(here, &["validate", "harbour.json", "--assets", "h.assets"]);
+}
+
+#[test]
+fn a_curriculum_begins_with_what_is_named_first() {
+    let folder = scratch();
+    let here = folder.path();
+    let first = |names: &[&str]| {
+        succeed_in(here, &[&["curriculum"], names, &["-o", "s.json"]].concat());
+        let scenario: Value = serde_json::from_str(&crate::terminal::read(here.join("s.json"))).expect("it is JSON");
+        let blocks = scenario["blocks"].as_array().expect("there are blocks").clone();
+        let learned = blocks.into_iter().filter(|block| block["type"] == "learning");
+        learned
+            .map(|block| block["regimes"][0]["variant"].as_str().unwrap_or_default().to_owned())
+            .collect::<Vec<_>>()
+    };
+    let names = ["blue", "red", "green", "dusk", "huddle"];
+    for a in names {
+        for b in names.into_iter().filter(|b| *b != a) {
+            let arguments = [format!("find_objects#{a}"), format!("find_objects#{b}")];
+            assert_eq!(first(&[&arguments[0], &arguments[1]]), [a, b]);
+        }
+    }
+    let three = ["find_objects#dusk", "find_objects#blue", "find_objects#red"];
+    assert_eq!(first(&three)[0], "dusk", "whichever order is shorter");
+    assert_eq!(
+        first(&[&three[..], &["--order", "named"]].concat()),
+        ["dusk", "blue", "red"]
+    );
+    assert_eq!(
+        first(&[&three[..], &["--start", "find_objects#red"]].concat())[0],
+        "red"
+    );
+}
+
+#[test]
+fn a_probe_takes_the_variants_that_are_named_or_says_why_not() {
+    let folder = scratch();
+    let here = folder.path();
+    let probe = |element: &str, names: &[&str]| {
+        let mut arguments = vec!["curriculum"];
+        arguments.extend(names);
+        arguments.extend(["--probe", element, "-o", "s.json"]);
+        output(&mut driftworld_in(here, &arguments))
+    };
+    let told = probe("observation", &["find_objects#red", "find_objects#dusk"]);
+    let error = String::from_utf8_lossy(&told.stderr).into_owned();
+    assert!(told.status.success(), "{error}");
+    let shown = String::from_utf8_lossy(&told.stdout).into_owned();
+    assert!(shown.contains("distances from find_objects#red"), "{shown}");
+    assert!(!shown.contains("find_objects#blue"), "only what was named: {shown}");
+    let told = probe("reward", &["find_objects#red", "find_objects#dusk"]);
+    let error = String::from_utf8_lossy(&told.stderr).into_owned();
+    assert_eq!(told.status.code(), Some(1), "{error}");
+    assert!(
+        error.contains("find_objects#red and find_objects#dusk, which differ in observation"),
+        "{error}"
+    );
+}
