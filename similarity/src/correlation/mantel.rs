@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::relabelling::Relabellings;
+use super::spearman::without_rounding;
 use super::{Correlation, MIN_CORRELATED, pearson, ranks};
 use crate::{DistanceMatrix, SimilarityError};
 
@@ -261,8 +262,11 @@ impl Table {
     }
 }
 
-/// Puts in place of every number how many different ones are below it; returns how many different ones there are.
+/// Puts in place of every number how many different ones are below it; returns how many different ones there are. Which are equal,
+/// [`ranks`] says.
 fn place_among_equals(numbers: &mut [f64]) -> usize {
+    let merged = without_rounding(numbers);
+    numbers.copy_from_slice(&merged);
     let mut different = numbers.to_vec();
     different.sort_by(f64::total_cmp);
     different.dedup_by(|a, b| a == b);

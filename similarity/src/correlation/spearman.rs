@@ -9,8 +9,8 @@ use crate::SimilarityError;
 ///
 /// Pearson's correlation of the [`ranks`]; equal numbers share the mean of their ranks. `a` and `b`: one number each per
 /// observation, in any units, at least 3. Returns −1 to 1; symmetric; the same under any rising map of either list, so that no
-/// far-off point and no choice of scale decides it. Numbers count as equal only where all their bits do: round beforehand what
-/// differs by rounding alone. Not a distance. Time `O(n log n)`.
+/// far-off point and no choice of scale decides it. Numbers that differ by rounding alone count as equal, as [`ranks`] says. Not a
+/// distance. Time `O(n log n)`.
 ///
 /// Source: Spearman 1904; the same numbers as `scipy.stats.spearmanr` within 1e-12.
 ///
@@ -31,13 +31,16 @@ pub fn spearman(a: &[f64], b: &[f64]) -> Result<f64, SimilarityError> {
 
 /// The ranks of finite numbers, from 1 for the least; equal numbers share the mean of their ranks.
 ///
-/// Time `O(n log n)`.
+/// Numbers count as equal where they agree to twelve significant digits, and where they differ by less than the largest of all is
+/// rounded by: distances that are the same by definition are sums in different orders, and ties must not be broken by that. Time
+/// `O(n log n)`.
 ///
 /// # Example
 /// ```
 /// assert_eq!(driftworld_similarity::ranks(&[0.5, 9.0, 0.5, 2.0]), [1.5, 4.0, 1.5, 3.0]);
 /// ```
 pub fn ranks(values: &[f64]) -> Vec<f64> {
+    let values = without_rounding(values);
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
     let mut ranks = vec![0.0; values.len()];
@@ -51,6 +54,34 @@ pub fn ranks(values: &[f64]) -> Vec<f64> {
         below += equal.len();
     }
     ranks
+}
+
+/// Two numbers of which the larger exceeds the other by at most this part of it agree to twelve significant digits.
+const TWELVE_DIGITS: f64 = 1e-12;
+
+/// Part of the largest number that sums of such numbers may be off by.
+const ROUNDING: f64 = 1e-15;
+
+/// The numbers, with the least of those that count as equal in place of each.
+///
+/// From the least of a group and not from neighbour to neighbour, so that no chain of small steps makes far numbers equal; and not by
+/// rounding each alone, which would part two neighbours on either side of a rounded number's edge.
+pub(super) fn without_rounding(values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let mut merged = values.to_vec();
+    let mut least = f64::NEG_INFINITY;
+    for item in order {
+        let value = values[item];
+        let same = (TWELVE_DIGITS * value.abs().max(least.abs())).max(ROUNDING * largest);
+        // From negative infinity everything is infinitely far, and an infinite bound would take it in.
+        if least.is_infinite() || value - least > same {
+            least = value;
+        }
+        merged[item] = least;
+    }
+    merged
 }
 
 #[cfg(test)]
@@ -80,6 +111,43 @@ mod tests {
             let n = a.len() as f64;
             prop_assert_eq!(ranks(&a).iter().sum::<f64>(), n * (n + 1.0) / 2.0);
         }
+    }
+
+    proptest! {
+        /// Ties are what the numbers say, whatever the order in which they were added up, and in whatever unit.
+        #[test]
+        fn rounding_breaks_no_tie_and_makes_none(
+            (a, _) in lists(), noise in prop::collection::vec(-4_i32..=4, 20), power in -40..40_i32, unit in 0.1..10.0_f64,
+        ) {
+            let numbers: Vec<f64> = a.iter().map(|value| 0.1 * value + 2.0).collect();
+            let noisy: Vec<f64> =
+                numbers.iter().zip(&noise).map(|(number, noise)| number * (1.0 + f64::from(*noise) * 2.5e-16)).collect();
+            prop_assert_eq!(ranks(&noisy), ranks(&numbers));
+            // The integers have ties of all their bits.
+            prop_assert_eq!(ranks(&numbers), ranks(&a));
+            let scaled: Vec<f64> = noisy.iter().map(|number| number * 2.0_f64.powi(power)).collect();
+            prop_assert_eq!(ranks(&scaled), ranks(&numbers));
+            let in_units: Vec<f64> = noisy.iter().map(|number| number * unit).collect();
+            prop_assert_eq!(ranks(&in_units), ranks(&numbers));
+        }
+    }
+
+    #[test]
+    fn issue_16_rounding_broke_ties_of_distances() {
+        let (sum, number) = (0.1 + 0.2, 0.3);
+        assert_ne!(sum, number);
+        assert_eq!(ranks(&[sum, number, 0.5]), [1.5, 1.5, 3.0]);
+        assert_eq!(ranks(&[number, sum, 0.5]), [1.5, 1.5, 3.0]);
+        assert_eq!(
+            ranks(&[0.0, sum - number, 0.5]),
+            [1.5, 1.5, 3.0],
+            "what is left of a difference"
+        );
+        assert_eq!(
+            ranks(&[0.3, 0.3 + 1e-11, 0.5]),
+            [1.0, 2.0, 3.0],
+            "eleven digits are no rounding"
+        );
     }
 
     #[test]

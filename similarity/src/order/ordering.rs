@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::DistanceMatrix;
+use crate::{DistanceMatrix, ranks};
 
 /// Items in an order, and how far each step goes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -51,22 +51,6 @@ fn anchor_correlation(matrix: &DistanceMatrix, indices: &[usize]) -> Option<f64>
     let distances: Vec<f64> = others.iter().map(|item| matrix.get(*first, *item)).collect();
     let places: Vec<f64> = (0..others.len()).map(|place| place as f64).collect();
     pearson(&places, &ranks(&distances))
-}
-
-/// The rank of each value, from 0; equal ones share the mean of their ranks.
-fn ranks(values: &[f64]) -> Vec<f64> {
-    let mut by_value: Vec<usize> = (0..values.len()).collect();
-    by_value.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-    let mut ranks = vec![0.0; values.len()];
-    let mut place = 0;
-    for equal in by_value.chunk_by(|a, b| values[*a] == values[*b]) {
-        let mean = place as f64 + (equal.len() - 1) as f64 / 2.0;
-        for item in equal {
-            ranks[*item] = mean;
-        }
-        place += equal.len();
-    }
-    ranks
 }
 
 /// Correlation of two lists of one length; none where a list does not vary.
