@@ -54,13 +54,13 @@ pub use options::{
     NormalizationMethod, Options, SmoothingMethod, SteAveragingMethod, TransferMethod, VariantMode,
 };
 pub use repeats::{
-    Aggregate, BootstrapOptions, Estimate, Improvement, Interval, MAX_RESAMPLES, MAX_RUNS, MAX_SCORES,
+    Aggregate, BootstrapOptions, Estimate, FEW_RUNS, Improvement, Interval, MAX_RESAMPLES, MAX_RUNS, MAX_SCORES,
     MAX_SCORES_DRAWN, MAX_STRATA, Resampling, ScoreTable, StratumImprovement, estimate, performance_profile,
     probability_of_improvement,
 };
 pub use results::{
-    ComparedMetric, Direction, Headline, LifetimeMetrics, PairValues, RegimeMetrics, RepeatedMetric, SavedFiles,
-    SavedTables, Settings, SummaryRow, Value, Values, compare_agents, over_repeats, regimes_tsv, save_all,
+    AsLogged, ComparedMetric, Direction, Headline, LifetimeMetrics, PairValues, RegimeMetrics, RepeatedMetric,
+    SavedFiles, SavedTables, Settings, SummaryRow, Value, Values, compare_agents, over_repeats, regimes_tsv, save_all,
 };
 pub use score::{Assessment, Metric, Scorer, score};
 

@@ -31,7 +31,9 @@ fn options(normalization_method: NormalizationMethod, smoothing_method: Smoothin
 fn scores(dir: &Path, expert: Option<&Path>, options: &Options) -> Value {
     let experts: Vec<_> = expert.into_iter().map(|dir| read_ste_log(dir).unwrap()).collect();
     let mut scores = serde_json::to_value(score(&read_log(dir).unwrap(), &experts, options).unwrap()).unwrap();
-    scores.as_object_mut().unwrap().shift_remove("normalization_data_range");
+    for of_the_log in ["normalization_data_range", "as_logged"] {
+        scores.as_object_mut().unwrap().shift_remove(of_the_log);
+    }
     scores
 }
 

@@ -95,7 +95,9 @@ fn every_published_number_is_reproduced() {
     let Some(dir) = reference() else { return };
     let expected = std::fs::read(dir.join("expected/multi_task_metrics.json")).unwrap();
     let expected: Value = serde_json::from_slice(&expected).unwrap();
-    let found = serde_json::to_value(scored(&dir, &options())).unwrap();
+    let mut found = serde_json::to_value(scored(&dir, &options())).unwrap();
+    // Ours alone: the means of the log's columns before anything is scaled.
+    found.as_object_mut().unwrap().shift_remove("as_logged").unwrap();
     let num_numbers = compare("", &found, &expected);
     assert!(num_numbers > 150, "only {num_numbers} numbers were compared");
 }

@@ -5,7 +5,8 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
 use driftworld_metrics::{
-    Aggregate, BootstrapOptions, Estimate, ScoreTable, estimate, performance_profile, probability_of_improvement,
+    Aggregate, BootstrapOptions, Estimate, Resampling, ScoreTable, estimate, performance_profile,
+    probability_of_improvement,
 };
 use serde::Deserialize;
 
@@ -78,6 +79,7 @@ fn allowed_share(theirs: u32, seeds: u32) -> f64 {
 fn options(theirs: u32, seeds: u32) -> [BootstrapOptions; 2] {
     [-2.0, 2.0].map(|sides| BootstrapOptions {
         confidence: 0.95 + sides * allowed_share(theirs, seeds),
+        resampling: Resampling::Strata,
         resamples: RESAMPLES,
         ..BootstrapOptions::default()
     })

@@ -151,7 +151,10 @@ fn several_lifetimes_have_an_index_a_chapter_each_and_intervals_together() {
         "id=\"life-2\"",
         "Over all lifetimes",
         "mine against theirs",
-        "not told apart",
+        // Two lifetimes of each agent: p is 1/3 at least.
+        "too few lifetimes",
+        "mean reward, evaluations",
+        "Student’s t",
         "21 November 2026",
     ] {
         assert!(page.contains(part), "{part}");

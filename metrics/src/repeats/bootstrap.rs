@@ -20,12 +20,12 @@ pub const MAX_SCORES_DRAWN: u64 = 10_000_000_000;
 choice! {
     /// What is drawn again.
     Resampling, "resampling" {
-        /// Within each stratum as many scores as it has, each stratum by itself (default). As rliable does; takes the scores of one
-        /// run in different strata as independent.
-        Strata = "strata",
-        /// Whole runs with all their scores. Keeps what the scores of one lifetime have in common; the same as `Strata` where
+        /// Whole runs with all their scores (default). Keeps what the scores of one lifetime have in common; the same as `Strata` where
         /// there is one stratum only. Where runs lack scores, a stratum of which nothing was drawn is left out of that draw.
         Runs = "runs",
+        /// Within each stratum as many scores as it has, each stratum by itself. As rliable does; takes the scores of one run in
+        /// different strata as independent, and is much too narrow where they are not.
+        Strata = "strata",
     }
 }
 
@@ -39,7 +39,7 @@ pub struct BootstrapOptions {
     /// interval leaves out at an end, 2.5 %, by 0.35 % (one standard deviation), less than what a handful of runs leave open
     /// anyway. Take 50,000, as rliable does, for a figure to publish.
     pub resamples: u32,
-    /// What is drawn again; default the scores within each stratum.
+    /// What is drawn again; default whole runs.
     pub resampling: Resampling,
     /// What the draws come from; default 0. The same seed gives the same interval on every machine.
     pub seed: u64,
@@ -50,7 +50,7 @@ impl Default for BootstrapOptions {
         Self {
             confidence: 0.95,
             resamples: 2_000,
-            resampling: Resampling::Strata,
+            resampling: Resampling::Runs,
             seed: 0,
         }
     }

@@ -5,6 +5,7 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
+use super::jackknife::{FEW_RUNS, LeftOut, t_interval};
 use super::resample::draw_whole_runs;
 use super::{BootstrapOptions, Interval, Resampling, ScoreTable};
 
@@ -60,6 +61,61 @@ impl Contests {
             .collect()
     }
 
+    /// Student's intervals of the strata, and last that of their mean, where an agent has few runs; within 0..=1. A stratum has none
+    /// where an agent has one run in it.
+    pub(super) fn t_intervals(&mut self, confidence: f64) -> Option<Vec<Option<Interval>>> {
+        if self.runs_of_a.len().min(self.runs_of_b.len()) >= FEW_RUNS {
+            return None;
+        }
+        self.take_each_once();
+        let values = self.with_mean();
+        let mut left_out: Vec<[LeftOut; 2]> = values.iter().map(|_| [LeftOut(vec![]), LeftOut(vec![])]).collect();
+        for agent in 0..2 {
+            for run in 0..[&self.runs_of_a, &self.runs_of_b][agent].len() {
+                self.take_each_once();
+                if agent == 0 {
+                    self.runs_of_a[run] = 0;
+                } else {
+                    self.runs_of_b[run] = 0;
+                }
+                self.take_runs();
+                for (place, value) in self.with_mean().into_iter().enumerate() {
+                    // A run that has no score in a stratum says nothing of it.
+                    let scored = self.strata.get(place).is_none_or(|contest| contest.has(agent, run));
+                    left_out[place][agent].0.extend(value.filter(|_| scored));
+                }
+            }
+        }
+        self.take_each_once();
+        let interval = |(value, left_out): (Option<f64>, &[LeftOut; 2])| {
+            let found = t_interval(value?, left_out, confidence)?;
+            let (low, high) = (found.low.max(0.0), found.high.min(1.0));
+            Some(Interval { low, high })
+        };
+        Some(values.into_iter().zip(&left_out).map(interval).collect())
+    }
+
+    /// How probably A wins in each stratum, and in the mean of those with pairs.
+    fn with_mean(&self) -> Vec<Option<f64>> {
+        let mut values: Vec<Option<f64>> = self.strata.iter().map(Contest::probability).collect();
+        let known: Vec<f64> = values.iter().flatten().copied().collect();
+        values.push((!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64));
+        values
+    }
+
+    fn take_each_once(&mut self) {
+        self.runs_of_a.fill(1);
+        self.runs_of_b.fill(1);
+        self.take_runs();
+    }
+
+    fn take_runs(&mut self) {
+        for contest in &mut self.strata {
+            contest.a.take(&self.runs_of_a);
+            contest.b.take(&self.runs_of_b);
+        }
+    }
+
     fn draw(&mut self, resampling: Resampling, chance: &mut ChaCha8Rng) {
         match resampling {
             Resampling::Strata => {
@@ -71,10 +127,7 @@ impl Contests {
             Resampling::Runs => {
                 draw_whole_runs(&mut self.runs_of_a, chance);
                 draw_whole_runs(&mut self.runs_of_b, chance);
-                for contest in &mut self.strata {
-                    contest.a.take(&self.runs_of_a);
-                    contest.b.take(&self.runs_of_b);
-                }
+                self.take_runs();
             }
         }
     }
@@ -106,6 +159,12 @@ impl Contest {
             a: Side::new(of_a, &different),
             b: Side::new(of_b, &different),
         }
+    }
+
+    /// Whether a run of the first or second agent has a score.
+    fn has(&self, agent: usize, run: usize) -> bool {
+        let side = if agent == 0 { &self.a } else { &self.b };
+        side.runs.iter().any(|(_, scored)| *scored as usize == run)
     }
 
     fn varies(&self) -> bool {

@@ -6,6 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::contest::Contests;
+use super::permutation::shared_out;
 use super::score_table::wrong;
 use super::{BootstrapOptions, Estimate, ScoreTable};
 use crate::MetricsError;
@@ -15,6 +16,14 @@ use crate::MetricsError;
 pub struct Improvement {
     /// Mean of the strata's probabilities: 0.5 where neither is better, 1 where every run of A beats every run of B.
     pub probability: Estimate,
+    /// How often two equal agents differ as much: the share of ways to share out all runs among the two, whole runs, in which the mean
+    /// probability is as far from 0.5. Whoever calls agents different where it is at most 0.05 does so for 5 % of equal ones at most,
+    /// whatever the scores of a run have in common. `None` for one run of each.
+    #[serde(default)]
+    pub p_value: Option<f64>,
+    /// The least that it can be with so many runs: 0.1 for three of each.
+    #[serde(default)]
+    pub least_p_value: Option<f64>,
     /// The strata that both agents have, in A's order.
     pub strata: Vec<StratumImprovement>,
     /// Strata that only A has; left out.
@@ -84,10 +93,13 @@ pub fn probability_of_improvement(
     let values = contests.probabilities();
     let varies = a.varies(options.resampling) || b.varies(options.resampling);
     let intervals = varies.then(|| contests.intervals(options));
+    let by_t = contests.t_intervals(options.confidence);
     let estimate = |k: usize, value| Estimate {
         value,
         interval: intervals.as_ref().and_then(|intervals| intervals[k]),
+        t_interval: by_t.as_ref().and_then(|intervals| intervals[k]),
     };
+    let shared_out = shared_out(a, b, &shared, options);
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let strata = shared
         .iter()
@@ -104,6 +116,8 @@ pub fn probability_of_improvement(
     Ok(Improvement {
         strata: strata.collect(),
         probability: estimate(shared.len(), mean),
+        p_value: shared_out.map(|shared| shared.p_value),
+        least_p_value: shared_out.map(|shared| shared.least),
         only_a: missing(a, b),
         only_b: missing(b, a),
     })

@@ -10,13 +10,17 @@ mod bootstrap;
 mod contest;
 mod estimate;
 mod improvement;
+mod jackknife;
+mod permutation;
 mod profile;
 mod resample;
 mod score_table;
+mod student;
 
 pub use aggregate::Aggregate;
 pub use bootstrap::{BootstrapOptions, MAX_RESAMPLES, MAX_SCORES_DRAWN, Resampling};
 pub use estimate::{Estimate, Interval, estimate};
 pub use improvement::{Improvement, StratumImprovement, probability_of_improvement};
+pub use jackknife::FEW_RUNS;
 pub use profile::performance_profile;
 pub use score_table::{MAX_RUNS, MAX_SCORES, MAX_STRATA, ScoreTable};

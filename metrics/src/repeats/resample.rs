@@ -49,6 +49,14 @@ impl Resample {
         }
     }
 
+    /// Leaves one run out and counts each other once; false where no score is left.
+    pub(super) fn leave_out(&mut self, run: usize) -> bool {
+        for slot in self.strata.iter().flatten() {
+            self.counts[slot.position as usize] = u32::from(slot.run as usize != run);
+        }
+        self.counts.iter().any(|count| *count > 0)
+    }
+
     /// Draws anew.
     pub(super) fn draw(&mut self, resampling: Resampling, chance: &mut ChaCha8Rng) {
         match resampling {

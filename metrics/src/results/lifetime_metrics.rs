@@ -6,7 +6,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::rounding::ten_decimals;
-use super::{Headline, RegimeMetrics, Value, Values};
+use super::{AsLogged, Headline, RegimeMetrics, Value, Values};
 use crate::{DataRange, Definitions};
 
 /// Everything that scoring one lifetime gives. Serialises to the reference's `NAME_metrics.json`; regimes have a
@@ -39,6 +39,13 @@ pub struct LifetimeMetrics {
     pub runtime: f64,
     /// Range per task that was scaled to 1..=101; `null` where nothing was normalised.
     pub normalization_data_range: Option<IndexMap<String, DataRange>>,
+    /// Means of the columns as they were logged, by column: what was scored first, then `reward` and `success` where the log has them.
+    /// Of these, lifetimes can be compared whatever each was scaled by.
+    #[serde(default)]
+    pub as_logged: IndexMap<String, AsLogged>,
+    /// What a reader of the values must be told; in the JSON where there is anything.
+    #[serde(default)]
+    pub notes: Vec<String>,
     /// The values of each task, by first learning block: headlines, then the lists behind them.
     pub task_metrics: IndexMap<String, Values>,
     /// The values of each regime, in order; not in the JSON.
@@ -71,6 +78,10 @@ struct Document<'a> {
     num_ex: usize,
     runtime: f64,
     normalization_data_range: Option<&'a IndexMap<String, DataRange>>,
+    #[serde(skip_serializing_if = "IndexMap::is_empty")]
+    as_logged: &'a IndexMap<String, AsLogged>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    notes: &'a [String],
     task_metrics: &'a IndexMap<String, Values>,
 }
 
@@ -106,6 +117,8 @@ impl Serialize for LifetimeMetrics {
             num_ex: self.num_ex,
             runtime: rounded(self.runtime),
             normalization_data_range: self.normalization_data_range.as_ref(),
+            as_logged: &self.as_logged,
+            notes: &self.notes,
             task_metrics: &self.task_metrics,
         };
         document.serialize(serializer)

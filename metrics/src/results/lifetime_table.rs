@@ -9,7 +9,7 @@ use super::LifetimeMetrics;
 use crate::log::line;
 
 /// Fields that are no column: too long for a cell, and in the JSON beside the table.
-const LEFT_OUT: [&str; 2] = ["normalization_data_range", "task_metrics"];
+const LEFT_OUT: [&str; 4] = ["normalization_data_range", "as_logged", "notes", "task_metrics"];
 
 /// A row per lifetime, the log in the first column; a column for every value that some lifetime has.
 pub(super) fn lifetimes_tsv(lifetimes: &[LifetimeMetrics]) -> String {

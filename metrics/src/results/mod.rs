@@ -2,6 +2,7 @@
 //!
 //! Not here: computing them (`score`), and printing or drawing them (the command's).
 
+mod as_logged;
 mod files;
 mod headline;
 mod lifetime_metrics;
@@ -11,6 +12,8 @@ mod repeats;
 mod rounding;
 mod values;
 
+pub use as_logged::AsLogged;
+pub(crate) use as_logged::as_logged;
 pub use files::{SavedFiles, SavedTables, Settings, save_all};
 pub use headline::{Direction, Headline, SummaryRow};
 pub use lifetime_metrics::LifetimeMetrics;

@@ -6,7 +6,7 @@ use indexmap::{IndexMap, IndexSet};
 
 use super::{Assessment, Metric, all_asked, built_in, built_in_headlines};
 use crate::lifetime::{Lifetime, Regime, SteLog};
-use crate::results::{Headline, LifetimeMetrics, RegimeMetrics, Value, Values, is_regime_column};
+use crate::results::{Headline, LifetimeMetrics, RegimeMetrics, Value, Values, as_logged, is_regime_column};
 use crate::{BlockType, Log, MetricsError, Options};
 
 /// Scores a lifetime by the metrics of this crate, compared with the single-task experts there are.
@@ -92,6 +92,7 @@ impl Scorer {
                 headlines.push(headline);
             }
         }
+        let notes = super::transfer::caution(&assessment).into_iter().collect();
         let (regimes, tasks, found) = assessment.into_values();
         check_names(&found, "the lifetime", |name| TAKEN.contains(&name))?;
         for (task, values) in &tasks {
@@ -121,6 +122,8 @@ impl Scorer {
             num_ex: num_rows(lifetime.regimes().iter(), BlockType::Test),
             runtime: lifetime.runtime_secs(),
             normalization_data_range: lifetime.normalization_data_range().cloned(),
+            as_logged: as_logged(log, options)?,
+            notes,
             task_metrics: tasks.into_iter().map(finish).collect::<IndexMap<_, _>>(),
             regimes: regimes
                 .map(|(regime, values)| RegimeMetrics::new(regime, values))
@@ -138,7 +141,7 @@ impl Default for Scorer {
 }
 
 /// Fields of the results that no headline and no value of a lifetime may have as its name.
-const TAKEN: [&str; 13] = [
+const TAKEN: [&str; 15] = [
     "run_id",
     "complexity",
     "difficulty",
@@ -151,6 +154,8 @@ const TAKEN: [&str; 13] = [
     "num_ex",
     "runtime",
     "normalization_data_range",
+    "as_logged",
+    "notes",
     "task_metrics",
 ];
 

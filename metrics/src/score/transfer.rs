@@ -14,6 +14,9 @@ use crate::{BlockType, Definitions, MetricsError, Options};
 /// `forward_transfer_…` and `backward_transfer_…` of every trained task, by ratio and contrast as far as they are asked
 /// for.
 ///
+/// A contrast lies in -1..=1, and a ratio above 1 is an improvement, only where no performance is negative; [`caution`] says so where
+/// one is.
+///
 /// QUIRK: for the lifetime's value, the first value of every pair of tasks counts, however often the pair met.
 pub(super) struct Transfer;
 
@@ -21,28 +24,28 @@ impl Metric for Transfer {
     fn headlines(&self, options: &Options) -> Vec<Headline> {
         let mut headlines = Vec::new();
         let method = options.transfer_method;
-        if method.has_ratio() {
-            headlines.push(Headline::new(
-                "forward_transfer_ratio",
-                "does learning one task help others not learnt yet? performance after over before",
-                Direction::HigherThan(1.0),
-            ));
-            headlines.push(Headline::new(
-                "backward_transfer_ratio",
-                "does learning one task help others learnt before? performance after over before",
-                Direction::HigherThan(1.0),
-            ));
-        }
         if method.has_contrast() {
             headlines.push(Headline::new(
                 "forward_transfer_contrast",
-                "does learning one task help others not learnt yet? change over sum, from -1 to 1",
+                "does learning one task help others not learnt yet? change over sum, from -1 to 1 if none is negative",
                 Direction::HigherThan(0.0),
             ));
             headlines.push(Headline::new(
                 "backward_transfer_contrast",
-                "does learning one task help others learnt before? change over sum, from -1 to 1",
+                "does learning one task help others learnt before? change over sum, from -1 to 1 if none is negative",
                 Direction::HigherThan(0.0),
+            ));
+        }
+        if method.has_ratio() {
+            headlines.push(Headline::new(
+                "forward_transfer_ratio",
+                "does learning one task help others not learnt yet? after over before, if none is negative",
+                Direction::HigherThan(1.0),
+            ));
+            headlines.push(Headline::new(
+                "backward_transfer_ratio",
+                "does learning one task help others learnt before? after over before, if none is negative",
+                Direction::HigherThan(1.0),
             ));
         }
         headlines
@@ -67,6 +70,21 @@ impl Metric for Transfer {
         }
         Ok(())
     }
+}
+
+/// What a reader of ratios and contrasts must be told, where performances they were made of are negative.
+pub(super) fn caution(assessment: &Assessment<'_>) -> Option<String> {
+    let (forward, backward) = gaps(assessment);
+    let gaps = forward.values().chain(backward.values());
+    let least = gaps
+        .flat_map(|gap| [gap.before, gap.after])
+        .fold(f64::INFINITY, f64::min);
+    (least < 0.0).then(|| {
+        format!(
+            "transfer compares performances of which some are negative (down to {least:.4}): a contrast may then lie outside -1 to 1, \
+             and a ratio above 1 may be a loss; scale performances (-n task) to read them"
+        )
+    })
 }
 
 /// Values from a trained task to another: `[trained][other]`, in order of the later evaluation.

@@ -3,7 +3,7 @@
 use driftworld_metrics::{BlockType, Lifetime, LifetimeMetrics};
 use maud::{Markup, html};
 
-use super::count;
+use super::{count, number};
 use crate::words::shown;
 
 /// How much was lived, and by what it is judged.
@@ -17,13 +17,23 @@ pub(super) fn facts(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Markup {
         0 => count(learnt().count()),
         _ => format!("{} ({} asleep)", count(learnt().count()), count(asleep)),
     };
-    let facts = [
+    let mut facts = Vec::new();
+    // How good the agent is comes first: the metrics, scaled by the lifetime's own range, do not say it.
+    for (column, means) in &metrics.as_logged {
+        for (mean, when) in [(means.learning, "learning"), (means.evaluation, "evaluations")] {
+            if let Some(mean) = mean {
+                facts.push((format!("mean {}, {when}", shown(column)), number(mean)));
+            }
+        }
+    }
+    let counts = [
         ("learning experiences", count(metrics.num_lx)),
         ("evaluation experiences", count(metrics.num_ex)),
         ("tasks", count(lifetime.tasks().len())),
         ("learning blocks", blocks),
         ("scored by", shown(&metrics.metrics_column)),
     ];
+    facts.extend(counts.map(|(name, value)| (name.to_owned(), value)));
     html! {
         dl.facts {
             @for (name, value) in &facts {

@@ -54,6 +54,13 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
             strong { "One lifetime cannot tell effect from chance; several can, by intervals over all of them. " }
             (verdict::rule(scaled))
         }
+        @for note in &metrics.notes { p.note { strong { "Mind: " } (shown(note)) "." } }
+        @if scaled {
+            p.note {
+                "Tasks are scaled to 1…101, by default by this lifetime’s own worst and best. Lifetimes scaled so cannot be compared: a random agent may stand "
+                "above an expert. The means above, as they were logged, can."
+            }
+        }
         p.note {
             "Each task: coloured marks, for transfer one per pair in the colour of the task that was learnt; upright stroke: the lifetime's value; dashes: no effect."
             @if !absent.is_empty() { " Not computed: " (absent.join("; ")) "." }

@@ -1,6 +1,6 @@
 //! Values over all lifetimes with their intervals, and comparisons of two agents. They are estimated elsewhere, by `driftworld_metrics`.
 
-use driftworld_metrics::{BootstrapOptions, ComparedMetric, Estimate, Interval, RepeatedMetric};
+use driftworld_metrics::{BootstrapOptions, ComparedMetric, Estimate, Improvement, Interval, RepeatedMetric};
 use indexmap::IndexMap;
 use maud::{Markup, html};
 
@@ -27,7 +27,7 @@ pub(super) fn section(overall: &[RepeatedMetric], comparisons: &[Comparison], in
             section.part.only id="overall" aria-labelledby="overall-name" {
                 h2 id="overall-name" { "Over all lifetimes" }
                 (values(overall, &percent))
-                @for comparison in comparisons { (improvement(comparison, &percent)) }
+                @for comparison in comparisons { (improvement(comparison, &percent, intervals.confidence)) }
                 p.note { "Intervals: " (intervals.resamples) " resamples of " (intervals.resampling) ", seed " (intervals.seed) "." }
             }
         }
@@ -53,6 +53,12 @@ fn values(rows: &[RepeatedMetric], percent: &str) -> Markup {
                         }
                     }
                     tbody { @for row in rows { (value_row(row)) } }
+                }
+            }
+            @if rows.iter().any(|row| row.iqm.t_interval.is_some()) {
+                p.note {
+                    "t: the interval by Student’s t over lifetimes, by which values are judged here. Below ten lifetimes the bootstrap’s holds the true "
+                    "value less often than it says; Student’s takes what varies from lifetime to lifetime as normal."
                 }
             }
             @for (caution, names) in cautions(rows) {
@@ -83,7 +89,7 @@ fn value_row(row: &RepeatedMetric) -> Markup {
     let name = &row.headline.name;
     let judged = row
         .iqm
-        .interval
+        .best_interval()
         .and_then(|interval| verdict::of_interval(name, interval, row.headline.good));
     html! {
         tr {
@@ -102,16 +108,19 @@ fn estimate(found: Estimate) -> Markup {
     html! {
         b { (number(found.value)) }
         @if let Some(Interval { low, high }) = found.interval { br; " [" (number(low)) ", " (number(high)) "]" }
+        @if let Some(Interval { low, high }) = found.t_interval { br; " t [" (number(low)) ", " (number(high)) "]" }
     }
 }
 
-fn improvement(comparison: &Comparison, percent: &str) -> Markup {
+fn improvement(comparison: &Comparison, percent: &str, confidence: f64) -> Markup {
     let title = format!("{} against {}", shown(&comparison.agent), shown(&comparison.other));
     html! {
         h3 { (title) }
         p.note {
             "Probability of improvement: how likely a lifetime of " (shown(&comparison.agent)) " has the better value; 0.5 means that "
-            "neither is better. In brackets, its " (percent) " bootstrap interval."
+            "neither is better. In brackets, its " (percent) " bootstrap interval, and by Student’s t where there are few lifetimes. p: how often two "
+            "equal agents differ as much, by sharing out all lifetimes among the two; they are called different where it is at most "
+            (number_plain(1.0 - confidence)) "."
         }
         div.scroll role="region" aria-label=(title) tabindex="0" {
             table.stacked {
@@ -119,6 +128,7 @@ fn improvement(comparison: &Comparison, percent: &str) -> Markup {
                     tr {
                         th scope="col" { "Metric" }
                         th.number scope="col" { "Probability" br; "of improvement" }
+                        th.number scope="col" { "p" }
                         th scope="col" { "Reading" }
                     }
                 }
@@ -127,7 +137,8 @@ fn improvement(comparison: &Comparison, percent: &str) -> Markup {
                         tr {
                             th scope="row" { (verdict::title(&row.headline.name)) }
                             td.number data-name="Probability of improvement" { (estimate(row.improvement.probability)) }
-                            td { @if let Some(interval) = row.improvement.probability.interval { (pill(better(interval))) } }
+                            td.number data-name="p" { (row.improvement.p_value.map_or(String::new(), number)) }
+                            td { @if let Some(judged) = better(&row.improvement, 1.0 - confidence) { (pill(judged)) } }
                         }
                     }
                 }
@@ -142,14 +153,17 @@ fn number_plain(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// What an interval says that does, or does not, hold one half.
-fn better(interval: Interval) -> Verdict {
-    let (class, sign, word) = match () {
-        () if interval.low > 0.5 => ("good", "▲", "better"),
-        () if interval.high < 0.5 => ("bad", "▼", "worse"),
-        () => ("even", "●", "not told apart"),
+/// Whether two agents are told apart, with a chance of at most `alpha` that equal ones are.
+fn better(improvement: &Improvement, alpha: f64) -> Option<Verdict> {
+    // What 1 - 0.95 rounds to must not make a difference.
+    let alpha = alpha + 1e-12;
+    let (class, sign, word) = match improvement.p_value? {
+        p if p <= alpha && improvement.probability.value > 0.5 => ("good", "▲", "better"),
+        p if p <= alpha => ("bad", "▼", "worse"),
+        _ if improvement.least_p_value? > alpha => ("even", "●", "too few lifetimes"),
+        _ => ("even", "●", "not told apart"),
     };
-    Verdict { class, sign, word }
+    Some(Verdict { class, sign, word })
 }
 
 fn pill(verdict: Verdict) -> Markup {

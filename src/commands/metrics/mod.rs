@@ -98,7 +98,7 @@ pub(crate) struct Intervals {
     /// How many times lifetimes are drawn again; take 50000 for a figure to publish.
     #[arg(long, value_name = "N", default_value_t = BootstrapOptions::default().resamples)]
     resamples: u32,
-    /// What is drawn again: strata (within each task, as rliable) or runs (whole lifetimes).
+    /// What is drawn again: runs (whole lifetimes) or strata (within each task, as rliable, as if a lifetime's tasks shared no luck).
     #[arg(long, value_name = "WHAT", default_value_t = BootstrapOptions::default().resampling)]
     resampling: crate::metrics::Resampling,
     /// What the draws come from.

@@ -1,0 +1,233 @@
+//! Whether two agents differ at all: how often runs that are shared out anew among two equal agents differ as much.
+//!
+//! Not here: by how much an agent is better, see `improvement`.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+use super::{BootstrapOptions, ScoreTable};
+
+/// Up to so many ways to share out the runs are all looked at.
+const ALL_WAYS: u64 = 20_000;
+
+/// Part of a probability by which sums in another order may differ.
+const ROUNDING: f64 = 1e-12;
+
+/// What sharing out the runs anew shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shared {
+    /// Share of ways that differ as much as what was found, that one included.
+    pub(super) p_value: f64,
+    /// The least that it can be with so many runs.
+    pub(super) least: f64,
+}
+
+/// The runs of two agents in the strata that both have.
+struct Pool {
+    num_of_a: usize,
+    num_runs: usize,
+    /// Per stratum, the rank of each run's score among the different scores, A's runs first; none where it lacks one.
+    ranks: Vec<Vec<Option<u32>>>,
+}
+
+/// Shares out the runs of both agents anew, whole runs with all their scores, and counts how often A's part of the won pairs is as far
+/// from one half as it is. Were the agents equal, every way would be as likely, whatever runs have in common across strata: then the
+/// result is at most p with a chance of at most p.
+///
+/// `None` for one run of each agent, which can be shared out in one way only.
+pub(super) fn shared_out(
+    a: &ScoreTable,
+    b: &ScoreTable,
+    strata: &[&str],
+    options: &BootstrapOptions,
+) -> Option<Shared> {
+    let pool = Pool::new(a, b, strata);
+    if pool.num_runs < 3 {
+        return None;
+    }
+    let mut of_a: Vec<bool> = (0..pool.num_runs).map(|run| run < pool.num_of_a).collect();
+    let found = pool.difference(&of_a);
+    let is_as_much = |difference: f64| difference >= found - ROUNDING;
+    let ways = ways(pool.num_runs as u64, pool.num_of_a as u64);
+    // Turned round, a way differs as much; with as many runs each, that is a way of its own.
+    let twins = if 2 * pool.num_of_a == pool.num_runs { 2.0 } else { 1.0 };
+    let (as_much, all) = match ways {
+        Some(ways) => {
+            let mut as_much = 0;
+            of_a.sort_unstable();
+            loop {
+                as_much += u64::from(is_as_much(pool.difference(&of_a)));
+                if !next_way(&mut of_a) {
+                    break (as_much, ways);
+                }
+            }
+        }
+        None => {
+            let mut chance = ChaCha8Rng::seed_from_u64(options.seed);
+            // Not the draws of the intervals.
+            chance.set_stream(1);
+            let mut as_much = 1;
+            for _ in 0..options.resamples {
+                shuffle(&mut of_a, &mut chance);
+                as_much += u64::from(is_as_much(pool.difference(&of_a)));
+            }
+            (as_much, u64::from(options.resamples) + 1)
+        }
+    };
+    let least = ways.map_or(1.0 / all as f64, |ways| twins / ways as f64);
+    Some(Shared {
+        p_value: as_much as f64 / all as f64,
+        least,
+    })
+}
+
+/// In how many ways `of_a` of `num_runs` runs can be chosen; `None` for more than are looked at.
+fn ways(num_runs: u64, of_a: u64) -> Option<u64> {
+    let mut ways = 1_u64;
+    for k in 1..=of_a.min(num_runs - of_a) {
+        ways = ways * (num_runs - k + 1) / k;
+        if ways > ALL_WAYS {
+            return None;
+        }
+    }
+    Some(ways)
+}
+
+/// The next way in ascending order, from all of A's runs last to all first; false after the last.
+fn next_way(of_a: &mut [bool]) -> bool {
+    let Some(place) = (1..of_a.len()).rev().find(|&place| !of_a[place - 1] && of_a[place]) else {
+        return false;
+    };
+    of_a.swap(place - 1, place);
+    of_a[place + 1..].sort_unstable();
+    true
+}
+
+fn shuffle(of_a: &mut [bool], chance: &mut ChaCha8Rng) {
+    for last in (1..of_a.len()).rev() {
+        of_a.swap(last, chance.random_range(0..=last as u32) as usize);
+    }
+}
+
+impl Pool {
+    fn new(a: &ScoreTable, b: &ScoreTable, strata: &[&str]) -> Self {
+        let (num_of_a, num_runs) = (a.num_runs(), a.num_runs() + b.num_runs());
+        let of_stratum = |name: &&str| {
+            let of_b = b
+                .scored_runs(name)
+                .iter()
+                .map(|(score, run)| (*score, *run as usize + num_of_a));
+            let of_a = a.scored_runs(name).iter().map(|(score, run)| (*score, *run as usize));
+            let mut scores: Vec<(f64, usize)> = of_a.chain(of_b).collect();
+            scores.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+            let (mut ranks, mut rank, mut last) = (vec![None; num_runs], 0, f64::NAN);
+            for (score, run) in scores {
+                rank += u32::from(score != last);
+                last = score;
+                ranks[run] = Some(rank - 1);
+            }
+            ranks
+        };
+        Self {
+            num_of_a,
+            num_runs,
+            ranks: strata.iter().map(of_stratum).collect(),
+        }
+    }
+
+    /// How far the mean over strata of the share of pairs that A wins is from one half; 0 where there is no pair.
+    fn difference(&self, of_a: &[bool]) -> f64 {
+        let (mut sum, mut num_strata) = (0.0, 0);
+        let mut counts = vec![(0_u64, 0_u64); self.num_runs];
+        for ranks in &self.ranks {
+            counts.fill((0, 0));
+            for (rank, of_a) in ranks.iter().zip(of_a) {
+                if let Some(rank) = rank {
+                    // There are at most as many ranks as runs.
+                    let (a, b) = &mut counts[*rank as usize];
+                    *(if *of_a { a } else { b }) += 1;
+                }
+            }
+            let (mut halves, mut below, mut num_of_a) = (0, 0, 0);
+            for (a, b) in &counts {
+                halves += a * (2 * below + b);
+                below += b;
+                num_of_a += a;
+            }
+            let pairs = num_of_a * below;
+            if pairs > 0 {
+                sum += halves as f64 / (2 * pairs) as f64;
+                num_strata += 1;
+            }
+        }
+        if num_strata == 0 {
+            0.0
+        } else {
+            (sum / f64::from(num_strata) - 0.5).abs()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(runs: &[&[f64]]) -> ScoreTable {
+        let named = |run: &[f64]| {
+            run.iter()
+                .enumerate()
+                .map(|(k, score)| (k.to_string(), *score))
+                .collect::<Vec<_>>()
+        };
+        ScoreTable::from_runs(runs.iter().enumerate().map(|(k, run)| (k.to_string(), named(run)))).unwrap()
+    }
+
+    fn check(a: &[&[f64]], b: &[&[f64]], p_value: f64, least: f64) {
+        let found = shared_out(&table(a), &table(b), &["0"], &BootstrapOptions::default()).unwrap();
+        assert!(
+            (found.p_value - p_value).abs() < 1e-12 && (found.least - least).abs() < 1e-12,
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn all_ways_are_counted_where_they_are_few() {
+        // Of 20 ways to choose three of six, the one found and its reverse differ as much.
+        check(&[&[4.0], &[5.0], &[6.0]], &[&[1.0], &[2.0], &[3.0]], 0.1, 0.1);
+        check(&[&[4.0], &[5.0], &[6.0]], &[&[4.0], &[5.0], &[6.0]], 1.0, 0.1);
+        // scipy.stats.mannwhitneyu([1, 2, 7, 9], [3, 4, 5, 6, 8], method="exact").pvalue.
+        check(
+            &[&[1.0], &[2.0], &[7.0], &[9.0]],
+            &[&[3.0], &[4.0], &[5.0], &[6.0], &[8.0]],
+            0.904_761_904_761_904_8,
+            1.0 / 126.0,
+        );
+    }
+
+    #[test]
+    fn many_ways_are_drawn() {
+        let runs: Vec<[f64; 1]> = (0..24).map(|run| [f64::from(run)]).collect();
+        let runs: Vec<&[f64]> = runs.iter().map(|run| &run[..]).collect();
+        let found = shared_out(
+            &table(&runs[12..]),
+            &table(&runs[..12]),
+            &["0"],
+            &BootstrapOptions::default(),
+        )
+        .unwrap();
+        assert_eq!(found.p_value, 1.0 / 2001.0);
+    }
+
+    #[test]
+    fn every_way_comes_once() {
+        let mut way = [false, false, true, true];
+        let mut seen = vec![way];
+        while next_way(&mut way) {
+            seen.push(way);
+        }
+        seen.dedup();
+        assert_eq!(seen.len() as u64, ways(4, 2).unwrap());
+        assert_eq!((ways(10, 5), ways(10, 0), ways(40, 20)), (Some(252), Some(1), None));
+    }
+}
