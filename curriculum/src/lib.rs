@@ -15,8 +15,8 @@ pub use design::{
 };
 pub use error::CurriculumError;
 pub use run::{
-    COLUMNS, Due, Experience, Failed, FoundWorld, Journal, LeftOut, MOST_STEPS, Plan, Progress, RegimeSummary, Sources,
-    Summary, Surroundings, Trial, Tried, Undrawable, log_name, run, same_log_name, try_worlds,
+    COLUMNS, Due, ENDING, Experience, Failed, FoundWorld, Journal, LeftOut, MOST_STEPS, Plan, Progress, RegimeSummary,
+    Sources, Summary, Surroundings, Trial, Tried, Undrawable, log_name, run, same_log_name, try_worlds,
 };
 pub use transfer::{
     DirectionReport, PairTransfer, TransferOptions, TransferReport, log_name_of_label, transfer_report,

@@ -27,8 +27,8 @@ pub use document::MAX_BYTES;
 pub use error::{Problem, SpecError, nearest};
 pub use l2explorer::Warning;
 pub use scenario::{
-    Block, BlockKind, DriftSchedule, DriftSwitch, MAX_EXPERIENCES, Phase, Regime, RegimeDrift, Scenario, ScenarioForm,
-    TaskLabel,
+    Block, BlockKind, DriftSchedule, DriftSwitch, MAX_EXPERIENCES, Phase, Regime, RegimeDrift, Scenario,
+    ScenarioComplexity, ScenarioDifficulty, ScenarioForm, TaskLabel,
 };
 pub use task::{
     Compare, Count, DEFAULT_VARIANT, Domain, Element, ElementWeights, Facing, Group, Hole, KeepOut, MeasureName,

@@ -25,7 +25,8 @@ const MAX_JOBS: usize = 256;
 ///
 /// The scenario is a file of ours, or one of L2Explorer's. Tasks and worlds that it names by their paths are looked for from its
 /// own folder first. A run that was interrupted, in whatever way, goes on with --resume
-/// at the first experience that is not in the log, and writes what it would have written undisturbed.
+/// at the first experience that is not in the log, and writes what it would have written undisturbed, to the byte but for the time stamps,
+/// which say when each experience ended.
 #[derive(Args)]
 #[command(after_help = "Example:
   driftworld run scenario.json --agent onrails --logs logs/first

@@ -12,7 +12,10 @@ mod steps;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use driftworld_spec::{Block, BlockKind, MAX_EXPERIENCES, Phase, Regime, Scenario, ScenarioForm, TaskLabel};
+use driftworld_spec::{
+    Block, BlockKind, MAX_EXPERIENCES, Phase, Regime, Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm,
+    TaskLabel,
+};
 
 pub use choice::Choice;
 pub use drifting::Drifting;
@@ -54,6 +57,10 @@ pub struct Design {
     pub pre_deployment: u32,
     /// Whether the learner is told which task it is in; default not.
     pub task_label: TaskLabel,
+    /// How complex the scenario is, for its logs; default nothing.
+    pub complexity: Option<ScenarioComplexity>,
+    /// How hard its tasks are, for its logs; default nothing.
+    pub difficulty: Option<ScenarioDifficulty>,
     /// What all seeds of the scenario follow from, at most [`MAX_SEED`]; default 0.
     pub seed: u64,
 }
@@ -71,6 +78,8 @@ impl Default for Design {
             drifting: None,
             pre_deployment: 0,
             task_label: TaskLabel::None,
+            complexity: None,
+            difficulty: None,
             seed: 0,
         }
     }
@@ -143,6 +152,8 @@ fn arranged(variants: &[Choice], options: &Design, control: Option<&[usize]>) ->
     }
     Ok(Scenario {
         form: options.form,
+        complexity: options.complexity,
+        difficulty: options.difficulty,
         task_label: options.task_label,
         ..Scenario::new(&options.name, blocks)
     })

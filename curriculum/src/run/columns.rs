@@ -45,6 +45,10 @@ pub const COLUMNS: [&str; 13] = [
     "distance_observation",
 ];
 
+/// The column of words that says how an experience ended: `success`, `failure` or `step_limit`, as [`Experience::ending`] does, and
+/// `skipped` where it was left out. It is not among the metrics columns that the log declares, so that l2metrics passes it over. Logs from before it go on without it.
+pub const ENDING: &str = "ending";
+
 /// The row of experience `number`.
 pub(super) fn record(planned: &Planned, number: u64, experience: &Experience, gap: &Gap, now: Timestamp) -> Record {
     let kind = block_type(planned.kind);

@@ -28,6 +28,18 @@ pub struct Experience {
     pub truncated: bool,
 }
 
+impl Experience {
+    /// How it ended: `success` where the world's success condition ended it, `step_limit` where a limit of steps cut it off, else
+    /// `failure`: another condition of the world ended it.
+    pub fn ending(&self) -> &'static str {
+        match self {
+            Self { success: true, .. } => "success",
+            Self { truncated: true, .. } => "step_limit",
+            _ => "failure",
+        }
+    }
+}
+
 /// Lives one experience in an environment that stands at its beginning.
 ///
 /// It ends as the environment says, so that the last of a block ends like any other: by what happened, or cut off by the

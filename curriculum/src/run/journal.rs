@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use driftworld_metrics::{
-    LogWriter, LoggerInfo, MetricsError, Row, Rows, ScenarioInfo, ScenarioType, TaskParams, Timestamp, begun_log,
-    read_log,
+    Complexity, Difficulty, LogWriter, Record, LoggerInfo, MetricsError, Row, Rows, ScenarioInfo, ScenarioType, TaskParams,
+    Timestamp, begun_log, read_log,
 };
-use driftworld_spec::{ScenarioForm, Variant};
+use driftworld_spec::{ScenarioComplexity, ScenarioDifficulty, ScenarioForm, Variant};
 use serde_json::{Map, Value, json};
 
-use super::columns::{self, COLUMNS, block_type};
+use super::columns::{self, COLUMNS, ENDING, block_type};
 use super::episode::Experience;
 use super::gap::{Gap, Gaps};
 use super::plan::Plan;
@@ -143,9 +143,21 @@ impl Journal {
         now: Timestamp,
     ) -> Result<Progress, CurriculumError> {
         let planned = &plan.regimes[plan.regime_of(number)];
-        self.writer.write(&columns::skipped(planned, number, reason, now))?;
+        let record = columns::skipped(planned, number, reason, now);
+        let record = self.with_ending(record, columns::SKIPPED);
+        self.writer.write(&record)?;
         self.summary.leave_out(planned, number, reason);
         Ok(self.progress(plan, number, f64::NAN))
+    }
+
+    /// A record that says how its experience ended; a log that was begun before there was this column goes on without it.
+    fn with_ending(&self, record: Record, ending: &str) -> Record {
+        let has_ending = |columns: &[String]| columns.iter().any(|column| column == ENDING);
+        if self.writer.columns().is_none_or(has_ending) {
+            record.with_text(ENDING, ending)
+        } else {
+            record
+        }
     }
 
     /// How far the run has come with experience `number`; also notes whether that was the last.
@@ -173,8 +185,9 @@ impl Journal {
     ) -> Result<Progress, CurriculumError> {
         let planned = &plan.regimes[plan.regime_of(number)];
         let gap = self.gap(plan, number, between);
-        self.writer
-            .write(&columns::record(planned, number, experience, &gap, now))?;
+        let record = columns::record(planned, number, experience, &gap, now);
+        let record = self.with_ending(record, experience.ending());
+        self.writer.write(&record)?;
         let success = f64::from(u8::from(experience.success));
         let steps = u64::from(experience.steps);
         self.summary
@@ -289,10 +302,21 @@ fn scenario_info(plan: &Plan, agent: &str) -> ScenarioInfo {
         Some(ScenarioForm::Expert) => ScenarioType::Ste,
         Some(ScenarioForm::Custom) | None => ScenarioType::Custom,
     };
+    let complexity = plan.scenario.complexity.map(|complexity| match complexity {
+        ScenarioComplexity::Low => Complexity::Low,
+        ScenarioComplexity::Intermediate => Complexity::Intermediate,
+        ScenarioComplexity::High => Complexity::High,
+    });
+    let difficulty = plan.scenario.difficulty.map(|difficulty| match difficulty {
+        ScenarioDifficulty::Easy => Difficulty::Easy,
+        ScenarioDifficulty::Medium => Difficulty::Medium,
+        ScenarioDifficulty::Hard => Difficulty::Hard,
+    });
     ScenarioInfo {
+        complexity,
+        difficulty,
         scenario_type: Some(form),
         extra,
-        ..ScenarioInfo::default()
     }
 }
 

@@ -20,7 +20,7 @@ use driftworld_generator::Sampler;
 use driftworld_metrics::Timestamp;
 use driftworld_spec::{BlockKind, Variant};
 
-pub use columns::COLUMNS;
+pub use columns::{COLUMNS, ENDING};
 pub use episode::{Experience, MOST_STEPS};
 pub use journal::Journal;
 pub use log_names::same_log_name;

@@ -20,9 +20,9 @@ pub(super) const STANDARD: [&str; 9] = [
 /// The one standard column that logs of format 1.0 lack.
 pub(super) const SINCE_1_1: &str = "block_subtype";
 
-/// Names of a record's metrics, alphabetical by code point.
+/// Names of a record's metrics and columns of words, alphabetical by code point.
 pub(super) fn metric_columns(record: &Record) -> Vec<String> {
-    let mut names: Vec<String> = record.metrics.keys().cloned().collect();
+    let mut names: Vec<String> = record.metrics.keys().chain(record.texts.keys()).cloned().collect();
     names.sort();
     names
 }

@@ -69,6 +69,9 @@ pub struct Record {
     pub timestamp: Timestamp,
     /// The numbers: at least every metrics column of the log, the same names in every record. NaN means "no value".
     pub metrics: IndexMap<String, f64>,
+    /// Words in columns of their own, beside the numbers: the same names in every record, none that a number has. They are not declared
+    /// among the metrics columns.
+    pub texts: IndexMap<String, String>,
 }
 
 impl Record {
@@ -91,6 +94,7 @@ impl Record {
             exp_status: ExpStatus::Complete,
             timestamp,
             metrics: IndexMap::new(),
+            texts: IndexMap::new(),
         }
     }
 
@@ -98,6 +102,13 @@ impl Record {
     #[must_use]
     pub fn with_metric(mut self, name: impl Into<String>, value: f64) -> Self {
         self.metrics.insert(name.into(), value);
+        self
+    }
+
+    /// The same record with one more column of words, or another word in it.
+    #[must_use]
+    pub fn with_text(mut self, name: impl Into<String>, text: impl Into<String>) -> Self {
+        self.texts.insert(name.into(), text.into());
         self
     }
 

@@ -314,6 +314,7 @@ impl<'a> Row<'a> {
             exp_status: self.exp_status(),
             timestamp: self.timestamp(),
             metrics: metrics.collect(),
+            texts: IndexMap::new(),
         }
     }
 }

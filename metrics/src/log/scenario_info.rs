@@ -107,8 +107,13 @@ impl ScenarioInfo {
                 });
             }
         };
-        warn("complexity", self.complexity.is_none(), Complexity::expected);
-        warn("difficulty", self.difficulty.is_none(), Difficulty::expected);
+        // A scenario of ours may say them; one that does not was left so by its author.
+        let ours = self
+            .extra
+            .get("scenario")
+            .is_some_and(|scenario| scenario.get("blocks").is_some());
+        warn("complexity", !ours && self.complexity.is_none(), Complexity::expected);
+        warn("difficulty", !ours && self.difficulty.is_none(), Difficulty::expected);
         warn("scenario_type", self.scenario_type.is_none(), ScenarioType::expected);
     }
 }

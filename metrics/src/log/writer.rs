@@ -87,6 +87,11 @@ impl LogWriter {
         &self.dir
     }
 
+    /// The columns beside the standard ones, of metrics and of words, in their order; `None` before the first record.
+    pub fn columns(&self) -> Option<&[String]> {
+        self.progress.columns.as_deref()
+    }
+
     /// Writes one record as one line and flushes it.
     ///
     /// # Errors
@@ -280,6 +285,12 @@ fn check_cells(record: &Record) -> Result<(), MetricsError> {
             return Err(bad_record(record, name, number(*value), expected));
         }
     }
+    for name in record.texts.keys() {
+        if name.is_empty() || columns::STANDARD.contains(&name.as_str()) || record.metrics.contains_key(name) {
+            let expected = "a name that is not empty and neither a standard column's nor a metric's".to_owned();
+            return Err(bad_record(record, "texts", cell::shown(name), expected));
+        }
+    }
     Ok(())
 }
 
@@ -295,11 +306,12 @@ fn cells(record: &Record, columns: &[String]) -> Vec<String> {
         record.exp_status.to_string(),
         record.timestamp.to_string(),
     ];
-    // The columns were compared with the record's metrics, so each of them has a value.
-    standard
-        .into_iter()
-        .chain(columns.iter().map(|name| number(record.metrics[name.as_str()])))
-        .collect()
+    // The columns were compared with the record's, so each of them has a number or a word.
+    let cell = |name: &String| match record.texts.get(name) {
+        Some(text) => text.clone(),
+        None => number(record.metrics[name.as_str()]),
+    };
+    standard.into_iter().chain(columns.iter().map(cell)).collect()
 }
 
 /// The shortest text that reads back as the same number.

@@ -41,6 +41,12 @@ pub struct Scenario {
     /// How its blocks are arranged; logs are marked with it. Custom if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub form: Option<ScenarioForm>,
+    /// How complex it is, in l2logger's words; logs are marked with it. Nothing if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub complexity: Option<ScenarioComplexity>,
+    /// How hard its tasks are, in l2logger's words; logs are marked with it. Nothing if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub difficulty: Option<ScenarioDifficulty>,
     /// Whether the learner is told which task it is in; by default it is not.
     #[serde(default, skip_serializing_if = "TaskLabel::is_none")]
     pub task_label: TaskLabel,
@@ -69,6 +75,34 @@ pub enum ScenarioForm {
     Expert,
     /// Anything else.
     Custom,
+}
+
+/// How complex a scenario is: l2logger's words, which its author chooses between.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum ScenarioComplexity {
+    /// Low.
+    #[serde(rename = "1-low")]
+    Low,
+    /// Intermediate.
+    #[serde(rename = "2-intermediate")]
+    Intermediate,
+    /// High.
+    #[serde(rename = "3-high")]
+    High,
+}
+
+/// How hard the tasks of a scenario are: l2logger's words, which its author chooses between.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum ScenarioDifficulty {
+    /// Easy.
+    #[serde(rename = "1-easy")]
+    Easy,
+    /// Medium.
+    #[serde(rename = "2-medium")]
+    Medium,
+    /// Hard.
+    #[serde(rename = "3-hard")]
+    Hard,
 }
 
 /// Whether the learner is told which task it is in.
@@ -159,6 +193,8 @@ impl Scenario {
             name: name.into(),
             description: String::new(),
             form: None,
+            complexity: None,
+            difficulty: None,
             task_label: TaskLabel::default(),
             blocks,
         }

@@ -10,7 +10,9 @@ mod words;
 use std::path::{Path, PathBuf};
 
 use crate::curriculum::{Control, Design, Drifting, Evaluate, Hypothesis, control, design, design_control, experts};
-use crate::spec::{DriftSchedule, DriftSwitch, Element, Scenario, ScenarioForm, TaskLabel};
+use crate::spec::{
+    DriftSchedule, DriftSwitch, Element, Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm, TaskLabel,
+};
 use clap::{Args, ValueEnum};
 
 use super::assets::LibraryChoice;
@@ -99,6 +101,12 @@ pub(crate) struct Curriculum {
     /// Whether the learner is told which task it is in.
     #[arg(long, value_enum, default_value_t = Label::None)]
     task_label: Label,
+    /// How complex the scenario is, in l2logger's words, for its logs.
+    #[arg(long, value_enum)]
+    complexity: Option<Complexity>,
+    /// How hard its tasks are, in l2logger's words, for its logs.
+    #[arg(long, value_enum)]
+    difficulty: Option<Difficulty>,
     /// What all worlds of the scenario follow from; evaluation and learning never share one.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -158,6 +166,28 @@ enum Form {
     Expert,
     /// One after the other, and anew when there are more blocks.
     Custom,
+}
+
+/// How complex a scenario is, in l2logger's words.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Complexity {
+    #[value(name = "1-low")]
+    Low,
+    #[value(name = "2-intermediate")]
+    Intermediate,
+    #[value(name = "3-high")]
+    High,
+}
+
+/// How hard its tasks are, in l2logger's words.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Difficulty {
+    #[value(name = "1-easy")]
+    Easy,
+    #[value(name = "2-medium")]
+    Medium,
+    #[value(name = "3-hard")]
+    Hard,
 }
 
 /// Whether the learner is told which task it is in.
@@ -288,6 +318,16 @@ impl Curriculum {
                 Label::Info => TaskLabel::Info,
                 Label::Observation => TaskLabel::Observation,
             },
+            complexity: self.complexity.map(|complexity| match complexity {
+                Complexity::Low => ScenarioComplexity::Low,
+                Complexity::Intermediate => ScenarioComplexity::Intermediate,
+                Complexity::High => ScenarioComplexity::High,
+            }),
+            difficulty: self.difficulty.map(|difficulty| match difficulty {
+                Difficulty::Easy => ScenarioDifficulty::Easy,
+                Difficulty::Medium => ScenarioDifficulty::Medium,
+                Difficulty::Hard => ScenarioDifficulty::Hard,
+            }),
             seed: self.seed,
         }
     }

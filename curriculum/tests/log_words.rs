@@ -1,0 +1,161 @@
+//! The words of a log of ours: how each experience ended, and what its scenario says of itself.
+//!
+//! Not here: the numbers, see `lifetime`.
+
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use driftworld_curriculum::{
+    CurriculumError, ENDING, Experience, FoundWorld, Journal, Plan, Sources, Surroundings, run,
+};
+use driftworld_env::{Catalogue, OnRailsAgent};
+use driftworld_metrics::{Complexity, Difficulty, Timestamp, read_log, validate_log};
+use driftworld_spec::{Block, BlockKind, Regime, Scenario, ScenarioComplexity, ScenarioDifficulty, World};
+
+/// Three worlds: a target ahead that ends the episode as a success, one that ends it as a failure, and none at all.
+fn world(path: &str) -> World {
+    let rules = match path {
+        "success.json" => r#""rules": { "success": [{ "touch": "goal" }] },"#,
+        "failure.json" => r#""rules": { "failure": [{ "touch": "goal" }] },"#,
+        _ => "",
+    };
+    let text = format!(
+        r#"{{ "max_steps": 60, {rules} "objects": [{{ "class": "cube", "tag": "goal", "coordinates": [0, 6], "reward": 1,
+            "reward_stimulus": ["AgentCollide"] }}] }}"#
+    );
+    World::from_json(path, &text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn plan(scenario: &Scenario) -> Plan {
+    let mut sources = Sources {
+        task: &mut |_| Err("no task".to_owned()),
+        world: &mut |path| {
+            Ok(FoundWorld {
+                world: world(path),
+                note: None,
+            })
+        },
+    };
+    Plan::new(scenario, &mut sources).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn scenario() -> Scenario {
+    let regime = |name: &str| Regime {
+        world: Some(format!("{name}.json")),
+        ..Regime::new("end", name, 2)
+    };
+    let regimes = ["success", "failure", "nothing"].map(regime).to_vec();
+    Scenario {
+        complexity: Some(ScenarioComplexity::Low),
+        difficulty: Some(ScenarioDifficulty::Medium),
+        ..Scenario::new("ends", vec![Block::new(BlockKind::Evaluation, regimes)])
+    }
+}
+
+fn live(log: &Path, most: u64, resume: bool) -> Result<(), CurriculumError> {
+    let plan = plan(&scenario());
+    let mut journal = if resume {
+        Journal::resume(log, &plan, "onrails")?
+    } else {
+        Journal::create(log, &plan, "onrails")?
+    };
+    let mut around = Surroundings {
+        now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("a year from 1 to 9999"),
+        watch: &mut |progress| {
+            if progress.done < most {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
+        },
+        catalogue: Catalogue::default(),
+        jobs: NonZeroUsize::MIN,
+    };
+    run(&plan, &mut OnRailsAgent::new(), &mut journal, &mut around)?;
+    journal.finish()
+}
+
+/// The words in the column `ending`; none where there is no such column.
+fn endings(log: &Path) -> Option<Vec<String>> {
+    let text = std::fs::read_to_string(log.join("worker-default/0-test/data-log.tsv")).expect("the log has this file");
+    let mut rows = text.lines().map(|line| line.split('\t').collect::<Vec<_>>());
+    let place = rows.next()?.iter().position(|name| *name == ENDING)?;
+    Some(rows.map(|row| row[place].to_owned()).collect())
+}
+
+#[test]
+fn the_log_says_how_each_experience_ended() {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let log = folder.path().join("log");
+    live(&log, u64::MAX, false).unwrap_or_else(|error| panic!("{error}"));
+    let found = endings(&log).expect("there is such a column");
+    assert_eq!(
+        found,
+        ["success", "success", "failure", "failure", "step_limit", "step_limit"]
+    );
+    let read = read_log(&log).unwrap_or_else(|error| panic!("{error}"));
+    assert!(read.warnings.is_empty(), "{:?}", read.warnings);
+    assert!(read.rows.metric(ENDING).is_none(), "it is no metric");
+}
+
+#[test]
+fn the_log_says_what_its_scenario_says_of_itself() {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let log = folder.path().join("log");
+    live(&log, u64::MAX, false).unwrap_or_else(|error| panic!("{error}"));
+    let info = read_log(&log).unwrap_or_else(|error| panic!("{error}")).scenario_info;
+    assert_eq!(
+        (info.complexity, info.difficulty),
+        (Some(Complexity::Low), Some(Difficulty::Medium))
+    );
+    let validation = validate_log(&log);
+    let told: Vec<String> = validation.warnings.iter().map(ToString::to_string).collect();
+    assert!(!told.iter().any(|warning| warning.contains("complexity")), "{told:?}");
+}
+
+#[test]
+fn a_log_from_before_there_were_endings_is_taken_up_without_them() {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    let (old, whole) = (folder.path().join("old"), folder.path().join("whole"));
+    live(&old, 3, false).unwrap_or_else(|error| panic!("{error}"));
+    live(&whole, u64::MAX, false).unwrap_or_else(|error| panic!("{error}"));
+    for log in [&old, &whole] {
+        let file = log.join("worker-default/0-test/data-log.tsv");
+        let text = std::fs::read_to_string(&file).expect("the log has this file");
+        let place = text
+            .lines()
+            .next()
+            .map(|line| line.split('\t').take_while(|name| *name != ENDING).count());
+        let without = |line: &str| {
+            let mut cells: Vec<&str> = line.split('\t').collect();
+            cells.remove(place.expect("there is a header"));
+            cells.join("\t") + "\n"
+        };
+        std::fs::write(&file, text.lines().map(without).collect::<String>()).expect("the folder is writable");
+    }
+    live(&old, u64::MAX, true).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(endings(&old), None);
+    let text =
+        |log: &Path| std::fs::read_to_string(log.join("worker-default/0-test/data-log.tsv")).expect("it is there");
+    assert_eq!(
+        text(&old),
+        text(&whole),
+        "as an undisturbed run of then would have written it"
+    );
+}
+
+#[test]
+fn success_comes_before_the_limit() {
+    let ended = |success, truncated| {
+        Experience {
+            success,
+            truncated,
+            ..Experience::default()
+        }
+        .ending()
+    };
+    assert_eq!(ended(true, false), "success");
+    assert_eq!(ended(false, true), "step_limit");
+    assert_eq!(ended(false, false), "failure");
+}
