@@ -175,11 +175,27 @@ fn many_lifetimes_come_with_intervals_and_tables() {
         shown,
         "the same seed, the same intervals"
     );
-    let other = succeed_in(
-        folder.path(),
-        &["metrics", "-R", "mine", "--resamples", "500", "--bootstrap-seed", "1"],
+    // Four whole runs have so few different draws that their percentiles hardly move with the seed; scores within tasks have more.
+    let by_strata = |seed: &str| {
+        let arguments = [
+            "metrics",
+            "-R",
+            "mine",
+            "--resamples",
+            "500",
+            "--resampling",
+            "strata",
+            "--bootstrap-seed",
+            seed,
+        ];
+        succeed_in(folder.path(), &arguments)
+    };
+    assert_ne!(by_strata("1"), by_strata("0"));
+    assert!(
+        row.matches(" to ").count() == 3,
+        "the bootstrap's interval and Student's, of which there are two: {row}"
     );
-    assert_ne!(other, shown);
+    assert!(shown.contains("as logged") && shown.contains("mean reward"), "{shown}");
     let table = read(folder.path().join("out/ll_metrics.tsv"));
     assert_eq!(table.lines().count(), 5);
     assert!(table.starts_with("run_id\t") && table.contains("\nrun3\t"), "{table}");
@@ -265,7 +281,19 @@ fn two_agents_are_compared() {
         .find(|line| line.starts_with("avg_eval_perf"))
         .expect("a row of that metric");
     assert!(
-        row.split_whitespace().collect::<Vec<_>>() == ["avg_eval_perf", "0.000", "0.000", "to", "0.000", "2"],
+        row.split_whitespace().collect::<Vec<_>>()
+            == [
+                "avg_eval_perf",
+                "0.000",
+                "0.000",
+                "to",
+                "0.000",
+                "0.057",
+                "not",
+                "told",
+                "apart",
+                "2"
+            ],
         "{row}"
     );
 }
@@ -433,4 +461,47 @@ fn what_cannot_be_scored_is_told() {
         &["mine/run0", "-c", "bad.json"],
         "bad.json: found the setting \"perf_mesure\", expected one of l2metrics; did you mean \"perf_measure\"?",
     );
+}
+
+#[test]
+fn experts_of_variants_serve_a_task_without_a_variant() {
+    let folder = scratch();
+    live(&folder.path().join("life"), &["ferry", "find_blue"], 1.0);
+    live(&folder.path().join("red"), &["ferry_red"], 2.0);
+    live(&folder.path().join("blue"), &["ferry_blue"], 3.0);
+    let shown = parsed(&succeed_in(
+        folder.path(),
+        &["metrics", "life", "--ste", "red", "blue", "--json"],
+    ));
+    let values = &shown["task_metrics"]["ferry"]["ste_rel_perf_vals"];
+    assert_eq!(values.as_array().map(Vec::len), Some(2), "{shown}");
+    assert_eq!(shown["task_metrics"]["find_blue"]["ste_rel_perf_vals"], json!([]));
+    for expert in ["red", "blue"] {
+        succeed_in(folder.path(), &["metrics", expert, "-s", "w", "--ste-data", "experts"]);
+    }
+    let stored = parsed(&succeed_in(
+        folder.path(),
+        &["metrics", "life", "--ste-data", "experts", "--json"],
+    ));
+    assert_eq!(stored["lifetime"], shown["lifetime"]);
+    assert_eq!(stored["ste_rel_perf"], shown["ste_rel_perf"]);
+}
+
+#[test]
+fn what_was_logged_comes_first_and_negative_transfer_is_told() {
+    let folder = scratch();
+    live(&folder.path().join("life"), &TASKS, -5.0);
+    let shown = succeed_in(folder.path(), &["metrics", "life", "-t", "both", "-n", "none"]);
+    let place = |words: &str| shown.find(words).unwrap_or_else(|| panic!("no {words} in {shown}"));
+    assert!(place("mean reward") < place("avg_train_perf"), "{shown}");
+    assert!(
+        place("forward_transfer_contrast") < place("forward_transfer_ratio"),
+        "{shown}"
+    );
+    assert!(place("note: transfer compares performances of which some are negative") > 0);
+    let scaled = succeed_in(folder.path(), &["metrics", "life", "-t", "both"]);
+    assert!(!scaled.contains("negative (down"), "{scaled}");
+    let json = parsed(&succeed_in(folder.path(), &["metrics", "life", "-n", "none", "--json"]));
+    assert_eq!(json["notes"].as_array().map(Vec::len), Some(1), "{json}");
+    assert!(json["as_logged"]["reward"]["evaluation"].is_number(), "{json}");
 }
