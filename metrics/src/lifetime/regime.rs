@@ -60,11 +60,11 @@ impl Regime {
 
     /// Drops the rows that have no number.
     pub(super) fn keep_numbers(&mut self) {
-        let has: Vec<bool> = self.raw.iter().map(|value| !value.is_nan()).collect();
         fn keep<T>(list: &mut Vec<T>, has: &[bool]) {
             let mut has = has.iter();
             list.retain(|_| has.next().is_some_and(|has| *has));
         }
+        let has: Vec<bool> = self.raw.iter().map(|value| !value.is_nan()).collect();
         keep(&mut self.exp_nums, &has);
         keep(&mut self.raw, &has);
         keep(&mut self.performance, &has);

@@ -52,28 +52,25 @@ pub(super) fn shared_out(
     let ways = ways(pool.num_runs as u64, pool.num_of_a as u64);
     // Turned round, a way differs as much; with as many runs each, that is a way of its own.
     let twins = if 2 * pool.num_of_a == pool.num_runs { 2.0 } else { 1.0 };
-    let (as_much, all) = match ways {
-        Some(ways) => {
-            let mut as_much = 0;
-            of_a.sort_unstable();
-            loop {
-                as_much += u64::from(is_as_much(pool.difference(&of_a)));
-                if !next_way(&mut of_a) {
-                    break (as_much, ways);
-                }
+    let (as_much, all) = if let Some(ways) = ways {
+        let mut as_much = 0;
+        of_a.sort_unstable();
+        loop {
+            as_much += u64::from(is_as_much(pool.difference(&of_a)));
+            if !next_way(&mut of_a) {
+                break (as_much, ways);
             }
         }
-        None => {
-            let mut chance = ChaCha8Rng::seed_from_u64(options.seed);
-            // Not the draws of the intervals.
-            chance.set_stream(1);
-            let mut as_much = 1;
-            for _ in 0..options.resamples {
-                shuffle(&mut of_a, &mut chance);
-                as_much += u64::from(is_as_much(pool.difference(&of_a)));
-            }
-            (as_much, u64::from(options.resamples) + 1)
+    } else {
+        let mut chance = ChaCha8Rng::seed_from_u64(options.seed);
+        // Not the draws of the intervals.
+        chance.set_stream(1);
+        let mut as_much = 1;
+        for _ in 0..options.resamples {
+            shuffle(&mut of_a, &mut chance);
+            as_much += u64::from(is_as_much(pool.difference(&of_a)));
         }
+        (as_much, u64::from(options.resamples) + 1)
     };
     let least = ways.map_or(1.0 / all as f64, |ways| twins / ways as f64);
     Some(Shared {

@@ -184,7 +184,7 @@ def metrics(
         common_ranges: Scale each task by its range over all lifetimes.
         confidence: How much of the bootstrap's distribution an interval holds.
         resamples: How many times lifetimes are drawn again.
-        resampling: ``"strata"`` or ``"runs"``.
+        resampling: ``"runs"``, whole lifetimes, by default; or ``"strata"``, within each task.
         bootstrap_seed: What the draws come from.
 
     Raises:
