@@ -4,6 +4,9 @@ use driftworld_spec::SpecError;
 
 use crate::sim::Obstacle;
 
+/// Bytes of a gibibyte.
+const GIB: f64 = (1_u64 << 30) as f64;
+
 /// Everything that can go wrong in this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -47,6 +50,24 @@ pub enum EnvError {
         /// The most there can be.
         most: usize,
     },
+    /// Outputs that take more memory than a batch may have, or than there is.
+    #[error(
+        "batch: found outputs of {:.1} GiB, expected at most {} GiB, and as much memory as there is; ask for fewer environments \
+         (num_envs), smaller pictures or fewer modalities",
+        *found as f64 / GIB,
+        *most as f64 / GIB
+    )]
+    BatchMemory {
+        /// Bytes asked for.
+        found: u64,
+        /// The most there can be.
+        most: u64,
+    },
+    /// Work that somebody ended before it was done.
+    #[error(
+        "batch: stopped before every environment had begun its episode, expected a reset of them all before the next step"
+    )]
+    Stopped,
     /// Threads that the system does not give.
     #[error("batch: {wanted} threads cannot be had: {reason}; ask for fewer (num_threads)")]
     BatchThreads {
@@ -273,6 +294,8 @@ impl EnvError {
             Self::GpuPicture { .. } => "env/gpu-picture",
             Self::Gpu { .. } => "env/gpu",
             Self::BatchSize { .. } => "env/batch-size",
+            Self::BatchMemory { .. } => "env/batch-memory",
+            Self::Stopped => "env/stopped",
             Self::BatchThreads { .. } => "env/batch-threads",
             Self::StateLength { .. } => "env/state-length",
             Self::BatchLength { .. } => "env/batch-length",
@@ -292,6 +315,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
+    #[expect(clippy::too_many_lines, reason = "a list with one of each error")]
     fn every_error_has_its_message() {
         let errors = [
             EnvError::NotFinite {
@@ -350,6 +374,11 @@ mod tests {
                 reason: "out of graphics memory".to_owned(),
             },
             EnvError::BatchSize { found: 0, most: 65_536 },
+            EnvError::BatchMemory {
+                found: 3_298_534_883_328,
+                most: 17_179_869_184,
+            },
+            EnvError::Stopped,
             EnvError::BatchThreads {
                 wanted: 100_000,
                 reason: "out of memory".to_owned(),

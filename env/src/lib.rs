@@ -28,7 +28,8 @@ pub use assets::{
     MAX_IMPORT_NODES, MAX_TEXTURE_SIDE, ReadBeside,
 };
 pub use batch::{
-    Autoreset, Batch, BatchOptions, DepthForm, Episode, ImageLayout, Images, MAX_ENVS, Outputs, WorldSource,
+    Autoreset, Batch, BatchOptions, DepthForm, Episode, GoOn, ImageLayout, Images, MAX_BATCH_BYTES, MAX_ENVS, Outputs,
+    WorldSource,
 };
 pub use camera::Camera;
 pub use channel::{Category, Channel, Channels, Level, MAX_MESSAGE_BYTES, Outgoing, Received, Screenshot};

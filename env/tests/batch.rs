@@ -253,3 +253,81 @@ fn worlds_of_a_batch_make_the_same_images() {
     assert!(error.to_string().contains("25 × 25"), "{error}");
     assert!(Batch::new(0, self::source(), BatchOptions::default()).is_err());
 }
+
+fn options(autoreset: Autoreset) -> BatchOptions {
+    BatchOptions {
+        autoreset,
+        ..BatchOptions::default()
+    }
+}
+
+#[test]
+fn outputs_that_take_too_much_are_refused_before_they_are_taken() {
+    let large = |episode: Episode| {
+        let mut world = world(episode);
+        world.agent_params.observation_size = 4096;
+        world
+    };
+    // Colour, metres, categories and objects: 12 bytes a pixel, 201 MB an environment; 85 of them are 17.1 GB, 16 GiB are 17.18 GB.
+    let made = |num_envs, autoreset| {
+        let source: WorldSource = Arc::new(move |episode| {
+            assert_eq!(episode.env, 0, "the first world says how large all are");
+            Ok(large(episode))
+        });
+        Batch::new(num_envs, source, options(autoreset)).err()
+    };
+    for (num_envs, autoreset) in [
+        (86, Autoreset::NextStep),
+        (65_536, Autoreset::Disabled),
+        (43, Autoreset::SameStep),
+    ] {
+        let refused = made(num_envs, autoreset);
+        let Some(EnvError::BatchMemory { found, most }) = refused else {
+            panic!("found {refused:?}");
+        };
+        let copies = 1 + u64::from(autoreset == Autoreset::SameStep);
+        assert_eq!(most, driftworld_env::MAX_BATCH_BYTES);
+        assert!(
+            found >= copies * num_envs as u64 * 4096 * 4096 * 12 && found > most,
+            "{found}"
+        );
+    }
+}
+
+#[test]
+fn a_reset_that_is_stopped_leaves_the_rest_where_they_were_and_the_next_begins_them() {
+    let mut batch = batch(Autoreset::Disabled, 1);
+    let left = std::sync::atomic::AtomicU32::new(2);
+    let go_on = || {
+        let take = |left: u32| left.checked_sub(1);
+        let order = std::sync::atomic::Ordering::Relaxed;
+        left.fetch_update(order, order, take).is_ok()
+    };
+    assert_eq!(
+        batch.reset_where_while(&[true; NUM_ENVS], &go_on),
+        Err(EnvError::Stopped)
+    );
+    let episodes = |batch: &Batch| -> Vec<u64> {
+        let episode = |env| batch.episode(env).map_or(0, |episode| episode.index);
+        (0..NUM_ENVS).map(episode).collect()
+    };
+    assert_eq!(episodes(&batch), [1, 1, 0, 0, 0]);
+    let actions: Vec<Action> = (0..NUM_ENVS).map(|env| action(0, env)).collect();
+    assert!(matches!(
+        batch.step(&actions),
+        Err(EnvError::BatchAction { env: 2, .. })
+    ));
+    batch
+        .reset_where(&[false, false, true, true, true])
+        .expect("the worlds are sound");
+    assert_eq!(episodes(&batch), [1; NUM_ENVS]);
+    batch.step(&actions).expect("all have begun");
+    let made = Batch::with_catalogue_while(
+        NUM_ENVS,
+        source(),
+        BatchOptions::default(),
+        &driftworld_env::Catalogue::default(),
+        &|| false,
+    );
+    assert_eq!(made.err(), Some(EnvError::Stopped));
+}

@@ -5,6 +5,7 @@ use driftworld_spec::{Modality, StateFeature, World};
 use crate::EnvError;
 use crate::render::{FAR_DEPTH, Target};
 
+use super::MAX_BATCH_BYTES;
 use super::depth::{self, DepthForm};
 
 /// What images the environments of a batch make: all alike.
@@ -50,6 +51,23 @@ impl ImageLayout {
             found: Self::of(world).to_string(),
             expected: self.to_string(),
         })
+    }
+
+    /// Bytes of one environment's images.
+    pub(super) fn bytes(&self, form: DepthForm) -> u64 {
+        let of_depth = match form {
+            DepthForm::Metres => 4,
+            DepthForm::Millimetres => 4 + 2,
+            DepthForm::Gray => 4 + 1,
+        };
+        let of_pixel = |modality: &Modality| match modality {
+            Modality::Rgb => 3,
+            Modality::Depth => of_depth,
+            Modality::Segmentation => 1,
+            Modality::Class => 2,
+            Modality::Instance => 4,
+        };
+        self.modalities.iter().map(of_pixel).sum::<u64>() * self.num_pixels() as u64
     }
 
     /// Pixels of one image.
@@ -104,21 +122,26 @@ pub struct Images {
 }
 
 impl Images {
-    pub(super) fn new(layout: ImageLayout, num_envs: usize, form: DepthForm) -> Self {
+    /// Those of environments that have not begun.
+    ///
+    /// # Errors
+    /// [`EnvError::BatchMemory`] where memory cannot be had.
+    pub(super) fn new(layout: ImageLayout, num_envs: usize, form: DepthForm) -> Result<Self, EnvError> {
         let pixels = |modality: Modality| {
             let wanted = usize::from(layout.modalities.contains(&modality));
             wanted * num_envs * layout.num_pixels()
         };
-        Self {
-            rgb: vec![0; 3 * pixels(Modality::Rgb)],
-            depth: vec![FAR_DEPTH; pixels(Modality::Depth)],
-            depth_millimetres: vec![u16::MAX; usize::from(form == DepthForm::Millimetres) * pixels(Modality::Depth)],
-            depth_gray: vec![u8::MAX; usize::from(form == DepthForm::Gray) * pixels(Modality::Depth)],
-            category: vec![0; pixels(Modality::Segmentation)],
-            class: vec![0; pixels(Modality::Class)],
-            instance: vec![0; pixels(Modality::Instance)],
+        let depth = pixels(Modality::Depth);
+        Ok(Self {
+            rgb: filled(0, 3 * pixels(Modality::Rgb))?,
+            depth: filled(FAR_DEPTH, depth)?,
+            depth_millimetres: filled(u16::MAX, usize::from(form == DepthForm::Millimetres) * depth)?,
+            depth_gray: filled(u8::MAX, usize::from(form == DepthForm::Gray) * depth)?,
+            category: filled(0, pixels(Modality::Segmentation))?,
+            class: filled(0, pixels(Modality::Class))?,
+            instance: filled(0, pixels(Modality::Instance))?,
             layout,
-        }
+        })
     }
 
     /// All of them, for writing.
@@ -237,6 +260,20 @@ impl<'a> ImagesMut<'a> {
             instance: one(self.instance, env, pixels),
         }
     }
+}
+
+/// A buffer of so many of a value.
+///
+/// # Errors
+/// [`EnvError::BatchMemory`] where memory cannot be had: the buffer is the caller's to choose, so that is no reason to end all.
+pub(super) fn filled<T: Clone>(value: T, length: usize) -> Result<Vec<T>, EnvError> {
+    let mut buffer = Vec::new();
+    buffer.try_reserve_exact(length).map_err(|_| EnvError::BatchMemory {
+        found: (length * size_of::<T>()) as u64,
+        most: MAX_BATCH_BYTES,
+    })?;
+    buffer.resize(length, value);
+    Ok(buffer)
 }
 
 /// A buffer in two; an empty one in two empty ones.

@@ -26,6 +26,15 @@ use crate::sim::{Action, Environment, Event};
 /// The most environments of one batch.
 pub const MAX_ENVS: usize = 65_536;
 
+/// The most bytes that the outputs of one batch may take: 16 GiB.
+pub const MAX_BATCH_BYTES: u64 = 16 << 30;
+
+/// The most threads of a batch for each processor: more would only take turns.
+const THREADS_PER_PROCESSOR: usize = 4;
+
+/// Whether to go on: asked before each environment's reset, by several threads.
+pub type GoOn<'a> = &'a (dyn Fn() -> bool + Sync);
+
 /// When an environment whose episode has ended starts the next one. Corresponds to Gymnasium's `AutoresetMode`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Autoreset {
@@ -58,7 +67,8 @@ pub type WorldSource = Arc<dyn Fn(Episode) -> Result<World, String> + Send + Syn
 pub struct BatchOptions {
     /// When episodes that have ended are followed by the next.
     pub autoreset: Autoreset,
-    /// Threads that step and draw, never more than there are environments; 0 is one for each processor.
+    /// Threads that step and draw, never more than there are environments, nor more than four for each processor; 0 is one for each
+    /// processor.
     pub num_threads: usize,
     /// What draws: the processor, each environment by itself; or a graphics card, all environments at once.
     pub renderer: RendererKind,
@@ -126,6 +136,7 @@ enum Work<'a> {
     },
     Reset {
         chosen: &'a [bool],
+        go_on: GoOn<'a>,
     },
     /// Begins the episodes that follow those whose last image had to be drawn first.
     BeginLate,
@@ -135,7 +146,8 @@ impl Batch {
     /// Environments at the start of their episodes 0, their first observations drawn.
     ///
     /// # Errors
-    /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchWorld`] where the source has no world;
+    /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchMemory`] where outputs would take more than
+    /// [`MAX_BATCH_BYTES`], or more than can be had; [`EnvError::BatchWorld`] where the source has no world;
     /// [`EnvError::BatchImages`] where worlds ask for different images; [`EnvError::BatchThreads`] if threads cannot be had;
     /// [`EnvError::NoGpu`] if a graphics card is asked for and none works; and as [`Renderer::draw_batch`].
     pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
@@ -146,15 +158,29 @@ impl Batch {
     ///
     /// # Errors
     /// As [`Batch::new`].
-    #[expect(
-        clippy::needless_pass_by_value,
-        reason = "a source is made for its batch; callers keep a clone if they want one"
-    )]
     pub fn with_catalogue(
         num_envs: usize,
         source: WorldSource,
         options: BatchOptions,
         catalogue: &Catalogue,
+    ) -> Result<Self, EnvError> {
+        Self::with_catalogue_while(num_envs, source, options, catalogue, &always)
+    }
+
+    /// The same as long as `go_on` says so.
+    ///
+    /// # Errors
+    /// As [`Batch::new`], and [`EnvError::Stopped`].
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a source is made for its batch; callers keep a clone if they want one"
+    )]
+    pub fn with_catalogue_while(
+        num_envs: usize,
+        source: WorldSource,
+        options: BatchOptions,
+        catalogue: &Catalogue,
+        go_on: GoOn<'_>,
     ) -> Result<Self, EnvError> {
         if !(1..=MAX_ENVS).contains(&num_envs) {
             return Err(EnvError::BatchSize {
@@ -163,12 +189,14 @@ impl Batch {
             });
         }
         let graphics = Some(Renderer::new(options.renderer)?).filter(|renderer| renderer.kind() == RendererKind::Gpu);
-        // More threads than environments would have nothing to do.
-        let wanted = match options.num_threads {
-            0 => std::thread::available_parallelism().map_or(1, NonZeroUsize::get),
-            wanted => wanted,
-        };
-        let pool = match wanted.min(num_envs) {
+        let limit = options.max_episode_steps;
+        let first = Slot::new(0, Arc::clone(&source), None, catalogue, limit)?;
+        let layout = ImageLayout::clone(&first.layout);
+        let state_len = first.environment.world().agent_params.state_len();
+        // Before anything large is taken.
+        let copies = 1 + u64::from(options.autoreset == Autoreset::SameStep);
+        expect_room(copies * Outputs::bytes(&layout, options.depth, state_len, num_envs))?;
+        let pool = match threads(options.num_threads, num_envs) {
             1 if graphics.is_none() => None,
             wanted => {
                 let pool = rayon::ThreadPoolBuilder::new()
@@ -183,23 +211,23 @@ impl Batch {
         };
         let threads = pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
         let mut slots = Vec::with_capacity(num_envs);
-        for env in 0..num_envs {
-            let layout = slots.first().map(|first: &Slot| &first.layout);
-            slots.push(Slot::new(
-                env,
-                Arc::clone(&source),
-                layout,
-                catalogue,
-                options.max_episode_steps,
-            )?);
+        slots.push(first);
+        for env in 1..num_envs {
+            if !go_on() {
+                return Err(EnvError::Stopped);
+            }
+            let layout = Arc::clone(&slots[0].layout);
+            slots.push(Slot::new(env, Arc::clone(&source), Some(&layout), catalogue, limit)?);
         }
-        let layout = ImageLayout::clone(&slots[0].layout);
-        let state = slots[0].environment.world().agent_params.state_len();
-        let outputs = Outputs::new(layout, options.depth, state, num_envs);
+        let outputs = Outputs::new(&layout, options.depth, state_len, num_envs)?;
+        let finals = match options.autoreset {
+            Autoreset::SameStep => Some(Outputs::new(&layout, options.depth, state_len, num_envs)?),
+            Autoreset::NextStep | Autoreset::Disabled => None,
+        };
         // Several parts for each thread: environments that are near many things take longer.
         let parts = if threads == 1 { 1 } else { (4 * threads).min(num_envs) };
         let mut batch = Self {
-            finals: (options.autoreset == Autoreset::SameStep).then(|| outputs.clone()),
+            finals,
             slots,
             outputs,
             autoreset: options.autoreset,
@@ -207,7 +235,7 @@ impl Batch {
             graphics,
             pool,
         };
-        batch.work(Work::Reset { chosen: &[] })?;
+        batch.work(Work::Reset { chosen: &[], go_on })?;
         Ok(batch)
     }
 
@@ -280,7 +308,8 @@ impl Batch {
     /// As [`Batch::reset_where`].
     pub fn reset(&mut self) -> Result<(), EnvError> {
         self.begin_next(|_| true);
-        self.work(Work::Reset { chosen: &[] })
+        let go_on = &always;
+        self.work(Work::Reset { chosen: &[], go_on })
     }
 
     /// Begins the next episode in the environments that `chosen` says true for; the others' outputs stay.
@@ -289,9 +318,18 @@ impl Batch {
     /// [`EnvError::BatchLength`] unless there is one answer for each environment; [`EnvError::BatchWorld`] and
     /// [`EnvError::BatchImages`] for the first environment whose world cannot be had: all others have begun.
     pub fn reset_where(&mut self, chosen: &[bool]) -> Result<(), EnvError> {
+        self.reset_where_while(chosen, &always)
+    }
+
+    /// The same as long as `go_on` says so.
+    ///
+    /// # Errors
+    /// As [`Batch::reset_where`]; [`EnvError::Stopped`] if some have not begun: they do so with the next reset, or with the next step
+    /// where episodes begin by themselves.
+    pub fn reset_where_while(&mut self, chosen: &[bool], go_on: GoOn<'_>) -> Result<(), EnvError> {
         self.expect_one_each(chosen.len())?;
         self.begin_next(|env| chosen[env]);
-        self.work(Work::Reset { chosen })
+        self.work(Work::Reset { chosen, go_on })
     }
 
     fn begin_next(&mut self, chosen: impl Fn(usize) -> bool) {
@@ -353,7 +391,7 @@ impl Batch {
             outcome = outcome.and(last).and(self.go(Work::BeginLate, Drawing::Later));
         }
         let chosen = match work {
-            Work::Reset { chosen } => chosen,
+            Work::Reset { chosen, .. } => chosen,
             Work::Step { .. } | Work::BeginLate => &[],
         };
         let (pool, outputs) = (self.pool.as_ref(), &mut self.outputs);
@@ -376,6 +414,27 @@ impl Batch {
             None => part.run(0, work),
         }
     }
+}
+
+fn always() -> bool {
+    true
+}
+
+/// Threads for so many environments: as many as asked for, where they have something to do.
+fn threads(asked: usize, num_envs: usize) -> usize {
+    let processors = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let wanted = if asked == 0 { processors } else { asked };
+    wanted.min(num_envs).min(THREADS_PER_PROCESSOR * processors)
+}
+
+fn expect_room(bytes: u64) -> Result<(), EnvError> {
+    if bytes <= MAX_BATCH_BYTES {
+        return Ok(());
+    }
+    Err(EnvError::BatchMemory {
+        found: bytes,
+        most: MAX_BATCH_BYTES,
+    })
 }
 
 /// Draws the chosen environments' images at once, on the batch's own threads.
@@ -443,7 +502,8 @@ impl Part<'_> {
             let env = first + index;
             let renderer = (self.drawing == Drawing::Now).then_some(&mut *renderer);
             let done = match work {
-                Work::Reset { chosen } if chosen.get(env) == Some(&false) => Ok(()),
+                Work::Reset { chosen, .. } if chosen.get(env) == Some(&false) => Ok(()),
+                Work::Reset { go_on, .. } if !go_on() => Err(EnvError::Stopped),
                 Work::Reset { .. } => slot.reset(index, &mut self.outputs, renderer),
                 Work::Step { actions, autoreset } => slot.step(
                     actions[env],
@@ -458,5 +518,19 @@ impl Part<'_> {
             outcome = outcome.and(done);
         }
         outcome
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_are_as_many_as_have_something_to_do() {
+        let processors = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+        assert_eq!(threads(0, 65_536), processors);
+        assert_eq!(threads(2, 65_536), 2);
+        assert_eq!(threads(100_000, 3), 3);
+        assert_eq!(threads(2_000, 65_536), THREADS_PER_PROCESSOR * processors);
     }
 }

@@ -1,7 +1,8 @@
 //! What comes out of a batch: observations, rewards and flags, one buffer each. Images are in `images.rs`.
 
 use super::depth::DepthForm;
-use super::images::{ImageLayout, Images, ImagesMut, halves};
+use super::images::{ImageLayout, Images, ImagesMut, filled, halves};
+use crate::EnvError;
 
 /// Observations, rewards and flags of all environments, environment after environment.
 #[derive(Clone, Debug)]
@@ -34,16 +35,32 @@ pub(super) struct OutputsMut<'a> {
 }
 
 impl Outputs {
-    pub(super) fn new(layout: ImageLayout, form: DepthForm, state_len: usize, num_envs: usize) -> Self {
-        Self {
-            images: Images::new(layout, num_envs, form),
-            states: vec![0.0; num_envs * state_len],
+    /// Those of environments that have not begun.
+    ///
+    /// # Errors
+    /// [`EnvError::BatchMemory`] where memory cannot be had.
+    pub(super) fn new(
+        layout: &ImageLayout,
+        form: DepthForm,
+        state_len: usize,
+        num_envs: usize,
+    ) -> Result<Self, EnvError> {
+        Ok(Self {
+            images: Images::new(layout.clone(), num_envs, form)?,
+            states: filled(0.0, num_envs * state_len)?,
             state_len,
-            rewards: vec![0.0; num_envs],
-            terminated: vec![false; num_envs],
-            truncated: vec![false; num_envs],
-            success: vec![false; num_envs],
-        }
+            rewards: filled(0.0, num_envs)?,
+            terminated: filled(false, num_envs)?,
+            truncated: filled(false, num_envs)?,
+            success: filled(false, num_envs)?,
+        })
+    }
+
+    /// How many bytes they take.
+    pub(super) fn bytes(layout: &ImageLayout, form: DepthForm, state_len: usize, num_envs: usize) -> u64 {
+        let flags = size_of::<f64>() + 3 * size_of::<bool>();
+        let numbers = (state_len * size_of::<f32>() + flags) as u64;
+        (layout.bytes(form) + numbers).saturating_mul(num_envs as u64)
     }
 
     pub(super) fn view(&mut self) -> OutputsMut<'_> {
