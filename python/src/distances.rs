@@ -35,12 +35,15 @@ pub(crate) fn distance<'py>(
     a: Compared<'py>,
     b: Compared<'py>,
     weights: Weighing,
-    worlds: Option<u64>,
+    worlds: Option<Whole>,
     seed: Whole,
     index: Whole,
 ) -> Result<Bound<'py, PyAny>> {
-    if worlds.is_some_and(|worlds| !(1..=100_000).contains(&worlds)) {
-        return Err(PyValueError::new_err("worlds: expected a number from 1 to 100000").into());
+    let worlds = worlds.map(|worlds| worlds.0);
+    if let Some(worlds) = worlds.filter(|worlds| !(1..=100_000).contains(worlds)) {
+        return Err(
+            PyValueError::new_err(format!("worlds: found {worlds}, expected a number from 1 to 100000")).into(),
+        );
     }
     let laid = laid(weights)?;
     let (a, b) = (a.side()?, b.side()?);

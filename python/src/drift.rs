@@ -25,7 +25,10 @@ type Made = (PyVariant, PyVariant, Option<String>, String, u64);
 #[pymethods]
 impl PyDrift {
     #[new]
-    #[pyo3(signature = (from_, to, *, schedule=None, switch="at_point", seed=Whole(0)))]
+    #[pyo3(
+        signature = (from_, to, *, schedule=None, switch="at_point", seed=Whole(0)),
+        text_signature = "(from_, to, *, schedule=None, switch='at_point', seed=0)"
+    )]
     fn new(
         from_: &Bound<'_, PyVariant>,
         to: &Bound<'_, PyVariant>,
@@ -75,7 +78,7 @@ impl PyDrift {
     }
 
     /// The variant when ``progress``, 0..=1, has passed; ``index`` is the number of the world, which only mixtures look at.
-    #[pyo3(signature = (progress, index=Whole(0)))]
+    #[pyo3(signature = (progress, index=Whole(0)), text_signature = "($self, progress, index=0)")]
     fn at(&self, progress: f64, index: Whole) -> Result<PyVariant> {
         if !(0.0..=1.0).contains(&progress) {
             let message = format!("drift, progress: found {progress}, expected a number in 0..1");

@@ -90,6 +90,8 @@ impl Error {
     /// The exception for this error.
     fn raise(self, py: Python<'_>) -> PyResult<PyErr> {
         let (class, text) = match &self {
+            // A name that stands for nothing, and no document that is wrong.
+            Self::Spec(source @ SpecError::UnknownVariant { .. }) => ("TaskError", source.to_string()),
             Self::Spec(source) => ("SpecError", source.to_string()),
             Self::Task(source) => ("TaskError", source.to_string()),
             Self::Generator(source) => ("GeneratorError", source.to_string()),

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::SystemTime;
 
 use driftworld_metrics::{
@@ -17,9 +17,9 @@ use serde_json::{Map, Value, json};
 use crate::document::{Whole, from_python, to_python, told};
 use crate::errors::Result;
 
-/// An open log.
-#[pyclass(name = "LogFile", module = "driftworld._native")]
-pub(crate) struct PyLogFile(Option<LogWriter>);
+/// An open log. Threads that write into it take turns.
+#[pyclass(name = "LogFile", module = "driftworld._native", frozen)]
+pub(crate) struct PyLogFile(Mutex<Option<LogWriter>>);
 
 #[pymethods]
 impl PyLogFile {
@@ -27,17 +27,14 @@ impl PyLogFile {
     #[staticmethod]
     fn create(folder: PathBuf, columns: Vec<String>, info: &Bound<'_, PyAny>) -> Result<Self> {
         let info = scenario_info(from_python(info)?)?;
-        Ok(Self(Some(LogWriter::create(
-            folder,
-            &LoggerInfo::new(columns)?,
-            &info,
-        )?)))
+        let writer = LogWriter::create(folder, &LoggerInfo::new(columns)?, &info)?;
+        Ok(Self(Mutex::new(Some(writer))))
     }
 
     /// Goes on with a log.
     #[staticmethod]
     fn resume(folder: PathBuf) -> Result<Self> {
-        Ok(Self(Some(LogWriter::resume(folder)?)))
+        Ok(Self(Mutex::new(Some(LogWriter::resume(folder)?))))
     }
 
     /// Writes one row and flushes it. The time is now.
@@ -46,7 +43,7 @@ impl PyLogFile {
         reason = "a row has these cells; called from one place, by name"
     )]
     fn write(
-        &mut self,
+        &self,
         block_num: Whole,
         exp_num: Whole,
         block_type: &str,
@@ -57,9 +54,6 @@ impl PyLogFile {
         worker_id: &str,
         metrics: BTreeMap<String, f64>,
     ) -> Result<()> {
-        let writer = self.0.as_mut().ok_or_else(|| {
-            PyValueError::new_err("log: found it closed, expected an open one; begin another, or resume it")
-        })?;
         let params = match from_python(task_params)? {
             Value::Object(params) => params,
             other => {
@@ -81,12 +75,18 @@ impl PyLogFile {
             .with_task_params(TaskParams::new(params))
             .with_worker(worker_id)
         };
+        // Locked only while nothing of Python's runs, so that no thread waits that holds the interpreter's lock.
+        let mut writer = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let writer = writer.as_mut().ok_or_else(|| {
+            PyValueError::new_err("log: found it closed, expected an open one; begin another, or resume it")
+        })?;
         Ok(writer.write(&record)?)
     }
 
     /// Ends the log: asks the disk to have all of it. Does nothing a second time.
-    fn close(&mut self) -> Result<()> {
-        self.0.take().map_or(Ok(()), |writer| Ok(writer.finish()?))
+    fn close(&self) -> Result<()> {
+        let writer = self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
+        writer.map_or(Ok(()), |writer| Ok(writer.finish()?))
     }
 }
 

@@ -22,6 +22,12 @@ use crate::patience::{impatiently, patiently};
 /// Worlds that are drawn at once: between two such portions Ctrl-C is looked for.
 const PORTION: u64 = 256;
 
+/// The most worlds that may be asked for at once, and the most bytes of their texts.
+const MOST_WORLDS: u64 = 10_000_000;
+const MOST_BYTES: u128 = 16 << 30;
+/// From so many worlds on, the first says how large all are.
+const ESTIMATED: u64 = 10_000;
+
 /// A task: what its worlds have in common, and exactly what varies between them.
 ///
 /// Made by ``TaskSpec.load``, ``TaskSpec.from_json`` or ``TaskSpec.from_dict``. Never changes; equal when the documents say the
@@ -119,7 +125,7 @@ impl PyTask {
     }
 
     /// World number ``index`` of a variant under a seed, as a dictionary.
-    #[pyo3(signature = (variant=None, seed=Whole(0), index=Whole(0)))]
+    #[pyo3(signature = (variant=None, seed=Whole(0), index=Whole(0)), text_signature = "($self, variant=None, seed=0, index=0)")]
     fn sample<'py>(
         &self,
         py: Python<'py>,
@@ -247,50 +253,56 @@ impl PyVariant {
     }
 
     /// World number ``index`` under a seed, as a dictionary.
-    #[pyo3(signature = (seed=Whole(0), index=Whole(0)))]
+    #[pyo3(signature = (seed=Whole(0), index=Whole(0)), text_signature = "($self, seed=0, index=0)")]
     fn sample<'py>(&self, py: Python<'py>, seed: Whole, index: Whole) -> Result<Bound<'py, PyAny>> {
         let world = py.detach(|| driftworld_generator::sample(&self.0, seed.0, index.0))?;
         Ok(told(py, &world)?)
     }
 
     /// The same as one line of JSON.
-    #[pyo3(signature = (seed=Whole(0), index=Whole(0)))]
+    #[pyo3(signature = (seed=Whole(0), index=Whole(0)), text_signature = "($self, seed=0, index=0)")]
     fn sample_json(&self, py: Python<'_>, seed: Whole, index: Whole) -> Result<String> {
         let world = py.detach(|| driftworld_generator::sample(&self.0, seed.0, index.0))?;
         Ok(world.to_json())
     }
 
     /// ``count`` worlds from number ``start`` on, as dictionaries, drawn by several threads: 0 for one on each processor.
-    #[pyo3(signature = (count, *, seed=Whole(0), start=Whole(0), threads=0))]
+    #[pyo3(
+        signature = (count, *, seed=Whole(0), start=Whole(0), threads=Whole(0)),
+        text_signature = "($self, count, *, seed=0, start=0, threads=0)"
+    )]
     fn sample_many<'py>(
         &self,
         py: Python<'py>,
         count: Whole,
         seed: Whole,
         start: Whole,
-        threads: usize,
+        threads: Whole,
     ) -> Result<Bound<'py, PyList>> {
         let drawn = PyList::empty(py);
         let value = |world: World| serde_json::to_value(&world).unwrap_or_default();
-        self.draw(py, seed.0, numbers(start.0, count.0)?, threads, value, |value| {
+        self.draw(py, seed.0, numbers(start.0, count.0)?, threads.0, value, |value| {
             drawn.append(to_python(py, &value)?)
         })?;
         Ok(drawn)
     }
 
     /// The same, each world as one line of JSON.
-    #[pyo3(signature = (count, *, seed=Whole(0), start=Whole(0), threads=0))]
+    #[pyo3(
+        signature = (count, *, seed=Whole(0), start=Whole(0), threads=Whole(0)),
+        text_signature = "($self, count, *, seed=0, start=0, threads=0)"
+    )]
     fn sample_many_json<'py>(
         &self,
         py: Python<'py>,
         count: Whole,
         seed: Whole,
         start: Whole,
-        threads: usize,
+        threads: Whole,
     ) -> Result<Bound<'py, PyList>> {
         let drawn = PyList::empty(py);
         let text = |world: World| world.to_json();
-        self.draw(py, seed.0, numbers(start.0, count.0)?, threads, text, |text| {
+        self.draw(py, seed.0, numbers(start.0, count.0)?, threads.0, text, |text| {
             drawn.append(text)
         })?;
         Ok(drawn)
@@ -334,12 +346,15 @@ impl PyVariant {
         py: Python<'_>,
         seed: u64,
         mut numbers: Range<u64>,
-        threads: usize,
+        threads: u64,
         make: impl Fn(World) -> T + Sync,
         mut take: impl FnMut(T) -> PyResult<()>,
     ) -> Result<()> {
         let pool = pool(threads)?;
         let sampler = py.detach(|| Sampler::new(&self.0, seed));
+        if numbers.end - numbers.start > ESTIMATED {
+            expect_room(&numbers, sampler.world(numbers.start)?.to_json().len())?;
+        }
         while !numbers.is_empty() {
             let portion = numbers.start..numbers.end.min(numbers.start + PORTION);
             numbers.start = portion.end;
@@ -445,7 +460,26 @@ fn sound_name(name: &str) -> PyResult<()> {
     Ok(())
 }
 
+/// Refuses what would take more memory than it is likely meant to: all worlds are held at once.
+fn expect_room(numbers: &Range<u64>, first_bytes: usize) -> PyResult<()> {
+    let count = numbers.end - numbers.start;
+    let bytes = u128::from(count) * first_bytes as u128;
+    if bytes <= MOST_BYTES {
+        return Ok(());
+    }
+    let gib = bytes as f64 / f64::from(1 << 30);
+    Err(PyValueError::new_err(format!(
+        "count: found {count} worlds of about {first_bytes} bytes, {gib:.0} GiB as text, expected at most 16 GiB at once; ask for them \
+         in portions, with start"
+    )))
+}
+
 fn numbers(start: u64, count: u64) -> PyResult<Range<u64>> {
+    if count > MOST_WORLDS {
+        return Err(PyValueError::new_err(format!(
+            "count: found {count}, expected at most {MOST_WORLDS} worlds at once; ask for them in portions, with start"
+        )));
+    }
     let end = start.checked_add(count).ok_or_else(|| {
         PyValueError::new_err(format!(
             "start: found {start}, expected room for {count} worlds below 2^64"
@@ -455,10 +489,10 @@ fn numbers(start: u64, count: u64) -> PyResult<Range<u64>> {
 }
 
 /// The most threads that may be asked for.
-const MOST_THREADS: usize = 1024;
+const MOST_THREADS: u64 = 1024;
 
 /// Threads to draw by; none where those of all long work are meant.
-fn pool(threads: usize) -> PyResult<Option<rayon::ThreadPool>> {
+fn pool(threads: u64) -> PyResult<Option<rayon::ThreadPool>> {
     if threads == 0 {
         return Ok(None);
     }
@@ -467,7 +501,7 @@ fn pool(threads: usize) -> PyResult<Option<rayon::ThreadPool>> {
             "threads: found {threads}, expected at most {MOST_THREADS}; 0 for one on each processor"
         )));
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build();
     pool.map(Some)
         .map_err(|error| PyValueError::new_err(format!("threads: found {threads}: {error}")))
 }

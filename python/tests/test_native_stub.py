@@ -89,3 +89,6 @@ def test_the_stub_has_the_parameters_and_which_of_them_have_defaults(
     found = [parameter.name for parameter in plain if parameter.name not in ("self", "cls", "slf")]
     assert found == expected
     assert [p.name for p in plain if p.default is not p.empty] == with_defaults
+    # As `help()` shows them: a default that it cannot show would be `Ellipsis`.
+    written = [*arguments.defaults, *(default for default in arguments.kw_defaults if default is not None)]
+    assert [p.default for p in plain if p.default is not p.empty] == [ast.literal_eval(default) for default in written]

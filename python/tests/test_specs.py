@@ -63,7 +63,7 @@ def test_a_task_is_loaded_by_its_name_or_its_path(tmp_path: Path, lamps: TaskSpe
 def test_a_task_that_is_not_there_is_told_the_ones_that_are() -> None:
     with pytest.raises(TaskError, match='did you mean "find_objects"'):
         TaskSpec.load("find_object")
-    with pytest.raises(SpecError, match='did you mean "red"') as refused:
+    with pytest.raises(TaskError, match='did you mean "red"') as refused:
         TaskSpec.load("find_objects").variant("rde")
     assert refused.value.code == "spec/unknown-variant"
 

@@ -59,8 +59,8 @@ class SpecError(DriftworldError, ValueError):
     """A task spec, world or scenario is wrong; each problem comes with its place."""
 
 
-class TaskError(DriftworldError, LookupError):
-    """There is no task, variant or file of that name."""
+class TaskError(DriftworldError, LookupError, ValueError):
+    """There is no task, variant or file of that name, or the file cannot be read."""
 
 
 class GeneratorError(DriftworldError):

@@ -15,6 +15,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from driftworld._command import ask
+from driftworld._literals import (
+    Aggregation,
+    Maintenance,
+    Normalization,
+    PlotType,
+    Resampling,
+    Smoothing,
+    SteAveraging,
+    Transfer,
+    Unit,
+    VariantMode,
+)
 from driftworld._plain import plain
 from driftworld.errors import MetricsError
 from driftworld.logs import _pandas
@@ -136,13 +148,13 @@ def metrics(
     recursive: bool = False,
     ste_data: PathLike | None = None,
     perf_measure: str | None = None,
-    variant_mode: str | None = None,
-    ste_averaging_method: str | None = None,
-    aggregation_method: str | None = None,
-    maintenance_method: str | None = None,
-    transfer_method: str | None = None,
-    normalization_method: str | None = None,
-    smoothing_method: str | None = None,
+    variant_mode: VariantMode | None = None,
+    ste_averaging_method: SteAveraging | None = None,
+    aggregation_method: Aggregation | None = None,
+    maintenance_method: Maintenance | None = None,
+    transfer_method: Transfer | None = None,
+    normalization_method: Normalization | None = None,
+    smoothing_method: Smoothing | None = None,
     smooth_eval_data: bool = False,
     window_length: int | None = None,
     clamp_outliers: bool = False,
@@ -154,7 +166,7 @@ def metrics(
     common_ranges: bool = False,
     confidence: float | None = None,
     resamples: int | None = None,
-    resampling: str | None = None,
+    resampling: Resampling | None = None,
     bootstrap_seed: int | None = None,
 ) -> Metrics:
     """Scores the logs of lifetimes.
@@ -191,7 +203,7 @@ def metrics(
         MetricsError: If a log cannot be read or scored, or an option is wrong.
     """
     options = dict(locals())
-    folders = tuple(os.fspath(path) for path in _paths(options.pop("logs")))
+    folders = tuple(os.fspath(path) for path in _logs(options.pop("logs")))
     for name in ("ste", "against"):
         options[name] = None if options[name] is None else list(_paths(options[name]))
     options["noise"] = None if noise is None else list(noise)
@@ -225,10 +237,10 @@ def report(
     date: str | None = None,
     distances: PathLike | None = None,
     plots: PathLike | None = None,
-    plot_types: Sequence[str] | None = None,
-    unit: str | None = None,
+    plot_types: Sequence[PlotType] | None = None,
+    unit: Unit | None = None,
     perf_measure: str | None = None,
-    variant_mode: str | None = None,
+    variant_mode: VariantMode | None = None,
     load_settings: PathLike | None = None,
     common_ranges: bool = False,
 ) -> str:
@@ -257,7 +269,7 @@ def report(
         MetricsError: If a log cannot be read or scored.
     """
     options = dict(locals())
-    folders, file = list(_paths(options.pop("logs"))), options.pop("path")
+    folders, file = _logs(options.pop("logs")), options.pop("path")
     for name in ("ste", "against"):
         options[name] = None if options[name] is None else list(_paths(options[name]))
     options["plot_types"] = None if plot_types is None else list(plot_types)
@@ -271,3 +283,10 @@ def report(
 
 def _paths(paths: Paths) -> list[PathLike]:
     return [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)
+
+
+def _logs(paths: Paths) -> list[PathLike]:
+    folders = _paths(paths)
+    if not folders:
+        raise ValueError("logs: found none, expected the folder of a log, or several")
+    return folders

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from driftworld import _native
+from driftworld._literals import DocumentKind
 from driftworld._native import Drift, TaskSpec, Variant
 
 __all__ = ["Drift", "TaskSpec", "Variant", "built_in_tasks", "validate", "variant", "variants"]
@@ -28,8 +29,8 @@ def variant(name: str | os.PathLike[str]) -> Variant:
     """The variant of a name: ``"find_objects#red"``, ``"my.json#night"``; without ``#`` that of all defaults.
 
     Raises:
-        TaskError: If there is no such task or file.
-        SpecError: If the document is wrong, or has no such variant.
+        TaskError: If there is no such task, file or variant.
+        SpecError: If the document is wrong.
     """
     return _native.load_variant(os.fspath(name))
 
@@ -45,8 +46,8 @@ def variants(*names: str | Variant | TaskSpec) -> list[tuple[str, Variant]]:
         Pairs of ``task#variant``, where the task is called as it was here, and the variant.
 
     Raises:
-        TaskError: If there is no such task or file.
-        SpecError: If a document is wrong, or has no such variant.
+        TaskError: If there is no such task, file or variant.
+        SpecError: If a document is wrong.
         ValueError: If two that differ are called the same.
     """
     found: dict[str, Variant] = {}
@@ -74,7 +75,7 @@ def _named(name: str | Variant | TaskSpec) -> Iterable[tuple[str, Variant]]:
 
 def validate(
     document: str | os.PathLike[str] | Mapping[str, Any],
-    kind: str | None = None,
+    kind: DocumentKind | None = None,
     *,
     check: bool = False,
     assets: str | os.PathLike[str] | Iterable[str | os.PathLike[str]] = (),

@@ -1,0 +1,60 @@
+"""The words that closed sets of options take, as types: a misspelt one is an error before the program runs.
+
+What the words mean is said where they are taken; that these are all of them, and no others, is tested.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias
+
+# -- environments ------------------------------------------------------------------------------------------------------
+Modality: TypeAlias = Literal["rgb", "depth", "segmentation", "class", "instance", "state"]
+DepthForm: TypeAlias = Literal["uint8", "uint16", "float32"]
+ActionsName: TypeAlias = Literal["normalized", "continuous", "discrete"]
+RendererName: TypeAlias = Literal["cpu", "gpu", "auto"]
+LabelPlace: TypeAlias = Literal["none", "info", "obs"]
+CameraName: TypeAlias = Literal["agent", "above", "both"]
+RenderMode: TypeAlias = Literal["human", "rgb_array"]
+AutoresetName: TypeAlias = Literal["next_step", "same_step", "disabled"]
+
+# -- documents and distances -------------------------------------------------------------------------------------------
+DocumentKind: TypeAlias = Literal["task", "world", "scenario", "maps", "l2explorer-world", "l2explorer-scenario"]
+OrderMethod: TypeAlias = Literal[
+    "nearest",
+    "exact",
+    "two-opt",
+    "spectral",
+    "tree",
+    "leaf",
+    "contrast",
+    "typical-last",
+    "farthest-first",
+    "random",
+    "bottleneck",
+    "target-step",
+    "given",
+]
+
+# -- curricula ---------------------------------------------------------------------------------------------------------
+Form: TypeAlias = Literal["condensed", "dispersed", "permuted", "alternating", "custom"]
+Evaluate: TypeAlias = Literal["every", "ends"]
+DesignOrder: TypeAlias = Literal["gradual", "abrupt", "path", "farthest"]
+Probe: TypeAlias = Literal["state", "action", "transition", "reward", "observation"]
+TaskLabel: TypeAlias = Literal["none", "info", "observation"]
+BlockKind: TypeAlias = Literal["learning", "evaluation"]
+Phase: TypeAlias = Literal["deployment", "pre_deployment"]
+
+# -- logs and scores ---------------------------------------------------------------------------------------------------
+BlockType: TypeAlias = Literal["train", "test"]
+BlockSubtype: TypeAlias = Literal["wake", "sleep"]
+Status: TypeAlias = Literal["complete", "incomplete"]
+VariantMode: TypeAlias = Literal["aware", "agnostic"]
+SteAveraging: TypeAlias = Literal["metrics", "time"]
+Aggregation: TypeAlias = Literal["mean", "median"]
+Maintenance: TypeAlias = Literal["mrlep", "mrtlp", "both"]
+Transfer: TypeAlias = Literal["ratio", "contrast", "both"]
+Normalization: TypeAlias = Literal["task", "run", "none"]
+Smoothing: TypeAlias = Literal["flat", "hanning", "hamming", "bartlett", "blackman", "none"]
+Resampling: TypeAlias = Literal["strata", "runs"]
+PlotType: TypeAlias = Literal["all", "raw", "lb", "eb", "ste", "timeline"]
+Unit: TypeAlias = Literal["exp_num", "steps"]
