@@ -33,8 +33,7 @@ OPTIONS: dict[str, Any] = {
 class ForRllib(gym.vector.VectorWrapper):
     """Native environments as RLlib's networks want them.
 
-    Pictures are in 0 to 1 and in memory of their own, for RLlib keeps what the environment's next step writes over; rewards are
-    on a scale of about 1. RLlib hands runner *w* the seed *s* + *w*, and environment *i* of a runner draws its worlds under the
+    Pictures are in 0 to 1, rewards on a scale of about 1. RLlib hands runner *w* the seed *s* + *w*, and environment *i* of a runner draws its worlds under the
     runner's seed + *i*: seeds are spread out, so that no two runners live in the same worlds.
     """
 

@@ -5,11 +5,12 @@
 
 use std::num::NonZeroU32;
 use std::str::FromStr;
-use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 use driftworld_env::{
-    Action, Autoreset, Batch, BatchOptions, Catalogue, DepthForm, EnvError, Event, Library, Outputs, RendererKind,
-    WorldSource, top_down,
+    Action, Autoreset, Batch, BatchOptions, Catalogue, DepthForm, EnvError, Event, GoOn, Library, Outputs,
+    RendererKind, WorldSource, top_down,
 };
 use driftworld_spec::{Modality, World};
 use numpy::ndarray::{ArrayView, Ix4};
@@ -19,17 +20,30 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::errors::{Error, Result};
-use crate::supply::{PyStream, Supply, dress_of};
+use crate::patience::patiently;
+use crate::supply::{PyStream, Stream, Supply, dress_of};
+
+/// From so many environments on, Ctrl-C ends making and resetting them: fewer are done before anybody waits.
+const MANY: usize = 32;
+
+/// The row that stands for every number that is none: no table is as long.
+const NO_ROW: usize = usize::MAX;
 
 /// Environments that step together.
-#[pyclass(name = "Batch", module = "driftworld._native")]
+#[pyclass(name = "Batch", module = "driftworld._native", frozen)]
 pub(crate) struct PyBatch {
-    batch: Batch,
+    /// One thread at a time has it; another that wants it meanwhile is refused.
+    stepping: Mutex<Stepping>,
     supplies: Vec<Arc<Supply>>,
-    /// The actions of a step; the memory is used again.
-    actions: Vec<Action>,
     /// The process that the batch was made in: its threads live nowhere else.
     process: u32,
+}
+
+/// What a step changes.
+struct Stepping {
+    batch: Batch,
+    /// The actions of a step; the memory is used again.
+    actions: Vec<Action>,
 }
 
 /// What a step says beside the observations: rewards, terminated, truncated, success, and the numbers of the environments in
@@ -69,18 +83,19 @@ impl PyBatch {
             depth: depth_of(depth)?,
             max_episode_steps,
         };
-        let batch = py.detach(|| {
+        let make = |go_on: GoOn<'_>| {
             let mut catalogue = Catalogue::default();
             for bytes in &libraries {
                 catalogue = catalogue.with_library(&Library::from_bytes(bytes)?);
             }
             let worlds = supplies.clone();
             let source: WorldSource = Arc::new(move |episode| worlds[episode.env].world());
-            Batch::with_catalogue(supplies.len(), source, options, &catalogue)
-        })?;
+            Batch::with_catalogue_while(supplies.len(), source, options, &catalogue, go_on)
+        };
+        let batch = interruptibly(py, supplies.len(), make)?;
+        let actions = Vec::with_capacity(supplies.len());
         Ok(Self {
-            actions: Vec::with_capacity(supplies.len()),
-            batch,
+            stepping: Mutex::new(Stepping { batch, actions }),
             supplies,
             process: std::process::id(),
         })
@@ -88,8 +103,8 @@ impl PyBatch {
 
     /// What draws: `cpu` or `gpu`.
     #[getter]
-    fn renderer(&self) -> &'static str {
-        self.batch.renderer().name()
+    fn renderer(&self) -> Result<&'static str> {
+        Ok(self.lock()?.batch.renderer().name())
     }
 
     /// Lets an environment draw worlds under another seed, from this index on.
@@ -110,10 +125,12 @@ impl PyBatch {
         Ok(())
     }
 
-    /// Gives an environment a world (JSON) for its next episode.
-    fn give(&self, env: usize, name: &str, text: &str) -> Result<()> {
-        let world = World::from_json(name, text)?;
-        self.supply(env)?.give(world);
+    /// Gives an environment the world of a stream for its next episode.
+    fn give(&self, env: usize, stream: &Bound<'_, PyStream>) -> Result<()> {
+        let Stream::World { world, .. } = &stream.get().0 else {
+            return Err(PyValueError::new_err("world: found a stream of variants, expected one of a world").into());
+        };
+        self.supply(env)?.give(World::clone(world));
         Ok(())
     }
 
@@ -131,70 +148,79 @@ impl PyBatch {
     /// Steps of the episode that an environment is in, as the limit beside the worlds counts them.
     fn episode_steps(&self, env: usize) -> Result<u32> {
         let num_envs = self.supplies.len();
-        let steps = self.batch.episode_steps(env);
+        let steps = self.lock()?.batch.episode_steps(env);
         steps.ok_or_else(|| EnvError::NoSuchEnv { found: env, num_envs }.into())
     }
 
     /// Counts on from so many.
-    fn set_episode_steps(&mut self, env: usize, steps: u32) -> Result<()> {
-        Ok(self.batch.set_episode_steps(env, steps)?)
+    fn set_episode_steps(&self, env: usize, steps: u32) -> Result<()> {
+        Ok(self.lock()?.batch.set_episode_steps(env, steps)?)
     }
 
-    /// Begins the next episode in all environments, or in those that `mask` says true for.
+    /// Begins the next episode in all environments, or in those that `mask` says true for. After Ctrl-C some have not begun.
     #[pyo3(signature = (mask=None))]
-    fn reset(&mut self, py: Python<'_>, mask: Option<PyReadonlyArray1<'_, bool>>) -> Result<()> {
+    fn reset(&self, py: Python<'_>, mask: Option<PyReadonlyArray1<'_, bool>>) -> Result<()> {
         self.expect_own_process()?;
-        let mask = mask.map(|mask| mask.as_array().to_vec());
-        let batch = &mut self.batch;
-        py.detach(|| match &mask {
-            Some(mask) => batch.reset_where(mask),
-            None => batch.reset(),
-        })?;
-        Ok(())
+        let chosen = mask.map_or_else(|| vec![true; self.supplies.len()], |mask| mask.as_array().to_vec());
+        let mut stepping = self.lock()?;
+        let batch = &mut stepping.batch;
+        let count = chosen.iter().filter(|is_chosen| **is_chosen).count();
+        interruptibly(py, count, |go_on| batch.reset_where_while(&chosen, go_on))
     }
 
     /// One step with actions of numbers, `(num_envs, 3)` or without interaction `(num_envs, 2)`.
-    fn step_numbers<'py>(&mut self, py: Python<'py>, actions: PyReadonlyArray2<'py, f64>) -> Result<Stepped<'py>> {
+    fn step_numbers<'py>(&self, py: Python<'py>, actions: PyReadonlyArray2<'py, f64>) -> Result<Stepped<'py>> {
+        let mut stepping = self.lock()?;
         let actions = actions.as_array();
-        self.actions.clear();
-        self.actions.extend(actions.rows().into_iter().map(|row| {
+        stepping.actions.clear();
+        stepping.actions.extend(actions.rows().into_iter().map(|row| {
             let number = |column: usize| row.get(column).copied().unwrap_or(0.0);
             Action::Continuous([number(0), number(1), number(2)])
         }));
-        self.step(py)
+        self.go(py, &mut stepping)?;
+        Ok(stepping.stepped(py))
     }
 
     /// One step with actions that are rows of the table, `(num_envs,)`.
-    fn step_rows<'py>(&mut self, py: Python<'py>, actions: PyReadonlyArray1<'py, i64>) -> Result<Stepped<'py>> {
-        self.actions.clear();
-        for action in actions.as_array() {
-            let row = usize::try_from(*action).map_err(|_| {
-                PyValueError::new_err(format!(
-                    "action: found {action}, expected the number of a row, from 0; nothing was changed"
-                ))
-            })?;
-            self.actions.push(Action::Discrete(row));
-        }
-        self.step(py)
+    fn step_rows<'py>(&self, py: Python<'py>, actions: PyReadonlyArray1<'py, i64>) -> Result<Stepped<'py>> {
+        let mut stepping = self.lock()?;
+        let rows = actions.as_array();
+        stepping.actions.clear();
+        // What is no row is an error where the action counts, which the batch knows.
+        let row = |row: &i64| Action::Discrete(usize::try_from(*row).unwrap_or(NO_ROW));
+        stepping.actions.extend(rows.iter().map(row));
+        let done = self.go(py, &mut stepping);
+        done.map_err(|error| match &error {
+            Error::Env(EnvError::BatchAction { env, error: inner }) => no_row(inner, rows.get(*env)).unwrap_or(error),
+            Error::Env(inner) => no_row(inner, rows.first()).unwrap_or(error),
+            _ => error,
+        })?;
+        Ok(stepping.stepped(py))
     }
 
     /// One step of the only environment, by numbers: reward, terminated, truncated, success, and whether anything happened.
-    fn step_one_by_numbers(&mut self, py: Python<'_>, numbers: Vec<f64>) -> Result<(f64, bool, bool, bool, bool)> {
+    fn step_one_by_numbers(&self, py: Python<'_>, numbers: Vec<f64>) -> Result<(f64, bool, bool, bool, bool)> {
         let number = |column: usize| numbers.get(column).copied().unwrap_or(0.0);
         self.step_one(py, Action::Continuous([number(0), number(1), number(2)]))
     }
 
     /// The same by a row of the table.
-    fn step_one_by_row(&mut self, py: Python<'_>, row: i64) -> Result<(f64, bool, bool, bool, bool)> {
-        self.step_one(py, row_of(row)?)
+    fn step_one_by_row(&self, py: Python<'_>, row: i64) -> Result<(f64, bool, bool, bool, bool)> {
+        let done = self.step_one(py, Action::Discrete(usize::try_from(row).unwrap_or(NO_ROW)));
+        done.map_err(|error| match &error {
+            Error::Env(inner) => no_row(inner, Some(&row)).unwrap_or(error),
+            _ => error,
+        })
     }
 
     /// Repeats the last step's actions so often without coming back to Python: what the batch can do by itself.
-    fn repeat(&mut self, py: Python<'_>, steps: u64) -> Result<()> {
+    fn repeat(&self, py: Python<'_>, steps: u64) -> Result<()> {
         self.expect_own_process()?;
+        let mut stepping = self.lock()?;
         let mut left = steps;
         while left > 0 {
-            let (batch, actions, now) = (&mut self.batch, &self.actions, left.min(256));
+            let now = left.min(256);
+            let Stepping { batch, actions } = &mut *stepping;
             py.detach(|| (0..now).try_for_each(|_| batch.step(actions)))?;
             left -= now;
             py.check_signals()?;
@@ -202,20 +228,18 @@ impl PyBatch {
         Ok(())
     }
 
-    /// The observations' buffers as arrays that share their memory, by modality: `(num_envs, height, width, channels)`, and
-    /// `state` `(num_envs, 1, 1, n)`.
+    /// The observations' buffers as arrays that share their memory and cannot be written through, by modality:
+    /// `(num_envs, height, width, channels)`, and `state` `(num_envs, 1, 1, n)`.
     fn buffers(slf: Bound<'_, Self>) -> Result<Bound<'_, PyDict>> {
-        let this = slf.borrow();
-        views(&slf, this.batch.outputs())
+        let stepping = slf.get().lock()?;
+        views(&slf, stepping.batch.outputs())
     }
 
     /// The same of the last observations of episodes that ended in the last step; none unless autoreset is in the same step.
     fn final_buffers(slf: Bound<'_, Self>) -> Result<Option<Bound<'_, PyDict>>> {
-        let this = slf.borrow();
-        this.batch
-            .final_outputs()
-            .map(|outputs| views(&slf, outputs))
-            .transpose()
+        let stepping = slf.get().lock()?;
+        let finals = stepping.batch.final_outputs();
+        finals.map(|outputs| views(&slf, outputs)).transpose()
     }
 
     /// Task, variant, seed, index and hash of the world that an environment is in.
@@ -226,19 +250,21 @@ impl PyBatch {
 
     /// What happened in an environment in the last step.
     fn events<'py>(&self, py: Python<'py>, env: usize) -> Result<Bound<'py, PyTuple>> {
-        let events = self.batch.events(env).unwrap_or_default();
+        let stepping = self.lock()?;
+        let events = stepping.batch.events(env).unwrap_or_default();
         let events: PyResult<Vec<_>> = events.iter().map(|event| told(py, event)).collect();
         Ok(PyTuple::new(py, events?)?)
     }
 
     /// The JSON of an environment's world as it is now.
     fn state(&self, env: usize) -> Result<String> {
-        Ok(self.environment(env)?.state().to_json())
+        Ok(self.lock()?.environment(env)?.state().to_json())
     }
 
     /// What an environment's world asks for that is not as its author may think.
     fn warnings(&self, env: usize) -> Result<Vec<String>> {
-        let warnings = self.environment(env)?.warnings();
+        let stepping = self.lock()?;
+        let warnings = stepping.environment(env)?.warnings();
         Ok(warnings.iter().map(ToString::to_string).collect())
     }
 
@@ -251,7 +277,8 @@ impl PyBatch {
         width: u32,
         from_above: bool,
     ) -> Result<Bound<'py, PyAny>> {
-        let environment = self.environment(env)?;
+        let stepping = self.lock()?;
+        let environment = stepping.environment(env)?;
         let sides = 1..=4096;
         if !sides.contains(&height) || !sides.contains(&width) {
             return Err(EnvError::PictureSize { width, height }.into());
@@ -273,12 +300,26 @@ impl PyBatch {
 }
 
 impl PyBatch {
-    fn step_one(&mut self, py: Python<'_>, action: Action) -> Result<(f64, bool, bool, bool, bool)> {
-        self.actions.clear();
-        self.actions.push(action);
-        self.go(py)?;
-        let outputs = self.batch.outputs();
-        let eventful = self.batch.events(0).is_some_and(|events| !events.is_empty());
+    /// What steps and resets change, for one thread alone.
+    fn lock(&self) -> PyResult<MutexGuard<'_, Stepping>> {
+        match self.stepping.try_lock() {
+            Ok(stepping) => Ok(stepping),
+            // A panic leaves no environment half stepped: each has its own part.
+            Err(TryLockError::Poisoned(poisoned)) => Ok(PoisonError::into_inner(poisoned)),
+            Err(TryLockError::WouldBlock) => Err(PyRuntimeError::new_err(
+                "environment: found it in use by another thread, expected one thread at a time; make an environment for each \
+                 thread, or hold a lock around its calls",
+            )),
+        }
+    }
+
+    fn step_one(&self, py: Python<'_>, action: Action) -> Result<(f64, bool, bool, bool, bool)> {
+        let mut stepping = self.lock()?;
+        stepping.actions.clear();
+        stepping.actions.push(action);
+        self.go(py, &mut stepping)?;
+        let outputs = stepping.batch.outputs();
+        let eventful = stepping.batch.events(0).is_some_and(|events| !events.is_empty());
         let [reward] = outputs.rewards[..] else {
             return Err(PyRuntimeError::new_err("found a batch of several environments, expected one").into());
         };
@@ -292,9 +333,9 @@ impl PyBatch {
     }
 
     /// One step with the actions that were set.
-    fn go(&mut self, py: Python<'_>) -> Result<()> {
+    fn go(&self, py: Python<'_>, stepping: &mut Stepping) -> Result<()> {
         self.expect_own_process()?;
-        let (batch, actions) = (&mut self.batch, &self.actions);
+        let Stepping { batch, actions } = stepping;
         py.detach(|| batch.step(actions)).map_err(|error| match error {
             // Alone, it needs no number.
             EnvError::BatchAction { error, .. } if actions.len() == 1 => *error,
@@ -303,29 +344,10 @@ impl PyBatch {
         Ok(())
     }
 
-    fn step<'py>(&mut self, py: Python<'py>) -> Result<Stepped<'py>> {
-        self.go(py)?;
-        let outputs = self.batch.outputs();
-        let eventful = |env: &usize| self.batch.events(*env).is_some_and(|events| !events.is_empty());
-        Ok((
-            PyArray1::from_slice(py, &outputs.rewards),
-            PyArray1::from_slice(py, &outputs.terminated),
-            PyArray1::from_slice(py, &outputs.truncated),
-            PyArray1::from_slice(py, &outputs.success),
-            (0..self.batch.num_envs()).filter(eventful).collect(),
-        ))
-    }
-
     fn supply(&self, env: usize) -> Result<&Supply> {
         let num_envs = self.supplies.len();
         let supply = self.supplies.get(env).map(AsRef::as_ref);
         supply.ok_or_else(|| EnvError::NoSuchEnv { found: env, num_envs }.into())
-    }
-
-    fn environment(&self, env: usize) -> Result<&driftworld_env::Environment> {
-        let num_envs = self.supplies.len();
-        let environment = self.batch.environment(env);
-        environment.ok_or_else(|| EnvError::NoSuchEnv { found: env, num_envs }.into())
     }
 
     /// Threads do not survive a fork: stepping there would wait for ever.
@@ -342,16 +364,50 @@ impl PyBatch {
     }
 }
 
-fn row_of(row: i64) -> Result<Action> {
-    let number = usize::try_from(row).map_err(|_| {
-        PyValueError::new_err(format!(
-            "action: found {row}, expected the number of a row, from 0; nothing was changed"
-        ))
-    })?;
-    Ok(Action::Discrete(number))
+impl Stepping {
+    /// What the last step led to.
+    fn stepped<'py>(&self, py: Python<'py>) -> Stepped<'py> {
+        let outputs = self.batch.outputs();
+        let eventful = |env: &usize| self.batch.events(*env).is_some_and(|events| !events.is_empty());
+        (
+            PyArray1::from_slice(py, &outputs.rewards),
+            PyArray1::from_slice(py, &outputs.terminated),
+            PyArray1::from_slice(py, &outputs.truncated),
+            PyArray1::from_slice(py, &outputs.success),
+            (0..self.batch.num_envs()).filter(eventful).collect(),
+        )
+    }
+
+    fn environment(&self, env: usize) -> Result<&driftworld_env::Environment> {
+        let num_envs = self.batch.num_envs();
+        let environment = self.batch.environment(env);
+        environment.ok_or_else(|| EnvError::NoSuchEnv { found: env, num_envs }.into())
+    }
 }
 
-/// Arrays over the buffers of observations that a batch keeps.
+/// Does what Ctrl-C may end between environments, where there are enough of them that somebody waits.
+fn interruptibly<T: Send>(
+    py: Python<'_>,
+    num_envs: usize,
+    work: impl FnOnce(GoOn<'_>) -> std::result::Result<T, EnvError> + Send,
+) -> Result<T> {
+    if num_envs < MANY {
+        return Ok(py.detach(|| work(&|| true))?);
+    }
+    Ok(patiently(py, |stop| work(&|| !stop.load(Ordering::Relaxed)))??)
+}
+
+/// The error of an action that is no row's number, told with the number that was found.
+fn no_row(error: &EnvError, row: Option<&i64>) -> Option<Error> {
+    let (EnvError::NoSuchAction { found: NO_ROW, last }, Some(row)) = (error, row) else {
+        return None;
+    };
+    let message =
+        format!("action: found row {row}, expected 0 to {last} of the world's action table; nothing was changed");
+    Some(PyValueError::new_err(message).into())
+}
+
+/// Arrays over the buffers of observations that a batch keeps; what writes into them is the batch alone.
 fn views<'py>(batch: &Bound<'py, PyBatch>, outputs: &Outputs) -> Result<Bound<'py, PyDict>> {
     let images = &outputs.images;
     let num_envs = outputs.rewards.len();
@@ -387,7 +443,15 @@ fn view<'py, T: Element>(
         .map_err(|error| PyRuntimeError::new_err(format!("a buffer is not as its layout says: {error}")))?;
     // SAFETY: the buffer belongs to the batch, which the array keeps alive as its base, and is made once: a batch writes into its
     // buffers and never replaces them.
-    Ok(unsafe { PyArray4::borrow_from_array(&array, batch.clone().into_any()) })
+    let view = unsafe { PyArray4::borrow_from_array(&array, batch.clone().into_any()) };
+    // For good: NumPy makes no array writable whose base is neither an array nor a buffer.
+    Ok(view
+        .readwrite()
+        .make_nonwriteable()
+        .as_any()
+        .cast::<PyArray4<T>>()
+        .map_err(PyErr::from)?
+        .clone())
 }
 
 /// An event as a dictionary.

@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use driftworld_generator::{Drift, GeneratorError, Sampler, Schedule, Switch};
 use driftworld_spec::{DriftSchedule, DriftSwitch, Progress, RegimeDrift, Variant, World};
+use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -14,12 +15,32 @@ use crate::task::PyVariant;
 /// Worlds without end: number *i* under a seed.
 #[derive(Clone)]
 pub(crate) enum Stream {
-    /// Of these variants, one in each episode in turn, over and over.
-    Variants(Vec<Variant>),
+    /// Of these variants, one in each episode, in an order over and over.
+    Variants { variants: Arc<[Variant]>, turns: Turns },
     /// On the way from one variant to another, which ends with episode number `episodes` − 1.
     Drift { drift: Arc<Drift>, episodes: u64 },
     /// The same world again and again, and what it is called.
     World { world: Arc<World>, name: String },
+}
+
+/// Which variant comes in which episode. Environments that share an order take turns in it.
+#[derive(Clone)]
+pub(crate) struct Turns {
+    /// Places of variants; at least one, each a variant's.
+    order: Arc<[u32]>,
+    /// The place in the order of episode 0, and from each episode to the next.
+    first: u64,
+    step: u64,
+}
+
+impl Turns {
+    /// The place of the variant of an episode.
+    fn place(&self, episode: u64) -> usize {
+        // Orders are shorter than 2^32: neither sum nor product leaves 64 bits.
+        let length = self.order.len() as u64;
+        let turn = (self.first % length + (episode % length) * (self.step % length)) % length;
+        self.order[turn as usize] as usize
+    }
 }
 
 /// A [`Stream`] in Python's hands.
@@ -31,11 +52,33 @@ impl PyStream {
     /// The worlds of variants, one variant in each episode in turn, over and over.
     #[staticmethod]
     fn variants(variants: Vec<Bound<'_, PyVariant>>) -> Result<Self> {
-        if variants.is_empty() {
-            return Err(PyValueError::new_err("variants: found none, expected at least one").into());
-        }
-        let variants = variants.iter().map(|variant| variant.get().0.clone()).collect();
-        Ok(Self(Stream::Variants(variants)))
+        let order = (0..).take(variants.len()).collect();
+        let turns = Turns {
+            order,
+            first: 0,
+            step: 1,
+        };
+        Ok(Self(Stream::of(&variants, turns)?))
+    }
+
+    /// The worlds of variants in the order that their places in `order` say, dealt out like cards, over and over: one stream for each
+    /// of `num_envs` environments.
+    #[staticmethod]
+    fn dealt(
+        variants: Vec<Bound<'_, PyVariant>>,
+        order: PyReadonlyArray1<'_, u32>,
+        num_envs: u32,
+    ) -> Result<Vec<Self>> {
+        let order: Arc<[u32]> = order.as_array().iter().copied().collect();
+        let turns = Turns {
+            order,
+            first: 0,
+            step: num_envs.into(),
+        };
+        let all = Stream::of(&variants, turns)?;
+        Ok((0..num_envs)
+            .map(|env| Self(all.clone().beginning(env.into())))
+            .collect())
     }
 
     /// The worlds on the way from one variant to another. `schedule` and `switch` are JSON, as in a scenario.
@@ -82,7 +125,7 @@ impl PyStream {
     fn layouts(&self, dress: &str) -> Result<Vec<String>> {
         let dress = dress_of(dress)?;
         let worlds = match &self.0 {
-            Stream::Variants(variants) => variants
+            Stream::Variants { variants, .. } => variants
                 .iter()
                 .map(first_world)
                 .collect::<std::result::Result<_, _>>()?,
@@ -96,6 +139,37 @@ impl PyStream {
             .into_iter()
             .map(|world| Ok(dress.checked_layout(world)?.to_string()));
         layouts.collect()
+    }
+}
+
+impl Stream {
+    /// The worlds of variants in turns.
+    fn of(variants: &[Bound<'_, PyVariant>], turns: Turns) -> PyResult<Self> {
+        let wrong = |found: &str, expected: &str| {
+            PyValueError::new_err(format!("variants: found {found}, expected {expected}"))
+        };
+        if turns.order.is_empty() || turns.order.len() as u64 > u64::from(u32::MAX) {
+            return Err(wrong(
+                &turns.order.len().to_string(),
+                "at least one, and less than 2^32",
+            ));
+        }
+        if let Some(place) = turns.order.iter().find(|place| **place as usize >= variants.len()) {
+            return Err(wrong(
+                &format!("place {place} in the order"),
+                "less than there are variants",
+            ));
+        }
+        let variants = variants.iter().map(|variant| variant.get().0.clone()).collect();
+        Ok(Self::Variants { variants, turns })
+    }
+
+    /// The same turns from this one on.
+    fn beginning(mut self, first: u64) -> Self {
+        if let Self::Variants { turns, .. } = &mut self {
+            turns.first = first;
+        }
+        self
     }
 }
 
@@ -226,7 +300,7 @@ impl Supply {
 }
 
 fn no_samplers(stream: &Stream) -> Vec<Option<Sampler>> {
-    let length = if let Stream::Variants(variants) = stream {
+    let length = if let Stream::Variants { variants, .. } = stream {
         variants.len()
     } else {
         0
@@ -248,10 +322,10 @@ impl State {
             return Ok((world.clone(), origin(world, "given", "given".to_owned())));
         }
         let drawn = match &self.stream {
-            Stream::Variants(variants) => {
-                let turn = (self.turn % variants.len() as u64) as usize;
-                let variant = &variants[turn];
-                let sampler = self.samplers[turn].get_or_insert_with(|| Sampler::new(variant, seed));
+            Stream::Variants { variants, turns } => {
+                let place = turns.place(self.turn);
+                let variant = &variants[place];
+                let sampler = self.samplers[place].get_or_insert_with(|| Sampler::new(variant, seed));
                 let world = sampler.world(index)?;
                 let origin = origin(&world, variant.task().name(), variant.id());
                 (world, origin)

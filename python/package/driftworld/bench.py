@@ -50,7 +50,12 @@ def measure(*, seconds: float = 2.0, peers: bool = True) -> dict[str, Any]:
             "gymnasium": gymnasium.__version__,
         },
     }
-    for name, options in (("", {}), ("_metres", {"depth": "float32"})):
+    modes: tuple[tuple[str, dict[str, Any]], ...] = (
+        ("_copies", {"copy": True}),
+        ("", {"copy": False}),
+        ("_metres", {"copy": False, "depth": "float32"}),
+    )
+    for name, options in modes:
         figures.update(_vector(name, seconds, {"modalities": _THREE, **options}))
     figures.update(_single(seconds))
     figures.update(_resets(seconds))
@@ -230,9 +235,16 @@ def _miniworld(seconds: float) -> float:
 
 
 _LINES = (
-    ("64 environments, three modalities, depth grey", "vector", "vector_rust", "vector_ratio", "Rust alone"),
     (
-        "64 environments, three modalities, depth in metres",
+        "64 environments, three modalities, copies",
+        "vector_copies",
+        "vector_copies_rust",
+        "vector_copies_ratio",
+        "Rust alone",
+    ),
+    ("the same, read-only views (copy=False)", "vector", "vector_rust", "vector_ratio", "Rust alone"),
+    (
+        "the same views, depth in metres",
         "vector_metres",
         "vector_metres_rust",
         "vector_metres_ratio",

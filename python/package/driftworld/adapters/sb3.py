@@ -5,7 +5,7 @@
 
     PPO("CnnPolicy", make_vec_env("driftworld/FindObjects-v0", num_envs=16, seed=0, modalities="rgb", actions="discrete")).learn(100_000)
 
-Observations are copied at every step, for Stable-Baselines3 keeps the last one while the next is made. Without this adapter,
+Observations are copies, for Stable-Baselines3 keeps the last one while the next is made. Without this adapter,
 ``DummyVecEnv`` works as well, one environment at a time.
 """
 

@@ -6,7 +6,6 @@ Single and vector environments are both made of it; what Gymnasium wants of each
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import gcd
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,34 +14,28 @@ from numpy.typing import NDArray
 
 from driftworld import _native
 from driftworld.envs.options import Options, expect_same_spaces
-from driftworld.envs.origin import Home, seed_in_range, world_text
+from driftworld.envs.origin import Home, OneVariant, OneWorld, Queue, Source, seed_in_range, world_text
 from driftworld.envs.spaces import action_space, label, observation_space
 
-#: What an environment takes its worlds from, as a user said it: ``home``, ``drift`` and what it says, or ``variants`` and which.
-Source = tuple[str, Any]
 #: Rewards, terminated, truncated, success, and the environments in which something happened.
 Stepped = tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_], list[int]]
 
 
 class Prepared(NamedTuple):
-    """What a reset asks for: sources and streams, one for each environment, indices, and a world with its name."""
+    """What a reset asks for: sources and streams, one for each environment, indices, and a world."""
 
     sources: list[Source] | None
     streams: list[_native.Stream] | None
     indices: list[int] | None
-    world: tuple[str, str] | None
+    world: _native.Stream | None
 
 
 class Members:
-    """The environments of a batch.
+    """The environments of a batch. All that it is made from are values: nothing that a user or another program may change.
 
     Args:
-        num_envs: How many there are.
-        task: A task, as environments take it.
-        world: Or a world.
-        variant: The variant that all begin with; ``None`` for the one that the task's name says.
-        variants: Or the variant that each begins with.
-        drift: Or the way to another variant.
+        home: The task, or the one world.
+        sources: Where the worlds of each environment come from.
         options: What is laid over the worlds.
         autoreset: ``"next_step"``, ``"same_step"`` or ``"disabled"``.
         num_threads: Threads that step and draw; 0 is one for each processor.
@@ -51,28 +44,22 @@ class Members:
 
     def __init__(
         self,
-        num_envs: int,
-        task: Any,
-        world: Any,
-        variant: Any,
-        variants: Sequence[Any] | None,
-        drift: Mapping[str, Any] | None,
+        home: Home,
+        sources: list[Source],
         options: Options,
         autoreset: str,
         num_threads: int,
         max_episode_steps: int | None = None,
     ) -> None:
-        self.num_envs = num_envs
+        self.num_envs = len(sources)
         self._options = options
-        self._home = Home(task, world, variant)
-        self.layout = options.layouts(self._home.stream())[0]
+        self._home = home
+        self._made_with = (autoreset, num_threads, max_episode_steps)
+        self.layout = options.layouts(home.source().streams(1)[0])[0]
         self._checked: set[str] = set()
-        kept = ("home", None) if drift is None else ("drift", drift)
-        self._sources: list[Source] = [
-            kept if name is None else ("variants", [name]) for name in variants or [None] * num_envs
-        ]
+        self._sources = list(sources)
         streams = self._streams(self._sources)
-        self._labels = self._home.labels()
+        self._labels = home.labels()
         self.label_in_info = options.task_label == "info"
         self.observation_space = observation_space(options, self.layout, len(self._labels))
         self.action_space = action_space(self.layout)
@@ -90,40 +77,42 @@ class Members:
         self._views = self._arranged(self.batch.buffers())
         last = self.batch.final_buffers()
         self._final_views = None if last is None else self._arranged(last)
-        self.has_seed = [False] * num_envs
-        self._names = [""] * num_envs
+        self.has_seed = [False] * self.num_envs
+        #: Which environments had a reset: before that, their worlds are nobody's choice.
+        self.has_begun = np.zeros(self.num_envs, dtype=np.bool_)
+        self._names = [""] * self.num_envs
 
     def _arranged(self, buffers: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
         """The buffers in the order of the options."""
         buffers["state"] = buffers["state"].reshape(self.num_envs, -1)
         views = {kind: buffers[kind] for kind in self._options.modalities}
         if self._options.task_label == "obs":
-            views["task"] = np.zeros((self.num_envs, len(self._labels)), dtype=np.float32)
+            views["task"] = _locked(np.zeros((self.num_envs, len(self._labels)), dtype=np.float32))
         return views
 
-    def _stream(self, source: Source) -> _native.Stream:
-        kind, said = source
-        if kind == "variants":
-            return self._stream_of([self._home.variant(name, "variant") for name in said])
-        stream = self._home.stream() if kind == "home" else self._home.drift(said)
-        self._check(stream)
-        return stream
+    def _streams(self, sources: list[Source]) -> list[_native.Stream]:
+        """Each environment's worlds, after a look whether they fit into the spaces."""
+        # Where all have the same, it is one object, and looked at once.
+        made: dict[int, list[_native.Stream]] = {}
+        for source in sources:
+            if id(source) not in made:
+                made[id(source)] = source.streams(self.num_envs)
+                self._check(source, made[id(source)][0])
+        return [made[id(source)][env] for env, source in enumerate(sources)]
 
-    def _set_source(self, env: int, source: Source) -> None:
-        self.batch.stream(env, self._stream(source))
-        self._sources[env] = source
-
-    def _stream_of(self, variants: list[_native.Variant]) -> _native.Stream:
-        """The worlds of these variants, after a look whether they fit into the spaces."""
-        new = [variant for variant in variants if variant.hash not in self._checked]
-        if new:
-            self._check(_native.Stream.variants(new))
-            self._checked.update(variant.hash for variant in new)
-        return _native.Stream.variants(variants)
-
-    def _check(self, stream: _native.Stream) -> None:
-        for layout in self._options.layouts(stream):
-            expect_same_spaces(self.layout, layout)
+    def _check(self, source: Source, stream: _native.Stream) -> None:
+        """Looks whether the worlds of a source fit into the spaces."""
+        if isinstance(source, (OneVariant, Queue)):
+            variants = source.variants if isinstance(source, Queue) else (source.variant,)
+            new = {variant.hash: variant for variant in variants}
+            new = {hash: variant for hash, variant in new.items() if hash not in self._checked}
+            streams = [_native.Stream.variants(list(new.values()))] if new else []
+        else:
+            new, streams = {}, [stream]
+        for unseen in streams:
+            for layout in self._options.layouts(unseen):
+                expect_same_spaces(self.layout, layout)
+        self._checked.update(new)
 
     def checked(self, options: Mapping[str, Any], *, many: bool) -> Prepared:
         """What the options of a reset ask for, looked through before anything is changed.
@@ -141,15 +130,9 @@ class Members:
             raise ValueError("options: found several of variant, variants and queue, expected one of them")
         sources = self._new_sources(options)
         streams = None if sources is None else self._streams(sources)
-        world = world_text(options["world"]) if options.get("world") is not None else None
-        if world is not None:
-            self._check(_native.Stream.world(*world))
-        return Prepared(sources, streams, self._indices(options.get("index")), world)
-
-    def _streams(self, sources: list[Source]) -> list[_native.Stream]:
-        # Where all have the same, it is one object, and looked at once.
-        made = {id(source): self._stream(source) for source in {id(source): source for source in sources}.values()}
-        return [made[id(source)] for source in sources]
+        world = options.get("world")
+        given = None if world is None else self._streams([OneWorld(*world_text(world))])[0]
+        return Prepared(sources, streams, self._indices(options.get("index")), given)
 
     def take(self, prepared: Prepared, env: int, seed: int | None) -> None:
         """Lets one environment do what was asked for with its next episode; with a seed, under it."""
@@ -163,18 +146,18 @@ class Members:
         elif index is not None:
             self.batch.index(env, index)
         if prepared.world is not None:
-            self.batch.give(env, *prepared.world)
+            self.batch.give(env, prepared.world)
 
     def _new_sources(self, options: Mapping[str, Any]) -> list[Source] | None:
         if options.get("variant") is not None:
-            return [("variants", [options["variant"]])] * self.num_envs
+            return [OneVariant(self._home.variant(options["variant"], "variant"))] * self.num_envs
         if options.get("variants") is not None:
             variants = _listed(options["variants"], "variants")
             if len(variants) != self.num_envs:
                 raise ValueError(f"variants: found {len(variants)}, expected {self.num_envs}, one for each environment")
-            return [("variants", [variant]) for variant in variants]
+            return [OneVariant(self._home.variant(variant, "variant")) for variant in variants]
         if options.get("queue") is not None:
-            return [("variants", share) for share in dealt(_listed(options["queue"], "queue"), self.num_envs)]
+            return [self._home.queue(_listed(options["queue"], "queue"))] * self.num_envs
         return None
 
     def _indices(self, index: Any) -> list[int] | None:
@@ -206,7 +189,7 @@ class Members:
     def _name(self, env: int, variant: str) -> None:
         self._names[env] = variant
         if "task" in self._views:
-            self._views["task"][env] = label(self._labels, variant)
+            _write(self._views["task"], env, label(self._labels, variant))
 
     def label_number(self, env: int) -> int:
         """The number of an environment's variant among those of the task; −1 for one that is not among them."""
@@ -225,7 +208,7 @@ class Members:
     def note_finals(self, env: int) -> None:
         """Keeps the label of an episode that has ended for its last observation."""
         if self._final_views is not None and "task" in self._final_views:
-            self._final_views["task"][env] = self._views["task"][env]
+            _write(self._final_views["task"], env, self._views["task"][env])
 
     def _one(self, views: dict[str, NDArray[Any]], env: int) -> Any:
         if not self._options.is_dict:
@@ -233,11 +216,11 @@ class Members:
         return {kind: view[env].copy() for kind, view in views.items()}
 
     def observations(self, copy: bool) -> Any:
-        """All observations: views on the batch's buffers, or copies."""
+        """All observations: copies, or views on the batch's buffers that nobody can write through."""
         if not self._options.is_dict:
             view = self._views[self._options.modalities[0]]
             return view.copy() if copy else view
-        return {kind: view.copy() if copy else view for kind, view in self._views.items()}
+        return {kind: view.copy() if copy else view[:] for kind, view in self._views.items()}
 
     def step_one(self, action: Any) -> tuple[float, bool, bool, bool, bool]:
         """A step of the only environment: reward, terminated, truncated, success, whether anything happened."""
@@ -250,14 +233,15 @@ class Members:
             )
         return self.batch.step_one_by_numbers(numbers.tolist())
 
-    @staticmethod
-    def _row(action: Any) -> int:
+    def _row(self, action: Any) -> int:
+        wanted = f"the number of a row, 0 to {self.layout['action']['n'] - 1}; nothing was changed"
         try:
-            return int(action.__index__())
+            row = int(action.__index__())
         except (AttributeError, TypeError):
-            raise ValueError(
-                f"action: found {action!r}, expected the number of a row of the table; nothing was changed"
-            ) from None
+            raise ValueError(f"action: found {action!r}, expected {wanted}") from None
+        if not _LEAST_ROW <= row <= _LAST_ROW:
+            raise ValueError(f"action: found {row}, expected {wanted}")
+        return row
 
     def step(self, actions: Any) -> Stepped:
         """A step of all: actions of shape ``(num_envs,)`` or ``(num_envs, numbers)``."""
@@ -268,43 +252,60 @@ class Members:
         if self._is_discrete:
             if not np.issubdtype(given.dtype, np.integer):
                 raise ValueError(f"actions: found {given.dtype}, expected whole numbers; nothing was changed")
+            if given.dtype == np.uint64:
+                given = np.minimum(given, _LAST_ROW)
             return self.batch.step_rows(np.ascontiguousarray(given, dtype=np.int64))
         return self.batch.step_numbers(np.ascontiguousarray(given, dtype=np.float64))
 
     def written(self) -> dict[str, Any]:
-        """All that a copy has to be told: running worlds, and where their next ones come from."""
+        """All that a copy is made from: running worlds, and where their next ones come from."""
         envs = range(self.num_envs)
         return {
+            "made_with": (self._home, list(self._sources), self._options, *self._made_with),
             "states": [self.batch.state(env) for env in envs],
             "steps": [self.batch.episode_steps(env) for env in envs],
             "places": [self.batch.place(env) for env in envs],
-            "sources": list(self._sources),
             "has_seed": list(self.has_seed),
+            "has_begun": self.has_begun.copy(),
             "names": list(self._names),
         }
 
-    def take_up(self, written: dict[str, Any]) -> None:
-        """Goes on where another of the same options stood."""
-        for env, source in enumerate(written["sources"]):
-            if source != self._sources[env]:
-                self._set_source(env, source)
-            self.batch.set_place(env, written["places"][env])
-            self.batch.give(env, "state", written["states"][env])
-        self.batch.reset()
-        self.has_seed = written["has_seed"]
+    @classmethod
+    def again(cls, written: dict[str, Any]) -> Members:
+        """Environments that go on where others stood."""
+        members = cls(*written["made_with"])
+        for env in range(members.num_envs):
+            members.batch.set_place(env, written["places"][env])
+            members.batch.give(env, _native.Stream.world("state", written["states"][env]))
+        members.batch.reset()
+        members.has_seed, members.has_begun = written["has_seed"], written["has_begun"]
         for env, steps in enumerate(written["steps"]):
-            self.batch.set_episode_steps(env, steps)
+            members.batch.set_episode_steps(env, steps)
         for env, name in enumerate(written["names"]):
-            self._name(env, name)
+            members._name(env, name)
+        return members
+
+
+#: Rows that a native batch can be handed.
+_LEAST_ROW, _LAST_ROW = -(2**63), 2**63 - 1
+
+
+def _locked(array: NDArray[Any]) -> NDArray[Any]:
+    """An array that cannot be written into, nor made writable through a view."""
+    array.flags.writeable = False
+    return array
+
+
+def _write(array: NDArray[Any], env: int, row: Any) -> None:
+    """Writes into an array that is locked for all others."""
+    array.flags.writeable = True
+    array[env] = row
+    array.flags.writeable = False
 
 
 def _listed(names: Any, option: str) -> list[Any]:
+    if isinstance(names, np.ndarray) and names.ndim == 1:
+        names = names.tolist()
     if isinstance(names, str) or not isinstance(names, Sequence) or len(names) == 0:
         raise ValueError(f"{option}: found {names!r}, expected a list of variants, at least one")
     return list(names)
-
-
-def dealt(queue: list[Any], num_envs: int) -> list[list[Any]]:
-    """A queue dealt out like cards: environment 0 takes the first, 1 the second, and so on, over and over."""
-    turns = len(queue) // gcd(len(queue), num_envs)
-    return [[queue[(env + turn * num_envs) % len(queue)] for turn in range(turns)] for env in range(num_envs)]

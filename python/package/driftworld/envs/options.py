@@ -11,20 +11,21 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
 from driftworld import _native
+from driftworld._literals import ActionsName, DepthForm, LabelPlace, Modality, RendererName
 from driftworld.errors import SpecError
 
 #: What an observation may hold.
-MODALITIES = ("rgb", "depth", "segmentation", "class", "instance", "state")
-DEFAULT_MODALITIES: tuple[str, ...] = ("rgb", "depth", "segmentation", "state")
-DEPTHS = ("uint8", "uint16", "float32")
-RENDERERS = ("cpu", "gpu", "auto")
-LABELS = ("none", "info", "obs")
-ACTIONS = {"normalized": "normalized", "continuous": "continuous", "discrete": "default_discrete"}
+MODALITIES: tuple[Modality, ...] = get_args(Modality)
+DEFAULT_MODALITIES: tuple[Modality, ...] = ("rgb", "depth", "segmentation", "state")
+DEPTHS: tuple[DepthForm, ...] = get_args(DepthForm)
+RENDERERS: tuple[RendererName, ...] = get_args(RendererName)
+LABELS: tuple[LabelPlace, ...] = get_args(LabelPlace)
+ACTIONS: dict[str, str] = {"normalized": "normalized", "continuous": "continuous", "discrete": "default_discrete"}
 
 
 @dataclass(frozen=True)
@@ -53,16 +54,16 @@ class Options:
     def read(
         cls,
         *,
-        modalities: str | Sequence[str] = DEFAULT_MODALITIES,
+        modalities: Modality | Sequence[Modality] = DEFAULT_MODALITIES,
         size: int | tuple[int, int] | None = None,
-        depth: str = "uint8",
-        actions: str | Sequence[Sequence[float]] | None = "normalized",
+        depth: DepthForm = "uint8",
+        actions: ActionsName | Sequence[Sequence[float]] | None = "normalized",
         interact: bool | None = None,
         frame_skip: int | None = None,
         max_steps: int | None = None,
         supersampling: int | None = None,
-        renderer: str = "cpu",
-        task_label: str = "none",
+        renderer: RendererName = "cpu",
+        task_label: LabelPlace = "none",
         assets: str | PathLike[str] | Iterable[str | PathLike[str]] = (),
     ) -> Options:
         """Reads them.

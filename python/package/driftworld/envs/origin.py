@@ -8,14 +8,78 @@ from __future__ import annotations
 import json
 import numbers
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from driftworld import _native
 
 #: The largest seed: what fits into the arrays of vector environments' infos.
 MAX_SEED = 2**63 - 1
+
+
+@dataclass(frozen=True, eq=False)
+class OneVariant:
+    """The worlds of one variant."""
+
+    variant: _native.Variant
+
+    def streams(self, num_envs: int) -> list[_native.Stream]:
+        """The worlds, for each environment."""
+        return [_native.Stream.variants([self.variant])] * num_envs
+
+
+@dataclass(frozen=True, eq=False)
+class OneWorld:
+    """One world again and again: what it is called, and its JSON."""
+
+    name: str
+    text: str
+
+    def streams(self, num_envs: int) -> list[_native.Stream]:
+        """The world, for each environment."""
+        return [_native.Stream.world(self.name, self.text)] * num_envs
+
+
+@dataclass(frozen=True, eq=False)
+class Drifting:
+    """The worlds on the way from one variant to another; schedule and switch are JSON."""
+
+    from_: _native.Variant
+    to: _native.Variant
+    schedule: str
+    switch: str
+    episodes: int
+
+    def streams(self, num_envs: int) -> list[_native.Stream]:
+        """The worlds, for each environment."""
+        stream = _native.Stream.drift(self.from_, self.to, self.schedule, self.switch, self.episodes)
+        return [stream] * num_envs
+
+
+@dataclass(frozen=True, eq=False)
+class Queue:
+    """Variants dealt out like cards, over and over: environment 0 takes the first, 1 the second, and so on.
+
+    Attributes:
+        variants: The different ones.
+        order: Their places in the order in which they come, uint32.
+    """
+
+    variants: tuple[_native.Variant, ...]
+    order: NDArray[np.uint32]
+
+    def streams(self, num_envs: int) -> list[_native.Stream]:
+        """Each environment's share. All have the order together: a long one is held once."""
+        return _native.Stream.dealt(self.variants, self.order, num_envs)
+
+
+#: Where an environment's worlds come from, as values: what a user said is in none of them.
+Source = OneVariant | OneWorld | Drifting | Queue
 
 
 class Home:
@@ -34,17 +98,22 @@ class Home:
                 f'environment: found {found} of task and world, expected one, as in task="my_task.json#variant"'
             )
         self.task: _native.TaskSpec | None = None
-        self.world: tuple[str, str] | None = None
+        self.world: OneWorld | None = None
         self.first: _native.Variant | None = None
+        self._known: dict[str, _native.Variant] = {}
         if world is not None:
             if variant is not None:
                 raise ValueError("variant: found one beside world, expected none: a world has no variants")
-            self.world = world_text(world)
+            self.world = OneWorld(*world_text(world))
             return
         self.task, named = _task(task)
         self.first = named or self.task.variant()
         if variant is not None:
             self.first = self.variant(variant, "variant")
+
+    def __getstate__(self) -> dict[str, Any]:
+        # What was looked up can be looked up again.
+        return {**self.__dict__, "_known": {}}
 
     def labels(self) -> list[str]:
         """The ids of the variants that an agent may be told: those of the task, and the first if it is none of them."""
@@ -53,12 +122,21 @@ class Home:
         ids = [variant.id for variant in self.task.all_variants()]
         return ids if self.first.id in ids else [*ids, self.first.id]
 
-    def stream(self) -> _native.Stream:
+    def source(self) -> Source:
         """The worlds that the environment begins with."""
         if self.world is not None:
-            return _native.Stream.world(*self.world)
+            return self.world
         assert self.first is not None, "a home is of a task or of a world"
-        return _native.Stream.variants([self.first])
+        return OneVariant(self.first)
+
+    def sources(
+        self, num_envs: int, variants: Sequence[Any] | None, drift: Mapping[str, Any] | None
+    ) -> list[Source]:
+        """What each environment begins with: its own among the variants, the drift, or what all begin with."""
+        home = self.source() if drift is None else self.drift(drift)
+        if variants is None:
+            return [home] * num_envs
+        return [home if name is None else OneVariant(self.variant(name, "variant")) for name in variants]
 
     def variant(self, name: Any, option: str) -> _native.Variant:
         """A variant by what a user calls it: a name, ``task#variant`` of this or another task, or a handle."""
@@ -67,16 +145,35 @@ class Home:
             return handle
         if not isinstance(name, str):
             raise TypeError(f"{option}: found {name!r}, expected the name of a variant")
+        own = name
         if "#" in name:
-            task, _, variant = name.rpartition("#")
-            if self.task is not None and task == self.task.name:
-                return self.task.variant(variant)
-            return _native.TaskSpec.load(task).variant(variant)
+            task, _, own = name.rpartition("#")
+            if self.task is None or task != self.task.name:
+                return _native.TaskSpec.load(task).variant(own)
         if self.task is None:
             raise ValueError(f"{option}: found {name!r} in an environment of one world, expected none or task#variant")
-        return self.task.variant(name)
+        # A task never changes, and finding a variant takes longer than a short episode's step.
+        if own not in self._known:
+            self._known[own] = self.task.variant(own)
+        return self._known[own]
 
-    def drift(self, drift: Mapping[str, Any]) -> _native.Stream:
+    def queue(self, names: Iterable[Any]) -> Queue:
+        """A queue of what a user calls variants; each is found once, however often it comes."""
+        listed = list(names)
+        places: dict[Any, int] = {}
+        found: list[_native.Variant] = []
+        order = np.empty(len(listed), dtype=np.uint32)
+        for turn, name in enumerate(listed):
+            # Handles by what they are and not by what they say, which is long; the list keeps them, so numbers are not used again.
+            key = name if isinstance(name, str) else id(name)
+            place = places.get(key)
+            if place is None:
+                place = places[key] = len(found)
+                found.append(self.variant(name, "variant"))
+            order[turn] = place
+        return Queue(tuple(found), order)
+
+    def drift(self, drift: Mapping[str, Any]) -> Drifting:
         """The worlds on the way from the first variant to another."""
         if not isinstance(drift, Mapping):
             raise ValueError(f'drift: found {drift!r}, expected a dictionary, as in {{"to": "dusk", "episodes": 500}}')
@@ -91,9 +188,8 @@ class Home:
             raise ValueError("drift: found one in an environment of one world, expected none: a world has no variants")
         to = self.variant(drift["to"], "drift.to")
         schedule = json.dumps(drift.get("schedule", "linear"))
-        return _native.Stream.drift(
-            self.first, to, schedule, json.dumps(drift.get("switch", "at_point")), _episodes(drift["episodes"])
-        )
+        switch = json.dumps(drift.get("switch", "at_point"))
+        return Drifting(self.first, to, schedule, switch, _episodes(drift["episodes"]))
 
 
 def _episodes(found: Any) -> int:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from driftworld import _native
+from driftworld._literals import CameraName
 
-CAMERAS = ("agent", "above", "both")
+CAMERAS: tuple[CameraName, ...] = get_args(CameraName)
 
 
 class Camera:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import numbers
 from collections.abc import Iterable, Mapping, Sequence
@@ -10,11 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import gymnasium
 import numpy as np
+from gymnasium.error import ResetNeeded
 from numpy.typing import NDArray
 
+from driftworld._literals import ActionsName, CameraName, DepthForm, LabelPlace, Modality, RendererName, RenderMode
+from driftworld.envs.conversion import teach_conversions
 from driftworld.envs.members import Members
 from driftworld.envs.options import DEFAULT_MODALITIES, Options, refuse_unknown
-from driftworld.envs.origin import MAX_SEED
+from driftworld.envs.origin import MAX_SEED, Home
 from driftworld.envs.picture import Camera
 from driftworld.envs.window import Window
 
@@ -50,7 +54,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
 
     Raises:
         SpecError: If the task or an option is wrong, with pointer, line and column.
-        TaskError: If there is no such task.
+        TaskError: If there is no such task or variant.
         ValueError: For a value that an option does not know.
         TypeError: For an option that there is not.
         EnvError: If a graphics card is asked for and none works.
@@ -69,23 +73,22 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         *,
         world: Any = None,
         variant: Any = None,
-        modalities: str | Sequence[str] = DEFAULT_MODALITIES,
+        modalities: Modality | Sequence[Modality] = DEFAULT_MODALITIES,
         size: int | tuple[int, int] | None = None,
-        depth: str = "uint8",
-        actions: str | Sequence[Sequence[float]] | None = "normalized",
+        depth: DepthForm = "uint8",
+        actions: ActionsName | Sequence[Sequence[float]] | None = "normalized",
         interact: bool | None = None,
         frame_skip: int | None = None,
         max_steps: int | None = None,
         supersampling: int | None = None,
-        renderer: str = "cpu",
+        renderer: RendererName = "cpu",
         drift: Mapping[str, Any] | None = None,
-        task_label: str = "none",
+        task_label: LabelPlace = "none",
         assets: str | PathLike[str] | Iterable[str | PathLike[str]] = (),
-        render_mode: str | None = None,
+        render_mode: RenderMode | None = None,
         render_size: tuple[int, int] = (480, 640),
-        camera: str = "agent",
+        camera: CameraName = "agent",
     ) -> None:
-        self._made_with = {name: value for name, value in locals().items() if name not in ("self", "__class__")}
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode: found {render_mode!r}, expected None, human or rgb_array")
         self.render_mode = render_mode
@@ -103,7 +106,8 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
             task_label=task_label,
             assets=assets,
         )
-        self._members = Members(1, task, world, variant, None, drift, options, "disabled", num_threads=1)
+        home = Home(task, world, variant)
+        self._members = Members(home, home.sources(1, None, drift), options, "disabled", num_threads=1)
         self.observation_space = self._members.observation_space
         self.action_space = self._members.action_space
         fps = 1.0 / self._members.layout["seconds_per_step"]
@@ -124,6 +128,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
             The first observation, and the info: ``task_id``, ``variant_id``, ``seed``, ``index``, ``world_hash`` (of the world as it
             was drawn, before options were laid over it), ``events`` and ``is_success``.
         """
+        teach_conversions()
         members = self._members
         prepared = members.checked(options or {}, many=False)
         if isinstance(seed, numbers.Integral) and seed > MAX_SEED:
@@ -133,6 +138,7 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
             seed = int(self.np_random.integers(2**32))
         members.take(prepared, 0, seed)
         members.batch.reset()
+        members.has_begun[0] = True
         info = members.reset_info(0)
         if self.render_mode == "human":
             self.render()
@@ -150,8 +156,11 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
 
         Raises:
             EnvError: After the end of an episode, or for an action that is none.
+            gymnasium.error.ResetNeeded: Before the first reset.
         """
         members = self._members
+        if not members.has_begun[0]:
+            raise ResetNeeded("step: found an environment that had no reset, expected reset() before it")
         reward, terminated, truncated, success, eventful = members.step_one(action)
         info: dict[str, Any] = {
             "events": members.batch.events(0) if eventful else (),
@@ -220,12 +229,13 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
             self._window = None
 
     def __getstate__(self) -> dict[str, Any]:
-        left_out = ("_members", "_window")
-        kept = {name: value for name, value in self.__dict__.items() if name not in left_out}
+        kept = {name: value for name, value in self.__dict__.items() if name not in ("_members", "_window")}
+        # Also of a shallow copy: the two would draw from it in turns.
+        kept["_np_random"] = copy.deepcopy(self._np_random)
         return {"kept": kept, "members": self._members.written()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        kept = state["kept"]
-        type(self).__init__(self, **kept["_made_with"])  # type: ignore[misc]
-        self.__dict__.update(kept)
-        self._members.take_up(state["members"])
+        # Never through `__init__`: a subclass has its own, with arguments that nobody knows here.
+        self.__dict__.update(state["kept"])
+        self._window = None
+        self._members = Members.again(state["members"])

@@ -4,20 +4,25 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
+from copy import deepcopy
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from gymnasium.error import ResetNeeded
 from gymnasium.utils import seeding
 from gymnasium.vector import VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from driftworld._literals import ActionsName, AutoresetName, CameraName, DepthForm, LabelPlace, Modality, RendererName
 from driftworld.envs.autoreset import AutoresetMode, autoreset_mode_of
+from driftworld.envs.conversion import teach_conversions
 from driftworld.envs.members import Members
 from driftworld.envs.options import DEFAULT_MODALITIES, Options, refuse_unknown, whole
-from driftworld.envs.origin import seed_in_range
+from driftworld.envs.origin import Home, seed_in_range
 from driftworld.envs.picture import Camera
+from driftworld.errors import EnvError
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -31,8 +36,9 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
 
     Each behaves as a :class:`DriftworldEnv` of the same options and seed does, bit for bit.
 
-    **Observations are views** on the batch's buffers: the next step or reset writes new numbers into the arrays that the last one
-    handed out. Who keeps observations copies them, or asks for ``copy=True``. Rewards, flags and infos are new arrays each time.
+    Observations, rewards, flags and infos are new arrays at each step, the caller's to keep and to change. With ``copy=False``,
+    **observations are views** on the batch's buffers: they cannot be written into, and the next step or reset writes new numbers into
+    the arrays that the last one handed out. That saves a copy, for those who are done with an observation before the next comes.
 
     Args:
         task: A task, as for :class:`DriftworldEnv`; so are all options that are not named here.
@@ -40,9 +46,14 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         variants: The variant that each begins with, in place of ``variant``.
         autoreset_mode: When an episode that has ended is followed by the next: ``"next_step"``, ``"same_step"``, ``"disabled"``, or
             one of Gymnasium's ``AutoresetMode``.
-        copy: Whether observations are the caller's own.
-        num_threads: Threads that step and draw; 0 is one for each processor.
+        copy: Whether observations are the caller's own, as Gymnasium's vector environments hand them out; or read-only views.
+        num_threads: Threads that step and draw, no more than there are environments, nor than four for each processor; 0 is one for
+            each processor.
         max_episode_steps: A limit of steps that the worlds know nothing of, as ``TimeLimit`` sets one; ``make_vec`` hands it over.
+
+    Raises:
+        SpecError, TaskError, ValueError: As :class:`DriftworldEnv`.
+        EnvError: If the observations would take more than 16 GiB, or more memory than there is.
 
     It belongs to one thread at a time.
     """
@@ -66,27 +77,26 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         world: Any = None,
         variant: Any = None,
         variants: Sequence[Any] | None = None,
-        modalities: str | Sequence[str] = DEFAULT_MODALITIES,
+        modalities: Modality | Sequence[Modality] = DEFAULT_MODALITIES,
         size: int | tuple[int, int] | None = None,
-        depth: str = "uint8",
-        actions: str | Sequence[Sequence[float]] | None = "normalized",
+        depth: DepthForm = "uint8",
+        actions: ActionsName | Sequence[Sequence[float]] | None = "normalized",
         interact: bool | None = None,
         frame_skip: int | None = None,
         max_steps: int | None = None,
         max_episode_steps: int | None = None,
         supersampling: int | None = None,
-        renderer: str = "cpu",
+        renderer: RendererName = "cpu",
         drift: Mapping[str, Any] | None = None,
-        task_label: str = "none",
+        task_label: LabelPlace = "none",
         assets: str | PathLike[str] | Iterable[str | PathLike[str]] = (),
-        render_mode: str | None = None,
+        render_mode: Literal["rgb_array"] | None = None,
         render_size: tuple[int, int] = (480, 640),
-        camera: str = "agent",
-        autoreset_mode: str | AutoresetMode = "next_step",
-        copy: bool = False,
+        camera: CameraName = "agent",
+        autoreset_mode: AutoresetName | AutoresetMode = "next_step",
+        copy: bool = True,
         num_threads: int = 0,
     ) -> None:
-        self._made_with = {name: value for name, value in locals().items() if name not in ("self", "__class__")}
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode: found {render_mode!r}, expected None or rgb_array")
         if isinstance(num_envs, bool) or not isinstance(num_envs, (int, np.integer)) or not 1 <= num_envs <= MOST_ENVS:
@@ -99,6 +109,8 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             raise ValueError(f"variants: found {variants!r}, expected a list of {num_envs}, one for each environment")
         if whole("num_envs", num_envs) == 0:
             raise ValueError("num_envs: found 0, expected at least 1")
+        if not isinstance(copy, (bool, np.bool_)):
+            raise ValueError(f"copy: found {copy!r}, expected True or False")
         mode = autoreset_mode_of(autoreset_mode)
         options = Options.read(
             modalities=modalities,
@@ -113,13 +125,10 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             task_label=task_label,
             assets=assets,
         )
+        home = Home(task, world, variant)
         self._members = Members(
-            num_envs,
-            task,
-            world,
-            variant,
-            variants,
-            drift,
+            home,
+            home.sources(num_envs, variants, drift),
             options,
             mode.name.lower(),
             whole("num_threads", num_threads) or 0,
@@ -182,12 +191,15 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         Returns:
             Observations and infos, as :class:`gymnasium.vector.SyncVectorEnv` has them.
         """
+        teach_conversions()
         options = dict(options or {})
         mask = self._mask(options.pop("reset_mask", None))
         seeds = self._seeds(seed)
         members = self._members
         prepared = members.checked(options, many=True)
         chosen = range(self.num_envs) if mask is None else np.flatnonzero(mask).tolist()
+        # Until it is done: Ctrl-C may come in between.
+        members.has_begun[chosen] = False
         for env in chosen:
             own = seeds[env]
             if own is not None:
@@ -195,7 +207,13 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
             elif not members.has_seed[env]:
                 own = int(self._generator(env).integers(2**32))
             members.take(prepared, env, own)
-        members.batch.reset(mask)
+        try:
+            members.batch.reset(mask)
+        except EnvError:
+            # Of an environment without a world: the others have begun, and the next step asks it again.
+            members.has_begun[chosen] = True
+            raise
+        members.has_begun[chosen] = True
         self._ended[chosen] = False
         infos: dict[str, Any] = {}
         for env in chosen:
@@ -245,8 +263,13 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
 
         Raises:
             EnvError: For an action that is none, or with ``"disabled"`` after the end of an episode; nothing is changed then.
+            gymnasium.error.ResetNeeded: Before every environment had its first reset.
         """
         members = self._members
+        if not members.has_begun.all():
+            waiting = np.flatnonzero(~members.has_begun).tolist()
+            found = "no reset" if len(waiting) == self.num_envs else f"no reset of environments {_some(waiting)}"
+            raise ResetNeeded(f"step: found {found}, expected reset() before the first step, and again after one that was stopped")
         rewards, terminated, truncated, success, eventful = members.step(actions)
         ended = terminated | truncated
         begun = self._ended if self._mode == AutoresetMode.NEXT_STEP else ended
@@ -329,13 +352,20 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
 
     def __getstate__(self) -> dict[str, Any]:
         kept = {name: value for name, value in self.__dict__.items() if name != "_members"}
+        # Also of a shallow copy: the two would change them in turns.
+        for name in ("_generators", "_generator_seeds", "_ended"):
+            kept[name] = deepcopy(kept[name])
         return {"kept": kept, "members": self._members.written()}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        kept = state["kept"]
-        type(self).__init__(self, **kept["_made_with"])  # type: ignore[misc]
-        self.__dict__.update(kept)
-        self._members.take_up(state["members"])
+        # Never through `__init__`: a subclass has its own, with arguments that nobody knows here.
+        self.__dict__.update(state["kept"])
+        self._members = Members.again(state["members"])
+
+
+def _some(numbers: list[int]) -> str:
+    """The first of them, in words."""
+    return ", ".join(map(str, numbers[:5])) + (f" and {len(numbers) - 5} more" if len(numbers) > 5 else "")
 
 
 def _limit(steps: Any) -> int | None:
