@@ -1,6 +1,7 @@
 //! Scenario files, ours and the original's, and the tasks and world files that they name. What a scenario means is `spec`'s, living it
 //! `curriculum`'s.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -83,11 +84,35 @@ impl ScenarioFile {
     /// # Errors
     /// As [`Plan::with_undrawable`].
     pub fn plan_with(&self, missing: Missing, undrawable: Undrawable, warn: Warn) -> Result<Plan, CurriculumError> {
+        self.plan_named(missing, undrawable, warn).map(|(plan, _)| plan)
+    }
+
+    /// The same, and what was found by the names that the scenario has for it.
+    ///
+    /// # Errors
+    /// As [`Plan::with_undrawable`].
+    pub fn plan_named(
+        &self,
+        missing: Missing,
+        undrawable: Undrawable,
+        warn: Warn,
+    ) -> Result<(Plan, Named), CurriculumError> {
+        let mut named = Named::default();
+        let (tasks, worlds) = (&mut named.tasks, &mut named.worlds);
         let mut sources = Sources {
-            task: &mut |name| task_from(&self.path, name).map_err(|error| error.to_string()),
-            world: &mut |path| self.world(path, missing, warn),
+            task: &mut |name| {
+                let task = task_from(&self.path, name).map_err(|error| error.to_string())?;
+                tasks.insert(name.to_owned(), Arc::clone(&task));
+                Ok(task)
+            },
+            world: &mut |path| {
+                let found = self.world(path, missing, warn)?;
+                worlds.insert(path.to_owned(), found.clone());
+                Ok(found)
+            },
         };
-        Plan::with_undrawable(&self.scenario, &mut sources, undrawable)
+        let plan = Plan::with_undrawable(&self.scenario, &mut sources, undrawable)?;
+        Ok((plan, named))
     }
 
     /// The world file that a regime names, from the scenario's folder; beside the scenario if it is not there.
@@ -174,6 +199,30 @@ impl ScenarioFile {
                 (Err(_), Err(ours)) => Err(ours.to_string()),
             },
         }
+    }
+}
+
+/// What a scenario names, by the names that it has for it: with this its plan is made again, whatever became of the files.
+#[derive(Clone, Debug, Default)]
+pub struct Named {
+    /// Its tasks.
+    pub tasks: BTreeMap<String, Arc<TaskSpec>>,
+    /// Its world files.
+    pub worlds: BTreeMap<String, FoundWorld>,
+}
+
+impl Named {
+    /// The scenario with these.
+    ///
+    /// # Errors
+    /// As [`Plan::with_undrawable`], also where something is not among them.
+    pub fn plan(&self, scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, CurriculumError> {
+        let missing = |name: &str| format!("found {name:?}, expected what the scenario was read with");
+        let mut sources = Sources {
+            task: &mut |name| self.tasks.get(name).cloned().ok_or_else(|| missing(name)),
+            world: &mut |path| self.worlds.get(path).cloned().ok_or_else(|| missing(path)),
+        };
+        Plan::with_undrawable(scenario, &mut sources, undrawable)
     }
 }
 

@@ -3,13 +3,12 @@
 
 use std::path::{Path, PathBuf};
 
-use driftworld::scenarios::{Missing, ScenarioFile, task_from};
+use driftworld::scenarios::{Missing, Named, ScenarioFile, task_from};
 use driftworld::tasks::TaskError;
-use driftworld_curriculum::{CurriculumError, Experience, Journal, MOST_STEPS, Plan, Tried, Undrawable};
-use driftworld_spec::BlockKind;
+use driftworld_curriculum::{CurriculumError, Experience, FoundWorld, Journal, MOST_STEPS, Plan, Tried, Undrawable};
+use driftworld_spec::{BlockKind, Scenario, TaskSpec, World};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyType;
 use serde_json::json;
 
 use crate::document::{Whole, from_python, to_python, told};
@@ -20,9 +19,24 @@ use crate::logs::now;
 #[pyclass(name = "Plan", module = "driftworld._native")]
 pub(crate) struct PyPlan {
     plan: Plan,
+    /// What it was made with: files that change later do not change it.
+    named: Named,
     warnings: Vec<String>,
-    /// What it was made from.
-    made: (PathBuf, String, Option<bool>, bool),
+    /// What becomes of experiences whose worlds cannot be drawn.
+    undrawable: Undrawable,
+}
+
+/// A plan as values: the scenario's text; of each task its name there, its own and its text; of each world file its name there, its
+/// text and what has to be known about it; and what was odd.
+type Values = (
+    String,
+    Vec<(String, String, String)>,
+    Vec<(String, String, Option<String>)>,
+    Vec<String>,
+);
+
+fn undrawable(skip: bool) -> Undrawable {
+    if skip { Undrawable::Skipped } else { Undrawable::Refused }
 }
 
 #[pymethods]
@@ -32,7 +46,7 @@ impl PyPlan {
     #[new]
     fn new(py: Python<'_>, path: PathBuf, text: &str, stand_in: Option<bool>, skip_undrawable: bool) -> Result<Self> {
         let mut warnings = Vec::new();
-        let plan = py.detach(|| {
+        let (plan, named, undrawable) = py.detach(|| {
             let mut warn = |warning| warnings.push(warning);
             let file = ScenarioFile::from_text(Path::new(&path), text, &mut warn)?;
             // The original's own scenario names a map that it does not come with, and has to run as it stands.
@@ -41,24 +55,65 @@ impl PyPlan {
             } else {
                 Missing::Refused
             };
-            let undrawable = if skip_undrawable {
-                Undrawable::Skipped
-            } else {
-                Undrawable::Refused
-            };
-            file.plan_with(missing, undrawable, &mut warn)
-                .map_err(|error| because(&path, error))
+            let undrawable = undrawable(skip_undrawable);
+            let (plan, named) = file
+                .plan_named(missing, undrawable, &mut warn)
+                .map_err(|error| because(&path, error))?;
+            Ok((plan, named, undrawable))
         })?;
         Ok(Self {
             plan,
+            named,
             warnings,
-            made: (path, text.to_owned(), stand_in, skip_undrawable),
+            undrawable,
         })
     }
 
-    /// The plan in another process.
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (PathBuf, String, Option<bool>, bool)) {
-        (slf.get_type(), slf.borrow().made.clone())
+    /// The plan of these values.
+    #[staticmethod]
+    fn from_values(py: Python<'_>, values: Values, skip_undrawable: bool) -> Result<Self> {
+        let (scenario, tasks, worlds, warnings) = values;
+        let mut named = Named::default();
+        for (called, name, text) in tasks {
+            named.tasks.insert(called, TaskSpec::from_json(&name, &text)?);
+        }
+        for (called, text, note) in worlds {
+            let world = World::from_json(&called, &text)?;
+            named.worlds.insert(called, FoundWorld { world, note });
+        }
+        let find = |task: &str| named.tasks.get(task).cloned();
+        let scenario = Scenario::from_json_with("scenario", &scenario, find)?;
+        let undrawable = undrawable(skip_undrawable);
+        let plan = py.detach(|| named.plan(&scenario, undrawable))?;
+        Ok(Self {
+            plan,
+            named,
+            warnings,
+            undrawable,
+        })
+    }
+
+    /// All that it was made from: equal values are equal plans.
+    fn values(&self) -> Values {
+        let tasks = self.named.tasks.iter();
+        let worlds = self.named.worlds.iter();
+        (
+            self.plan.scenario().to_json_pretty(),
+            tasks
+                .map(|(called, task)| (called.clone(), task.name().to_owned(), task.to_json()))
+                .collect(),
+            worlds
+                .map(|(called, found)| (called.clone(), found.world.to_json(), found.note.clone()))
+                .collect(),
+            self.warnings.clone(),
+        )
+    }
+
+    /// The plan in another process, also where its files are not, or are others by now.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (Values, bool))> {
+        let plan = slf.borrow();
+        let skips = plan.undrawable == Undrawable::Skipped;
+        Ok((slf.get_type().getattr("from_values")?, (plan.values(), skips)))
     }
 
     /// What was odd about it.

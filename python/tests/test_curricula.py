@@ -15,7 +15,17 @@ from typing import Any
 import driftworld
 import numpy as np
 import pytest
-from driftworld import Agent, Curriculum, CurriculumError, SpecError, TaskSpec, Transition, read_log, validate_log
+from driftworld import (
+    Agent,
+    Curriculum,
+    CurriculumError,
+    SpecError,
+    TaskError,
+    TaskSpec,
+    Transition,
+    read_log,
+    validate_log,
+)
 
 #: Columns of which an agent cannot change a thing.
 OF_THE_PLAN = [
@@ -374,8 +384,10 @@ def test_what_is_no_curriculum_says_where() -> None:
     with pytest.raises(SpecError, match='did you mean "red"') as refused:
         Curriculum.from_dict({"name": "s", "blocks": [{"type": "learning", "regimes": [regime]}]})
     assert refused.value.pointer == "/blocks/0/regimes/0/variant"
-    with pytest.raises(SpecError, match='did you mean "blue"'):
+    with pytest.raises(TaskError, match='did you mean "blue"'):
         Curriculum.design("find_objects#bleu")
+    with pytest.raises(ValueError, match="tasks: found none, expected at least one"):
+        Curriculum.design()
     with pytest.raises(CurriculumError, match="expected state, action"):
         Curriculum.design("find_objects", probe="rewrd")
     with pytest.raises(TypeError, match="a scenario calls tasks by their names"):

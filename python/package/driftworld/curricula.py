@@ -15,16 +15,20 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import gymnasium
 
 from driftworld import _native
 from driftworld._command import ask
 from driftworld._files import write_whole
+from driftworld._literals import BlockKind, DesignOrder, Evaluate, Form, OrderMethod, Phase, Probe, TaskLabel
 from driftworld.errors import CurriculumError
 from driftworld.lifetimes import Agent, Lifetime, Summary, environment
 from driftworld.specs import variants
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 PathLike = str | os.PathLike[str]
 
@@ -82,8 +86,8 @@ class Block:
     """
 
     number: int
-    kind: str
-    phase: str
+    kind: BlockKind
+    phase: Phase
     first: int
     num_experiences: int
     _plan: _native.Plan = field(repr=False, compare=False)
@@ -129,10 +133,14 @@ class Curriculum(Sequence[Block]):
     """
 
     def __init__(self, text: str, path: PathLike = "scenario", *, stand_in: bool | None = None) -> None:
-        self._text, self._path, self._stand_in = text, Path(path), stand_in
-        self._plan = self._new_plan()
-        for warning in self._plan.warnings:
+        # A world that cannot be drawn matters to who lives it, not to who looks through the others.
+        plan = _native.Plan(Path(path), text, stand_in, True)
+        for warning in plan.warnings:
             warnings.warn(warning, stacklevel=2)
+        self._begin(plan)
+
+    def _begin(self, plan: _native.Plan) -> None:
+        self._plan = plan
         self.scenario: dict[str, Any] = self._plan.scenario()
         """The scenario as a dictionary."""
         self._blocks: list[Block] = []
@@ -143,9 +151,11 @@ class Curriculum(Sequence[Block]):
             self._blocks.append(Block(number, block["type"], phase, first, count, self._plan))
             first += count
 
-    def _new_plan(self, skip_undrawable: bool = True) -> _native.Plan:
-        # A world that cannot be drawn matters to who lives it, not to who looks through the others.
-        return _native.Plan(self._path, self._text, self._stand_in, skip_undrawable)
+    @classmethod
+    def _of(cls, plan: _native.Plan) -> Self:
+        curriculum = cls.__new__(cls)
+        curriculum._begin(plan)
+        return curriculum
 
     @classmethod
     def load(cls, path: PathLike, *, stand_in: bool | None = None) -> Curriculum:
@@ -173,24 +183,24 @@ class Curriculum(Sequence[Block]):
         name: str | None = None,
         learn: int | None = None,
         eval_episodes: int | None = None,
-        evaluate: str | None = None,
+        evaluate: Evaluate | None = None,
         evaluate_after: Sequence[int] | None = None,
         pre_deployment: int | None = None,
-        form: str | None = None,
+        form: Form | None = None,
         blocks: int | None = None,
-        method: str | None = None,
+        method: OrderMethod | None = None,
         start: str | None = None,
         end: str | None = None,
         target_step: float | None = None,
-        order: str | None = None,
-        probe: str | None = None,
+        order: DesignOrder | None = None,
+        probe: Probe | None = None,
         variants: int | None = None,
         step_distance: float | None = None,
         tolerance: float | None = None,
         steps: int | None = None,
         drift: str | None = None,
         mix: bool = False,
-        task_label: str | None = None,
+        task_label: TaskLabel | None = None,
         seed: int | None = None,
         worlds: int | None = None,
         assets: PathLike | None = None,
@@ -369,7 +379,8 @@ class Curriculum(Sequence[Block]):
             TypeError: If the agent lacks a method.
             ValueError: If an option is wrong; then no log is begun.
         """
-        plan = self._new_plan(skip_undrawable)
+        # One of its own: what it depends on is noted in it. Of the same tasks, whatever became of their files since.
+        plan = _native.Plan.from_values(self._plan.values(), skip_undrawable)
         lifetime = Lifetime(plan, agent, options, log, resume, watch, skip_undrawable)
         return lifetime.live(lambda number: _experience(plan, number))
 
@@ -385,13 +396,22 @@ class Curriculum(Sequence[Block]):
     def __repr__(self) -> str:
         return f"<Curriculum {self.name!r} of {len(self)} blocks, {self.num_experiences} experiences>"
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return (_curriculum_again, (self._text, str(self._path), self._stand_in))
+    def __eq__(self, other: object) -> bool:
+        """Whether the same is lived: scenario, tasks and world files say the same."""
+        if not isinstance(other, Curriculum):
+            return NotImplemented
+        return self._plan is other._plan or self._plan.values()[:3] == other._plan.values()[:3]
 
+    def __hash__(self) -> int:
+        return hash(self._plan.text())
 
-def _curriculum_again(text: str, path: str, stand_in: bool | None) -> Curriculum:
-    """A curriculum in another process."""
-    return Curriculum(text, path, stand_in=stand_in)
+    def __getstate__(self) -> dict[str, Any]:
+        # With its tasks, and not only their names: files may not be where it is unpickled, or be others.
+        return {name: value for name, value in self.__dict__.items() if name not in ("scenario", "_blocks")}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._begin(state["_plan"])
 
 
 #: Options of a design that are whole numbers.
@@ -405,6 +425,8 @@ def _is_whole(value: Any) -> bool:
 def _designed(options: dict[str, Any]) -> str:
     """What the command prints of a design: the scenario, or a line for each of several."""
     tasks = options.pop("tasks")
+    if not tasks:
+        raise ValueError('tasks: found none, expected at least one, such as "find_objects#red"')
     if not all(isinstance(task, str) for task in tasks):
         raise TypeError('tasks: expected names such as "find_objects#red": a scenario calls tasks by their names')
     # First, so that what is wrong with a task is raised with its place.

@@ -1,0 +1,197 @@
+"""Copies and pickles hold values: what a caller changes afterwards, or a file that goes, changes nothing in them."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import driftworld
+import numpy as np
+import pytest
+from driftworld import Curriculum
+from driftworld._equality import first_difference
+from driftworld.envs import DriftworldEnv, DriftworldVectorEnv
+
+SMALL: dict[str, Any] = {"modalities": ["rgb", "state"], "size": 16}
+WAYS: dict[str, Callable[[Any], Any]] = {
+    "copy": copy.copy,
+    "deepcopy": copy.deepcopy,
+    "pickle": lambda env: pickle.loads(pickle.dumps(env)),
+}
+EACH_WAY = pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+
+
+class Own(DriftworldEnv):
+    """An environment with arguments of its own."""
+
+    def __init__(self, scale: float, *, name: str) -> None:
+        super().__init__("find_objects#red", **SMALL)
+        self.scale, self.name = scale, name
+
+    def step(self, action: Any) -> Any:
+        observation, reward, *rest = super().step(action)
+        return observation, self.scale * reward, *rest
+
+
+class OwnVector(DriftworldVectorEnv):
+    """Environments with arguments of their own."""
+
+    def __init__(self, names: list[str]) -> None:
+        super().__init__("find_objects", len(names), variants=names, **SMALL)
+        self.names = names
+
+
+def same_life(one: Any, other: Any, steps: int = 6) -> None:
+    one.action_space.seed(0)
+    for number in range(steps):
+        action = one.action_space.sample()
+        assert first_difference(one.step(action), other.step(action), f"step {number}") is None
+    assert first_difference(one.reset(), other.reset(), "reset") is None
+    assert first_difference(one.reset(seed=8), other.reset(seed=8), "reset with a seed") is None
+
+
+@EACH_WAY
+def test_a_subclass_with_arguments_of_its_own_goes_on(way: Callable[[Any], Any]) -> None:
+    env = Own(2.0, name="mine")
+    env.reset(seed=3)
+    other = way(env)
+    assert type(other) is Own and (other.scale, other.name) == (2.0, "mine")
+    same_life(env, other)
+    envs = OwnVector(["red", "dusk"])
+    envs.reset(seed=3)
+    other = way(envs)
+    assert type(other) is OwnVector and other.names == ["red", "dusk"]
+    same_life(envs, other)
+
+
+@EACH_WAY
+def test_a_world_that_is_changed_afterwards_changes_no_copy(way: Callable[[Any], Any]) -> None:
+    world = driftworld.variant("find_objects#red").sample(seed=1)
+    env = DriftworldEnv(world=world, **SMALL)
+    env.reset(seed=0)
+    world["max_steps"] = 5
+    world["objects"].clear()
+    other = way(env)
+    assert other.state()["max_steps"] == env.state()["max_steps"] != 5
+    same_life(env, other)
+
+
+@EACH_WAY
+def test_files_that_are_changed_or_gone_change_no_copy(way: Callable[[Any], Any], task_file: Path, world_file: Path) -> None:
+    task = DriftworldEnv(f"{task_file}#landmarks", **SMALL)
+    world = DriftworldVectorEnv(num_envs=2, world=world_file, **SMALL)
+    for env in (task, world):
+        env.reset(seed=0)
+    document = json.loads(task_file.read_text(encoding="utf-8"))
+    task_file.write_text(json.dumps({**document, "variants": {}}), encoding="utf-8")
+    world_file.unlink()
+    for env in (task, world):
+        same_life(env, way(env))
+
+
+@EACH_WAY
+def test_options_that_are_changed_afterwards_change_no_copy(way: Callable[[Any], Any]) -> None:
+    drift = {"to": "dusk", "episodes": 3}
+    table = [[10.0, 0.0, 0.0], [0.0, 90.0, 0.0]]
+    env = DriftworldEnv("find_objects#red", drift=drift, actions=table, modalities=["state"], size=16)
+    env.reset(seed=0)
+    drift["to"] = "blue"
+    table.append([1.0, 1.0, 1.0])
+    other = way(env)
+    assert other.action_space == env.action_space
+    same_life(env, other)
+
+
+@EACH_WAY
+def test_copies_have_chance_of_their_own(way: Callable[[Any], Any]) -> None:
+    envs = DriftworldVectorEnv("find_objects", 2, modalities="state", size=16)
+    envs.reset()
+    expected = way(envs)
+    other = way(envs)
+    # What the original draws in the meantime moves nothing.
+    [generator.integers(9) for generator in envs.np_random]
+    envs.reset(seed=77)
+    same_life(other, expected)
+
+
+def test_a_copy_of_what_never_began_has_not_begun() -> None:
+    import gymnasium
+
+    env = copy.deepcopy(DriftworldVectorEnv("find_objects", 2, modalities="state", size=16))
+    with pytest.raises(gymnasium.error.ResetNeeded):
+        env.step(env.action_space.sample())
+    env.reset(seed=0)
+    env.step(env.action_space.sample())
+
+
+@EACH_WAY
+def test_a_long_queue_is_copied_where_it_stands(way: Callable[[Any], Any]) -> None:
+    envs = DriftworldVectorEnv("find_objects", 3, modalities="state", size=16, max_episode_steps=1)
+    queue = ["red", "blue", "green", "dusk", "near"] * 1000
+    envs.reset(seed=0, options={"queue": queue})
+    action = envs.action_space.sample()
+    for _ in range(4):
+        envs.step(action)
+    queue.clear()
+    same_life(envs, way(envs), steps=9)
+
+
+def scenario(folder: Path) -> Curriculum:
+    document = {
+        "name": "own",
+        "blocks": [
+            {"type": "learning", "regimes": [{"task": "own_task.json", "variant": "landmarks", "count": 2, "seed": 1}]},
+            {"type": "evaluation", "regimes": [{"task": "a", "variant": "b", "world": "world.json", "count": 1}]},
+        ],
+    }
+    return Curriculum.from_dict(document, folder=folder)
+
+
+def worlds(curriculum: Curriculum) -> list[Any]:
+    return [experience.world() for block in curriculum for experience in block]
+
+
+def test_a_curriculum_holds_its_tasks_and_worlds(task_file: Path, world_file: Path) -> None:
+    mine, again = scenario(task_file.parent), scenario(task_file.parent)
+    assert mine == again and hash(mine) == hash(again) and mine != mine.scenario
+    lived = worlds(mine)
+    document = json.loads(task_file.read_text(encoding="utf-8"))
+    document["description"] = "another"
+    task_file.write_text(json.dumps(document), encoding="utf-8")
+    assert scenario(task_file.parent) != mine
+    task_file.unlink()
+    world_file.unlink()
+    for way in WAYS.values():
+        other = way(mine)
+        assert other == mine and worlds(other) == lived and other.scenario == mine.scenario
+        assert other.blocks == mine.blocks
+
+
+def test_curricula_are_equal_when_they_say_the_same() -> None:
+    one, other = (Curriculum.design("find_objects#blue", "find_objects#red", seed=0) for _ in range(2))
+    assert one == other and len({one, other}) == 1
+    assert one != Curriculum.design("find_objects#blue", "find_objects#red", seed=1)
+    assert Curriculum.from_dict(one.to_dict()) == one
+    assert one[0] in one and one.index(one[1]) == 1
+
+
+def test_a_curriculum_runs_as_it_was_read(task_file: Path, world_file: Path) -> None:
+    class Still:
+        """Who does nothing."""
+
+        def act(self, observation: Any, info: Any) -> Any:
+            return np.zeros(3, dtype=np.float32)
+
+        def learn(self, transition: Any) -> None: ...
+
+        def freeze(self, frozen: bool) -> None: ...
+
+    mine = scenario(task_file.parent)
+    task_file.unlink()
+    world_file.unlink()
+    summary = mine.run(Still(), modalities=["state"], size=16, max_steps=2, interact=True)
+    assert summary.finished and summary.experiences == 3
