@@ -151,6 +151,45 @@ def test_a_matrix_is_an_array_as_numpy_wants_it() -> None:
     assert np.array_equal(pickle.loads(pickle.dumps(matrix)), matrix)
 
 
+def test_a_matrix_is_a_container_of_labelled_rows() -> None:
+    matrix = distance_matrix(SOME)
+    assert list(matrix) == SOME == [label for label in matrix]
+    assert all(label in matrix for label in SOME) and "find_objects#green" not in matrix and 0.0 not in matrix
+    assert (matrix.shape, matrix.ndim, matrix.dtype) == ((4, 4), 2, np.float64)
+    assert (np.shape(matrix), np.ndim(matrix)) == ((4, 4), 2)
+    assert all(np.array_equal(matrix[label], matrix.values[row]) for row, label in enumerate(matrix))
+
+
+def test_matrices_are_equal_when_they_say_the_same() -> None:
+    matrix, again = distance_matrix(SOME), distance_matrix(SOME)
+    assert matrix == again == pickle.loads(pickle.dumps(matrix)) and len({matrix, again}) == 1
+    assert matrix != distance_matrix(SOME[::-1]) and matrix != distance_matrix(SOME, {"R": 3})
+    assert matrix != SOME and (matrix == matrix.values).all()
+
+
+def test_pandas_takes_a_matrix() -> None:
+    pandas = pytest.importorskip("pandas", reason="data frames are pandas'")
+    matrix = distance_matrix(SOME)
+    frame = matrix.to_pandas()
+    assert frame.index.tolist() == frame.columns.tolist() == SOME
+    assert frame.loc[SOME[0], SOME[1]] == matrix[0, 1]
+    frame.iloc[0, 1] = 7.0
+    assert matrix[0, 1] != 7.0
+    assert frame.shape == pandas.DataFrame(matrix, index=list(matrix), columns=list(matrix)).shape == matrix.shape
+    assert np.array_equal(pandas.DataFrame(matrix), matrix)
+
+
+def test_an_order_is_a_sequence_of_labels() -> None:
+    found = order(SOME, start=SOME[2])
+    assert [found[place] for place in range(len(found))] == list(found) == found.labels
+    assert found[0] == SOME[2] and found[-1] == found.labels[-1] and found[1:3] == found.labels[1:3]
+    assert SOME[0] in found and "nobody" not in found
+    assert found.index(SOME[2]) == 0 and found.count(SOME[1]) == 1 and list(reversed(found)) == found.labels[::-1]
+    assert found == order(SOME, start=SOME[2]) and found != order(SOME, start=SOME[1])
+    with pytest.raises(IndexError):
+        found[4]
+
+
 @pytest.mark.parametrize("method", [None, *_native.order_methods()])
 def test_an_order_is_the_commands(method: str | None) -> None:
     options: dict[str, Any] = {"seed": 3} if method == "random" else {}

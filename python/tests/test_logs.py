@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import math
+import pickle
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -45,6 +48,25 @@ def test_a_log_is_a_data_frame(tmp_path: Path) -> None:
     pytest.importorskip("pandas", reason="data frames are pandas'")
     frame = read_log(written(tmp_path / "log", [1.0, 2.0])).to_pandas()
     assert frame["reward"].tolist() == [1.0, 2.0] and frame["task_name"].tolist() == ["find_red"] * 2
+
+
+def test_a_log_is_a_table_of_columns(tmp_path: Path) -> None:
+    log = read_log(written(tmp_path / "log", [1.0, math.nan, 3.0]))
+    assert list(log) == list(log.keys()) == list(log.columns) and len(log) == 3
+    assert "reward" in log and "rewrd" not in log and 3 not in log
+    assert dict(log)["reward"] is log["reward"]
+    assert all(len(log[name]) == len(log) for name in log)
+
+
+def test_logs_are_equal_when_they_say_the_same(tmp_path: Path) -> None:
+    folder = written(tmp_path / "log", [1.0, math.nan, 3.0])
+    log = read_log(folder)
+    shutil.copytree(folder, tmp_path / "again")
+    assert log == read_log(tmp_path / "again") == read_log(folder)
+    assert log == pickle.loads(pickle.dumps(log)) == copy.deepcopy(log)
+    assert log != read_log(written(tmp_path / "other", [1.0, math.nan, 4.0])) and log != dict(log)
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(log)
 
 
 def test_a_log_is_written_as_the_format_says(tmp_path: Path) -> None:

@@ -8,19 +8,22 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from driftworld import _native
 from driftworld._files import write_whole
+from driftworld._literals import OrderMethod
+from driftworld.logs import _pandas
 from driftworld.specs import TaskSpec, Variant, document_text, variant, variants
 
 if TYPE_CHECKING:
+    import pandas
     from typing_extensions import Self
 
 #: The elements of the decision process, by letter.
@@ -113,7 +116,7 @@ def distance(
 
     Raises:
         SpecError: If a document is wrong.
-        TaskError: If there is no such task.
+        TaskError: If there is no such task or variant.
         GeneratorError: If a world cannot be drawn.
         SimilarityError: For a weight that is none.
     """
@@ -152,7 +155,8 @@ def _is_world_file(name: str) -> bool:
 class DistanceMatrix:
     """Every distance among labelled items: symmetric, at least 0, and 0 on the diagonal.
 
-    ``np.asarray(matrix)`` is the array; ``matrix[0, 1]`` and ``matrix["task#a", "task#b"]`` are distances.
+    ``np.asarray(matrix)`` is the array; ``matrix[0, 1]`` and ``matrix["task#a", "task#b"]`` are distances, ``matrix["task#a"]`` is a row.
+    As of a data frame, what is iterated and what is ``in`` it are labels. Two are equal if labels and distances are.
 
     Args:
         labels: What the items are called, each once.
@@ -241,7 +245,7 @@ class DistanceMatrix:
 
     def order(
         self,
-        method: str | None = None,
+        method: OrderMethod | None = None,
         *,
         start: str | None = None,
         end: str | None = None,
@@ -261,8 +265,50 @@ class DistanceMatrix:
         shown = ", ".join(labels[:20]) + (f" and {len(labels) - 20} more" if len(labels) > 20 else "")
         raise ValueError(f"{option}: found {label!r}, expected one of {shown}")
 
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(items, items)."""
+        return (len(self), len(self))
+
+    @property
+    def ndim(self) -> int:
+        """2."""
+        return 2
+
+    @property
+    def dtype(self) -> np.dtype[np.float64]:
+        """float64."""
+        return self.values.dtype
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The distances as a data frame, rows and columns by the labels.
+
+        Raises:
+            ImportError: If pandas is not installed.
+        """
+        labels = self.labels
+        return _pandas().DataFrame(np.array(self.values), index=labels, columns=labels)
+
     def __len__(self) -> int:
         return len(self._native)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.labels)
+
+    def __contains__(self, label: object) -> bool:
+        return label in self.labels
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, DistanceMatrix):
+            return NotImplemented
+        return (
+            self.labels == other.labels
+            and self.is_metric == other.is_metric
+            and np.array_equal(self.values, other.values)
+        )
+
+    def __hash__(self) -> int:
+        return hash((tuple(self.labels), self.values.tobytes()))
 
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, tuple):
@@ -295,8 +341,8 @@ def _ending(path: Path) -> str:
 
 
 @dataclass(frozen=True)
-class Order:
-    """Items in an order by their distances. Iterating it gives their labels.
+class Order(Sequence[str]):
+    """Items in an order by their distances. A sequence of their labels: ``order[0]``, ``order[-2:]``, ``"task#a" in order``.
 
     Attributes:
         method: How it was found.
@@ -323,8 +369,12 @@ class Order:
         """The labels, in order."""
         return self.order
 
-    def __iter__(self) -> Any:
-        return iter(self.order)
+    @overload
+    def __getitem__(self, place: int) -> str: ...
+    @overload
+    def __getitem__(self, place: slice) -> list[str]: ...
+    def __getitem__(self, place: int | slice) -> str | list[str]:
+        return self.order[place]
 
     def __len__(self) -> int:
         return len(self.order)
@@ -356,7 +406,7 @@ def _variants(items: Named | Iterable[Named]) -> list[tuple[str, Variant]]:
 
 def order(
     items: DistanceMatrix | Named | Iterable[Named],
-    method: str | None = None,
+    method: OrderMethod | None = None,
     *,
     start: str | None = None,
     end: str | None = None,

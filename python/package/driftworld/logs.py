@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, KeysView, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from driftworld import _native
+from driftworld._literals import BlockSubtype, BlockType, Status
 
 if TYPE_CHECKING:
     import pandas
@@ -62,11 +63,11 @@ class LogWriter:
         *,
         block_num: int,
         exp_num: int,
-        block_type: str,
+        block_type: BlockType,
         task_name: str,
         task_params: Mapping[str, Any] | None = None,
-        block_subtype: str = "wake",
-        exp_status: str = "complete",
+        block_subtype: BlockSubtype = "wake",
+        exp_status: Status = "complete",
         worker_id: str = "worker-default",
         **metrics: float,
     ) -> None:
@@ -106,9 +107,10 @@ class LogWriter:
         self.close()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Log:
-    """A log as it was read.
+    """A log as it was read: a table, as data frames are. ``len(log)`` counts its rows; ``log["reward"]`` is a column, and what is
+    iterated and what is ``in`` it are the names of columns. Two are equal if they say the same, whatever their folders are called.
 
     Attributes:
         run_id: The name of its folder.
@@ -130,6 +132,26 @@ class Log:
     def __len__(self) -> int:
         return len(self.columns["exp_num"])
 
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.columns)
+
+    def __contains__(self, column: object) -> bool:
+        return column in self.columns
+
+    def keys(self) -> KeysView[str]:
+        """The names of the columns: ``dict(log)`` has them with their arrays."""
+        return self.columns.keys()
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Log):
+            return NotImplemented
+        mine = (self.metrics, self.scenario_info, self.logger_info, list(self.columns))
+        return mine == (other.metrics, other.scenario_info, other.logger_info, list(other.columns)) and all(
+            _is_same(column, other.columns[name]) for name, column in self.columns.items()
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
     def __getitem__(self, column: str) -> NDArray[Any]:
         return self.columns[column]
 
@@ -140,6 +162,11 @@ class Log:
             ImportError: If pandas is not installed.
         """
         return _pandas().DataFrame(self.columns)
+
+
+def _is_same(one: NDArray[Any], other: NDArray[Any]) -> bool:
+    """Whether columns hold the same, NaN for NaN."""
+    return one.dtype == other.dtype and np.array_equal(one, other, equal_nan=one.dtype == np.float64)
 
 
 def read_log(path: str | os.PathLike[str], *, texts: bool = False) -> Log:
