@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,27 @@ def test_processes_keep_it_as_well() -> None:
     report = checks.check("find_objects#red", steps=20, size=40, modalities=["rgb"])
     assert report.ok, str(report)
     assert [each.outcome for each in report.findings if "AsyncVectorEnv" in each.rule] == ["passed"]
+
+
+def test_windows_are_looked_at_where_pygame_is_and_nothing_else_needs_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pygame", None)
+    report = checks.check("get_to_goal", steps=20, processes=False, size=40, modalities="rgb")
+    assert report.ok, str(report)
+    outcomes = {finding.rule: finding.outcome for finding in report.findings}
+    assert outcomes["Gymnasium's check_env, without a warning"] == "passed"
+    assert [outcome for rule, outcome in outcomes.items() if "window" in rule] == ["skipped"]
+
+
+def test_a_window_that_shows_nothing_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pygame", reason="windows are pygame's")
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    render = DriftworldEnv.render
+    report = checks.check("get_to_goal", steps=5, processes=False, size=40, modalities="rgb")
+    assert [each.outcome for each in report.findings if "window" in each.rule] == ["passed"]
+    monkeypatch.setattr(DriftworldEnv, "render", lambda self: render(self) or "a picture")
+    assert 'a window shows it with render_mode="human"' in failed(
+        checks.check("get_to_goal", steps=5, processes=False, size=40, modalities="rgb")
+    )
 
 
 def test_tasks_and_worlds_of_ones_own_are_checked(task_file: Path, world_file: Path) -> None:

@@ -61,7 +61,26 @@ def _expect_same(left: Any, right: Any, place: str) -> None:
 def _passes_gymnasiums_check(case: Case) -> None:
     from gymnasium.utils.env_checker import check_env
 
-    check_env(case.bare(render_mode="rgb_array"))
+    env = case.bare(render_mode="rgb_array")
+    # It opens a window if windows are among the modes; whether one opens has a rule of its own.
+    env.metadata = {**env.metadata, "render_modes": ["rgb_array"]}
+    check_env(env)
+
+
+def _opens_a_window(case: Case) -> None:
+    try:
+        import pygame
+    except ImportError:
+        raise NotHere('pygame is not installed: pip install "driftworld[human]"') from None
+    try:
+        pygame.display.init()
+    except pygame.error as error:
+        raise NotHere(f"there is no display: {error}") from None
+    with closing(case.bare(render_mode="human")) as env:
+        env.metadata = {**env.metadata, "render_fps": 1000}
+        env.reset(seed=case.seed)
+        if env.render() is not None:
+            raise Broken("render() returned a picture, expected None and a window that shows it")
 
 
 def _passes_sb3s_check(case: Case) -> None:
@@ -248,6 +267,7 @@ RULES = (
     ),
     Rule("copies and pickles live the same life", _can_be_sent, "please report it with the options"),
     Rule('render() draws with render_mode="rgb_array"', _draws_pictures, "please report it with the options"),
+    Rule('a window shows it with render_mode="human"', _opens_a_window, "please report it with the options"),
     Rule("closes, and closes again", _closes_twice, "please report it with the options"),
     Rule("alone as in the batch, bit for bit", _alone_as_in_the_batch, "please report it with the task and the seed"),
     Rule("as SyncVectorEnv, bit for bit", _equal_in_a_loop, "please report it with the task and the seed"),
