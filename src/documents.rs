@@ -276,7 +276,13 @@ mod tests {
             { "class": "car", "coordinates": [0, 0], "motion_model": "predator" },
             { "class": "car", "coordinates": [0, 0], "motion_model": "patrol", "speed": 1 },
             { "class": "car", "coordinates": [-70, 60], "motion_model": "prey", "speed": 1 }] }"#;
-        let found = check("w.json", text, Kind::World, &mut tasks::task);
+        let found = check(
+            "w.json",
+            text,
+            Kind::World,
+            &mut tasks::task,
+            &tasks::classes(&driftworld_env::Catalogue::default()),
+        );
         assert!(found.error.is_none(), "{:?}", found.error);
         let [no_speed, no_way, walled] = found.warnings.as_slice() else {
             panic!("{:?}", found.warnings)

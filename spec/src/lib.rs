@@ -38,6 +38,6 @@ pub use task::{
 pub use version::{SCENARIO_VERSION, TASK_VERSION, WORLD_VERSION};
 pub use world::{
     ActionModel, ActionSpace, AgentParams, Enclosure, EndCondition, EnvironmentParams, GameMode, ImageParams,
-    LastEvent, MAX_OBJECTS, MAX_POINTS, MAX_SEED, Modality, Model, MotionModel, Object, ObjectProgress, Origin, Progress,
-    Pushable, RailsProgress, Region, Respawn, Rules, Shaping, StateFeature, Stimulus, Wall, World,
+    LastEvent, MAX_OBJECTS, MAX_POINTS, MAX_SEED, Modality, Model, MotionModel, Object, ObjectProgress, Origin,
+    Progress, Pushable, RailsProgress, Region, Respawn, Rules, Shaping, StateFeature, Stimulus, Wall, World,
 };

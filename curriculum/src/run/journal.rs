@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use driftworld_metrics::{
-    Complexity, Difficulty, LogWriter, Record, LoggerInfo, MetricsError, Row, Rows, ScenarioInfo, ScenarioType, TaskParams,
-    Timestamp, begun_log, read_log,
+    Complexity, Difficulty, LogWriter, LoggerInfo, MetricsError, Record, Row, Rows, ScenarioInfo, ScenarioType,
+    TaskParams, Timestamp, begun_log, read_log,
 };
 use driftworld_spec::{ScenarioComplexity, ScenarioDifficulty, ScenarioForm, Variant};
 use serde_json::{Map, Value, json};
