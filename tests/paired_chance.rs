@@ -370,11 +370,11 @@ fn endings_end_and_change_no_way_before() {
         ("max_seconds", serde_json::json!(3.05)),
         (
             "rules",
-            serde_json::json!({ "success": [{ "return_at_least": 1 }], "reward_per_second": 0.5 }),
+            serde_json::json!({ "success": [{ "return_at_least": 20 }], "reward_per_second": 50 }),
         ),
         (
             "rules",
-            serde_json::json!({ "failure": [{ "return_at_most": -1 }], "step_reward": -0.01 }),
+            serde_json::json!({ "failure": [{ "return_at_most": -20 }], "step_reward": -5 }),
         ),
     ] {
         let mut document = serde_json::to_value(world).expect("a world serialises");

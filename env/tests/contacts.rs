@@ -190,3 +190,89 @@ fn a_mover_that_rushes_past_touches_and_comes_near_once() {
         assert_eq!(counts, [1, 1], "{speed} m/s");
     }
 }
+
+/// Ways of the agent and of a ball that moves at once, both straight, in time steps of a length: how often it is touched and near.
+fn meeting(mut object: Object, agent: ([f64; 2], f64, f64), seconds: f64, total: f64) -> [usize; 2] {
+    let (at, heading, speed) = agent;
+    object.motion_model = driftworld_spec::MotionModel::Patrol;
+    let mut world = World {
+        objects: vec![object],
+        ..World::default()
+    };
+    world.agent_params.coordinates = at;
+    world.agent_params.heading = heading;
+    world.agent_params.time_step = seconds;
+    world.agent_params.max_linear_speed = 100.0;
+    let mut environment = start(world);
+    let mut counts = [0; 2];
+    for _ in 0..(total / seconds).round() as usize {
+        let step = environment
+            .step(Action::Continuous([speed, 0.0, 0.0]))
+            .expect("it goes on");
+        for event in &step.events {
+            counts[usize::from(event.stimulus == Stimulus::AgentInRange)] += 1;
+        }
+    }
+    counts
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn two_that_go_past_each_other_meet_as_their_ways_do(
+        from in -20.0..20.0_f64,
+        off in -6.0..6.0_f64,
+        heading in 0.0..360.0_f64,
+        own in 0.5..10.0_f64,
+        others in 0.5..10.0_f64,
+        range in 1.0..4.0_f64,
+    ) {
+        let mut ghost = touchable("ball", [from, off]);
+        (ghost.solid, ghost.range_stimulus_distance, ghost.speed, ghost.heading) = (false, range, others, 90.0);
+        ghost.waypoints = vec![[250.0, off]];
+        let agent = ([0.0, -15.0], heading, own);
+        // The nearest that both come in 4 s, centre to centre on the ground.
+        let (sine, cosine) = (heading.to_radians().sin(), heading.to_radians().cos());
+        let nearest = (0..=40_000).map(|k| f64::from(k) * 1e-4).map(|time| {
+            let x = from + others * time - sine * own * time;
+            let y = off + 15.0 - cosine * own * time;
+            x.hypot(y)
+        }).fold(f64::INFINITY, f64::min);
+        let environment = start(World { objects: vec![ghost.clone()], ..World::default() });
+        let item = &environment.scene().items[0];
+        let radius = f64::from(item.asset.collider.radius() * item.scale);
+        let height = (f64::from(item.asset.height * item.scale) - 1.0) / 2.0;
+        let near = usize::from(nearest.hypot(height) < range);
+        let touch = usize::from(nearest < radius + 0.5 + 0.03);
+        let edge = (nearest.hypot(height) - range).abs() < 0.01 || (nearest - radius - 0.53).abs() < 0.01;
+        prop_assume!(!edge);
+        for seconds in [0.1, 0.05, 0.02, 0.01] {
+            let found = meeting(ghost.clone(), agent, seconds, 4.0);
+            prop_assert_eq!(found, [touch, near], "in steps of {} s, {} m", seconds, nearest);
+        }
+    }
+}
+
+#[test]
+fn who_follows_at_the_heels_touches_once() {
+    for others in [1.0, 2.4, 2.6, 4.0, 6.0, 9.0] {
+        for seconds in [0.1, 0.05, 0.02, 0.01] {
+            let mut ball = touchable("ball", [0.0, -45.0]);
+            ball.speed = others;
+            ball.waypoints = vec![[0.0, 48.0]];
+            let found = meeting(ball, ([0.0, -47.0], 0.0, 10.0), seconds, 6.0);
+            assert_eq!(found[0], 1, "{others} m/s in steps of {seconds} s");
+        }
+    }
+}
+
+#[test]
+fn who_goes_beside_another_outside_its_range_is_never_near() {
+    let mut ball = touchable("ball", [0.0, -36.95]);
+    (ball.speed, ball.range_stimulus_distance) = (2.0, 3.0);
+    ball.waypoints = vec![[0.0, 40.0]];
+    for seconds in [0.1, 0.02] {
+        assert_eq!(meeting(ball.clone(), ([0.0, -40.0], 0.0, 2.0), seconds, 10.0), [0, 0]);
+    }
+}

@@ -142,3 +142,47 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn what_is_pushed_comes_as_far_at_any_time_step() {
+    for (class, speed) in [
+        ("barrel", 0.5),
+        ("barrel", 2.0),
+        ("barrel", 5.0),
+        ("ball", 5.0),
+        ("cube", 5.0),
+    ] {
+        for seconds in [0.1, 0.05, 0.03, 0.02, 0.01, 0.004] {
+            let mut body = Object::new(class, [0.0, 0.0]);
+            body.pushable = Some(Pushable {
+                mass: 5.0,
+                friction: 0.5,
+            });
+            let mut world = World {
+                objects: vec![body],
+                ..World::default()
+            };
+            world.agent_params.coordinates = [0.0, -1.2];
+            world.agent_params.time_step = seconds;
+            let mut environment = Environment::new(world).expect("a sound world starts");
+            let first = f64::from(environment.agent().position[1]);
+            let steps = (4.0 / seconds).round() as usize;
+            for _ in 0..steps {
+                environment
+                    .step(Action::Continuous([speed, 0.0, 0.0]))
+                    .expect("it goes on");
+            }
+            let walked = f64::from(environment.agent().position[1]) - first;
+            let pushed = f64::from(environment.scene().items[0].position[1]);
+            let met = walked - pushed;
+            assert!(
+                walked > 0.95 * 4.0 * speed,
+                "{class} {speed} m/s in steps of {seconds} s: {walked}"
+            );
+            assert!(
+                (0.2..0.5).contains(&met),
+                "{class} {speed} m/s in steps of {seconds} s: {pushed} of {walked}"
+            );
+        }
+    }
+}

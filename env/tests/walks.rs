@@ -47,8 +47,8 @@ fn edge(from: [f64; 2], to: [f64; 2]) -> Upright {
     Upright {
         middle: [0, 1].map(|axis| f64::midpoint(from[axis], to[axis])),
         axis: along.map(|part| part / length),
-        half: [length / 2.0, 0.02],
-        radius: 0.0,
+        half: [length / 2.0, 0.0],
+        radius: 0.02,
     }
 }
 

@@ -299,3 +299,105 @@ fn a_pushed_body_slides_along_a_wall() {
         }
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn a_mover_with_corners_comes_round_a_wall(
+        class in prop::sample::select(vec!["cube", "car", "fence", "ball", "bench"]),
+        across in -8.0..8.0_f64,
+        beyond in 16.5..22.0_f64,
+        speed in 0.5..6.0_f64,
+        scale in 0.5..1.5_f64,
+    ) {
+        let mut world = arena(100.0);
+        world.agent_params.coordinates = [48.0, 48.0];
+        world.environment_params.walls = vec![Wall {
+            polygon: vec![[-15.0, -6.0], [15.0, -6.0], [15.0, 0.0], [-15.0, 0.0]],
+            height: None,
+            color: None,
+        }];
+        let mut mover = Object::new(class, [across, 3.5]);
+        (mover.motion_model, mover.speed, mover.scale) = (MotionModel::Patrol, speed, scale);
+        // Beyond the wall's end and a little below its side: the way there leads along it.
+        mover.waypoints = vec![[beyond + 2.0, -0.5], [42.0, -0.5]];
+        world.objects = vec![mover];
+        let mut environment = start(world);
+        let mut least = f64::INFINITY;
+        for _ in 0..(60.0 / speed * 10.0) as usize + 50 {
+            environment.step(Action::Continuous([0.0; 3])).expect("it goes on");
+            let [x, y] = environment.scene().items[0].position.map(f64::from);
+            if x.abs() < 14.0 {
+                least = least.min(y);
+            }
+            if x > 30.0 {
+                break;
+            }
+        }
+        let [x, y] = environment.scene().items[0].position;
+        prop_assert!(least > 0.0, "into the wall: {least}");
+        prop_assert!(x > 30.0, "stopped at ({x}, {y})");
+    }
+
+    #[test]
+    fn the_tip_of_a_wall_holds_nobody(
+        half in prop_oneof![Just(2.5), Just(10.0), Just(22.5), Just(45.0), Just(60.0), 2.0..75.0_f64],
+        off in prop_oneof![-0.02..-0.002_f64, 0.002..0.02_f64],
+        turn in 0.0..360.0_f64,
+    ) {
+        let mut world = arena(300.0);
+        let way = |bearing: f64| direction(bearing + turn).map(|part| part * 30.0);
+        let (left, right) = (way(-half), way(half));
+        world.environment_params.walls = vec![Wall {
+            polygon: vec![[0.0, 0.0], right, [left[0] + right[0], left[1] + right[1]], left],
+            height: None,
+            color: None,
+        }];
+        let (ahead, across) = (direction(turn), direction(turn + 90.0));
+        world.agent_params.coordinates = [0, 1].map(|axis| -3.0 * ahead[axis] + off * across[axis]);
+        world.agent_params.heading = turn;
+        let mut environment = start(world);
+        for _ in 0..200 {
+            go(&mut environment, 5.0);
+        }
+        let at = environment.agent().position.map(f64::from);
+        prop_assert!(dot(at, across) * off.signum() > 1.0, "{at:?}");
+    }
+}
+
+#[test]
+fn rolling_round_a_body_takes_its_time_at_any_time_step() {
+    // In closed form: the tangent of half the angle from head-on grows with exp(v t / r).
+    for share in [0.01_f64, 0.05, 0.1, 0.3] {
+        for seconds in [1.0, 0.1, 0.01] {
+            for scale in [1.0, 20.0] {
+                let mut barrel = Object::new("barrel", [0.0, 0.0]);
+                barrel.scale = scale;
+                let mut world = arena(500.0);
+                world.objects = vec![barrel];
+                world.agent_params.time_step = seconds;
+                let reach = {
+                    let environment = start(world.clone());
+                    let item = &environment.scene().items[0];
+                    f64::from(item.asset.collider.radius() * item.scale) + 0.5 + 0.01
+                };
+                world.agent_params.coordinates = [share * reach, -reach - 5.0];
+                let mut environment = start(world);
+                let total = 12.0 + scale;
+                for _ in 0..(total / seconds).round() as usize {
+                    go(&mut environment, 5.0);
+                }
+                let [_, y] = environment.agent().position.map(f64::from);
+                let first = share.asin();
+                let met = reach + 5.0 - reach * first.cos();
+                let round = -reach / 5.0 * (first / 2.0).tan().ln();
+                let expected = (total - met / 5.0 - round) * 5.0;
+                assert!(
+                    (y - expected).abs() < 0.01 * expected + 0.02,
+                    "{share} {seconds} s × {scale}: {y}, expected {expected}"
+                );
+            }
+        }
+    }
+}

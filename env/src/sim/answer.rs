@@ -6,27 +6,17 @@ use driftworld_spec::{Object, Stimulus};
 
 use super::action::Intent;
 use super::chance::Luck;
-use super::environment::Environment;
+use super::contact::RELEASE;
+use super::environment::{Environment, Scratch};
 use super::event::{Event, Step};
 
 impl Environment {
-    /// Finds what the time step set off, and pays for it. `scratch.met` holds what the agent met on its way, and what met it;
-    /// `scratch.entered` the objects whose range was entered on the way.
+    /// Finds what the time step set off, and pays for it. `scratch.met` holds what the agent met on its way, and what met it.
     pub(super) fn answer(&mut self, intent: Intent, step: &mut Step) {
         let mut scratch = std::mem::take(&mut self.scratch);
-        let here = self.episode.agent.position;
-        self.ground.note_touching(here, &mut scratch.met);
         scratch.triggered.clear();
         scratch.triggered.reserve(32);
-        let contacts = &mut self.episode.contacts;
-        contacts.reserve(scratch.met.len().max(16));
-        for index in scratch.met.drain(..) {
-            if let Err(place) = contacts.binary_search(&index) {
-                scratch.triggered.push((index, Stimulus::AgentCollide));
-                contacts.insert(place, index);
-            }
-        }
-        contacts.retain(|index| self.ground.is_still_touched(*index, here));
+        self.answer_contacts(&mut scratch);
         if intent.interact {
             let agent = &self.episode.agent;
             self.ground
@@ -36,16 +26,18 @@ impl Environment {
                 .triggered
                 .extend(reached.map(|index| (*index, Stimulus::AgentInteract)));
         }
-        let entered = scratch.entered.drain(..);
-        scratch
-            .triggered
-            .extend(entered.map(|index| (index, Stimulus::AgentInRange)));
+        scratch.moved.sort_unstable_by_key(|(index, _)| *index);
         for index in 0..self.episode.objects.len() {
-            let now = self.is_in_range(index);
-            if now && !self.episode.objects[index].in_range {
+            let reach = self.world.objects[index].range_stimulus_distance;
+            if reach <= 0.0 {
+                continue;
+            }
+            let was = self.episode.objects[index].in_range;
+            let enters = !was && self.comes_near(index, &scratch);
+            if enters {
                 scratch.triggered.push((index as u32, Stimulus::AgentInRange));
             }
-            self.episode.objects[index].in_range = now;
+            self.episode.objects[index].in_range = (was || enters) && self.is_within(index, reach + RELEASE);
         }
         scratch.triggered.sort_unstable();
         scratch.triggered.dedup();
@@ -55,32 +47,48 @@ impl Environment {
         self.scratch = scratch;
     }
 
-    /// Notes the objects into whose range the agent's way of this time step leads, even if it leads out again.
-    pub(super) fn pass_ranges(&mut self) {
-        for index in 0..self.episode.objects.len() {
-            if self.world.objects[index].range_stimulus_distance > 0.0 && !self.episode.objects[index].in_range {
-                let [x, y] = self.scene.items[index].position.map(f64::from);
-                let path = self.ground.path().windows(2);
-                let nearest = path
-                    .map(|ends| squared_distance([x, y], ends[0], ends[1]))
-                    .fold(f64::INFINITY, f64::min);
-                if self.is_range(index, nearest) {
-                    self.scratch.entered.push(index as u32);
-                }
+    /// Contacts that begin and that end.
+    fn answer_contacts(&mut self, scratch: &mut Scratch) {
+        let here = self.episode.agent.position;
+        self.ground.note_touching(here, &mut scratch.met);
+        let contacts = &mut self.episode.contacts;
+        contacts.reserve(scratch.met.len().max(16));
+        for index in scratch.met.drain(..) {
+            if let Err(place) = contacts.binary_search(&index) {
+                scratch.triggered.push((index, Stimulus::AgentCollide));
+                contacts.insert(place, index);
             }
         }
+        let began = scratch.triggered.len();
+        let new = &scratch.triggered[..began];
+        let stays = |index: &u32| {
+            let is_new = new.iter().any(|(other, _)| other == index);
+            // What was met in front of the agent, and moved on since, was touched when the agent had moved.
+            let ran_ahead = is_new && scratch.moved.iter().any(|(other, _)| *other == *index as usize);
+            ran_ahead || scratch.kept.binary_search(index).is_ok() || self.ground.is_still_touched(*index, here)
+        };
+        contacts.retain(stays);
     }
 
-    /// Notes an object that came from another place to where it is now, if the agent was in its range on the way.
-    pub(super) fn pass_range_of(&mut self, index: usize, from: [f32; 2]) {
-        if self.world.objects[index].range_stimulus_distance > 0.0 && !self.episode.objects[index].in_range {
-            let to = self.scene.items[index].position.map(f64::from);
-            let agent = self.episode.agent.position.map(f64::from);
-            let nearest = squared_distance(agent, from.map(f64::from), to);
-            if self.is_range(index, nearest) {
-                self.scratch.entered.push(index as u32);
-            }
+    /// Whether the agent is in an object's range anywhere on both their ways of this time step.
+    fn comes_near(&self, index: usize, scratch: &Scratch) -> bool {
+        if scratch.arrived.contains(&index) {
+            return self.is_in_range(index);
         }
+        let to = self.scene.items[index].position.map(f64::from);
+        let nearest = if let Ok(place) = scratch.moved.binary_search_by_key(&index, |(other, _)| *other) {
+            // As the agent sees it, the object comes from where it was then to where it is now.
+            let from = scratch.moved[place].1.map(f64::from);
+            let (began, ends) = (self.ground.began(), self.episode.agent.position);
+            let then = [0, 1].map(|axis| from[axis] - f64::from(began[axis]));
+            let now = [0, 1].map(|axis| to[axis] - f64::from(ends[axis]));
+            squared_distance([0.0; 2], then, now)
+        } else {
+            let path = self.ground.path().windows(2);
+            path.map(|ends| squared_distance(to, ends[0], ends[1]))
+                .fold(f64::INFINITY, f64::min)
+        };
+        self.is_in_range(index) || self.is_range(index, nearest, self.world.objects[index].range_stimulus_distance)
     }
 
     /// One stimulus on one object: what it pays, whether it destroys.
@@ -144,16 +152,16 @@ impl Environment {
 
     /// Centre to centre in 3D: the agent's at half its height, the object's at half of its own.
     pub(super) fn is_in_range(&self, index: usize) -> bool {
-        if self.world.objects[index].range_stimulus_distance <= 0.0 {
-            return false;
-        }
-        let [x, y] = self.way_to(index).map(f64::from);
-        self.is_range(index, x * x + y * y)
+        self.is_within(index, self.world.objects[index].range_stimulus_distance)
     }
 
-    /// Whether an object's range reaches so far on the ground; the square of the distance in metres is given.
-    fn is_range(&self, index: usize, squared: f64) -> bool {
-        let reach = self.world.objects[index].range_stimulus_distance;
+    fn is_within(&self, index: usize, reach: f64) -> bool {
+        let [x, y] = self.way_to(index).map(f64::from);
+        self.is_range(index, x * x + y * y, reach)
+    }
+
+    /// Whether so much reach covers a distance on the ground, whose square is given.
+    fn is_range(&self, index: usize, squared: f64, reach: f64) -> bool {
         if reach <= 0.0 || !self.episode.objects[index].present {
             return false;
         }

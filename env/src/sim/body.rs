@@ -73,6 +73,8 @@ pub(super) struct Scratch {
     pub(super) path: Vec<Point>,
     /// The way of an object that moves by itself.
     pub(super) strides: Vec<Point>,
+    /// The numbers of widened footprints.
+    pub(super) places: Vec<u32>,
     /// The body of an object that moves, turned.
     pub(super) body: Footprint,
     /// Footprints widened by it.
@@ -197,7 +199,7 @@ impl Ground {
                 let half = [length / 2.0, 0.02];
                 let wall = ColliderBuilder::cuboid(half[0], half[1], self.wall_half_height());
                 let wall = wall.position(Pose::new(middle, Vector::new(0.0, 0.0, angle)));
-                self.insert(wall, WALL, Outline::rectangle(half), -angle.to_degrees());
+                self.insert(wall, WALL, Outline::wall(half[0], half[1]), -angle.to_degrees());
             }
         }
     }
@@ -308,6 +310,7 @@ impl Ground {
         self.scratch.touched.reserve(16);
         self.scratch.path.reserve(64);
         self.scratch.strides.reserve(64);
+        self.scratch.places.reserve(64);
         let least = [0, 1].map(|axis| (from[axis].min(to[axis]) - reach) as f32);
         let most = [0, 1].map(|axis| (from[axis].max(to[axis]) + reach) as f32);
         let area = Aabb::new(
@@ -360,11 +363,12 @@ impl Ground {
         }
         let end = self.scratch.path.last().copied().unwrap_or(start);
         let mut place = end.map(|metres| metres as f32);
+        let inside = self.half.map(|half| half - (self.radius + SKIN) as f32);
+        let is_within = (0..2).all(|axis| inside[axis] > 0.0 && from[axis].abs() <= inside[axis] + SKIN as f32);
         for axis in 0..2 {
             // Rounding brings nothing out of the arena that came from within.
-            let inside = self.half[axis] - (self.radius + SKIN) as f32;
-            if from[axis].abs() <= inside + SKIN as f32 && inside > 0.0 {
-                place[axis] = place[axis].clamp(-inside, inside);
+            if is_within {
+                place[axis] = place[axis].clamp(-inside[axis], inside[axis]);
             }
             place[axis] = place[axis].clamp(-EDGE, EDGE);
         }
@@ -382,6 +386,12 @@ impl Ground {
     /// Where the agent's way of this time step began, bent and ended.
     pub(super) fn path(&self) -> &[Point] {
         &self.scratch.path
+    }
+
+    /// Where the agent was at the beginning of this time step.
+    pub(super) fn began(&self) -> [f32; 2] {
+        let start = self.scratch.path.first().copied().unwrap_or_default();
+        start.map(|metres| metres as f32)
     }
 
     /// The solid objects that the agent's body would be inside of at a place, by index in rising order.

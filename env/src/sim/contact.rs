@@ -1,7 +1,8 @@
 //! What counts as a touch, and how long it lasts. What a touch pays is in `answer.rs`.
 //!
 //! A contact begins when the gap between the agent and an object is no wider than [`TOUCH`] anywhere on their ways, and ends when it
-//! is wider than [`RELEASE`]. Both are places, not times: how often one pass touches does not depend on speed or time step.
+//! is wider than [`RELEASE`], both when the agent has moved and when the objects have: who follows another at its heels stays in
+//! touch. These are places, not times: how often one pass touches does not depend on speed or time step.
 
 use super::body::{GHOST, Ground, SOLID, slot};
 use super::footprint::Point;
@@ -9,12 +10,12 @@ use super::footprint::Point;
 /// Widest gap that is a touch, in metres: a little more than the skin.
 const TOUCH: f64 = 0.03;
 
-/// Widest gap at which a contact lasts, in metres.
-const RELEASE: f64 = 0.25;
+/// Widest gap at which a contact lasts, in metres; a range is left as far beyond its edge.
+pub(super) const RELEASE: f64 = 0.25;
 
 impl Ground {
-    /// Notes the objects that the agent touched on its way of this time step, each once.
-    pub(super) fn note_passed(&mut self, met: &mut Vec<u32>) {
+    /// Notes the objects that the agent touched on its way of this time step, each once, but for those that are `skipped`.
+    pub(super) fn note_passed(&mut self, met: &mut Vec<u32>, skipped: impl Fn(u32) -> bool) {
         let Some((mut least, mut most)) = self.path().first().map(|&start| (start, start)) else {
             return;
         };
@@ -35,22 +36,23 @@ impl Ground {
                 let by = [0, 1].map(|axis| ends[1][axis] - ends[0][axis]);
                 footprint.time_within(ends[0], by, reach).is_some()
             });
-            if touched {
+            if touched && !skipped(object) {
                 note(met, object);
             }
         }
     }
 
-    /// Notes an object that touched the agent while it came `by` metres to where it is now.
-    pub(super) fn note_passing(&self, object: u32, by: [f32; 2], agent: [f32; 2], met: &mut Vec<u32>) {
+    /// Notes an object that touched the agent while it came `by` metres to where it is now, and the agent from one place to another.
+    pub(super) fn note_passing(&self, object: u32, by: [f32; 2], agent: [[f32; 2]; 2], met: &mut Vec<u32>) {
         let Some(handle) = self.handles[object as usize] else {
             return;
         };
         let footprint = &self.low[slot(handle)];
-        // To the object it is the agent that came the other way.
-        let from = [0, 1].map(|axis| f64::from(agent[axis]) + f64::from(by[axis]));
-        let by = by.map(|metres| -f64::from(metres));
-        if footprint.time_within(from, by, self.radius + TOUCH).is_some() {
+        // As the object sees it.
+        let [start, end] = agent.map(|at| at.map(f64::from));
+        let from = [0, 1].map(|axis| start[axis] + f64::from(by[axis]));
+        let way = [0, 1].map(|axis| end[axis] - from[axis]);
+        if footprint.time_within(from, way, self.radius + TOUCH).is_some() {
             note(met, object);
         }
     }

@@ -52,8 +52,12 @@ pub struct Environment {
 pub(super) struct Scratch {
     /// Objects that the agent met on its way, and that met it on theirs.
     pub(super) met: Vec<u32>,
-    /// Objects whose range was entered on the way.
-    pub(super) entered: Vec<u32>,
+    /// Contacts that last although a moving object ran ahead, in rising order.
+    pub(super) kept: Vec<u32>,
+    /// Objects that moved in this time step, by index, and where they came from.
+    pub(super) moved: Vec<(usize, [f32; 2])>,
+    /// Objects that came back in this time step.
+    pub(super) arrived: Vec<usize>,
     pub(super) reached: Vec<u32>,
     pub(super) triggered: Vec<(u32, Stimulus)>,
 }

@@ -9,10 +9,10 @@ use smallvec::{SmallVec, smallvec};
 /// A point or a way on the ground, in metres.
 pub(super) type Point = [f64; 2];
 
-/// A convex polygon or a point, widened by a radius.
+/// A convex polygon, a straight line or a point, widened by a radius.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Footprint {
-    /// One for a disc; else at least three, counterclockwise, no two of them alike.
+    /// One for a disc, two for a wall of round ends; else more, counterclockwise, no two of them alike.
     corners: SmallVec<[Point; 4]>,
     /// How far beyond its corners and edges it reaches, in metres.
     rounding: f64,
@@ -50,6 +50,15 @@ impl Footprint {
         }
     }
 
+    /// A line of this half length along x around the origin, widened: its ends are round, so that where two walls meet, they make
+    /// one corner without a notch.
+    pub(super) fn line(half_length: f64, radius: f64) -> Self {
+        Self {
+            corners: smallvec![[-half_length, 0.0], [half_length, 0.0]],
+            rounding: radius,
+        }
+    }
+
     /// A rectangle around the origin, its sides along the axes.
     pub(super) fn rectangle([x, y]: Point) -> Self {
         Self {
@@ -78,6 +87,11 @@ impl Footprint {
     /// Its radius, if it is a disc.
     pub(super) fn as_disc(&self) -> Option<f64> {
         (self.corners.len() == 1).then_some(self.rounding)
+    }
+
+    /// How far beyond its corners and edges it reaches, in metres.
+    pub(super) fn rounding(&self) -> f64 {
+        self.rounding
     }
 
     /// Its corners, counterclockwise; the middle of a disc.
@@ -145,6 +159,7 @@ impl Footprint {
     pub(super) fn gap(&self, at: Point) -> Gap {
         let gap = match self.corners.as_slice() {
             [middle] => away_from(*middle, at),
+            [from, to] => gap_to_line(*from, *to, at),
             corners => gap_to_polygon(corners, at),
         };
         Gap {
@@ -184,6 +199,27 @@ fn away_from(middle: Point, at: Point) -> Gap {
         [1.0, 0.0]
     };
     Gap { distance, out }
+}
+
+fn gap_to_line(from: Point, to: Point, at: Point) -> Gap {
+    let line = [to[0] - from[0], to[1] - from[1]];
+    let way = [at[0] - from[0], at[1] - from[1]];
+    let squared = line[0] * line[0] + line[1] * line[1];
+    let along = line[0] * way[0] + line[1] * way[1];
+    if along <= 0.0 || squared == 0.0 {
+        return away_from(from, at);
+    }
+    if along >= squared {
+        return away_from(to, at);
+    }
+    let length = squared.sqrt();
+    // Twice the area between the line and the point: positive on its right.
+    let beyond = line[1] * way[0] - line[0] * way[1];
+    let side = if beyond < 0.0 { -1.0 } else { 1.0 };
+    Gap {
+        distance: beyond.abs() / length,
+        out: [side * line[1] / length, -side * line[0] / length],
+    }
 }
 
 fn gap_to_polygon(corners: &[Point], at: Point) -> Gap {
@@ -263,7 +299,12 @@ mod tests {
         let polygon = prop::collection::vec(point(), 3..9)
             .prop_filter_map("points on a line", Footprint::around)
             .boxed();
-        prop_oneof![disc, polygon]
+        let line = (point(), 0.0..6.3_f64, 0.1..4.0_f64, 0.0..0.5_f64).prop_map(|(at, turn, half, radius)| {
+            let mut placed = Footprint::default();
+            Footprint::line(half, radius).place_into([turn.sin(), turn.cos()], at, &mut placed);
+            placed
+        });
+        prop_oneof![disc, polygon, line]
     }
 
     /// The nearest of many points on the boundary: another way to the same distance, to a few millimetres.
@@ -296,7 +337,7 @@ mod tests {
         fn the_gap_is_that_to_the_nearest_of_many_points(footprint in footprint(), at in point()) {
             let gap = footprint.gap(at);
             let sampled = sampled_distance(&footprint, at);
-            if footprint.corners.len() > 1 && is_inside(&footprint.corners, at) {
+            if footprint.corners.len() > 2 && is_inside(&footprint.corners, at) {
                 prop_assert!((gap.distance + sampled).abs() < 0.01, "{} {sampled}", gap.distance);
             } else {
                 prop_assert!((gap.distance - sampled).abs() < 0.01, "{} {sampled}", gap.distance);

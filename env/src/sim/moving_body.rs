@@ -8,6 +8,9 @@ use super::footprint::Footprint;
 use super::outline::Outline;
 use super::slide::{Obstacles, SKIN};
 
+/// How far a body that turns beside a wall is moved for its corners, in metres.
+const TURN_ROOM: f64 = 0.25;
+
 impl Ground {
     /// Tells the objects where the agent is: they stop in front of it.
     pub(crate) fn place_agent(&mut self, at: [f32; 2]) {
@@ -39,52 +42,63 @@ impl Ground {
         self.note_place(handle, heading_deg);
     }
 
-    /// Turns an object's body to a heading in degrees and moves it towards where it means to go; it stops at walls, solid
-    /// objects and the agent, and slides along them. Hands back where it is then; nothing for an object that is not there.
-    pub(crate) fn push(&mut self, index: u32, by: [f32; 2], heading_deg: f32) -> Option<[f32; 2]> {
+    /// Turns an object's body from one heading in degrees to another and moves it towards where it means to go; it stops at walls,
+    /// solid objects and the agent, and slides along them. A body with corners turns only where it finds room for them; else it
+    /// slides on as it stands. Hands back where it is then and where it faces; nothing for an object that is not there.
+    pub(crate) fn push(&mut self, index: u32, by: [f32; 2], turn_deg: [f32; 2]) -> Option<([f32; 2], f32)> {
         let handle = self.handles[index as usize]?;
         let start = self.colliders[handle].translation();
         let start = [start.x, start.y];
         let (from, way) = (start.map(f64::from), by.map(f64::from));
+        let [facing, mut heading_deg] = turn_deg;
         let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
-        let mut end = from;
-        if length >= 1e-6 {
-            let mut body = std::mem::take(&mut self.scratch.body);
-            self.standing[slot(handle)].outline.turned_into(heading_deg, &mut body);
-            self.gather(
-                SOLID | WALL | AGENT,
-                Some(handle),
-                [from, from],
-                length + body.reach() + 2.0 * SKIN,
-            );
-            let mut scratch = std::mem::take(&mut self.scratch);
-            scratch.strides.clear();
-            if let Some(radius) = body.as_disc() {
-                let obstacles = Obstacles {
-                    footprints: &self.whole,
-                    numbers: &scratch.numbers,
-                };
-                obstacles.slide(from, way, radius, &mut scratch.touched, &mut scratch.strides);
-            } else {
-                let count = scratch.numbers.len();
-                // Room for what most ways meet, so that no step takes memory.
-                while scratch.widened.len() < count.max(16) {
-                    scratch.widened.push(Footprint::with_room());
-                }
-                for (place, number) in scratch.numbers.iter_mut().enumerate() {
-                    self.whole[*number as usize].widened_into(&body, &mut scratch.widened[place]);
-                    *number = place as u32;
-                }
-                let obstacles = Obstacles {
-                    footprints: &scratch.widened,
-                    numbers: &scratch.numbers,
-                };
-                obstacles.slide(from, way, 0.0, &mut scratch.touched, &mut scratch.strides);
+        let mut body = std::mem::take(&mut self.scratch.body);
+        let outline = &self.standing[slot(handle)].outline;
+        outline.turned_into(heading_deg, &mut body);
+        let reach = length + TURN_ROOM + body.reach() + 2.0 * SKIN;
+        self.gather(SOLID | WALL | AGENT, Some(handle), [from, from], reach);
+        let mut scratch = std::mem::take(&mut self.scratch);
+        scratch.strides.clear();
+        if let Some(radius) = body.as_disc() {
+            let obstacles = Obstacles {
+                footprints: &self.whole,
+                numbers: &scratch.numbers,
+            };
+            obstacles.slide(from, way, radius, &mut scratch.touched, &mut scratch.strides);
+        } else {
+            // Its corners are given to what it may meet, so that it is a point among wider bodies.
+            let count = scratch.numbers.len();
+            scratch.places.clear();
+            scratch.places.extend(0..count as u32);
+            // Room for what most ways meet, so that no step takes memory.
+            while scratch.widened.len() < count.max(16) {
+                scratch.widened.push(Footprint::with_room());
             }
-            end = scratch.strides.last().copied().unwrap_or(from);
-            scratch.body = body;
-            self.scratch = scratch;
+            self.widen(&scratch.numbers, &body, &mut scratch.widened);
+            let mut begun = from;
+            if heading_deg != facing {
+                let turned = Obstacles {
+                    footprints: &scratch.widened,
+                    numbers: &scratch.places,
+                };
+                if let Some(room) = turned.room_near(from, TURN_ROOM) {
+                    begun = room;
+                } else {
+                    heading_deg = facing;
+                    self.standing[slot(handle)].outline.turned_into(facing, &mut body);
+                    self.widen(&scratch.numbers, &body, &mut scratch.widened);
+                }
+            }
+            let obstacles = Obstacles {
+                footprints: &scratch.widened,
+                numbers: &scratch.places,
+            };
+            scratch.strides.push(begun);
+            obstacles.slide(begun, way, 0.0, &mut scratch.touched, &mut scratch.strides);
         }
+        let end = scratch.strides.last().copied().unwrap_or(from);
+        scratch.body = body;
+        self.scratch = scratch;
         let mut place = end.map(|metres| metres as f32);
         for axis in 0..2 {
             let half = if start[axis].abs() <= self.half[axis] {
@@ -95,7 +109,14 @@ impl Ground {
             place[axis] = place[axis].clamp(-half, half);
         }
         self.put(index, place, heading_deg);
-        Some(place)
+        Some((place, heading_deg))
+    }
+
+    /// The footprints of these numbers, widened by a body.
+    fn widen(&self, numbers: &[u32], body: &Footprint, widened: &mut [Footprint]) {
+        for (number, widened) in numbers.iter().zip(widened) {
+            self.whole[*number as usize].widened_into(body, widened);
+        }
     }
 
     /// Whether an object's body, taken away before, would stand free at a place.

@@ -20,30 +20,43 @@ impl Environment {
                 continue;
             }
             let item = &mut self.scene.items[index];
+            let from = item.position;
             let view = View {
-                position: item.position,
+                position: from,
                 heading_deg: item.heading_deg,
                 agent: self.episode.agent.position,
                 half,
                 seconds,
             };
-            let Some(stride) = mover.decide(&self.world.objects[index], view) else {
-                continue;
-            };
-            // Where the body is, the item is, to the last bit: a world that was written down has nothing else to go on from.
-            let Some(place) = self.ground.push(index as u32, stride.by, stride.heading_deg) else {
-                continue;
-            };
-            let from = item.position;
-            let came = [place[0] - from[0], place[1] - from[1]];
-            (item.position, item.heading_deg) = (place, stride.heading_deg);
-            mover.moved(stride.by, came);
-            let agent = self.episode.agent.position;
-            self.ground
-                .note_passing(index as u32, came, agent, &mut self.scratch.met);
-            self.pass_range_of(index, from);
+            if let Some(stride) = mover.decide(&self.world.objects[index], view) {
+                let turn = [item.heading_deg, stride.heading_deg];
+                // Where the body is, the item is, to the last bit: a world that was written down has nothing else to go on from.
+                if let Some(pose) = self.ground.push(index as u32, stride.by, turn) {
+                    (item.position, item.heading_deg) = pose;
+                    mover.moved(stride.by, [0, 1].map(|axis| item.position[axis] - from[axis]));
+                }
+            }
+            self.note_mover(index, from);
         }
         self.episode.movers = movers;
+    }
+
+    /// Notes what an object that moves by itself, and came from a place, met on its way.
+    fn note_mover(&mut self, index: usize, from: [f32; 2]) {
+        let to = self.scene.items[index].position;
+        let came = [0, 1].map(|axis| to[axis] - from[axis]);
+        let (began, ends) = (self.ground.began(), self.episode.agent.position);
+        if came != [0.0; 2] {
+            self.scratch.moved.push((index, from));
+        }
+        // The agent and a ghost go their ways at once; a solid body stops for the agent, and moves when that has moved.
+        if !self.world.objects[index].solid {
+            self.ground
+                .note_passing(index as u32, came, [began, ends], &mut self.scratch.met);
+        } else if came != [0.0; 2] {
+            self.ground
+                .note_passing(index as u32, came, [ends, ends], &mut self.scratch.met);
+        }
     }
 
     /// Puts back the destroyed objects whose time has come: near their first place, where nothing stands.
@@ -91,6 +104,7 @@ impl Environment {
                 self.ground.add_object(index as u32, item, object.solid);
                 let state = &mut self.episode.objects[index];
                 (state.present, state.reward, state.in_range) = (true, object.reward, false);
+                self.scratch.arrived.push(index);
                 if let Some(luck) = self.episode.luck_of(index) {
                     luck.came_back();
                 }

@@ -1,6 +1,7 @@
 //! What an asset's body covers of the ground before it is turned and moved: in all, and up to the agent's height.
 //!
-//! The agent is an upright cylinder: what is above its head does not stop it. Other bodies keep apart by all that they cover.
+//! The agent is an upright cylinder: of balls, capsules and hulls, what is above its head does not stop it. Boxes and cylinders
+//! are as wide above as below. Other bodies keep apart by all that they cover.
 
 use rapier3d::prelude::{SharedShape, Vector};
 
@@ -19,6 +20,14 @@ impl Outline {
         Self {
             low: None,
             whole: Footprint::disc([0.0; 2], f64::from(radius)),
+        }
+    }
+
+    /// A thin wall of round ends, of this half length along x.
+    pub(super) fn wall(half_length: f32, half_thickness: f32) -> Self {
+        Self {
+            low: None,
+            whole: Footprint::line(f64::from(half_length), f64::from(half_thickness)),
         }
     }
 
@@ -80,6 +89,10 @@ impl Outline {
         const TALL: f32 = 4.0;
         if let Some(radius) = self.whole.as_disc() {
             return SharedShape::ball(radius as f32);
+        }
+        if let [from, to] = self.whole.corners() {
+            let half_length = (to[0] - from[0]) / 2.0;
+            return SharedShape::cuboid(half_length as f32, self.whole.rounding() as f32, TALL);
         }
         let corners = self.whole.corners().iter();
         let corners: Vec<Vector> = corners

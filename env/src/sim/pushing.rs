@@ -11,12 +11,16 @@ use super::body::{EDGE, Ground, SOLID, WALL, slot};
 use super::environment::Environment;
 use super::episode::wrapped;
 use super::outline::Outline;
+use super::slide::SKIN;
 
 /// What the agent weighs, in kilograms. In each time step it meets what it pushes with this mass at its own speed.
 const AGENT_MASS: f32 = 80.0;
 
 /// Longest step of the physics, in seconds.
 const LONGEST: f32 = 1.0 / 60.0;
+
+/// Fewest steps of the physics in a time step: in the first of a new physics world, what touches already is not seen.
+const FEWEST_PARTS: u32 = 2;
 
 /// Most steps of the physics in a time step: longer ones are taken in larger parts.
 const MOST_PARTS: u32 = 60;
@@ -98,7 +102,7 @@ impl Environment {
             .collect();
         self.add_surroundings(&mut physics, &active, seconds);
         let agent = agent_pushes.then(|| self.add_agent(&mut physics, by, seconds));
-        let parts = ((seconds / LONGEST).ceil() as u32).clamp(1, MOST_PARTS);
+        let parts = ((seconds / LONGEST).ceil() as u32).clamp(FEWEST_PARTS, MOST_PARTS);
         physics.integration_parameters.dt = seconds / parts as f32;
         for _ in 0..parts {
             physics.step();
@@ -257,7 +261,8 @@ impl Environment {
             .can_sleep(false);
         let body = physics.bodies.insert(body);
         // What it pushes is not held back by its sides, nor is it by walls.
-        let collider = ColliderBuilder::ball(self.ground.radius as f32)
+        // With its skin, which is where it meets what it pushes.
+        let collider = ColliderBuilder::ball((self.ground.radius + SKIN) as f32)
             .mass(AGENT_MASS)
             .friction(0.0)
             .friction_combine_rule(CoefficientCombineRule::Min)
@@ -300,6 +305,7 @@ impl Environment {
             let heading_deg = wrapped(-yaw.to_degrees());
             // A body at rest keeps its very place, whatever solvers make of it.
             if position != item.position || pushed.moves() {
+                self.scratch.moved.push((object, item.position));
                 (item.position, item.heading_deg) = (position, heading_deg);
                 self.ground.put(object as u32, position, heading_deg);
             }

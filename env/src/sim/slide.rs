@@ -56,7 +56,10 @@ impl Obstacles<'_> {
     }
 
     /// Moves a round body out of what it overlaps, by half a metre at most and never through anything else.
-    pub(super) fn out_of_overlap(&self, mut at: Point, radius: f64) -> Point {
+    ///
+    /// Where that leads into other things as deeply, it stays.
+    pub(super) fn out_of_overlap(&self, start: Point, radius: f64) -> Point {
+        let mut at = start;
         for _ in 0..3 {
             let Some(gap) = self.deepest_overlap(at, radius) else {
                 break;
@@ -66,7 +69,29 @@ impl Obstacles<'_> {
             let share = self.first_time(at, by, radius).unwrap_or(1.0);
             at = add(at, by, share);
         }
-        at
+        let depth = |at: Point| {
+            self.deepest_overlap(at, radius)
+                .map_or(0.0, |gap| radius - gap.distance)
+        };
+        if depth(at) < depth(start) { at } else { start }
+    }
+
+    /// A place near to one, at most this far, where a body without a radius overlaps nothing; nothing if none is found.
+    pub(super) fn room_near(&self, start: Point, most: f64) -> Option<Point> {
+        let mut at = start;
+        for _ in 0..8 {
+            let gaps = self.footprints().map(|footprint| footprint.gap(at));
+            let deepest = gaps.min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+            if deepest.distance >= 0.0 {
+                return Some(at);
+            }
+            at = add(at, deepest.out, 1e-6 - deepest.distance);
+            let off = add(at, start, -1.0);
+            if dot(off, off) > most * most {
+                return None;
+            }
+        }
+        None
     }
 
     /// Lets a round body, driven a way in a unit of time, slide; notes in `path` where its way bends, and its end.
@@ -118,12 +143,27 @@ impl Obstacles<'_> {
             let apart = gap.distance - kept;
             if apart <= SAGITTA {
                 // Driven away from the edge, the body leaves it.
-                let back = if dot(by, gap.out) < 0.0 { apart.max(0.0) } else { 0.0 };
-                return (add(end, gap.out, -back), time);
+                let into = dot(by, gap.out).min(0.0);
+                let back = if into < 0.0 { apart.max(0.0) } else { 0.0 };
+                let onward = add(by, gap.out, -into);
+                let taken = time * share_of_time(dot(way, way).sqrt(), dot(onward, onward).sqrt());
+                return (add(end, gap.out, -back), taken);
             }
             // Behind a bend the edge falls away with the square of the way.
             time *= (0.9 * (SAGITTA / apart).sqrt()).clamp(0.05, 0.9);
         }
+    }
+}
+
+/// The share of the time that a part of the way takes at the speed of its beginning, if the speed grows evenly with the way.
+///
+/// It does so around a corner, but for the third power of the angle.
+fn share_of_time(first: f64, last: f64) -> f64 {
+    let growth = last / first - 1.0;
+    if growth > 1e-6 {
+        libm::log1p(growth) / growth
+    } else {
+        1.0
     }
 }
 

@@ -90,7 +90,6 @@ impl Environment {
     fn tick(&mut self, intent: Intent, step: &mut Step) {
         self.episode.ticks += 1;
         self.carry_out(intent);
-        self.pass_ranges();
         self.bring_back();
         self.move_objects();
         self.answer(intent, step);
@@ -110,9 +109,26 @@ impl Environment {
             None => self.episode.agent.forward().map(|part| part * intent.ahead),
         };
         self.scratch.met.clear();
+        self.scratch.moved.clear();
+        self.scratch.arrived.clear();
         let by = self.push_bodies(by);
         let position = self.ground.slide(start, by);
-        self.ground.note_passed(&mut self.scratch.met);
+        let objects = &self.world.objects;
+        let movers = &self.episode.movers;
+        // Ghosts that move are met where both ways lead, which is known when they have moved.
+        let moves = |object: u32| {
+            movers
+                .binary_search_by_key(&(object as usize), |mover| mover.object)
+                .is_ok()
+        };
+        let skipped = |object: u32| !objects[object as usize].solid && moves(object);
+        self.ground.note_passed(&mut self.scratch.met, skipped);
+        self.scratch.kept.clear();
+        let contacts = self.episode.contacts.iter().copied();
+        let ground = &self.ground;
+        self.scratch
+            .kept
+            .extend(contacts.filter(|index| ground.is_still_touched(*index, position)));
         self.episode.agent.position = position;
         let seconds = self.world.agent_params.time_step as f32;
         self.episode.agent.velocity = [0, 1].map(|axis| (position[axis] - start[axis]) / seconds);

@@ -222,7 +222,8 @@ pub enum Stimulus {
     AgentCollide,
     /// The agent interacts while the object is in the 1 m cube right in front of it.
     AgentInteract,
-    /// The centres come closer than `range_stimulus_distance`, even for a part of a step.
+    /// The centres come closer than `range_stimulus_distance`, even for a part of a step; again when they come back from a quarter of
+    /// a metre beyond.
     AgentInRange,
 }
 
