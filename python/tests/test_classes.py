@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import driftworld
 import numpy as np
 import pytest
-
-import driftworld
 
 
 def seen(*classes: str) -> set[int]:
