@@ -59,7 +59,7 @@ impl PyPlan {
             let (plan, named) = file
                 .plan_named(missing, undrawable, &mut warn)
                 .map_err(|error| because(&path, error))?;
-            Ok((plan, named, undrawable))
+            Ok::<_, Error>((plan, named, undrawable))
         })?;
         Ok(Self {
             plan,
