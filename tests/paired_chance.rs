@@ -117,11 +117,14 @@ fn verdict(key: &str) -> Option<Verdict> {
 fn leaves(value: &Value, key: &str, found: &mut BTreeMap<String, Vec<Value>>) {
     match value {
         Value::Object(map) if !map.is_empty() => {
-            map.iter()
-                .for_each(|(name, value)| leaves(value, &format!("{key}/{name}"), found));
+            for (name, value) in map {
+                leaves(value, &format!("{key}/{name}"), found);
+            }
         }
         Value::Array(list) if list.iter().any(|value| value.is_object() || value.is_array()) => {
-            list.iter().for_each(|value| leaves(value, &format!("{key}/*"), found));
+            for value in list {
+                leaves(value, &format!("{key}/*"), found);
+            }
         }
         leaf => found.entry(key.to_owned()).or_default().push(leaf.clone()),
     }
@@ -286,7 +289,9 @@ fn put(place: &mut Value, path: &[&str], examples: &[Value], number: &mut usize)
 #[test]
 fn every_key_of_a_world_is_judged_and_what_moves_nothing_moves_nothing() {
     let mut found = BTreeMap::new();
-    documents().iter().for_each(|document| leaves(document, "", &mut found));
+    for document in documents() {
+        leaves(&document, "", &mut found);
+    }
     let worlds = worlds();
     for world in &worlds {
         leaves(
