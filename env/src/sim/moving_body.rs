@@ -14,12 +14,11 @@ const TURN_ROOM: f64 = 0.25;
 impl Ground {
     /// Tells the objects where the agent is: they stop in front of it.
     pub(crate) fn place_agent(&mut self, at: [f32; 2]) {
-        let handle = match self.agent_handle {
-            Some(handle) => handle,
-            None => {
-                let outline = Outline::disc(self.radius as f32);
-                self.insert(ColliderBuilder::new(self.agent.clone()), AGENT, outline, 0.0)
-            }
+        let handle = if let Some(handle) = self.agent_handle {
+            handle
+        } else {
+            let outline = Outline::disc(self.radius as f32);
+            self.insert(ColliderBuilder::new(self.agent.clone()), AGENT, outline, 0.0)
         };
         self.agent_handle = Some(handle);
         let pose = Pose::from_translation(Vector::new(at[0], at[1], 0.0));
