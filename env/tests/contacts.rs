@@ -23,7 +23,7 @@ fn count(mut world: World, legs: &[(f64, f64)], speed: f64, seconds: f64) -> [us
             match event.stimulus {
                 Stimulus::AgentCollide => counts[0] += 1,
                 Stimulus::AgentInRange => counts[1] += 1,
-                _ => {}
+                Stimulus::AgentInteract => {}
             }
         }
     };
