@@ -197,14 +197,19 @@ pub fn check(
         ),
         Kind::Maps => MapLibrary::from_json(name, text).err(),
         Kind::Scenario => {
+            let mut found: BTreeMap<String, Arc<TaskSpec>> = BTreeMap::new();
             let read = Scenario::from_json_with(name, text, |called| {
                 let unchecked = |error| format!("{name}: the variants of {called} are not checked: {error}");
-                task(called).map_err(|error| warnings.push(unchecked(error))).ok()
+                let task = task(called).map_err(|error| warnings.push(unchecked(error))).ok()?;
+                found.insert(called.to_owned(), Arc::clone(&task));
+                Some(task)
             });
             match read {
                 Ok(scenario) => {
                     same_log_name = driftworld_curriculum::same_log_name(&scenario, |called| task(called).ok());
-                    None
+                    // What a run would refuse, whose tasks have objects that nobody knows.
+                    let mut tasks = found.iter();
+                    tasks.find_map(|(called, task)| crate::tasks::check_classes(called, task, classes).err())
                 }
                 Err(error) => Some(error),
             }

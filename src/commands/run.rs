@@ -269,6 +269,14 @@ fn now() -> Timestamp {
 /// What each regime came to.
 pub(crate) fn regimes(summary: &Summary) -> String {
     let rows = summary.regimes.iter().map(|regime| {
+        // Where all was left out, there is nothing to tell.
+        let told = |number: f64, show: fn(f64) -> String| {
+            if regime.experiences == 0 {
+                "-".to_owned()
+            } else {
+                show(number)
+            }
+        };
         [
             regime.block.to_string(),
             if regime.kind == BlockKind::Learning {
@@ -279,8 +287,8 @@ pub(crate) fn regimes(summary: &Summary) -> String {
             .to_owned(),
             regime.variant.clone(),
             regime.experiences.to_string(),
-            format!("{:.1}", regime.mean_reward),
-            format!("{:.0}%", 100.0 * regime.success_rate),
+            told(regime.mean_reward, |reward| format!("{reward:.1}")),
+            told(regime.success_rate, |rate| format!("{:.0}%", 100.0 * rate)),
         ]
     });
     table(

@@ -181,6 +181,13 @@ fn a_class_that_nobody_knows_is_an_error_that_says_how_a_library_is_named() {
     );
     assert!(error.contains("--assets LIBRARY"), "{error}");
     assert!(fail_in(here, 1, &["curriculum", "t.json", "-o", "s.json"]).contains("bushh"));
+    // A scenario of such a task is refused as `run` refuses it.
+    write(
+        &here.join("s.json"),
+        r#"{ "version": 1, "name": "s", "blocks": [{ "type": "learning", "regimes": [{ "task": "t.json", "variant": "default", "count": 1 }] }] }"#,
+    );
+    assert!(fail_in(here, 1, &["validate", "s.json"]).contains("bushh"));
+    assert!(fail_in(here, 1, &["run", "s.json", "--agent", "random"]).contains("bushh"));
     // What a library has is known where it is named.
     let model = format!("{}/examples/assets/lighthouse.gltf", env!("CARGO_MANIFEST_DIR"));
     succeed_in(here, &["assets", "pack", &model, "-o", "h.assets"]);
@@ -243,6 +250,23 @@ fn a_probe_takes_the_variants_that_are_named_or_says_why_not() {
     assert_eq!(told.status.code(), Some(1), "{error}");
     assert!(
         error.contains("find_objects#red and find_objects#dusk, which differ in observation"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_misspelt_parameter_is_not_left_out_of_a_variation() {
+    let asked = [
+        "vary",
+        "find_objects#red",
+        "--parameters",
+        "spread,lightt",
+        "--distance",
+        "0.1",
+    ];
+    let error = fail_in(Path::new("."), 1, &asked);
+    assert!(
+        error.contains("found no variant parameter named lightt (did you mean \"light\"?)"),
         "{error}"
     );
 }

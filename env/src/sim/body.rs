@@ -105,6 +105,11 @@ impl Ground {
             whole: Vec::new(),
             scratch: Scratch::default(),
         };
+        // Walls are added where there are any; most worlds have none but those of the arena.
+        let count = 4 + scene.items.len();
+        ground.standing.reserve(count);
+        ground.low.reserve(count);
+        ground.whole.reserve(count);
         ground.add_arena(scene.arena_size());
         let environment = &world.environment_params;
         for region in environment.regions() {

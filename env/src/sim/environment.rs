@@ -120,7 +120,13 @@ impl Environment {
 
     pub(super) fn start_with(&mut self, world: Arc<World>, catalogue: &Catalogue) {
         let frame = std::mem::replace(&mut self.frame, Frame::new(0, 0));
+        let (scratch, ways) = (
+            std::mem::take(&mut self.scratch),
+            std::mem::take(&mut self.ground.scratch),
+        );
         *self = Self::build(world, catalogue, std::mem::take(&mut self.renderer), frame);
+        // Lists that have grown are used again; each step clears them.
+        (self.scratch, self.ground.scratch) = (scratch, ways);
     }
 
     fn build(mut world: Arc<World>, catalogue: &Catalogue, renderer: Renderer, frame: Frame) -> Self {

@@ -117,7 +117,8 @@ impl Outline {
 
     /// Turns the outline to a heading in degrees, and moves it to a place.
     pub(super) fn place_into(&self, heading_deg: f32, at: Point, low: &mut Footprint, whole: &mut Footprint) {
-        let turn = turn(heading_deg);
+        // Discs show no heading.
+        let turn = if self.is_disc() { [0.0, 1.0] } else { turn(heading_deg) };
         self.whole.place_into(turn, at, whole);
         self.low.as_ref().unwrap_or(&self.whole).place_into(turn, at, low);
     }
@@ -125,6 +126,9 @@ impl Outline {
 
 /// Sine and cosine of a heading; headings turn clockwise.
 fn turn(heading_deg: f32) -> Point {
+    if heading_deg == 0.0 {
+        return [0.0, 1.0];
+    }
     let (sine, cosine) = libm::sincos(-f64::from(heading_deg).to_radians());
     [sine, cosine]
 }

@@ -2,7 +2,7 @@
 
 mod scan;
 
-use driftworld_spec::{Domain, Element, Parameter, ParameterType, Role, Value, Variant};
+use driftworld_spec::{Domain, Element, Parameter, ParameterType, Role, Value, Variant, nearest};
 
 use crate::GeneratorError;
 use crate::drift::interpolate;
@@ -120,6 +120,16 @@ fn parameters_of<'a>(from: &'a Variant, subject: &Subject) -> Result<(Vec<Free<'
         .parameters()
         .iter()
         .filter(|(_, parameter)| parameter.role == Role::Variant);
+    if let Subject::Parameters(names) = subject {
+        let known: Vec<&str> = declared.clone().map(|(name, _)| name.as_str()).collect();
+        if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
+            let meant = nearest(unknown, known).map_or_else(String::new, |near| format!(" (did you mean {near:?}?)"));
+            return Err(GeneratorError::NothingToVary {
+                variant: from.id(),
+                asked: format!("variant parameter named {unknown}{meant}"),
+            });
+        }
+    }
     let belongs = |name: &str, parameter: &Parameter| match subject {
         Subject::Element(element) => parameter.affects == [*element],
         Subject::Parameters(names) => names.iter().any(|wanted| wanted == name),
