@@ -72,13 +72,22 @@ def test_a_result_names_worlds_that_are_still_drawn(config: Path) -> None:
     said = json.loads(config.read_text(encoding="utf-8"))
     assert said["command"].startswith("python examples/python/")
     assert said["worlds"]
+    other = []
     for name, hashes in said["worlds"].items():
         path = name if name.partition("#")[0] in _native.built_in_names() else str(FOLDER.parents[1] / name)
         env = gymnasium.make("driftworld/Task-v0", task=path)
-        assert _native.load_variant(path).hash == hashes["variant"], name
+        if _native.load_variant(path).hash != hashes["variant"]:
+            other.append(name)
         for seed, world_hash in hashes["first_worlds"].items():
-            assert env.reset(seed=int(seed))[1]["world_hash"] == world_hash, f"{name} under seed {seed}"
+            if env.reset(seed=int(seed))[1]["world_hash"] != world_hash:
+                other.append(f"{name} under seed {seed}")
         env.close()
+    if "outdated" in said:
+        # What was measured in other worlds says so, on its page too, until it is measured anew.
+        assert other
+        assert "Measured before" in (config.parent / "README.md").read_text(encoding="utf-8")
+    else:
+        assert not other
 
 
 @pytest.mark.parametrize("config", RESULTS, ids=[path.parent.name for path in RESULTS])
