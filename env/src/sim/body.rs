@@ -141,17 +141,20 @@ impl Ground {
         let groups = InteractionGroups::new(group, Group::ALL, InteractionTestMode::And);
         let handle = self.colliders.insert(collider.collision_groups(groups));
         let slot = slot(handle);
-        while self.standing.len() <= slot {
-            self.standing.push(Standing::nothing());
-            self.low.push(Footprint::default());
-            self.whole.push(Footprint::default());
-        }
         let user_data = self.colliders[handle].user_data as u64;
-        self.standing[slot] = Standing {
+        let standing = Standing {
             outline,
             object: (group == SOLID || group == GHOST).then_some(user_data as u32),
             rank: user_data | u64::from(group == WALL) << 32 | u64::from(group == AGENT) << 33,
         };
+        // A new handle has the next number, or that of a body that is gone.
+        if let Some(place) = self.standing.get_mut(slot) {
+            *place = standing;
+        } else {
+            self.standing.push(standing);
+            self.low.push(Footprint::default());
+            self.whole.push(Footprint::default());
+        }
         self.note_place(handle, heading_deg);
         handle
     }
@@ -429,16 +432,6 @@ impl Ground {
                 .map(|(_, collider)| collider.user_data as u32),
         );
         found.sort_unstable();
-    }
-}
-
-impl Standing {
-    fn nothing() -> Self {
-        Self {
-            outline: Outline::disc(0.0),
-            object: None,
-            rank: 0,
-        }
     }
 }
 
