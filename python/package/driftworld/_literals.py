@@ -38,7 +38,7 @@ OrderMethod: TypeAlias = Literal[
 # -- curricula ---------------------------------------------------------------------------------------------------------
 Form: TypeAlias = Literal["condensed", "dispersed", "permuted", "alternating", "custom"]
 Evaluate: TypeAlias = Literal["every", "ends"]
-DesignOrder: TypeAlias = Literal["gradual", "abrupt", "path", "farthest"]
+DesignOrder: TypeAlias = Literal["gradual", "abrupt", "path", "farthest", "named"]
 Probe: TypeAlias = Literal["state", "action", "transition", "reward", "observation"]
 TaskLabel: TypeAlias = Literal["none", "info", "observation"]
 BlockKind: TypeAlias = Literal["learning", "evaluation"]
