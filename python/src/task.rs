@@ -309,7 +309,7 @@ impl PyVariant {
     }
 
     /// Draws the first ``count`` worlds under a seed, and says how often that fails, and why.
-    #[pyo3(signature = (count, *, seed=Whole(0)))]
+    #[pyo3(signature = (count, *, seed=Whole(0)), text_signature = "($self, count, *, seed=0)")]
     fn try_worlds<'py>(&self, py: Python<'py>, count: Whole, seed: Whole) -> Result<Bound<'py, PyAny>> {
         let trial = py.detach(|| driftworld_curriculum::try_worlds(&self.0, seed.0, count.0));
         Ok(crate::document::told(py, &trial)?)
