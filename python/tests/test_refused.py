@@ -210,7 +210,7 @@ def lived(folder: Path) -> Path:
 
 
 WRONG: dict[str, tuple[Callable[[Path], Any], str]] = {
-    "perf_measure": (lambda log: driftworld.metrics(log, perf_measure="rewrd"), "choose one by perf_measure"),
+    "perf_measure": (lambda log: driftworld.metrics(log, perf_measure="rewrd"), "perf_measure: log log: found no metrics column"),
     "no log": (lambda log: driftworld.metrics([]), "logs: found none"),
     "no log to report": (lambda log: driftworld.report([]), "logs: found none"),
     "no task": (lambda log: Curriculum.design(), "tasks: found none"),
@@ -228,7 +228,7 @@ WRONG: dict[str, tuple[Callable[[Path], Any], str]] = {
     "variant_mode": (lambda log: driftworld.metrics(log, variant_mode="x"), "expected one of aware, agnostic"),  # type: ignore[arg-type]
     "window_length": (lambda log: driftworld.metrics(log, window_length=-3), "window_length: found '-3', expected"),
     "noise": (lambda log: driftworld.metrics(log, noise_seed=3), "options: found no noise, expected it beside"),
-    "resampling": (lambda log: driftworld.metrics(log, resampling="x"), "expected one of strata, runs"),  # type: ignore[arg-type]
+    "resampling": (lambda log: driftworld.metrics(log, resampling="x"), "expected one of runs, strata"),  # type: ignore[arg-type]
     "worlds": (lambda log: driftworld.distance("find_objects#red", "find_objects#blue", worlds=2**70), "found 11805"),
     "worlds below 0": (lambda log: driftworld.distance("find_objects", "find_objects", worlds=-1), "found -1"),
     "threads": (lambda log: driftworld.variant("find_objects").sample_many(1, threads=-1), "found -1, expected"),
