@@ -71,8 +71,8 @@ def test_an_object_that_came_in_mid_episode_is_gone_in_the_next(client: Client, 
 @pytest.mark.parametrize(
     ("channel", "action", "payload", "expected"),
     [
-        ("reset", "object_create", thing(0, "five"), "coordinates"),  # type: ignore[arg-type]
-        ("reset", "object_create", {"class": "tree"}, "coordinates"),
+        ("reset", "object_create", thing(0, 5000), "coordinates"),
+        ("reset", "object_create", {"coordinates": [0, 5]}, "class"),
         ("reset", "object_create", None, "payload: found none"),
         ("reset", "object_create", [1, 2], "payload"),
         ("reset", "reset_environment", world(max_steps=-1), "max_steps"),

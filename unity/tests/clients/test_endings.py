@@ -315,7 +315,7 @@ def test_a_log_file_that_cannot_be_written_is_an_error(launcher: Launcher) -> No
         ("{", "own.json:1:"),
         ("[]", "own.json:1:1"),
         ('{"version": 1, "objcts": []}', 'did you mean "objects"?'),
-        ('{"objects": [{"class": 3}]}', "/objects/0/class"),
+        ('{"version": 1, "objects": [{"class": 3}]}', "/objects/0/class"),
     ],
 )
 def test_a_world_file_that_is_none_is_an_error_before_a_client_comes(
