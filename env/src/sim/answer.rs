@@ -59,8 +59,7 @@ impl Environment {
                 contacts.insert(place, index);
             }
         }
-        let began = scratch.triggered.len();
-        let new = &scratch.triggered[..began];
+        let new = &scratch.triggered;
         let stays = |index: &u32| {
             let is_new = new.iter().any(|(other, _)| other == index);
             // What was met in front of the agent, and moved on since, was touched when the agent had moved.
