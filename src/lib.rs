@@ -25,7 +25,6 @@ pub mod commands;
 pub mod contents;
 pub mod distances;
 pub mod documents;
-pub mod log_columns;
 pub mod picture_distance;
 pub mod scenarios;
 pub mod tasks;

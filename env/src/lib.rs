@@ -22,7 +22,7 @@ pub use assets::{
     MAX_MODEL_PARTS, MAX_MODEL_REACH, MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES, MAX_NAME_BYTES, Mesh, Paint, Part,
     UNKNOWN_CLASS, asset, classes,
 };
-#[cfg(feature = "import")]
+#[cfg(feature = "gltf")]
 pub use assets::{
     ColliderKind, ImportOptions, ImportSize, ImportWarning, Imported, MAX_IMPORT_BYTES, MAX_IMPORT_DEPTH,
     MAX_IMPORT_NODES, MAX_TEXTURE_SIDE, ReadBeside,

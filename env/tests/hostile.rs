@@ -2,7 +2,7 @@
 //!
 //! The corpus lies in `tests/hostile/`: a file, and beside it the message. It is made here; `DRIFTWORLD_UPDATE_HOSTILE=1`
 //! writes it anew. A file that is not made here any more, or made differently, fails the test.
-#![cfg(feature = "import")]
+#![cfg(feature = "gltf")]
 
 use std::collections::BTreeSet;
 use std::fs;

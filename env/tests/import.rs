@@ -1,5 +1,5 @@
 //! Sound glTF files become the models that they describe: the right way up, of the right size and colours; and worlds find them.
-#![cfg(feature = "import")]
+#![cfg(feature = "gltf")]
 
 use std::sync::Arc;
 

@@ -7,6 +7,7 @@ use crate::env::{AdapterReport, RendererKind, RendererReport};
 use clap::Args;
 use serde_json::{Value, json};
 
+use super::optional::FEATURES;
 use super::{Failure, output};
 
 /// Say which renderers work on this machine, and what is missing for the others.
@@ -107,6 +108,13 @@ fn as_text(report: &RendererReport, missing: &[String]) -> String {
         (_, false) => "no graphics card works, and software in its place is slower than the processor's own renderer",
     };
     lines.push(format!("auto  takes {}: {why}", report.auto));
+    for (title, has) in [("has", true), ("lacks", false)] {
+        let names: Vec<&str> = FEATURES.iter().filter(|of| of.1 == has).map(|of| of.0).collect();
+        if !names.is_empty() {
+            let advice = if has { "" } else { " (build with --features full)" };
+            lines.push(format!("build {title} {}{advice}", names.join(", ")));
+        }
+    }
     lines.join("\n") + "\n"
 }
 
@@ -138,6 +146,7 @@ fn as_json(report: &RendererReport, missing: &[String]) -> Value {
         })
     };
     json!({
+        "features": FEATURES.map(|(name, has)| (name.to_owned(), Value::Bool(has))).into_iter().collect::<serde_json::Map<_, _>>(),
         "cpu": { "works": true, "instruction_set": report.instruction_set },
         "gpu": {
             "in_this_build": report.has_gpu_feature,

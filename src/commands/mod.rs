@@ -21,6 +21,7 @@ mod logs;
 mod matrix_file;
 mod metrics;
 mod modality;
+mod optional;
 mod order;
 mod output;
 mod photograph;

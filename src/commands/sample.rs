@@ -4,7 +4,9 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::columns::{Format, Row, WorldTable};
+use crate::columns::Format;
+#[cfg(feature = "parquet")]
+use crate::columns::{Row, WorldTable};
 use crate::generator::{Coverage, Drift, GeneratorError, Sampler, Schedule, Switch};
 use crate::spec::{Variant, World, maps::MapLibrary};
 use crate::tasks;
@@ -269,6 +271,18 @@ impl Sample {
         self.persist(file)
     }
 
+    #[cfg(not(feature = "parquet"))]
+    #[expect(clippy::unused_self, reason = "as where there is the feature")]
+    fn table(&self, _: &Source, _: &Variant, _: std::ops::Range<u64>, _: Format) -> Result<(), Failure> {
+        let instead = ", or write JSON lines (--jsonl)";
+        Err(super::optional::missing(
+            "parquet",
+            "writing Parquet and Arrow",
+            instead,
+        ))
+    }
+
+    #[cfg(feature = "parquet")]
     fn table(
         &self,
         source: &Source,

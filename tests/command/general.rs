@@ -43,6 +43,9 @@ fn the_doctor_says_what_draws_here() {
     assert!(succeed(&["doctor"]).contains("cpu   works: processor ("));
     let report: serde_json::Value = serde_json::from_str(&succeed(&["doctor", "--json"])).expect("JSON");
     assert_eq!(report["cpu"]["works"], true);
+    for feature in ["gltf", "gpu", "line-editor", "parquet"] {
+        assert!(report["features"][feature].is_boolean(), "{feature}: {report}");
+    }
     assert!(
         ["cpu", "gpu"].contains(&report["auto"].as_str().unwrap_or_default()),
         "{report}"

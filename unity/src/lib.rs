@@ -18,16 +18,7 @@ mod serve;
 mod session;
 mod side_channel;
 
-/// The protocol's messages and its one call, made of the files in `proto/`.
-pub mod protocol {
-    #![expect(
-        clippy::pedantic,
-        clippy::allow_attributes,
-        clippy::missing_errors_doc,
-        reason = "generated"
-    )]
-    tonic::include_proto!("communicator_objects");
-}
+pub mod protocol;
 
 pub use arguments::{HELP, MARK, Options, Request};
 pub use behavior::BEHAVIOR;

@@ -4,6 +4,7 @@
 use crate::error::XtaskError;
 use crate::process::{cargo, run};
 use crate::side_by_side;
+use crate::stage::EVERYTHING;
 use crate::workspace::Workspace;
 
 /// The benches of one part of the house.
@@ -68,5 +69,8 @@ pub(crate) fn measure(workspace: &Workspace, suites: &[Suite]) -> Result<(), Xta
 
 /// Runs every bench once, unoptimised: whether it still works, not how fast.
 pub(crate) fn stage(workspace: &Workspace) -> Result<(), XtaskError> {
-    run(cargo(workspace, &["test", "--workspace", "--bench", "*", "--quiet"]))
+    run(cargo(
+        workspace,
+        &[&["test", "--bench", "*", "--quiet"], &EVERYTHING[..]].concat(),
+    ))
 }

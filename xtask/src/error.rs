@@ -20,12 +20,25 @@ pub(crate) enum XtaskError {
         program: String,
         source: std::io::Error,
     },
-    /// `cargo metadata` refused the workspace.
-    #[error("`cargo metadata` could not read the workspace: {source}")]
-    Metadata { source: Box<cargo_metadata::Error> },
+    /// `cargo metadata` says something else than expected.
+    #[error("`cargo metadata` was not understood: {source}; is this Cargo newer than xtask?")]
+    Metadata { source: serde_json::Error },
     /// A file or folder of the checkout could not be read or written.
     #[error("{}: {source}", path.display())]
     File { path: PathBuf, source: std::io::Error },
+    /// A generated file is not what its sources make.
+    #[error("{path}: found other text than {made_from} makes; write it anew: {command}")]
+    Stale {
+        path: &'static str,
+        made_from: &'static str,
+        command: &'static str,
+    },
+    /// Cargo built a crate of others again, with other features.
+    #[error(
+        "built more than once: {packages}; see who asks which features of it (cargo tree -e features -i CRATE --workspace), and name it \
+         with all of them in features/Cargo.toml"
+    )]
+    BuiltTwice { packages: String },
     /// The workspace has no program to show.
     #[error("examples/: found no example, expected at least one; add examples/<name>.rs")]
     NoExamples,
@@ -35,6 +48,9 @@ pub(crate) enum XtaskError {
     /// A stage lacks what it needs, on a machine that promised to have it.
     #[error("{reason}; {variable} is set, so that this is not skipped")]
     Required { variable: &'static str, reason: String },
+    /// A command lacks what it needs.
+    #[error("{what}: {reason}")]
+    Missing { what: &'static str, reason: &'static str },
     /// A stage failed; the last line a user reads.
     #[error("stage `{stage}` failed after {seconds:.1} s: {source}; rerun it alone: cargo xtask test --only {stage}")]
     Stage {

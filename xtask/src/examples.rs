@@ -3,12 +3,13 @@
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ExitStatus, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::error::XtaskError;
 use crate::process::{cargo, not_started, run, shown, succeeded};
+use crate::stage::EVERYTHING;
 use crate::workspace::Workspace;
 
 /// Long enough for an unoptimised build on a slow machine; an example that needs it bores its reader.
@@ -20,7 +21,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<String, XtaskError> {
     if names.is_empty() {
         return Err(XtaskError::NoExamples);
     }
-    run(cargo(workspace, &["build", "--workspace", "--examples"]))?;
+    run(cargo(workspace, &[&["build", "--examples"], &EVERYTHING[..]].concat()))?;
     for name in &names {
         let start = Instant::now();
         run_example(workspace, name)?;
@@ -43,10 +44,10 @@ fn run_example(workspace: &Workspace, name: &str) -> Result<(), XtaskError> {
     let output = File::create(&log).map_err(|source| file_error(&log, source))?;
     let errors = output.try_clone().map_err(|source| file_error(&log, source))?;
 
-    let manifest = workspace.root.join("Cargo.toml");
-    let mut command = cargo(workspace, &["run", "--quiet", "--example", name, "--manifest-path"]);
+    let program = format!("{name}{}", std::env::consts::EXE_SUFFIX);
+    // As built above: `cargo run` would build it again, with the features of its package alone.
+    let mut command = Command::new(workspace.target.join("debug").join("examples").join(program));
     command
-        .arg(manifest)
         .current_dir(&scratch)
         .stdin(Stdio::null())
         .stdout(output)
@@ -97,7 +98,6 @@ fn file_error(path: &Path, source: std::io::Error) -> XtaskError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::process::Command;
 
     #[test]
     fn an_example_that_does_not_end_is_ended() {

@@ -9,14 +9,18 @@
 
 mod bench;
 mod deny;
+mod dist;
 mod documents;
 mod error;
 mod examples;
 mod finding;
 mod layers;
+mod metadata;
 mod peers;
 mod process;
+mod protocol;
 mod python;
+mod rebuilds;
 mod runner;
 mod schemas;
 mod side_by_side;
@@ -35,11 +39,14 @@ use workspace::Workspace;
 
 const USAGE: &str = "\
 Usage:
-  cargo xtask test                  every stage, in order, up to the first that fails
+  cargo xtask test                  what a change has to pass: the quick stages, in order, up to the first that fails
+  cargo xtask test --all            these, and those that want a graphics driver, several Pythons or large packages
   cargo xtask test --only STAGE     one stage (may be given several times)
   cargo xtask test --list           the stages and what each holds
-  cargo xtask STAGE                 the same as `test --only STAGE`, but for `schemas`
+  cargo xtask STAGE                 the same as `test --only STAGE`, but for `schemas` and `protocol`
   cargo xtask schemas               rewrite schemas/*.json from the Rust types
+  cargo xtask protocol              rewrite unity/src/protocol.rs from unity/proto/*.proto
+  cargo xtask dist                  what is handed out: the command with everything in, its checksum, a wheel; into target/dist-files
   cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, similarity,
                                     env, metrics, unity)
   cargo xtask bench peers PYTHON SCRIPTS
@@ -52,6 +59,8 @@ enum Request {
     List,
     Run(Vec<Stage>),
     RewriteSchemas,
+    RewriteProtocol,
+    Dist,
     Bench(Vec<Suite>),
     Peers { python: String, scripts: PathBuf },
 }
@@ -74,6 +83,8 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
         [] => Err("found no command".into()),
         ["-h" | "--help" | "help", ..] => Ok(Request::Help),
         ["schemas"] => Ok(Request::RewriteSchemas),
+        ["protocol"] => Ok(Request::RewriteProtocol),
+        ["dist"] => Ok(Request::Dist),
         ["bench"] => Ok(Request::Bench(Suite::ALL.to_vec())),
         ["bench", "peers", python, scripts] => Ok(Request::Peers {
             python: (*python).to_owned(),
@@ -87,7 +98,8 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
             )),
         },
         ["test", "--list"] => Ok(Request::List),
-        ["test"] => Ok(Request::Run(Stage::ALL.to_vec())),
+        ["test"] => Ok(Request::Run(Stage::QUICK.to_vec())),
+        ["test", "--all"] => Ok(Request::Run(Stage::ALL.to_vec())),
         ["test", rest @ ..] => parse_only(rest).map(Request::Run),
         [name] => parse_stage(name).map(|stage| Request::Run(vec![stage])),
         [name, extra, ..] => match Stage::from_name(name) {
@@ -123,12 +135,15 @@ fn execute(request: Request) -> ExitCode {
         }
         Request::List => {
             for stage in Stage::ALL {
-                println!("{:<9} {}", stage.name(), stage.about());
+                let tier = if Stage::QUICK.contains(&stage) { "" } else { " (--all)" };
+                println!("{:<9} {}{tier}", stage.name(), stage.about());
             }
             return ExitCode::SUCCESS;
         }
         Request::Run(stages) => Workspace::load().and_then(|workspace| stage::run_all(&workspace, &stages)),
         Request::RewriteSchemas => Workspace::load().and_then(|workspace| schemas::rewrite(&workspace)),
+        Request::RewriteProtocol => Workspace::load().and_then(|workspace| protocol::rewrite(&workspace)),
+        Request::Dist => Workspace::load().and_then(|workspace| dist::make(&workspace)),
         Request::Peers { python, scripts } => {
             Workspace::load().and_then(|workspace| peers::measure(&workspace, &python, &scripts))
         }
@@ -160,10 +175,10 @@ mod tests {
     fn every_stage_can_be_asked_for_alone() {
         for stage in Stage::ALL {
             check(&format!("test --only {}", stage.name()), &Ok(Request::Run(vec![stage])));
-            let bare = if stage == Stage::Schemas {
-                Request::RewriteSchemas
-            } else {
-                Request::Run(vec![stage])
+            let bare = match stage {
+                Stage::Schemas => Request::RewriteSchemas,
+                Stage::Protocol => Request::RewriteProtocol,
+                _ => Request::Run(vec![stage]),
             };
             check(stage.name(), &Ok(bare));
         }
@@ -171,7 +186,9 @@ mod tests {
             "test --only fmt --only deny",
             &Ok(Request::Run(vec![Stage::Fmt, Stage::Deny])),
         );
-        check("test", &Ok(Request::Run(Stage::ALL.to_vec())));
+        check("test", &Ok(Request::Run(Stage::QUICK.to_vec())));
+        check("test --all", &Ok(Request::Run(Stage::ALL.to_vec())));
+        check("dist", &Ok(Request::Dist));
         check("test --list", &Ok(Request::List));
         check("--help", &Ok(Request::Help));
         check("bench generator", &Ok(Request::Bench(vec![Suite::Generator])));
@@ -184,7 +201,7 @@ mod tests {
         check("bake", &Err("unknown stage `bake`, expected one of fmt, layers"));
         check("bake bread", &Err("unknown command `bake`"));
         check("fmt now", &Err("`now` after `fmt`"));
-        check("test --all", &Err("unknown argument `--all`"));
+        check("test --every", &Err("unknown argument `--every`"));
         check("test --only", &Err("without the name"));
         check("test --only bake", &Err("unknown stage `bake`"));
         check("bench cakes", &Err("unknown bench `cakes`, expected one of generator"));

@@ -8,9 +8,14 @@ use crate::workspace::Workspace;
 
 /// The Cargo that started us, in the workspace's root, with these arguments.
 pub(crate) fn cargo(workspace: &Workspace, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut command = bare_cargo();
     command.current_dir(&workspace.root).args(arguments);
     command
+}
+
+/// The Cargo that started us.
+pub(crate) fn bare_cargo() -> Command {
+    Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
 /// Prints the command, runs it with our own input and output, and fails when it does.
@@ -73,17 +78,22 @@ pub(crate) fn program(command: &Command) -> String {
 }
 
 /// What a command prints; its errors are shown as they come.
-pub(crate) fn output(mut command: Command) -> Result<String, XtaskError> {
+pub(crate) fn output(command: Command) -> Result<String, XtaskError> {
+    println!("$ {}", shown(&command));
+    let text = quiet_output(command)?;
+    print!("{text}");
+    Ok(text)
+}
+
+/// What a command prints, shown to nobody; its errors are.
+pub(crate) fn quiet_output(mut command: Command) -> Result<String, XtaskError> {
     let line = shown(&command);
-    println!("$ {line}");
     let done = command
         .stderr(Stdio::inherit())
         .output()
         .map_err(|source| not_started(&command, source))?;
     succeeded(&line, done.status)?;
-    let text = String::from_utf8_lossy(&done.stdout).into_owned();
-    print!("{text}");
-    Ok(text)
+    Ok(String::from_utf8_lossy(&done.stdout).into_owned())
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The stages `python` and `learners`: a wheel built as a user would build it, what a newcomer does with it, and pytest on it under
+//! The stages `wheel`, `python` and `learners`: a wheel built as a user would build it, what a newcomer does with it, and pytest on it under
 //! the newest and the oldest Gymnasium, then with the large packages of people who train. What is tested stands in `python/tests/`.
 
 use std::env;
@@ -29,7 +29,15 @@ const ANY_GYMNASIUM: [&str; 4] = [
     "tests/test_check.py",
 ];
 
-/// Builds and installs the wheel as the README says, and tests it with the packages that are quick to install.
+/// Does what a newcomer does: an empty environment, the README's command, its examples, the command of the console.
+pub(crate) fn wheel(workspace: &Workspace) -> Result<Outcome, XtaskError> {
+    match interpreter() {
+        Some(interpreter) => newcomer(workspace, &interpreter).map(|()| Outcome::Passed),
+        None => missing(REQUIRE_PYTHON, NO_INTERPRETER.to_owned()),
+    }
+}
+
+/// Checks and tests the package with the libraries that are quick to install.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
     let Some(interpreter) = interpreter() else {
         return missing(REQUIRE_PYTHON, NO_INTERPRETER.to_owned());
@@ -47,7 +55,8 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
         check.args(folders).current_dir(&project);
         run(check)?;
     }
-    let wheel = newcomer(workspace, &interpreter)?;
+    let builder = VirtualEnvironment::kept(workspace, &interpreter, NEWCOMER)?;
+    let wheel = build(workspace, &builder)?;
     install(&newest, &wheel)?;
     pytest(workspace, &newest, &["-m", "not learners"])?;
     let oldest = requirements("requirements-oldest");
@@ -86,9 +95,8 @@ pub(crate) fn install_wheel(
     install(environment, &build(workspace, &builder)?)
 }
 
-/// What somebody does who has just read the README: an empty environment, the README's command, its example, the command of the
-/// console. Returns the same wheel as a file.
-fn newcomer(workspace: &Workspace, interpreter: &Path) -> Result<PathBuf, XtaskError> {
+/// What somebody does who has just read the README.
+fn newcomer(workspace: &Workspace, interpreter: &Path) -> Result<(), XtaskError> {
     let newcomer = VirtualEnvironment::empty(workspace, interpreter, NEWCOMER)?;
     let mut by_the_readme = newcomer.pip(&["install", "--quiet", "./python"]);
     by_the_readme.current_dir(&workspace.root);
@@ -97,8 +105,7 @@ fn newcomer(workspace: &Workspace, interpreter: &Path) -> Result<PathBuf, XtaskE
     first_steps.arg(workspace.root.join("python/tests/newcomer.py"));
     // From a folder outside the checkout's packages: what runs is what was installed.
     first_steps.current_dir(workspace.target.join("python"));
-    run(first_steps)?;
-    build(workspace, &newcomer)
+    run(first_steps)
 }
 
 /// The wheel, by the pip of that environment; Cargo builds only what changed.

@@ -7,16 +7,20 @@ use std::thread;
 
 use crate::error::XtaskError;
 use crate::process::{cargo, not_started, shown, succeeded, works};
+use crate::stage::EVERYTHING;
 use crate::workspace::Workspace;
 
 /// Runs every test of the workspace; returns the runner's closing line.
 pub(crate) fn stage(workspace: &Workspace) -> Result<String, XtaskError> {
     let has_nextest = works(cargo(workspace, &["nextest", "--version"]));
     let mut command = if has_nextest {
-        cargo(workspace, &["nextest", "run", "--workspace"])
+        cargo(workspace, &[&["nextest", "run"], &EVERYTHING[..]].concat())
     } else {
         println!("cargo-nextest is not installed (cargo install cargo-nextest --locked): using cargo test");
-        cargo(workspace, &["test", "--workspace", "--lib", "--bins", "--tests"])
+        cargo(
+            workspace,
+            &[&["test", "--lib", "--bins", "--tests"], &EVERYTHING[..]].concat(),
+        )
     };
     // The runner writes to a pipe, so it has to be told that a terminal reads it.
     if std::io::stderr().is_terminal() && std::env::var_os("CARGO_TERM_COLOR").is_none() {

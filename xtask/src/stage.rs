@@ -6,7 +6,10 @@ use std::time::Instant;
 use crate::error::XtaskError;
 use crate::process::{cargo, run};
 use crate::workspace::Workspace;
-use crate::{bench, deny, documents, examples, layers, python, runner, schemas, tidy, unity};
+use crate::{bench, deny, documents, examples, layers, protocol, python, rebuilds, runner, schemas, tidy, unity};
+
+/// What is built for tests: everything but the renderer for graphics cards, whose driver and whose crates few have.
+pub(crate) const EVERYTHING: [&str; 3] = ["--workspace", "--features", "gltf,line-editor,parquet"];
 
 /// One step of `cargo xtask test`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,17 +19,20 @@ pub(crate) enum Stage {
     Tidy,
     Clippy,
     Tests,
-    Gpu,
     Doctests,
     Docs,
     Examples,
-    Benches,
     Schemas,
+    Wheel,
+    Gpu,
+    Benches,
     Documents,
+    Protocol,
     Python,
     Learners,
     Unity,
     Deny,
+    Rebuilds,
 }
 
 /// How a stage that did not fail ended: a closing line for the summary, or why it had nothing to run.
@@ -37,24 +43,41 @@ pub(crate) enum Outcome {
 }
 
 impl Stage {
-    /// In the order in which they run: the quick ones first, so that most mistakes show within seconds.
-    pub(crate) const ALL: [Self; 16] = [
+    /// What a change has to pass, in minutes; the quick ones first, so that most mistakes show within seconds.
+    pub(crate) const QUICK: [Self; 10] = [
         Self::Fmt,
         Self::Layers,
         Self::Tidy,
         Self::Clippy,
         Self::Tests,
-        Self::Gpu,
         Self::Doctests,
         Self::Docs,
         Self::Examples,
-        Self::Benches,
         Self::Schemas,
+        Self::Wheel,
+    ];
+
+    /// The quick ones, and those that want a graphics driver, several Pythons or packages of gigabytes.
+    pub(crate) const ALL: [Self; 19] = [
+        Self::Fmt,
+        Self::Layers,
+        Self::Tidy,
+        Self::Clippy,
+        Self::Tests,
+        Self::Doctests,
+        Self::Docs,
+        Self::Examples,
+        Self::Schemas,
+        Self::Wheel,
+        Self::Gpu,
+        Self::Benches,
         Self::Documents,
+        Self::Protocol,
         Self::Python,
         Self::Learners,
         Self::Unity,
         Self::Deny,
+        Self::Rebuilds,
     ];
 
     /// The word after `--only`.
@@ -71,11 +94,14 @@ impl Stage {
             Self::Examples => "examples",
             Self::Benches => "benches",
             Self::Schemas => "schemas",
+            Self::Wheel => "wheel",
             Self::Documents => "documents",
+            Self::Protocol => "protocol",
             Self::Python => "python",
             Self::Learners => "learners",
             Self::Unity => "unity",
             Self::Deny => "deny",
+            Self::Rebuilds => "rebuilds",
         }
     }
 
@@ -96,12 +122,17 @@ impl Stage {
             Self::Benches => "every bench runs once",
             Self::Schemas => "schemas/*.json equal what the Rust types generate",
             Self::Documents => "a second validator, in Python, judges tests/documents by the schemas as ours does",
-            Self::Python => "`pip install ./python` does what the README says, and its tests pass",
+            Self::Wheel => "`pip install ./python` does what the README says",
+            Self::Protocol => "unity/src/protocol.rs equals what unity/proto/*.proto make",
+            Self::Python => {
+                "the Python package is linted and typed, and its tests pass on the newest and the oldest Gymnasium"
+            }
             Self::Learners => "the Python tests that need torch, Stable-Baselines3, Minari and Ray pass",
             Self::Unity => {
                 "Python clients of ML-Agents, old and new, drive driftworld-unity as they drive a Unity build"
             }
             Self::Deny => "licences, advisories and sources of dependencies are as deny.toml allows",
+            Self::Rebuilds => "no crate of others was built twice under one profile",
         }
     }
 
@@ -127,10 +158,14 @@ impl Stage {
             ]),
             Self::Tests => runner::stage(workspace).map(Outcome::PassedWith),
             // The whole workspace, so that dependencies keep the features they were built with for the stage before.
-            Self::Gpu => passed(&["test", "--workspace", "--features", "gpu", "--lib", "--test", "parity"]),
-            Self::Doctests => passed(&["test", "--doc", "--workspace"]),
+            Self::Gpu => {
+                let only = ["--lib", "--test", "parity"];
+                let arguments = [&["test", "--workspace", "--features", "full"], &only[..]].concat();
+                passed(&arguments)
+            }
+            Self::Doctests => passed(&[&["test", "--doc"], &EVERYTHING[..]].concat()),
             Self::Docs => {
-                let mut command = cargo(workspace, &["doc", "--workspace", "--no-deps"]);
+                let mut command = cargo(workspace, &["doc", "--workspace", "--no-deps", "--all-features"]);
                 command.env("RUSTDOCFLAGS", "-D warnings");
                 run(command).map(|()| Outcome::Passed)
             }
@@ -138,10 +173,13 @@ impl Stage {
             Self::Benches => bench::stage(workspace).map(|()| Outcome::Passed),
             Self::Schemas => schemas::check(workspace).map(|()| Outcome::Passed),
             Self::Documents => documents::stage(workspace),
+            Self::Wheel => python::wheel(workspace),
+            Self::Protocol => protocol::check(workspace).map(|()| Outcome::Passed),
             Self::Python => python::stage(workspace),
             Self::Learners => python::learners(workspace),
             Self::Unity => unity::stage(workspace),
             Self::Deny => deny::stage(workspace),
+            Self::Rebuilds => rebuilds::stage(workspace),
         }
     }
 }
@@ -151,13 +189,7 @@ pub(crate) fn run_all(workspace: &Workspace, stages: &[Stage]) -> Result<(), Xta
     let start = Instant::now();
     let mut table = Vec::new();
     for (index, stage) in stages.iter().enumerate() {
-        println!(
-            "\n== {}/{} {}: {}",
-            index + 1,
-            stages.len(),
-            stage.name(),
-            stage.about()
-        );
+        println!("\n{}/{} {}: {}", index + 1, stages.len(), stage.name(), stage.about());
         let stage_start = Instant::now();
         let outcome = stage.run(workspace);
         let seconds = stage_start.elapsed().as_secs_f64();
@@ -173,7 +205,8 @@ pub(crate) fn run_all(workspace: &Workspace, stages: &[Stage]) -> Result<(), Xta
                 });
             }
         };
-        println!("   {seconds:.1} s: {ending}");
+        let place = format!("{}/{}", index + 1, stages.len());
+        println!("{place} {} … {seconds:.0} s, {ending}", stage.name());
         table.push(format!("  {:<9} {seconds:>7.1} s  {ending}", stage.name()));
     }
     println!("\n{}", table.join("\n"));

@@ -5,7 +5,7 @@ mod blocks;
 mod builtin;
 mod catalogue;
 mod furniture;
-#[cfg(feature = "import")]
+#[cfg(feature = "gltf")]
 mod import;
 mod library;
 mod mesh;
@@ -20,7 +20,7 @@ use driftworld_spec::Model;
 
 pub(crate) use blocks::{BLOCK, Block, Coat};
 pub use catalogue::{Catalogue, FIRST_LIBRARY_CLASS, UNKNOWN_CLASS};
-#[cfg(feature = "import")]
+#[cfg(feature = "gltf")]
 pub use import::{
     ColliderKind, ImportOptions, ImportSize, ImportWarning, Imported, MAX_IMPORT_BYTES, MAX_IMPORT_DEPTH,
     MAX_IMPORT_NODES, MAX_TEXTURE_SIDE, ReadBeside,

@@ -1,5 +1,7 @@
 //! `driftworld assets`: libraries of models, made, listed and drawn. What a model is, is decided in `env`.
 
+#[cfg(feature = "gltf")]
+mod gltf;
 mod list;
 mod pack;
 mod show;

@@ -1,12 +1,18 @@
 //! `driftworld assets pack`: glTF files into a library. How a file becomes a model is decided in `env`.
 
-use std::path::{Path, PathBuf};
+#[cfg(feature = "gltf")]
+use std::path::Path;
+use std::path::PathBuf;
 
+#[cfg(feature = "gltf")]
 use crate::env::{ColliderKind, ImportOptions, ImportSize, Library, LibraryModel};
 use clap::{Args, ValueEnum};
 
-use super::super::{Failure, output};
-use super::{list, source};
+use super::super::Failure;
+#[cfg(feature = "gltf")]
+use super::super::output;
+#[cfg(feature = "gltf")]
+use super::{gltf, list, source};
 
 /// Pack glTF files into a library, with levels of detail and bodies to bump into.
 #[derive(Args)]
@@ -58,9 +64,19 @@ enum Body {
     Hull,
 }
 
+#[cfg(not(feature = "gltf"))]
+impl Pack {
+    #[expect(clippy::unused_self, reason = "as where there is the feature")]
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let instead = ", or use a library that was packed elsewhere";
+        Err(super::super::optional::missing("gltf", "reading glTF", instead))
+    }
+}
+
+#[cfg(feature = "gltf")]
 impl Pack {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        source::check_output(&self.output)?;
+        gltf::check_output(&self.output)?;
         let mut library = if self.add && self.output.exists() {
             source::library(&self.output)?
         } else {
@@ -92,8 +108,8 @@ impl Pack {
             collider: self.collider.kind(),
             main: self.main.clone(),
         };
-        let bytes = source::model(path)?;
-        let imported = LibraryModel::from_gltf(&bytes, &options, &mut source::beside(path)).map_err(in_file)?;
+        let bytes = gltf::model(path)?;
+        let imported = LibraryModel::from_gltf(&bytes, &options, &mut gltf::beside(path)).map_err(in_file)?;
         for warning in &imported.warnings {
             output::note(format!("warning: {}: {warning}", path.display()));
         }
@@ -102,6 +118,7 @@ impl Pack {
 }
 
 /// The first number from 1 that no model of the class has for its name.
+#[cfg(feature = "gltf")]
 fn free_name(library: &Library, class: &str) -> String {
     let taken = |name: &String| {
         let is_it = |model: &LibraryModel| model.class() == class && model.name() == name;
@@ -111,6 +128,7 @@ fn free_name(library: &Library, class: &str) -> String {
     names.find(|name| !taken(name)).unwrap_or_default()
 }
 
+#[cfg(feature = "gltf")]
 impl Body {
     fn kind(self) -> ColliderKind {
         match self {

@@ -12,13 +12,7 @@ use rustyline::{Config, Context, Helper};
 use super::super::Failure;
 use super::super::modality::Kind;
 use super::line::COMMANDS;
-
-/// Names that the world gives at this moment.
-#[derive(Default)]
-pub(super) struct Names {
-    pub(super) objects: Vec<String>,
-    pub(super) snapshots: Vec<String>,
-}
+use super::names::Names;
 
 /// Reads lines from a terminal.
 pub(super) struct Editor(rustyline::Editor<Words, MemHistory>);

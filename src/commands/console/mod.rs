@@ -1,11 +1,15 @@
 //! `driftworld console`: a running world by hand. Lines come from a terminal, a pipe or a script, and are read here; what
 //! they say is in `line.rs`, what is done in `session.rs`.
 
+#[cfg(feature = "line-editor")]
 mod editor;
 mod line;
+#[cfg(not(feature = "line-editor"))]
+mod lines;
 mod look;
 mod map;
 mod messages;
+mod names;
 mod place;
 mod report;
 mod screen;
@@ -18,7 +22,10 @@ use clap::Args;
 
 use super::input::{self, WorldChoice};
 use super::{Failure, output};
+#[cfg(feature = "line-editor")]
 use editor::Editor;
+#[cfg(not(feature = "line-editor"))]
+use lines::Editor;
 use screen::Screen;
 use session::{Reply, Session};
 

@@ -9,9 +9,9 @@ use crate::spec::{Object, World, nearest};
 
 use super::super::Failure;
 use super::super::input::WorldChoice;
-use super::editor::Names;
 use super::line::Line;
 use super::messages::shown;
+use super::names::Names;
 use super::place::Folder;
 use super::report::{amount, help};
 use super::screen::Screen;

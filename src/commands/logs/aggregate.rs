@@ -3,8 +3,8 @@
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "parquet")]
 use crate::columns;
-use crate::log_columns::write_log_table;
 use crate::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
 use clap::{Args, ValueEnum};
 
@@ -62,6 +62,10 @@ enum Format {
 impl Aggregate {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let format = self.format()?;
+        #[cfg(not(feature = "parquet"))]
+        if matches!(format, Format::Parquet | Format::Feather) {
+            return Err(lacks_parquet());
+        }
         let logs = if self.recursive {
             log_folders::below(&self.logs)?
         } else {
@@ -155,13 +159,22 @@ impl Aggregate {
     }
 }
 
+#[cfg(not(feature = "parquet"))]
+fn lacks_parquet() -> Failure {
+    super::super::optional::missing("parquet", "writing Parquet and Feather", ", or write .tsv or .csv")
+}
+
 /// Writes the table and hands back what it was written to.
 fn written<W: Write + Send>(table: &LogTable, format: Format, mut to: W) -> Result<W, Box<dyn std::error::Error>> {
     match format {
         Format::Tsv => table.write(&mut to, Delimiter::Tab)?,
         Format::Csv => table.write(&mut to, Delimiter::Comma)?,
-        Format::Parquet => return Ok(write_log_table(table, to, columns::Format::Parquet)?),
-        Format::Feather => return Ok(write_log_table(table, to, columns::Format::Arrow)?),
+        #[cfg(feature = "parquet")]
+        Format::Parquet => return Ok(columns::write_log_table(table, to, columns::Format::Parquet)?),
+        #[cfg(feature = "parquet")]
+        Format::Feather => return Ok(columns::write_log_table(table, to, columns::Format::Arrow)?),
+        #[cfg(not(feature = "parquet"))]
+        Format::Parquet | Format::Feather => return Err("the feature `parquet` is missing".into()),
     }
     Ok(to)
 }

@@ -3,10 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
-use cargo_metadata::{CargoOpt, Dependency, DependencyKind, Metadata, MetadataCommand, Package};
-
 use super::inheritance::{self, Entry};
 use crate::error::XtaskError;
+use crate::metadata::{Dependency, Metadata, Package};
 
 /// The workspace's crates, and the third-party crates below them.
 pub(super) struct Graph {
@@ -63,14 +62,8 @@ impl Graph {
 
 /// Reads the workspace around the current folder.
 pub(super) fn read() -> Result<Graph, XtaskError> {
-    let command = MetadataCommand::new().features(CargoOpt::AllFeatures).exec();
-    let metadata = command.map_err(|source| XtaskError::Metadata {
-        source: Box::new(source),
-    })?;
-    let members = metadata
-        .workspace_packages()
-        .into_iter()
-        .map(|package| member(&metadata, package));
+    let metadata = Metadata::read(&["--all-features"])?;
+    let members = metadata.members().map(|package| member(&metadata, package));
     Ok(Graph {
         members: members.collect::<Result<_, _>>()?,
         third_party: third_party(&metadata),
@@ -78,33 +71,30 @@ pub(super) fn read() -> Result<Graph, XtaskError> {
 }
 
 fn member(metadata: &Metadata, package: &Package) -> Result<Member, XtaskError> {
-    let path = package.manifest_path.as_std_path();
+    let path = &package.manifest_path;
     let text = fs::read_to_string(path).map_err(|source| XtaskError::File {
-        path: path.to_owned(),
+        path: path.clone(),
         source,
     })?;
     let entries = inheritance::entries(&text);
-    let manifest = package
-        .manifest_path
-        .strip_prefix(&metadata.workspace_root)
-        .unwrap_or(&package.manifest_path);
+    let manifest = path.strip_prefix(&metadata.workspace_root).unwrap_or(path);
     let imports = package
         .dependencies
         .iter()
         .map(|dependency| import(dependency, &entries))
         .collect();
     Ok(Member {
-        name: package.name.to_string(),
-        manifest: manifest.to_string(),
+        name: package.name.clone(),
+        manifest: manifest.to_string_lossy().replace('\\', "/"),
         imports,
     })
 }
 
 /// An import that the manifest's text does not show counts as one that does not inherit: better a false alarm.
 fn import(dependency: &Dependency, entries: &[Entry]) -> Import {
-    let kind = match dependency.kind {
-        DependencyKind::Development => Kind::Dev,
-        DependencyKind::Build => Kind::Build,
+    let kind = match dependency.kind.as_deref() {
+        Some("dev") => Kind::Dev,
+        Some("build") => Kind::Build,
         _ => Kind::Normal,
     };
     let key = dependency.rename.as_ref().unwrap_or(&dependency.name);
@@ -121,25 +111,23 @@ fn third_party(metadata: &Metadata) -> BTreeMap<String, Vec<String>> {
     let names: BTreeMap<_, _> = metadata
         .packages
         .iter()
-        .map(|package| (&package.id, package.name.as_str()))
+        .map(|package| (package.id.as_str(), package.name.as_str()))
         .collect();
     let mut edges: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    for node in metadata.resolve.iter().flat_map(|resolve| &resolve.nodes) {
+    for node in metadata.nodes() {
         if metadata.workspace_members.contains(&node.id) {
             continue;
         }
-        let built_from = node.deps.iter().filter(|dep| {
-            dep.dep_kinds.is_empty()
-                || dep
-                    .dep_kinds
-                    .iter()
-                    .any(|info| info.kind != DependencyKind::Development)
-        });
+        let is_dev = |kind: &Option<String>| kind.as_deref() == Some("dev");
+        let built_from = node
+            .deps
+            .iter()
+            .filter(|dep| dep.dep_kinds.is_empty() || dep.dep_kinds.iter().any(|info| !is_dev(&info.kind)));
         let below = built_from
-            .filter_map(|dep| names.get(&dep.pkg))
+            .filter_map(|dep| names.get(dep.pkg.as_str()))
             .map(|name| (*name).to_owned());
         edges
-            .entry(names.get(&node.id).copied().unwrap_or_default().to_owned())
+            .entry(names.get(node.id.as_str()).copied().unwrap_or_default().to_owned())
             .or_default()
             .extend(below);
     }
@@ -183,14 +171,10 @@ mod tests {
         let graph = read().unwrap();
         let xtask = graph.members.iter().find(|member| member.name == "xtask").unwrap();
         assert_eq!(xtask.manifest, "xtask/Cargo.toml");
-        let import = xtask
-            .imports
-            .iter()
-            .find(|import| import.name == "cargo_metadata")
-            .unwrap();
+        let import = xtask.imports.iter().find(|import| import.name == "serde_json").unwrap();
         assert!(import.inherits && import.line > 1 && import.kind == Kind::Normal);
-        let below = &graph.third_party["cargo_metadata"];
-        assert!(below.iter().any(|name| name == "serde_json"), "{below:?}");
+        let below = &graph.third_party["serde_json"];
+        assert!(below.iter().any(|name| name == "serde_core"), "{below:?}");
         assert!(!graph.third_party.contains_key("xtask"));
     }
 }

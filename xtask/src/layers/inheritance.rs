@@ -3,6 +3,7 @@
 //! checked that it is well formed.
 
 use super::graph::{Graph, Import, Kind};
+use super::table::FEATURES;
 use crate::finding::Finding;
 
 /// A dependency as its manifest writes it.
@@ -19,6 +20,7 @@ pub(super) fn check(graph: &Graph) -> Vec<Finding> {
     let all = graph
         .members
         .iter()
+        .filter(|member| member.name != FEATURES)
         .flat_map(|member| member.imports.iter().map(move |import| (member, import)));
     let finding = |manifest: &str, import: &Import| {
         let found = format!("`{}` with a version or path of its own", import.name);

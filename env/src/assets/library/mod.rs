@@ -5,7 +5,7 @@ mod bytes;
 mod model;
 mod reader;
 
-#[cfg(any(feature = "import", test))]
+#[cfg(any(feature = "gltf", test))]
 pub(crate) use model::Detail;
 pub use model::LibraryModel;
 pub(crate) use model::MAX_HULL_POINTS;

@@ -11,67 +11,21 @@
 //! ```
 
 use std::io::Write;
-use std::path::Path;
 use std::sync::{Arc, LazyLock};
 
 use arrow_array::builder::{Float64Builder, ListBuilder, StringBuilder, StructBuilder, UInt64Builder};
 use arrow_array::{ArrayRef, RecordBatch};
-use arrow_ipc::writer::FileWriter;
 use arrow_schema::{ArrowError, DataType, Field, Fields, Schema, SchemaRef};
 use driftworld_spec::World;
-use parquet::arrow::ArrowWriter;
-use parquet::basic::Compression;
-use parquet::errors::ParquetError;
-use parquet::file::properties::WriterProperties;
+
+use super::sink::Sink;
+use super::{ColumnsError, Format};
 
 /// How many worlds are gathered before they are written.
 const ROWS: usize = 1024;
 
 /// How many bytes of JSON are gathered before they are written: memory is bounded by it and by one world.
 const BYTES: usize = 64 << 20;
-
-/// The form of the file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// Apache Parquet, compressed by Snappy.
-    Parquet,
-    /// The Arrow IPC file format, which is also Feather's second version.
-    Arrow,
-}
-
-impl Format {
-    /// The format that a file's ending names: `.parquet`, `.arrow`, `.feather`; `None` for any other.
-    pub fn of(path: &Path) -> Option<Self> {
-        match path.extension()?.to_str()? {
-            "parquet" => Some(Self::Parquet),
-            "arrow" | "feather" => Some(Self::Arrow),
-            _ => None,
-        }
-    }
-}
-
-/// Why a table could not be written.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ColumnsError {
-    /// Writing Parquet failed.
-    #[error("the Parquet file cannot be written: {0}; is the disk full?")]
-    Parquet(#[from] ParquetError),
-    /// Writing Arrow failed.
-    #[error("the Arrow file cannot be written: {0}; is the disk full?")]
-    Arrow(#[from] ArrowError),
-    /// A whole number is larger than the columns of a table of logs hold.
-    #[error(
-        "column {column}: found {found}, expected at most {} in Parquet and Arrow; write it as .tsv or .csv",
-        i64::MAX
-    )]
-    Number {
-        /// The column.
-        column: String,
-        /// The number.
-        found: u64,
-    },
-}
 
 /// A world and where it comes from.
 #[derive(Clone, Copy, Debug)]
@@ -92,47 +46,6 @@ pub struct Row<'a> {
 pub struct WorldTable<W: Write + Send> {
     sink: Sink<W>,
     rows: Rows,
-}
-
-/// A file of either format, which takes batches.
-pub(crate) enum Sink<W: Write + Send> {
-    Parquet(Box<ArrowWriter<W>>),
-    Arrow(Box<FileWriter<W>>),
-}
-
-impl<W: Write + Send> Sink<W> {
-    pub(crate) fn new(writer: W, schema: SchemaRef, format: Format) -> Result<Self, ColumnsError> {
-        Ok(match format {
-            Format::Parquet => {
-                let properties = WriterProperties::builder()
-                    .set_compression(Compression::SNAPPY)
-                    .set_created_by(format!("driftworld {}", env!("CARGO_PKG_VERSION")))
-                    .build();
-                Self::Parquet(Box::new(ArrowWriter::try_new(writer, schema, Some(properties))?))
-            }
-            Format::Arrow => Self::Arrow(Box::new(FileWriter::try_new(writer, &schema)?)),
-        })
-    }
-
-    /// Adds a batch; in Parquet it is a row group, so that readers skip to those they want and memory stays bounded.
-    pub(crate) fn write(&mut self, batch: &RecordBatch) -> Result<(), ColumnsError> {
-        match self {
-            Self::Parquet(writer) => writer.write(batch).and_then(|()| writer.flush())?,
-            Self::Arrow(writer) => writer.write(batch)?,
-        }
-        Ok(())
-    }
-
-    /// Ends the file and hands back what it was written to.
-    pub(crate) fn finish(self) -> Result<W, ColumnsError> {
-        Ok(match self {
-            Self::Parquet(writer) => writer.into_inner()?,
-            Self::Arrow(mut writer) => {
-                writer.finish()?;
-                writer.into_inner()?
-            }
-        })
-    }
 }
 
 impl<W: Write + Send> WorldTable<W> {
@@ -408,12 +321,5 @@ mod tests {
                 0
             );
         }
-    }
-
-    #[test]
-    fn a_format_is_known_by_its_ending() {
-        assert_eq!(Format::of(Path::new("a/b.parquet")), Some(Format::Parquet));
-        assert_eq!(Format::of(Path::new("b.feather")), Some(Format::Arrow));
-        assert_eq!(Format::of(Path::new("b.jsonl")), None);
     }
 }

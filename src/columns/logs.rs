@@ -20,7 +20,8 @@ use arrow_array::{
 use arrow_schema::{ArrowError, DataType, Field, Schema, SchemaRef, TimeUnit};
 use driftworld_metrics::{LogColumn, LogTable};
 
-use crate::columns::{ColumnsError, Format, Sink};
+use super::sink::Sink;
+use super::{ColumnsError, Format};
 
 /// How many rows are written at once.
 const ROWS: usize = 65_536;
@@ -125,7 +126,7 @@ fn array(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::columns::read_back;
+    use crate::columns::worlds::read_back;
     use arrow_array::Array;
     use arrow_array::cast::AsArray;
     use arrow_array::types::{Float64Type, Int64Type, TimestampMicrosecondType};

@@ -1,0 +1,49 @@
+//! Reading glTF files from disk: never more than their limits, and nothing outside a model's own folder.
+
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+
+use crate::env::{Library, MAX_IMPORT_BYTES};
+
+use super::super::Failure;
+use super::source::{bytes, unreadable};
+
+/// Refuses to write a library in place of a file that is something else, such as a model.
+pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
+    // What is not there, or is a pipe or a device, is not opened: there is nothing to lose.
+    if !fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() > 0) {
+        return Ok(());
+    }
+    let mut start = Vec::new();
+    let read = fs::File::open(path).and_then(|file| file.take(16).read_to_end(&mut start));
+    read.map_err(|error| unreadable(path, &error.to_string()))?;
+    if Library::is_meant(&start) {
+        return Ok(());
+    }
+    let found = "found a file that is no library, expected a new name or a library";
+    Err(Failure::input(format!("{}: {found}", path.display())))
+}
+
+/// The bytes of a glTF file.
+pub(super) fn model(path: &Path) -> Result<Vec<u8>, Failure> {
+    bytes(path, MAX_IMPORT_BYTES).map_err(|reason| unreadable(path, &reason))
+}
+
+/// Reads the files beside a glTF file, as far as they lie in its folder when all links are followed.
+pub(super) fn beside(path: &Path) -> impl FnMut(&str) -> Result<Vec<u8>, String> {
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    move |relative| {
+        let folder = if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            &folder
+        };
+        let whole = |path: &Path| path.canonicalize().map_err(|error| error.to_string());
+        let (folder, file) = (whole(folder)?, whole(&folder.join(relative))?);
+        if !file.starts_with(&folder) {
+            return Err("it leads out of the model's folder".to_owned());
+        }
+        bytes(&file, MAX_IMPORT_BYTES)
+    }
+}

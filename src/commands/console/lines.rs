@@ -1,0 +1,36 @@
+//! Lines from a terminal as they come, without history or completion. With them it is `editor.rs`, for the feature `line-editor`.
+
+use std::io::{self, BufRead, Write};
+
+use super::super::Failure;
+use super::names::Names;
+
+/// Reads lines from a terminal.
+pub(super) struct Editor(());
+
+impl Editor {
+    #[expect(clippy::unnecessary_wraps, reason = "as where there is the feature")]
+    pub(super) fn new() -> Result<Self, Failure> {
+        Ok(Self(()))
+    }
+
+    /// The next line that is neither empty nor a comment; none when the user leaves.
+    #[expect(clippy::unused_self, reason = "as where there is the feature")]
+    pub(super) fn read(&mut self, _: Names) -> Result<Option<String>, Failure> {
+        let failed = |error: io::Error| Failure::input(format!("terminal: {error}"));
+        loop {
+            let mut stdout = io::stdout().lock();
+            write!(stdout, "driftworld> ")
+                .and_then(|()| stdout.flush())
+                .map_err(failed)?;
+            let mut line = String::new();
+            if io::stdin().lock().read_line(&mut line).map_err(failed)? == 0 {
+                return Ok(None);
+            }
+            let line = line.trim_end_matches(['\n', '\r']);
+            if !line.trim().is_empty() && !line.trim_start().starts_with('#') {
+                return Ok(Some(line.to_owned()));
+            }
+        }
+    }
+}
