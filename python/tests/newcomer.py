@@ -7,6 +7,7 @@ python` starts it; what the blocks print is printed. The guide's blocks are run 
 from __future__ import annotations
 
 import importlib.metadata
+import json
 import re
 import subprocess
 import sys
@@ -20,6 +21,26 @@ def run(arguments: list[str], folder: Path) -> None:
     """Runs a program in a folder; its failure is ours."""
     print("$", " ".join("…" if "\n" in argument else argument for argument in arguments), flush=True)
     subprocess.run(arguments, cwd=folder, check=True, timeout=300)
+
+
+def optional(command: str, folder: Path) -> None:
+    """What takes long to build works in wheels that have it, and is refused with the name of its feature by those that lack it."""
+    report = json.loads(subprocess.run([command, "doctor", "--json"], capture_output=True, check=True, timeout=300).stdout)
+    lighthouse = README.parent / "examples" / "assets" / "lighthouse.gltf"
+    for feature, arguments in {
+        "gltf": ["assets", "pack", str(lighthouse), "-o", "lighthouse.assets"],
+        "gpu": ["render", "find_objects", "--renderer", "gpu", "-o", "gpu.png"],
+        "parquet": ["sample", "find_objects", "--count", "3", "-o", "worlds.parquet"],
+    }.items():
+        done = subprocess.run([command, *arguments], cwd=folder, capture_output=True, text=True, check=False, timeout=300)
+        if report["features"][feature]:
+            # Drawing on a graphics card wants one, too.
+            is_as_expected = done.returncode == 0 or feature == "gpu"
+        else:
+            is_as_expected = done.returncode == 1 and f"--features {feature}" in done.stderr
+        print("$ driftworld", *arguments, "->", done.returncode, flush=True)
+        if not is_as_expected:
+            sys.exit(f"newcomer: {feature}: found exit code {done.returncode} and {done.stderr!r}")
 
 
 def main() -> None:
@@ -38,6 +59,7 @@ def main() -> None:
             run([sys.executable, "-W", "error", "-c", block], folder)
         run([command, "--version"], folder)
         run([sys.executable, "-m", "driftworld", "--version"], folder)
+        optional(command, folder)
         run([command, "demo"], folder)
         if not any(folder.iterdir()):
             sys.exit("newcomer: `driftworld demo` wrote nothing, expected its folder")

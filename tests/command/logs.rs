@@ -4,6 +4,7 @@
 
 use std::fs;
 use std::path::Path;
+#[cfg(feature = "parquet")]
 use std::process::Command;
 
 use crate::lived::write;
@@ -218,6 +219,7 @@ fn formats_are_known_by_name_and_binary_ones_need_a_file() {
 }
 
 /// Prints the types of a table's columns and its rows, as pyarrow reads them, as JSON.
+#[cfg(feature = "parquet")]
 const READ: &str = "
 import json, sys
 import pyarrow.feather, pyarrow.parquet
@@ -226,6 +228,7 @@ table = read(sys.argv[1])
 print(json.dumps([[str(field.type) for field in table.schema], table.to_pylist()], default=str))
 ";
 
+#[cfg(feature = "parquet")]
 #[test]
 fn pyarrow_reads_parquet_and_feather_with_their_types() {
     let python = std::env::var_os("DRIFTWORLD_PYTHON").unwrap_or_else(|| "python3".into());

@@ -1,5 +1,6 @@
 //! The `driftworld` command as its users meet it, a file per subcommand. What the libraries under it do is tested in their rooms.
 
+#[cfg(feature = "gltf")]
 mod assets;
 mod closed_pipes;
 mod console;

@@ -188,7 +188,14 @@ fn a_class_that_nobody_knows_is_an_error_that_says_how_a_library_is_named() {
     );
     assert!(fail_in(here, 1, &["validate", "s.json"]).contains("bushh"));
     assert!(fail_in(here, 1, &["run", "s.json", "--agent", "random"]).contains("bushh"));
-    // What a library has is known where it is named.
+}
+
+/// What a library has is known where it is named.
+#[cfg(feature = "gltf")]
+#[test]
+fn classes_of_a_named_library_are_known() {
+    let folder = scratch();
+    let here = folder.path();
     let model = format!("{}/examples/assets/lighthouse.gltf", env!("CARGO_MANIFEST_DIR"));
     succeed_in(here, &["assets", "pack", &model, "-o", "h.assets"]);
     let harbour = format!("{}/examples/assets/harbour.json", env!("CARGO_MANIFEST_DIR"));
