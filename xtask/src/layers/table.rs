@@ -51,17 +51,17 @@ pub(super) const ROOMS: &[Room] = &[
     Room {
         package: GENERATOR,
         floor: 2,
-        may_import: &[SPEC],
+        may_import: &[FEATURES, SPEC],
     },
     Room {
         package: SIMILARITY,
         floor: 2,
-        may_import: &[SPEC],
+        may_import: &[FEATURES, SPEC],
     },
     Room {
         package: ENV,
         floor: 2,
-        may_import: &[SPEC],
+        may_import: &[FEATURES, SPEC],
     },
     Room {
         package: METRICS,
@@ -71,7 +71,7 @@ pub(super) const ROOMS: &[Room] = &[
     Room {
         package: CURRICULUM,
         floor: 3,
-        may_import: &[SPEC, GENERATOR, SIMILARITY, ENV, METRICS],
+        may_import: &[FEATURES, SPEC, GENERATOR, SIMILARITY, ENV, METRICS],
     },
     Room {
         package: REPORT,
@@ -81,17 +81,19 @@ pub(super) const ROOMS: &[Room] = &[
     Room {
         package: FACADE,
         floor: 4,
-        may_import: &[SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM, REPORT],
+        may_import: &[FEATURES, SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM, REPORT],
     },
     Room {
         package: PYTHON,
         floor: 5,
-        may_import: &[SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM, REPORT, FACADE],
+        may_import: &[
+            FEATURES, SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM, REPORT, FACADE,
+        ],
     },
     Room {
         package: UNITY,
         floor: 4,
-        may_import: &[SPEC, ENV],
+        may_import: &[FEATURES, SPEC, ENV],
     },
     // Beside the house: builds in seconds because it imports none of it.
     Room {
