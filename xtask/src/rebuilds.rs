@@ -94,8 +94,11 @@ mod tests {
             ("liba-3.so", "a-2.0.0"),
         ] {
             write(library, "");
-            let list = library.replace("lib", "").replace(".rlib", ".d").replace(".so", ".d");
-            write(&list, &format!("x.d: {registry}/{package}/src/lib.rs\n"));
+            let list = Path::new(library.trim_start_matches("lib")).with_extension("d");
+            write(
+                &list.to_string_lossy(),
+                &format!("x.d: {registry}/{package}/src/lib.rs\n"),
+            );
         }
         // Only checked, and one of ours.
         write("liba-4.rmeta", "");
