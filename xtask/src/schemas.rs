@@ -26,7 +26,7 @@ fn driftworld_schema(workspace: &Workspace, arguments: &[&str]) -> Result<(), Xt
     // With the features of the tests, which have built it already; with the examples, for Cargo asks those of tests only then.
     run(cargo(
         workspace,
-        &[&["build", "--quiet", "--bins"], &EVERYTHING[..]].concat(),
+        &[&["build", "--quiet", "--bins", "--examples"], &EVERYTHING[..]].concat(),
     ))?;
     let program = format!("driftworld{}", std::env::consts::EXE_SUFFIX);
     let mut command = Command::new(workspace.target.join("debug").join(program));
