@@ -4,7 +4,7 @@
 use crate::error::XtaskError;
 use crate::process::{cargo, run};
 use crate::side_by_side;
-use crate::stage::EVERYTHING;
+use crate::stage::AS_TESTED;
 use crate::workspace::Workspace;
 
 /// The benches of one part of the house.
@@ -71,6 +71,6 @@ pub(crate) fn measure(workspace: &Workspace, suites: &[Suite]) -> Result<(), Xta
 pub(crate) fn stage(workspace: &Workspace) -> Result<(), XtaskError> {
     run(cargo(
         workspace,
-        &[&["test", "--bench", "*", "--quiet"], &EVERYTHING[..]].concat(),
+        &[&["test", "--bench", "*", "--quiet"], &AS_TESTED[..]].concat(),
     ))
 }

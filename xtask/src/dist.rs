@@ -40,6 +40,13 @@ pub(crate) fn make(workspace: &Workspace) -> Result<(), XtaskError> {
     fs::create_dir_all(&folder).map_err(failed(&folder))?;
     let tools = VirtualEnvironment::with_requirements(workspace, &interpreter, "dist", Path::new(TOOLS))?;
 
+    // Nothing is published, but whoever wants to build on a crate can have it as one.
+    run(cargo(
+        workspace,
+        &["package", "--workspace", "--no-verify", "--allow-dirty", "--quiet"],
+    ))?;
+
+    let path = tools.path_before(&std::env::var_os("PATH").unwrap_or_default());
     let version = cargo_version(workspace)?;
     for (package, program, features) in [
         ("driftworld", "driftworld", &["--features", "full"][..]),
@@ -58,15 +65,13 @@ pub(crate) fn make(workspace: &Workspace) -> Result<(), XtaskError> {
                 &target,
             ],
         );
-        build
-            .args(features)
-            .env("PATH", tools.path_before(&std::env::var_os("PATH").unwrap_or_default()));
+        build.args(features).env("PATH", &path);
         run(build)?;
         let built = workspace.target.join(TARGET).join(PROFILE).join(program);
         let name = format!("{program}-{version}-x86_64-linux");
-        let path = folder.join(&name);
-        fs::copy(&built, &path).map_err(failed(&built))?;
-        checksum(&tools, &path)?;
+        let to = folder.join(&name);
+        fs::copy(&built, &to).map_err(failed(&built))?;
+        checksum(&tools, &to)?;
     }
 
     let mut wheel = tools.python(&[
@@ -91,7 +96,7 @@ pub(crate) fn make(workspace: &Workspace) -> Result<(), XtaskError> {
         ])
         .arg(&folder)
         .current_dir(workspace.root.join("python"))
-        .env("PATH", tools.path_before(&std::env::var_os("PATH").unwrap_or_default()));
+        .env("PATH", &path);
     run(wheel)?;
     for entry in fs::read_dir(&folder).map_err(failed(&folder))? {
         let path = entry.map_err(failed(&folder))?.path();

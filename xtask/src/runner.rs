@@ -7,19 +7,19 @@ use std::thread;
 
 use crate::error::XtaskError;
 use crate::process::{cargo, not_started, shown, succeeded, works};
-use crate::stage::EVERYTHING;
+use crate::stage::AS_TESTED;
 use crate::workspace::Workspace;
 
 /// Runs every test of the workspace; returns the runner's closing line.
 pub(crate) fn stage(workspace: &Workspace) -> Result<String, XtaskError> {
     let has_nextest = works(cargo(workspace, &["nextest", "--version"]));
     let mut command = if has_nextest {
-        cargo(workspace, &[&["nextest", "run"], &EVERYTHING[..]].concat())
+        cargo(workspace, &[&["nextest", "run"], &AS_TESTED[..]].concat())
     } else {
         println!("cargo-nextest is not installed (cargo install cargo-nextest --locked): using cargo test");
         cargo(
             workspace,
-            &[&["test", "--lib", "--bins", "--tests"], &EVERYTHING[..]].concat(),
+            &[&["test", "--lib", "--bins", "--tests"], &AS_TESTED[..]].concat(),
         )
     };
     // The runner writes to a pipe, so it has to be told that a terminal reads it.

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use crate::error::XtaskError;
 use crate::process::{cargo, run};
-use crate::stage::EVERYTHING;
+use crate::stage::AS_TESTED;
 use crate::workspace::Workspace;
 
 /// Fails when a file in `schemas/` is stale or missing.
@@ -26,7 +26,7 @@ fn driftworld_schema(workspace: &Workspace, arguments: &[&str]) -> Result<(), Xt
     // With the features of the tests, which have built it already; with the examples, for Cargo asks those of tests only then.
     run(cargo(
         workspace,
-        &[&["build", "--quiet", "--bins", "--examples"], &EVERYTHING[..]].concat(),
+        &[&["build", "--quiet", "--bins", "--examples"], &AS_TESTED[..]].concat(),
     ))?;
     let program = format!("driftworld{}", std::env::consts::EXE_SUFFIX);
     let mut command = Command::new(workspace.target.join("debug").join(program));

@@ -9,7 +9,7 @@ use crate::workspace::Workspace;
 use crate::{bench, deny, documents, examples, layers, protocol, python, rebuilds, runner, schemas, tidy, unity};
 
 /// What is built for tests: everything but the renderer for graphics cards, whose driver and whose crates few have.
-pub(crate) const EVERYTHING: [&str; 3] = ["--workspace", "--features", "gltf,line-editor,parquet"];
+pub(crate) const AS_TESTED: [&str; 3] = ["--workspace", "--features", "gltf,line-editor,parquet"];
 
 /// One step of `cargo xtask test`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,21 +43,7 @@ pub(crate) enum Outcome {
 }
 
 impl Stage {
-    /// What a change has to pass, in minutes; the quick ones first, so that most mistakes show within seconds.
-    pub(crate) const QUICK: [Self; 10] = [
-        Self::Fmt,
-        Self::Layers,
-        Self::Tidy,
-        Self::Clippy,
-        Self::Tests,
-        Self::Doctests,
-        Self::Docs,
-        Self::Examples,
-        Self::Schemas,
-        Self::Wheel,
-    ];
-
-    /// The quick ones, and those that want a graphics driver, several Pythons or packages of gigabytes.
+    /// First the quick ones, of these the quickest first; then those that want a graphics driver, several Pythons or packages of gigabytes.
     pub(crate) const ALL: [Self; 19] = [
         Self::Fmt,
         Self::Layers,
@@ -79,6 +65,12 @@ impl Stage {
         Self::Deny,
         Self::Rebuilds,
     ];
+
+    /// What a change has to pass: the stages up to the wheel, in minutes.
+    pub(crate) fn quick() -> &'static [Self] {
+        let last = Self::ALL.iter().position(|stage| *stage == Self::Wheel);
+        &Self::ALL[..=last.expect("the wheel is one of all stages")]
+    }
 
     /// The word after `--only`.
     pub(crate) fn name(self) -> &'static str {
@@ -163,7 +155,7 @@ impl Stage {
                 let arguments = [&["test", "--workspace", "--features", "full"], &only[..]].concat();
                 passed(&arguments)
             }
-            Self::Doctests => passed(&[&["test", "--doc"], &EVERYTHING[..]].concat()),
+            Self::Doctests => passed(&[&["test", "--doc"], &AS_TESTED[..]].concat()),
             Self::Docs => {
                 let mut command = cargo(workspace, &["doc", "--workspace", "--no-deps", "--all-features"]);
                 command.env("RUSTDOCFLAGS", "-D warnings");

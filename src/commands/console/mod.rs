@@ -4,13 +4,13 @@
 #[cfg(feature = "line-editor")]
 mod editor;
 mod line;
-#[cfg(not(feature = "line-editor"))]
-mod lines;
 mod look;
 mod map;
 mod messages;
 mod names;
 mod place;
+#[cfg(not(feature = "line-editor"))]
+mod prompt;
 mod report;
 mod screen;
 mod session;
@@ -25,7 +25,7 @@ use super::{Failure, output};
 #[cfg(feature = "line-editor")]
 use editor::Editor;
 #[cfg(not(feature = "line-editor"))]
-use lines::Editor;
+use prompt::Editor;
 use screen::Screen;
 use session::{Reply, Session};
 
