@@ -51,6 +51,12 @@ pub(crate) enum XtaskError {
     /// A command lacks what it needs.
     #[error("{what}: {reason}")]
     Missing { what: &'static str, reason: &'static str },
+    /// There is nothing to fuzz of this name.
+    #[error("found no target `{found}` of the fuzzer, expected one of {known}")]
+    UnknownTarget { found: String, known: String },
+    /// The fuzzer found input that breaks a law.
+    #[error("laws broken: {targets}; the input is in fuzz/artifacts/, and makes a seed once it is mended")]
+    LawBroken { targets: String },
     /// A stage failed; the last line a user reads.
     #[error("stage `{stage}` failed after {seconds:.1} s: {source}; rerun it alone: cargo xtask test --only {stage}")]
     Stage {

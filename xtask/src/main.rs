@@ -14,6 +14,7 @@ mod documents;
 mod error;
 mod examples;
 mod finding;
+mod fuzz;
 mod layers;
 mod metadata;
 mod peers;
@@ -34,6 +35,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use bench::Suite;
+use fuzz::Fuzz;
 use stage::Stage;
 use workspace::Workspace;
 
@@ -47,6 +49,8 @@ Usage:
   cargo xtask schemas               rewrite schemas/*.json from the Rust types
   cargo xtask protocol              rewrite unity/src/protocol.rs from unity/proto/*.proto
   cargo xtask dist                  what is handed out: the command with everything in, its checksum, a wheel; into target/dist-files
+  cargo xtask fuzz SECONDS [TARGET]...
+                                    look for input that breaks a law, so many seconds for each target; wants nightly Rust
   cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, similarity,
                                     env, metrics, unity)
   cargo xtask bench peers PYTHON SCRIPTS
@@ -61,6 +65,7 @@ enum Request {
     RewriteSchemas,
     RewriteProtocol,
     Dist,
+    Fuzz(Fuzz),
     Bench(Vec<Suite>),
     Peers { python: String, scripts: PathBuf },
 }
@@ -85,6 +90,7 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
         ["schemas"] => Ok(Request::RewriteSchemas),
         ["protocol"] => Ok(Request::RewriteProtocol),
         ["dist"] => Ok(Request::Dist),
+        ["fuzz", rest @ ..] => Fuzz::parse(rest).map(Request::Fuzz),
         ["bench"] => Ok(Request::Bench(Suite::ALL.to_vec())),
         ["bench", "peers", python, scripts] => Ok(Request::Peers {
             python: (*python).to_owned(),
@@ -148,6 +154,7 @@ fn execute(request: Request) -> ExitCode {
         Request::RewriteSchemas => Workspace::load().and_then(|workspace| schemas::rewrite(&workspace)),
         Request::RewriteProtocol => Workspace::load().and_then(|workspace| protocol::rewrite(&workspace)),
         Request::Dist => Workspace::load().and_then(|workspace| dist::make(&workspace)),
+        Request::Fuzz(wanted) => Workspace::load().and_then(|workspace| fuzz::search(&workspace, &wanted)),
         Request::Peers { python, scripts } => {
             Workspace::load().and_then(|workspace| peers::measure(&workspace, &python, &scripts))
         }

@@ -34,6 +34,7 @@ const REPORT: &str = "driftworld-report";
 const FACADE: &str = "driftworld";
 const PYTHON: &str = "driftworld-python";
 const UNITY: &str = "driftworld-unity";
+const FUZZ: &str = "driftworld-fuzz";
 
 /// Floor by floor, from the ground up.
 pub(super) const ROOMS: &[Room] = &[
@@ -95,6 +96,11 @@ pub(super) const ROOMS: &[Room] = &[
         floor: 4,
         may_import: &[FEATURES, SPEC, ENV],
     },
+    Room {
+        package: FUZZ,
+        floor: 5,
+        may_import: &[FEATURES, SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM, UNITY],
+    },
     // Beside the house: builds in seconds because it imports none of it.
     Room {
         package: "xtask",
@@ -148,7 +154,7 @@ pub(super) const FENCES: &[Fence] = &[
     },
     Fence {
         crates: &["tonic", "prost"],
-        rooms: &[UNITY],
+        rooms: &[UNITY, FUZZ],
         test_rooms: &[],
         purpose: "the ML-Agents protocol is spoken",
     },

@@ -1,27 +1,22 @@
-//! The fuzzer's seeds, and what becomes of them by small changes, keep the laws of every log; the fuzzer itself needs a nightly
-//! compiler.
-//!
-//! Not here: the laws, see `fuzz/laws.rs`.
-
-#![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
-
-#[path = "../fuzz/laws.rs"]
-mod laws;
+//! The seeds of the fuzzer, and what becomes of them by small changes, keep the laws. The fuzzer itself needs a nightly compiler.
 
 use std::fs;
 use std::path::Path;
 
+use driftworld_fuzz::{TARGETS, Target};
 use proptest::prelude::*;
+use proptest::test_runner::{Config, TestRunner};
 
-/// Every seed in the order of their names.
-fn seeds() -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds");
-    let mut paths: Vec<_> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
+/// Every seed of a target in the order of their names.
+fn seeds(target: &Target) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("seeds").join(target.name);
+    let entries = fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let mut paths: Vec<_> = entries.map(|entry| entry.expect("the folder is ours").path()).collect();
     paths.sort();
-    paths.iter().map(|path| fs::read(path).unwrap()).collect()
+    paths
+        .iter()
+        .map(|path| fs::read(path).expect("the folder is ours"))
+        .collect()
 }
 
 /// A small change of a text.
@@ -92,22 +87,56 @@ fn changed(mut text: Vec<u8>, changes: &[Change]) -> Vec<u8> {
     text
 }
 
-#[test]
-fn the_seeds_keep_the_laws() {
-    let seeds = seeds();
-    assert!(seeds.len() >= 8);
-    for seed in seeds {
-        laws::check(&seed);
-    }
+/// The law of one target, on its seeds and on small changes of them.
+fn check(name: &str, cases: u32) {
+    let target = TARGETS
+        .iter()
+        .find(|target| target.name == name)
+        .expect("the target is one of ours");
+    let seeds = seeds(target);
+    assert!(seeds.len() >= 2, "{} seeds", seeds.len());
+    seeds.iter().for_each(|seed| (target.law)(seed));
+    let config = Config {
+        cases,
+        failure_persistence: None,
+        ..Config::default()
+    };
+    let inputs = (prop::sample::select(seeds), prop::collection::vec(change(), 1..5));
+    let held = TestRunner::new(config).run(&inputs, |(seed, changes)| {
+        (target.law)(&changed(seed, &changes));
+        Ok(())
+    });
+    held.unwrap_or_else(|broken| panic!("{name}: {broken}"));
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(512))]
-    #[test]
-    fn seeds_with_small_changes_keep_the_laws(
-        seed in prop::sample::select(seeds()),
-        changes in prop::collection::vec(change(), 1..5),
-    ) {
-        laws::check(&changed(seed, &changes));
-    }
+macro_rules! targets {
+    ($($name:ident: $cases:literal,)*) => {
+        $(
+            #[test]
+            fn $name() {
+                check(stringify!($name), $cases);
+            }
+        )*
+
+        #[test]
+        fn every_target_is_replayed() {
+            let replayed = [$(stringify!($name)),*];
+            assert_eq!(replayed.to_vec(), TARGETS.map(|target| target.name).to_vec());
+        }
+    };
+}
+
+targets! {
+    agent_script: 256,
+    episode: 256,
+    gltf: 512,
+    library: 256,
+    log: 512,
+    maps: 512,
+    matrix: 256,
+    protocol: 256,
+    scenario: 256,
+    settings: 256,
+    task: 256,
+    world: 256,
 }

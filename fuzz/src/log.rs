@@ -1,4 +1,4 @@
-//! What must hold of every log, whatever its files hold: the laws that the fuzzer and `tests/fuzzed.rs` check.
+//! What must hold of every log, whatever its files hold: written, read, scored and resumed.
 //!
 //! Not here: where the bytes come from.
 
@@ -44,7 +44,7 @@ pub(crate) fn check(bytes: &[u8]) {
     resumes(&dir, log.as_ref());
 }
 
-fn lay_out(dir: &Path, bytes: &[u8]) {
+pub(crate) fn lay_out(dir: &Path, bytes: &[u8]) {
     let mut rest = bytes;
     for name in FILES {
         let end = rest.windows(BETWEEN.len()).position(|part| part == BETWEEN);

@@ -1,0 +1,82 @@
+//! Worlds that are run: behind a length stand changes of a known world of that length, then what the agent does.
+
+use arbitrary::Unstructured;
+use driftworld_env::{Action, Environment, Step};
+use driftworld_spec::World;
+
+use crate::edited::byte;
+use crate::{refusal, world};
+
+/// The most objects of a world that is run: what a thousand do, other tests say.
+const MOST_OBJECTS: usize = 32;
+
+/// The most steps of an episode.
+const MOST_STEPS: usize = 16;
+
+/// The same world and actions give the same episode, whose numbers are finite; a world that is written down goes on as it would have.
+pub(crate) fn check(bytes: &[u8]) {
+    let (length, rest) = bytes
+        .split_first()
+        .map_or((0, bytes), |(length, rest)| (usize::from(*length), rest));
+    let (changes, actions) = rest.split_at(length.min(rest.len()));
+    let text = world::known().edited(&mut Unstructured::new(changes)).to_string();
+    let mut start = match World::from_json("w.json", &text) {
+        Ok(start) => start,
+        Err(error) => return refusal::check(&error, &text),
+    };
+    start.objects.truncate(MOST_OBJECTS);
+    start.agent_params.observation_size = 8;
+    // What is left of it must be a world still.
+    let Ok(start) = World::from_json("small", &start.to_json()) else {
+        return;
+    };
+    let (first, second) = (Environment::new(start.clone()), Environment::new(start));
+    let (Ok(mut first), Ok(mut second)) = (first, second) else {
+        return;
+    };
+    let mut actions = Unstructured::new(actions);
+    for _ in 0..MOST_STEPS {
+        if actions.is_empty() || first.ended() {
+            break;
+        }
+        let action = action(&mut actions, &first);
+        let stepped = step(&mut first, action);
+        assert_eq!(stepped, step(&mut second, action), "the same world and actions");
+        assert_eq!(moment(&first), moment(&second), "the same world and actions");
+        if byte(&mut actions).is_multiple_of(8) {
+            let written = second.state();
+            world::written_and_read(&written);
+            second = Environment::new(written).expect("what was written down can start");
+            assert_eq!(moment(&first), moment(&second), "what was written down goes on");
+        }
+    }
+    let picture = first.observe().rgb.clone();
+    assert!(picture == second.observe().rgb, "the same picture");
+}
+
+fn action(bytes: &mut Unstructured, environment: &Environment) -> Action {
+    match environment.world().agent_params.num_actions() {
+        Some(rows) => Action::Discrete(usize::from(byte(bytes)) % rows.max(1)),
+        None => Action::Continuous([(); 3].map(|()| (f64::from(byte(bytes)) - 100.0) / 8.0)),
+    }
+}
+
+fn step(environment: &mut Environment, action: Action) -> Option<Step> {
+    match environment.step(action) {
+        Ok(step) => {
+            assert!(step.reward.is_finite(), "{step:?}");
+            Some(step)
+        }
+        Err(error) => {
+            refusal::message(&error.to_string());
+            None
+        }
+    }
+}
+
+/// Where everything is, and what has been paid.
+fn moment(environment: &Environment) -> String {
+    let agent = format!("{:?}", environment.agent());
+    assert!(!agent.contains("NaN") && !agent.contains("inf"), "{agent}");
+    format!("{agent} {:?} {}", environment.objects(), environment.episode_return())
+}

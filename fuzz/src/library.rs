@@ -1,0 +1,34 @@
+//! Libraries of assets. Behind the first byte [`SEALED`] stands what comes behind the header, so that the checksum stops nobody.
+
+use driftworld_env::Library;
+use sha2::{Digest, Sha256};
+
+use crate::refusal;
+
+/// The first byte of what is put behind a header that fits.
+pub(crate) const SEALED: u8 = b'S';
+
+/// A library that is read can be written, and is the same bytes.
+pub(crate) fn check(bytes: &[u8]) {
+    let sealed;
+    let bytes = match bytes.split_first() {
+        Some((&SEALED, body)) => {
+            sealed = seal(body);
+            &sealed
+        }
+        _ => bytes,
+    };
+    match Library::from_bytes(bytes) {
+        Ok(library) => assert!(library.to_bytes() == bytes, "what was read is written as it was"),
+        Err(error) => refusal::message(&error.to_string()),
+    }
+}
+
+fn seal(body: &[u8]) -> Vec<u8> {
+    let mut bytes = b"DRIFTLIB".to_vec();
+    bytes.extend(1_u32.to_le_bytes());
+    bytes.extend((body.len() as u64).to_le_bytes());
+    bytes.extend(Sha256::digest(body));
+    bytes.extend(body);
+    bytes
+}

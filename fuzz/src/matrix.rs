@@ -1,0 +1,44 @@
+//! Distance matrices as CSV, JSON and numpy's arrays; the first byte says which.
+
+use driftworld_similarity::DistanceMatrix;
+
+use crate::refusal;
+
+/// The most items of a matrix that is written again.
+const MOST_ITEMS: usize = 64;
+
+/// A matrix that is read can be written in each form, and reads the same.
+pub(crate) fn check(bytes: &[u8]) {
+    let Some((form, bytes)) = bytes.split_first() else {
+        return;
+    };
+    let text = || String::from_utf8_lossy(bytes).into_owned();
+    let read = match form {
+        b'c' => DistanceMatrix::from_csv(&text()),
+        b'j' => DistanceMatrix::from_json(&text()),
+        _ => DistanceMatrix::from_npy(bytes, None),
+    };
+    let matrix = match read {
+        Ok(matrix) => matrix,
+        Err(error) => return refusal::message(&error.to_string()),
+    };
+    if matrix.len() > MOST_ITEMS {
+        return;
+    }
+    for a in 0..matrix.len() {
+        for b in 0..matrix.len() {
+            let distance = matrix.get(a, b);
+            assert!(distance.is_finite() && distance >= 0.0 && distance == matrix.get(b, a));
+        }
+    }
+    let same = |again: Result<DistanceMatrix, _>| {
+        let again = again.unwrap_or_else(|error| panic!("what we wrote is sound: {error}"));
+        assert_eq!((again.labels(), again.values()), (matrix.labels(), matrix.values()));
+    };
+    same(DistanceMatrix::from_csv(&matrix.to_csv()));
+    same(DistanceMatrix::from_json(&matrix.to_json()));
+    same(DistanceMatrix::from_npy(
+        &matrix.to_npy(),
+        Some(matrix.labels().to_vec()),
+    ));
+}

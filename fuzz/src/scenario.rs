@@ -1,0 +1,98 @@
+//! Scenarios, in our form and in L2Explorer's, and the plans made of them.
+
+use std::sync::{Arc, OnceLock};
+
+use driftworld_curriculum::{FoundWorld, Plan, Sources};
+use driftworld_spec::{Scenario, TaskSpec, World};
+
+use crate::edited::Known;
+use crate::{refusal, task, world};
+
+fn known() -> &'static Known {
+    static KNOWN: OnceLock<Known> = OnceLock::new();
+    KNOWN.get_or_init(|| {
+        let mut documents = vec![world::json(
+            r#"{ "name": "small", "task_label": "name", "blocks": [
+                { "type": "learning", "regimes": [{ "task": "find_objects", "variant": "red", "count": 3, "max_steps": 5 }] },
+                { "type": "evaluation", "regimes": [{ "world": "w.json", "count": 2 }] }] }"#,
+        )];
+        documents.extend(EXAMPLES.map(world::json));
+        Known::new(documents, include_str!("../../schemas/scenario.schema.json"))
+    })
+}
+
+const EXAMPLES: [&str; 6] = [
+    include_str!("../../examples/curricula/action.json"),
+    include_str!("../../examples/curricula/blue_red_green.json"),
+    include_str!("../../examples/curricula/observation.json"),
+    include_str!("../../examples/curricula/reward.json"),
+    include_str!("../../examples/curricula/state.json"),
+    include_str!("../../examples/curricula/transition.json"),
+];
+
+fn tasks() -> &'static [Arc<TaskSpec>] {
+    static TASKS: OnceLock<Vec<Arc<TaskSpec>>> = OnceLock::new();
+    TASKS.get_or_init(|| {
+        let read = |text| TaskSpec::from_json("example", text).expect("an example is sound");
+        task::EXAMPLES.map(read).to_vec()
+    })
+}
+
+fn task_named(name: &str) -> Option<Arc<TaskSpec>> {
+    tasks().iter().find(|task| task.name() == name).cloned()
+}
+
+/// A scenario that is read can be written, and reads the same; its plan has as many experiences, and each can be asked for.
+pub(crate) fn check(bytes: &[u8]) {
+    let text = known().text(bytes);
+    match Scenario::from_json_with("s.json", &text, task_named) {
+        Ok(scenario) => {
+            written_and_read(&scenario);
+            planned(&scenario);
+        }
+        Err(error) => refusal::check(&error, &text),
+    }
+    match Scenario::from_l2explorer("s.json", &text) {
+        Ok((scenario, warnings)) => {
+            warnings
+                .iter()
+                .for_each(|warning| refusal::message(&warning.to_string()));
+            written_and_read(&scenario);
+        }
+        Err(error) => refusal::check(&error, &text),
+    }
+}
+
+fn written_and_read(scenario: &Scenario) {
+    let text = scenario.to_json_pretty();
+    let again =
+        Scenario::from_json("again", &text).unwrap_or_else(|error| panic!("what we wrote is sound: {error}\n{text}"));
+    assert_eq!(again.to_json_pretty(), text);
+}
+
+fn planned(scenario: &Scenario) {
+    let mut sources = Sources {
+        task: &mut |name| task_named(name).ok_or_else(|| "there is no such task".to_owned()),
+        world: &mut |_| {
+            Ok(FoundWorld {
+                world: World::default(),
+                note: None,
+            })
+        },
+    };
+    let plan = match Plan::new(scenario, &mut sources) {
+        Ok(plan) => plan,
+        Err(error) => return refusal::message(&error.to_string()),
+    };
+    let total = plan.num_experiences();
+    assert_eq!(total, scenario.num_experiences());
+    for number in [0, total / 2, total.saturating_sub(1)] {
+        match plan.due(number) {
+            Ok(due) => assert!((0.0..=1.0).contains(&due.progress), "{}", due.progress),
+            Err(error) => assert_eq!(total, 0, "{error}"),
+        }
+        if let Err(error) = plan.world(number) {
+            refusal::message(&error.to_string());
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Settings by which lifetimes are scored.
+
+use std::sync::OnceLock;
+
+use driftworld_metrics::{Log, Options, read_log, score};
+use serde_json::Value;
+
+use crate::edited::Known;
+use crate::{log, refusal, world};
+
+fn known() -> &'static Known {
+    static KNOWN: OnceLock<Known> = OnceLock::new();
+    KNOWN.get_or_init(|| {
+        let whole = world::json(
+            r#"{ "perf_measure": "reward", "variant_mode": "aware", "ste_averaging_method": "time", "aggregation_method": "median",
+                 "maintenance_method": "both", "transfer_method": "both", "normalization_method": "run",
+                 "smoothing_method": "hanning", "smooth_eval_data": true, "window_length": 3, "clamp_outliers": true,
+                 "data_range": { "a_1": { "min": 0, "max": 10 } }, "noise": { "mean": 0, "std": 1, "seed": 3 } }"#,
+        );
+        let default = serde_json::to_value(Options::default()).expect("options serialise");
+        Known::new(vec![default, whole], "{}")
+    })
+}
+
+/// A small log with two tasks.
+fn lifetime() -> &'static Log {
+    static LIFETIME: OnceLock<Log> = OnceLock::new();
+    LIFETIME.get_or_init(|| {
+        let base = tempfile::tempdir().expect("there is room for a small log");
+        let dir = base.path().join("log");
+        log::lay_out(&dir, include_bytes!("../seeds/log/two_workers"));
+        read_log(&dir).expect("the seed is sound")
+    })
+}
+
+/// Settings that are taken are written as they were read, and no score by them is not a number.
+pub(crate) fn check(bytes: &[u8]) {
+    let text = known().text(bytes);
+    let options: Options = match serde_json::from_str(&text) {
+        Ok(options) => options,
+        Err(error) => return refusal::message(&error.to_string()),
+    };
+    let written = serde_json::to_value(&options).expect("options serialise");
+    let again: Options = serde_json::from_value(written.clone()).expect("what we wrote is sound");
+    assert_eq!(serde_json::to_value(again).ok(), Some(written));
+    match score(lifetime(), &[], &options) {
+        Ok(metrics) => {
+            let metrics: Value = serde_json::to_value(&metrics).expect("metrics serialise");
+            assert!(metrics.is_object());
+        }
+        Err(error) => refusal::message(&error.to_string()),
+    }
+}

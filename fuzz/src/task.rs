@@ -1,0 +1,53 @@
+//! Task specs, their variants, and the first worlds of these.
+
+use std::sync::OnceLock;
+
+use driftworld_generator::sample;
+use driftworld_spec::TaskSpec;
+
+use crate::edited::Known;
+use crate::{refusal, world};
+
+/// The built-in tasks.
+pub(crate) const EXAMPLES: [&str; 7] = [
+    include_str!("../../examples/tasks/find_objects.json"),
+    include_str!("../../examples/tasks/get_to_goal.json"),
+    include_str!("../../examples/tasks/select_object.json"),
+    include_str!("../../examples/tasks/moving_object.json"),
+    include_str!("../../examples/tasks/scavenger_hunt.json"),
+    include_str!("../../examples/tasks/blue_red_green.json"),
+    include_str!("../../examples/tasks/settlement.json"),
+];
+
+/// The most variants of a task whose worlds are drawn.
+const MOST_VARIANTS: usize = 2;
+
+fn known() -> &'static Known {
+    static KNOWN: OnceLock<Known> = OnceLock::new();
+    KNOWN.get_or_init(|| {
+        let documents = EXAMPLES.iter().map(|text| world::json(text)).collect();
+        Known::new(documents, include_str!("../../schemas/task.schema.json"))
+    })
+}
+
+/// A task that is read can be written, and reads the same; its worlds are sound, and the same when drawn again.
+pub(crate) fn check(bytes: &[u8]) {
+    let text = known().text(bytes);
+    let task = match TaskSpec::from_json("t.json", &text) {
+        Ok(task) => task,
+        Err(error) => return refusal::check(&error, &text),
+    };
+    let written = task.to_json();
+    let again = TaskSpec::from_json("again", &written)
+        .unwrap_or_else(|error| panic!("what we wrote is sound: {error}\n{written}"));
+    assert!(task.is_same_as(&again), "{written}");
+    for variant in task.all_variants().iter().take(MOST_VARIANTS) {
+        match sample(variant, 7, 1) {
+            Ok(drawn) => {
+                world::written_and_read(&drawn);
+                assert_eq!(sample(variant, 7, 1).map(|world| world.hash()).ok(), Some(drawn.hash()));
+            }
+            Err(error) => refusal::message(&error.to_string()),
+        }
+    }
+}

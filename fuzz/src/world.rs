@@ -1,0 +1,58 @@
+//! Worlds, in our form and in L2Explorer's.
+
+use std::sync::OnceLock;
+
+use driftworld_spec::World;
+use serde_json::Value;
+
+use crate::edited::Known;
+use crate::{refusal, task};
+
+/// Worlds to begin with: one of each kind of task, and one by hand.
+pub(crate) fn known() -> &'static Known {
+    static KNOWN: OnceLock<Known> = OnceLock::new();
+    KNOWN.get_or_init(|| {
+        let mut documents = vec![json(include_str!("../../examples/assets/harbour.json"))];
+        for text in task::EXAMPLES {
+            let task = driftworld_spec::TaskSpec::from_json("example", text).expect("an example is sound");
+            for variant in task.all_variants().iter().take(2) {
+                let world = driftworld_generator::sample(variant, 1, 0).expect("an example can be drawn");
+                documents.push(json(&world.to_json()));
+            }
+        }
+        // Small ones first: what is small is read often.
+        documents.sort_by_key(|document| document.to_string().len());
+        Known::new(documents, include_str!("../../schemas/world.schema.json"))
+    })
+}
+
+pub(crate) fn json(text: &str) -> Value {
+    serde_json::from_str(text).expect("a document of ours is JSON")
+}
+
+/// A world that is read can be written, and reads the same; one of L2Explorer's becomes one of ours.
+pub(crate) fn check(bytes: &[u8]) {
+    let text = known().text(bytes);
+    match World::from_json("w.json", &text) {
+        Ok(world) => written_and_read(&world),
+        Err(error) => refusal::check(&error, &text),
+    }
+    match World::from_l2explorer("w.json", &text) {
+        Ok((world, warnings)) => {
+            warnings
+                .iter()
+                .for_each(|warning| refusal::message(&warning.to_string()));
+            written_and_read(&world);
+        }
+        Err(error) => refusal::check(&error, &text),
+    }
+}
+
+/// What is written of a world is the world.
+pub(crate) fn written_and_read(world: &World) {
+    let text = world.to_json();
+    let again =
+        World::from_json("again", &text).unwrap_or_else(|error| panic!("what we wrote is sound: {error}\n{text}"));
+    assert_eq!(again.to_json(), text);
+    assert_eq!(again.hash(), world.hash());
+}
