@@ -39,7 +39,7 @@ pub(crate) fn check(bytes: &[u8]) {
     };
     let written = task.to_json();
     let again = TaskSpec::from_json("again", &written)
-        .unwrap_or_else(|error| panic!("what we wrote is sound: {error}\n{written}"));
+        .unwrap_or_else(|error| panic!("what we wrote is sound: {error}\n{written}\nread from {text}"));
     assert!(task.is_same_as(&again), "{written}");
     for variant in task.all_variants().iter().take(MOST_VARIANTS) {
         match sample(variant, 7, 1) {

@@ -261,7 +261,12 @@ impl TaskSpec {
 
     /// The document as text: [`TaskSpec::from_json`] reads the same task from it.
     pub fn to_json(&self) -> String {
-        serde_json::to_string(&self.document).expect("a document that was read serialises")
+        let mut json = serde_json::to_value(&self.document).expect("a document that was read serialises");
+        if let Some(map) = json.as_object_mut() {
+            // Where a task says nothing of its world, nothing stands there: `null` would be refused.
+            map.retain(|key, value| key != "world" || !value.is_null());
+        }
+        json.to_string()
     }
 
     /// What a variant's author says of it.
