@@ -42,6 +42,39 @@ pub enum MetricsError {
         path: PathBuf,
     },
 
+    /// The directory of a log went away while it was written.
+    #[error(
+        "{}: found {found}, expected the directory that this log has been written to: it was removed, renamed or replaced meanwhile; \
+         with it went {rows} rows in {bytes} bytes; put that directory back and continue the log, or begin a new one", path.display()
+    )]
+    FolderLost {
+        /// The directory.
+        path: PathBuf,
+        /// "no directory", "another directory" or "a file".
+        found: &'static str,
+        /// Rows that were in it.
+        rows: u64,
+        /// Bytes of its data files.
+        bytes: u64,
+    },
+
+    /// A data file of a log was cut, removed or replaced while the log was written.
+    #[error(
+        "{}: found {found}, expected the {rows} rows in {bytes} bytes that were written: it was cut, removed or replaced meanwhile; \
+         put it back and continue the log, or begin a new one; a log that only its last rows are missing from can be continued as it is",
+        path.display()
+    )]
+    FileLost {
+        /// The data file.
+        path: PathBuf,
+        /// "no file", "another file", "a directory", or the rows and bytes that are there.
+        found: String,
+        /// Rows that were written.
+        rows: u64,
+        /// Bytes that were written, the header's among them.
+        bytes: u64,
+    },
+
     /// There is no such log directory.
     #[error("{}: found {found}, expected the directory of a log, which holds logger_info.json", path.display())]
     NotADirectory {
@@ -505,6 +538,8 @@ impl MetricsError {
             Self::Io { .. } => "metrics/io",
             Self::LogExists { .. } => "metrics/log-exists",
             Self::InUse { .. } => "metrics/in-use",
+            Self::FolderLost { .. } => "metrics/folder-lost",
+            Self::FileLost { .. } => "metrics/file-lost",
             Self::NotADirectory { .. } => "metrics/not-a-directory",
             Self::NoDataFiles { .. } => "metrics/no-data-files",
             Self::MissingFile { .. } => "metrics/missing-file",

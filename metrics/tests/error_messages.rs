@@ -39,6 +39,30 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
              another name",
         ),
         (
+            E::FolderLost {
+                path: "run".into(),
+                found: "no directory",
+                rows: 12,
+                bytes: 3456,
+            },
+            "metrics/folder-lost",
+            "run: found no directory, expected the directory that this log has been written to: it was removed, renamed or \
+             replaced meanwhile; with it went 12 rows in 3456 bytes; put that directory back and continue the log, or begin a \
+             new one",
+        ),
+        (
+            E::FileLost {
+                path: path(),
+                found: "3 rows in 900 bytes".to_owned(),
+                rows: 12,
+                bytes: 3456,
+            },
+            "metrics/file-lost",
+            "run/w/0-train/data-log.tsv: found 3 rows in 900 bytes, expected the 12 rows in 3456 bytes that were written: it was \
+             cut, removed or replaced meanwhile; put it back and continue the log, or begin a new one; a log that only its last \
+             rows are missing from can be continued as it is",
+        ),
+        (
             E::NotADirectory {
                 path: "run".into(),
                 found: "nothing",

@@ -4,6 +4,7 @@
 
 mod aggregate;
 mod begun;
+mod block_file;
 mod cell;
 mod columns;
 mod data_file;
@@ -11,7 +12,9 @@ mod data_files;
 mod faults;
 mod folder_name;
 mod header;
+mod identity;
 mod json_file;
+mod log_folder;
 mod logger_info;
 mod reader;
 mod record;

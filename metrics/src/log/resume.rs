@@ -2,16 +2,19 @@
 //!
 //! Not here: writing, see `writer`.
 
+use std::collections::BTreeMap;
 use std::fs::{self, OpenOptions};
 use std::io::BufReader;
 use std::path::Path;
 
+use super::block_file::Written;
 use super::faults::Faults;
+use super::log_folder::LogFolder;
 use super::logger_info::LoggerInfo;
 use super::rows::Rows;
 use super::table::{Table, Texts};
 use super::whole_rows;
-use super::writer::{self, LogWriter, Progress};
+use super::writer::{LogWriter, Progress};
 use super::{begun, columns, data_file, data_files};
 use crate::MetricsError;
 
@@ -28,19 +31,25 @@ impl LogWriter {
         let dir = dir.as_ref();
         // What may not be a directory is told first.
         data_files::find(dir)?;
-        let lock = writer::lock(dir)?;
+        let folder = LogFolder::lock(dir)?;
         let files = data_files::find(dir)?;
         let logger_info = LoggerInfo::read(dir)?;
         begun::remove_leftovers(dir)?;
         let mut table = Table::new(dir, logger_info.metrics_columns(), Texts::Leave);
         let mut columns: Option<Vec<String>> = None;
+        let mut known = BTreeMap::new();
         for path in files {
-            if !remove_torn_row(&path)? {
+            let bytes = remove_torn_row(&path)?;
+            if bytes == 0 {
                 continue;
             }
+            let before = table.rows.len();
             let header = data_file::read(&path, logger_info.metrics_columns(), &mut table, &mut Faults::Stop)?;
             let metrics = columns.get_or_insert_with(|| metrics_of(&header));
             check_header(&path, &header, metrics)?;
+            let inside = path.strip_prefix(dir).expect("the files were found inside the log");
+            let rows = (table.rows.len() - before) as u64;
+            known.insert(inside.to_owned(), Written::found(&path, rows, bytes)?);
         }
         let mut progress = Progress::default();
         for row in latest(&table.rows) {
@@ -48,7 +57,7 @@ impl LogWriter {
             progress.advance(&record, columns.clone().unwrap_or_default());
         }
         progress.columns = columns;
-        Ok(Self::with_progress(dir, &logger_info, progress, lock))
+        Ok(Self::with_progress(folder, &logger_info, progress, known))
     }
 }
 
@@ -86,11 +95,11 @@ fn check_header(path: &Path, header: &[String], metrics: &[String]) -> Result<()
     })
 }
 
-/// Cuts a file after its last whole row. Returns whether anything is left; a file without a row, not even a header, is removed.
+/// Cuts a file after its last whole row. Returns how many bytes are left; a file without a row, not even a header, is removed.
 ///
 /// What is cut off is a part of one row: where a quote was left open and swallowed other rows, or lines end otherwise than ours,
 /// nothing is touched.
-fn remove_torn_row(path: &Path) -> Result<bool, MetricsError> {
+fn remove_torn_row(path: &Path) -> Result<u64, MetricsError> {
     let failed = || MetricsError::io(path, "remove a torn last line of this file");
     let file = OpenOptions::new().read(true).write(true).open(path).map_err(failed())?;
     let found = whole_rows::measure(BufReader::with_capacity(1 << 16, &file)).map_err(failed())?;
@@ -100,10 +109,10 @@ fn remove_torn_row(path: &Path) -> Result<bool, MetricsError> {
     if found.bytes == 0 {
         drop(file);
         fs::remove_file(path).map_err(failed())?;
-        return Ok(false);
+        return Ok(0);
     }
     if file.metadata().map_err(failed())?.len() > found.bytes {
         file.set_len(found.bytes).map_err(failed())?;
     }
-    Ok(true)
+    Ok(found.bytes)
 }

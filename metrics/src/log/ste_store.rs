@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use super::reader::read_ste_log;
-use super::{data_files, folder_name, logger_info, scenario_info, writer};
+use super::{data_files, folder_name, log_folder, logger_info, scenario_info};
 use crate::MetricsError;
 use crate::choice::choice;
 
@@ -77,7 +77,7 @@ pub fn store_ste(
     let (data_folder, log_dir) = (data_folder.as_ref(), log_dir.as_ref());
     let files = data_files::find(log_dir)?;
     check_outside(data_folder, log_dir)?;
-    let lock = writer::lock_for_reading(log_dir)?;
+    let lock = log_folder::lock_for_reading(log_dir)?;
     let expert = read_ste_log(log_dir)?;
     let task_name = expert.task_name().to_owned();
     let task_dir = data_folder.join(folder_name::encoded(data_folder, &task_name)?);
@@ -479,7 +479,7 @@ mod tests {
         });
         assert_eq!(find_ste(&data).unwrap()[0].runs.len(), 8);
         // Who reads a log does not keep others from reading, but writers.
-        let _reader = writer::lock_for_reading(&log).unwrap();
+        let _reader = log_folder::lock_for_reading(&log).unwrap();
         store_ste(&data, &log, SteStoreMode::Append).unwrap();
         #[cfg(unix)]
         assert_eq!(LogWriter::resume(&log).unwrap_err().code(), "metrics/in-use");

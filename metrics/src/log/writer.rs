@@ -2,11 +2,12 @@
 //!
 //! Not here: taking up a log that was interrupted, see `resume`.
 
-use std::collections::BTreeSet;
-use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::{ErrorKind, Write};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::block_file::{BlockFile, Written};
+use super::log_folder::LogFolder;
 use super::record::{ExpStatus, Record, is_worker_id};
 use super::{LoggerInfo, ScenarioInfo, begun, cell, columns, data_files, json_file, logger_info, scenario_info};
 use crate::MetricsError;
@@ -18,14 +19,17 @@ use crate::log::BlockType;
 /// same metrics, a worker completes an experience once. Opens one file at a time, and asks the disk to have it when it
 /// turns to the next: a machine that loses its power loses rows of the last block at most. Two writers on one directory
 /// would spoil it, so that the second is refused where the system can tell.
+///
+/// Before each record, and at the end, it looks whether the directory and the files are still those that it wrote, and as long: what
+/// was removed, renamed, replaced or cut meanwhile is an error, and never made anew.
 #[derive(Debug)]
 pub struct LogWriter {
-    dir: PathBuf,
+    folder: LogFolder,
     metrics_columns: Vec<String>,
     pub(super) progress: Progress,
     file: Option<BlockFile>,
-    /// Held, not used: the system lets go of it when the writer ends, however it ends.
-    _lock: Option<File>,
+    /// The files that are not open, by their paths inside the directory.
+    files: BTreeMap<PathBuf, Written>,
 }
 
 /// What later records are checked against.
@@ -37,14 +41,6 @@ pub(super) struct Progress {
     last_exp_num: u64,
     /// Workers that completed the last experience.
     completed_by: BTreeSet<String>,
-}
-
-#[derive(Debug)]
-struct BlockFile {
-    path: PathBuf,
-    file: File,
-    /// Bytes of whole lines in it.
-    length: u64,
 }
 
 impl LogWriter {
@@ -61,30 +57,41 @@ impl LogWriter {
         let dir = dir.as_ref();
         fs::create_dir_all(dir).map_err(MetricsError::io(dir, "make this directory"))?;
         // Before anything is looked at or written: two that begin at the same moment would both find the directory free.
-        let lock = lock(dir)?;
+        let folder = LogFolder::lock(dir)?;
         if !begun::is_free(dir)? {
             return Err(MetricsError::LogExists { path: dir.to_owned() });
         }
         json_file::write_json(&dir.join(scenario_info::FILE_NAME), scenario_info)?;
         json_file::write_json(&dir.join(logger_info::FILE_NAME), logger_info)?;
         begun::remove_leftovers(dir)?;
-        Ok(Self::with_progress(dir, logger_info, Progress::default(), lock))
+        Ok(Self::with_progress(
+            folder,
+            logger_info,
+            Progress::default(),
+            BTreeMap::new(),
+        ))
     }
 
-    pub(super) fn with_progress(dir: &Path, logger_info: &LoggerInfo, progress: Progress, lock: Option<File>) -> Self {
-        let metrics_columns = logger_info.metrics_columns().to_vec();
+    /// Goes on in a directory that holds these data files.
+    pub(super) fn with_progress(
+        mut folder: LogFolder,
+        logger_info: &LoggerInfo,
+        progress: Progress,
+        files: BTreeMap<PathBuf, Written>,
+    ) -> Self {
+        folder.note_info_files();
         Self {
-            dir: dir.to_owned(),
-            metrics_columns,
+            folder,
+            metrics_columns: logger_info.metrics_columns().to_vec(),
             progress,
             file: None,
-            _lock: lock,
+            files,
         }
     }
 
     /// The directory of the log.
     pub fn dir(&self) -> &Path {
-        &self.dir
+        self.folder.shown()
     }
 
     /// The columns beside the standard ones, of metrics and of words, in their order; `None` before the first record.
@@ -97,6 +104,7 @@ impl LogWriter {
     /// # Errors
     /// [`MetricsError::Record`] when it breaks a rule of the format: then nothing is written, and the log goes on as
     /// if it had not been given. [`MetricsError::Io`] when the disk refuses: a line begun is taken back if possible.
+    /// [`MetricsError::FolderLost`] and [`MetricsError::FileLost`] when what was written so far is no longer there: then nothing is written.
     pub fn write(&mut self, record: &Record) -> Result<(), MetricsError> {
         check_cells(record)?;
         self.check_metrics(record)?;
@@ -107,30 +115,60 @@ impl LogWriter {
             .clone()
             .unwrap_or_else(|| columns::metric_columns(record));
         let line = columns::line(cells(record, &columns));
-        self.block_file(record, &columns)?.append(&line)?;
+        self.turn_to(record, &columns)?;
+        // The one that was just turned to.
+        if let Some(file) = &mut self.file {
+            file.add_row(&self.folder, &line)?;
+        }
         self.progress.advance(record, columns);
         Ok(())
     }
 
-    /// Ends the log: nothing is pending, since every record was flushed; this asks the disk to have it, too.
+    /// Ends the log: nothing is pending, since every record was flushed; this asks the disk to have it, too, and looks whether all
+    /// of it is there.
     ///
     /// # Errors
-    /// [`MetricsError::Io`].
-    pub fn finish(self) -> Result<(), MetricsError> {
-        self.file.as_ref().map_or(Ok(()), BlockFile::sync)
+    /// [`MetricsError::Io`]; [`MetricsError::FolderLost`], [`MetricsError::FileLost`] and [`MetricsError::MissingFile`] when not all
+    /// that was written is there.
+    pub fn finish(mut self) -> Result<(), MetricsError> {
+        self.check_folder()?;
+        self.put_away()?;
+        self.folder.check_info_files()?;
+        self.files
+            .iter()
+            .try_for_each(|(inside, written)| written.check(&self.folder, inside))
     }
 
-    /// The file of a record's worker and block, opened or made if it is not the one that is open.
-    fn block_file(&mut self, record: &Record, columns: &[String]) -> Result<&mut BlockFile, MetricsError> {
-        let path = data_path(&self.dir, &record.worker_id, record.block_num, record.block_type);
-        let open = match self.file.take() {
-            Some(open) if open.path == path => open,
-            before => {
-                before.as_ref().map_or(Ok(()), BlockFile::sync)?;
-                BlockFile::open(path, columns)?
-            }
-        };
-        Ok(self.file.insert(open))
+    /// Opens or makes the file of a record's worker and block if it is not the one that is open, and looks whether all is as it was left.
+    fn turn_to(&mut self, record: &Record, columns: &[String]) -> Result<(), MetricsError> {
+        let inside = data_path(&record.worker_id, record.block_num, record.block_type);
+        self.check_folder()?;
+        match &self.file {
+            Some(open) if open.inside == inside => return open.written.check(&self.folder, &inside),
+            _ => self.put_away()?,
+        }
+        let before = self.files.get(&inside).copied();
+        let header = columns::line(columns::header(columns));
+        let opened = BlockFile::open(&self.folder, inside.clone(), before, &header)?;
+        self.files.remove(&inside);
+        self.file = Some(opened);
+        // Once more: what was made meanwhile was made in another directory if this one went away in between.
+        self.check_folder()
+    }
+
+    /// Closes the file that is open, once the disk has it.
+    fn put_away(&mut self) -> Result<(), MetricsError> {
+        let Some(open) = &self.file else { return Ok(()) };
+        open.sync(&self.folder)?;
+        open.written.check(&self.folder, &open.inside)?;
+        self.files.insert(open.inside.clone(), open.written);
+        self.file = None;
+        Ok(())
+    }
+
+    fn check_folder(&self) -> Result<(), MetricsError> {
+        let open = self.file.iter().map(|open| &open.written);
+        self.folder.check(self.files.values().chain(open))
     }
 
     fn check_metrics(&self, record: &Record) -> Result<(), MetricsError> {
@@ -190,76 +228,9 @@ impl Progress {
     }
 }
 
-impl BlockFile {
-    /// Opens a data file for appending, with its header where it is new.
-    fn open(path: PathBuf, columns: &[String]) -> Result<Self, MetricsError> {
-        if let Some(parent) = path.parent() {
-            fs::create_dir_all(parent).map_err(MetricsError::io(parent, "make this directory"))?;
-        }
-        let file = OpenOptions::new().append(true).create(true).open(&path);
-        let file = file.map_err(MetricsError::io(&path, "open this file"))?;
-        let length = file
-            .metadata()
-            .map_err(MetricsError::io(&path, "measure this file"))?
-            .len();
-        let mut opened = Self { path, file, length };
-        if length == 0 {
-            opened.append(&columns::line(columns::header(columns)))?;
-        }
-        Ok(opened)
-    }
-
-    /// Asks the disk to have what was written.
-    fn sync(&self) -> Result<(), MetricsError> {
-        // What is no file, such as a pipe that a link leads to, has nothing to keep.
-        match self.file.sync_all() {
-            Err(error) if error.kind() != ErrorKind::InvalidInput => {
-                Err(MetricsError::io(&self.path, "write this file")(error))
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Adds one line in one call. If only a part of it could be written, that part is taken back.
-    fn append(&mut self, line: &[u8]) -> Result<(), MetricsError> {
-        if let Err(source) = self.file.write_all(line) {
-            // Where even this fails the torn line stays, and the reader names it.
-            let _ = self.file.set_len(self.length);
-            return Err(MetricsError::io(&self.path, "append a line to this file")(source));
-        }
-        self.length += line.len() as u64;
-        Ok(())
-    }
-}
-
-/// Keeps a second writer away from a directory, as long as the file that comes back is open. Where the system has no such locks, there is none.
-///
-/// It is the directory that is locked: it is there before any file of the log, and no file is put in its place. Only where locks
-/// are advice: elsewhere they would keep readers away, too.
-pub(super) fn lock(dir: &Path) -> Result<Option<File>, MetricsError> {
-    lock_by(dir, File::try_lock)
-}
-
-/// Keeps writers away, but not others that only read.
-pub(super) fn lock_for_reading(dir: &Path) -> Result<Option<File>, MetricsError> {
-    lock_by(dir, File::try_lock_shared)
-}
-
-fn lock_by(dir: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<Option<File>, MetricsError> {
-    if !cfg!(unix) {
-        return Ok(None);
-    }
-    let file = File::open(dir).map_err(MetricsError::io(dir, "open this directory"))?;
-    match try_lock(&file) {
-        Ok(()) => Ok(Some(file)),
-        Err(TryLockError::WouldBlock) => Err(MetricsError::InUse { path: dir.to_owned() }),
-        Err(TryLockError::Error(_)) => Ok(None),
-    }
-}
-
-/// `DIR/WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv`.
-fn data_path(dir: &Path, worker_id: &str, block_num: u64, block_type: BlockType) -> PathBuf {
-    dir.join(worker_id)
+/// `WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv`, inside the log's directory.
+fn data_path(worker_id: &str, block_num: u64, block_type: BlockType) -> PathBuf {
+    Path::new(worker_id)
         .join(format!("{block_num}-{block_type}"))
         .join(data_files::FILE_NAME)
 }

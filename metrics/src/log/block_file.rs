@@ -1,0 +1,206 @@
+//! [`BlockFile`]: a data file that rows are added to. It notices when the file is cut, removed or replaced meanwhile.
+//!
+//! Not here: what a row says, see `writer`; the directory it lies in, see `log_folder`.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+
+use super::identity::Identity;
+use super::log_folder::LogFolder;
+use crate::MetricsError;
+
+/// What a data file holds, as far as its writer knows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Written {
+    pub(super) rows: u64,
+    /// Bytes of whole lines, the header's among them.
+    pub(super) bytes: u64,
+    /// `None` before it was opened.
+    identity: Option<Identity>,
+    /// `None` where it could not be read.
+    digest: Option<Digest>,
+}
+
+impl Written {
+    /// A file that an earlier writer left, with so many rows in so many bytes.
+    pub(super) fn found(path: &Path, rows: u64, bytes: u64) -> Result<Self, MetricsError> {
+        let found = fs::metadata(path).map_err(MetricsError::io(path, "look at this file"))?;
+        Ok(Self {
+            rows,
+            bytes,
+            identity: Some(Identity::of(&found)),
+            digest: Digest::of(path),
+        })
+    }
+
+    const NOTHING: Self = Self {
+        rows: 0,
+        bytes: 0,
+        identity: None,
+        digest: Some(Digest::NEW),
+    };
+
+    /// Refuses when the file at this path is not there, is another, or has not the length that it was given.
+    ///
+    /// Some file systems number their files anew when nobody has them open: under another number it is the same file if its bytes are
+    /// the same.
+    pub(super) fn check(&self, folder: &LogFolder, inside: &Path) -> Result<(), MetricsError> {
+        let path = folder.place(inside);
+        let found = match fs::metadata(&path) {
+            // What a link may lead to, such as a pipe, keeps nothing.
+            Ok(found) if !found.is_file() && !found.is_dir() => return Ok(()),
+            Ok(found) if found.is_dir() => "a directory".to_owned(),
+            Ok(found) if found.len() != self.bytes => counted(&path, found.len()),
+            Ok(found) => {
+                let is_known = self.identity.is_none_or(|known| known == Identity::of(&found));
+                let is_equal = || self.digest.is_none_or(|digest| Digest::of(&path) == Some(digest));
+                if is_known || is_equal() {
+                    return Ok(());
+                }
+                "another file".to_owned()
+            }
+            Err(error) if error.kind() == ErrorKind::NotFound => "no file".to_owned(),
+            Err(error) => return Err(MetricsError::io(folder.shown_inside(inside), "find this file")(error)),
+        };
+        Err(self.lost(folder, inside, found))
+    }
+
+    fn lost(&self, folder: &LogFolder, inside: &Path, found: String) -> MetricsError {
+        MetricsError::FileLost {
+            path: folder.shown_inside(inside),
+            found,
+            rows: self.rows,
+            bytes: self.bytes,
+        }
+    }
+}
+
+/// How many rows and bytes a file holds.
+fn counted(path: &Path, bytes: u64) -> String {
+    let rows = csv::ReaderBuilder::new()
+        .delimiter(b'\t')
+        .flexible(true)
+        .from_path(path)
+        .map(|file| file.into_byte_records().take_while(Result::is_ok).count());
+    match rows {
+        Ok(rows) => format!("{rows} rows in {bytes} bytes"),
+        Err(_) => format!("{bytes} bytes"),
+    }
+}
+
+/// A data file that is open, and what is in it.
+#[derive(Debug)]
+pub(super) struct BlockFile {
+    /// Its path inside the log's directory.
+    pub(super) inside: PathBuf,
+    pub(super) written: Written,
+    file: File,
+}
+
+impl BlockFile {
+    /// Opens a data file for appending, with its header where it is new. `before` is what this log's writers put there already.
+    pub(super) fn open(
+        folder: &LogFolder,
+        inside: PathBuf,
+        before: Option<Written>,
+        header: &[u8],
+    ) -> Result<Self, MetricsError> {
+        if let Some(before) = &before {
+            before.check(folder, &inside)?;
+        } else if let Some(parent) = inside.parent() {
+            folder.make(parent)?;
+        }
+        let path = folder.place(&inside);
+        let io = |doing| MetricsError::io(folder.shown_inside(&inside), doing);
+        let file = OpenOptions::new().append(true).create(before.is_none()).open(&path);
+        let file = file.map_err(io("open this file"))?;
+        let found = file.metadata().map_err(io("measure this file"))?;
+        let mut written = before.unwrap_or(Written::NOTHING);
+        if found.len() != written.bytes && found.is_file() {
+            return Err(written.lost(folder, &inside, counted(&path, found.len())));
+        }
+        written.identity = Some(Identity::of(&found));
+        let mut opened = Self { inside, written, file };
+        if found.len() == 0 {
+            opened.append(folder, header)?;
+        }
+        Ok(opened)
+    }
+
+    /// Adds a row. Nothing is added when the file is no longer the one that was opened, or has not the length that it was given.
+    pub(super) fn add_row(&mut self, folder: &LogFolder, row: &[u8]) -> Result<(), MetricsError> {
+        self.append(folder, row)?;
+        self.written.rows += 1;
+        Ok(())
+    }
+
+    /// Asks the disk to have what was written.
+    pub(super) fn sync(&self, folder: &LogFolder) -> Result<(), MetricsError> {
+        // What is no file, such as a pipe that a link leads to, has nothing to keep.
+        match self.file.sync_all() {
+            Err(error) if error.kind() != ErrorKind::InvalidInput => Err(MetricsError::io(
+                folder.shown_inside(&self.inside),
+                "write this file",
+            )(error)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Adds one line in one call. If only a part of it could be written, that part is taken back.
+    fn append(&mut self, folder: &LogFolder, line: &[u8]) -> Result<(), MetricsError> {
+        if let Err(source) = self.file.write_all(line) {
+            // Where even this fails the torn line stays, and the reader names it.
+            let _ = self.file.set_len(self.written.bytes);
+            let shown = folder.shown_inside(&self.inside);
+            return Err(MetricsError::io(shown, "append a line to this file")(source));
+        }
+        self.written.bytes += line.len() as u64;
+        if let Some(digest) = &mut self.written.digest {
+            digest.take(line);
+        }
+        Ok(())
+    }
+}
+
+/// What bytes come to, by FNV-1a: whether they are the same as others, unless somebody meant to deceive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Digest(u64);
+
+impl Digest {
+    const NEW: Self = Self(0xcbf2_9ce4_8422_2325);
+
+    fn take(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+
+    /// That of a file; `None` if it cannot be read.
+    fn of(path: &Path) -> Option<Self> {
+        let (mut file, mut piece, mut digest) = (File::open(path).ok()?, vec![0; 1 << 16], Self::NEW);
+        loop {
+            match file.read(&mut piece).ok()? {
+                0 => return Some(digest),
+                num => digest.take(&piece[..num]),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_digest_is_that_of_the_published_test_vectors() {
+        let check = |text: &str, expected: u64| {
+            let mut digest = Digest::NEW;
+            digest.take(text.as_bytes());
+            assert_eq!(digest, Digest(expected), "{text:?}");
+        };
+        check("", 0xcbf2_9ce4_8422_2325);
+        check("a", 0xaf63_dc4c_8601_ec8c);
+        check("foobar", 0x8594_4171_f739_67e8);
+    }
+}

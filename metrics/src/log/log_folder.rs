@@ -1,0 +1,142 @@
+//! [`LogFolder`]: the directory of a log while it is written. It is locked against a second writer, and asked whether it still is
+//! what lies at its path.
+//!
+//! Not here: the files in it, see `block_file`.
+
+use std::fs::{self, File, TryLockError};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use super::block_file::Written;
+use super::identity::Identity;
+use super::{logger_info, scenario_info};
+use crate::MetricsError;
+
+/// A directory that is held open: the system lets go of its lock when the writer ends, however it ends.
+#[derive(Debug)]
+pub(super) struct LogFolder {
+    /// As the user gave it, for messages.
+    shown: PathBuf,
+    /// The same from the root: the process may turn to another directory.
+    place: PathBuf,
+    /// `None` where directories cannot be opened.
+    held: Option<File>,
+    /// The info files that it holds.
+    info: Vec<&'static str>,
+}
+
+impl LogFolder {
+    /// Opens and locks a directory that is there.
+    pub(super) fn lock(dir: &Path) -> Result<Self, MetricsError> {
+        Ok(Self {
+            shown: dir.to_owned(),
+            place: std::path::absolute(dir).map_err(MetricsError::io(dir, "find this directory"))?,
+            held: lock(dir)?,
+            info: Vec::new(),
+        })
+    }
+
+    /// Notes which info files there are: those must be there at the end, too.
+    pub(super) fn note_info_files(&mut self) {
+        let names = [logger_info::FILE_NAME, scenario_info::FILE_NAME];
+        self.info = names
+            .into_iter()
+            .filter(|name| self.place.join(name).is_file())
+            .collect();
+    }
+
+    /// As the user gave it.
+    pub(super) fn shown(&self) -> &Path {
+        &self.shown
+    }
+
+    /// Where to find something inside.
+    pub(super) fn place(&self, inside: &Path) -> PathBuf {
+        self.place.join(inside)
+    }
+
+    /// What messages call something inside.
+    pub(super) fn shown_inside(&self, inside: &Path) -> PathBuf {
+        self.shown.join(inside)
+    }
+
+    /// Refuses when the directory that is held is not the one at the path; `written` is what would be lost with it.
+    pub(super) fn check<'a>(&self, written: impl Iterator<Item = &'a Written>) -> Result<(), MetricsError> {
+        let found = match fs::metadata(&self.place) {
+            Ok(found) if !found.is_dir() => "a file",
+            Ok(found) => match self.identity()? {
+                Some(held) if held != Identity::of(&found) => "another directory",
+                _ => return Ok(()),
+            },
+            Err(error) if error.kind() == ErrorKind::NotFound => "no directory",
+            Err(error) => return Err(MetricsError::io(&self.shown, "find this directory")(error)),
+        };
+        let (rows, bytes) = written.fold((0, 0), |(rows, bytes), file| (rows + file.rows, bytes + file.bytes));
+        Err(MetricsError::FolderLost {
+            path: self.shown.clone(),
+            found,
+            rows,
+            bytes,
+        })
+    }
+
+    /// Refuses when an info file is gone that was there at the beginning.
+    pub(super) fn check_info_files(&self) -> Result<(), MetricsError> {
+        let gone = |name: &&&str| !self.place.join(name).is_file();
+        match self.info.iter().find(gone) {
+            None => Ok(()),
+            Some(name) => Err(MetricsError::MissingFile {
+                path: self.shown.join(name),
+                expected: "the info file that this log was begun with; put it back",
+            }),
+        }
+    }
+
+    /// Makes directories inside, one in the other, where they are missing; never the log's directory itself.
+    pub(super) fn make(&self, inside: &Path) -> Result<(), MetricsError> {
+        let mut path = self.place.clone();
+        for part in inside {
+            path.push(part);
+            match fs::create_dir(&path) {
+                Err(error) if error.kind() != ErrorKind::AlreadyExists => {
+                    let shown = self.shown_inside(inside);
+                    return Err(MetricsError::io(shown, "make this directory")(error));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn identity(&self) -> Result<Option<Identity>, MetricsError> {
+        let held = self.held.as_ref().map(File::metadata).transpose();
+        let held = held.map_err(MetricsError::io(&self.shown, "look at this directory"))?;
+        Ok(held.as_ref().map(Identity::of))
+    }
+}
+
+/// Keeps a second writer away from a directory, as long as the file that comes back is open. Where the system has no such locks, there
+/// is none.
+///
+/// It is the directory that is locked: it is there before any file of the log, and no file is put in its place. Only where locks
+/// are advice: elsewhere they would keep readers away, too.
+fn lock(dir: &Path) -> Result<Option<File>, MetricsError> {
+    lock_by(dir, File::try_lock)
+}
+
+/// Keeps writers away, but not others that only read.
+pub(super) fn lock_for_reading(dir: &Path) -> Result<Option<File>, MetricsError> {
+    lock_by(dir, File::try_lock_shared)
+}
+
+fn lock_by(dir: &Path, try_lock: fn(&File) -> Result<(), TryLockError>) -> Result<Option<File>, MetricsError> {
+    if !cfg!(unix) {
+        return Ok(None);
+    }
+    let file = File::open(dir).map_err(MetricsError::io(dir, "open this directory"))?;
+    match try_lock(&file) {
+        Err(TryLockError::WouldBlock) => Err(MetricsError::InUse { path: dir.to_owned() }),
+        // Held all the same, to be known again.
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(Some(file)),
+    }
+}
