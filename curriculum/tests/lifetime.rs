@@ -3,6 +3,7 @@
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 
 use driftworld_curriculum::{
@@ -93,6 +94,7 @@ fn live_by(
                 ControlFlow::Break(())
             }
         },
+        stop: &AtomicBool::new(false),
         catalogue: Catalogue::default(),
         jobs: NonZeroUsize::new(living.jobs).expect("somebody has to live it"),
     };

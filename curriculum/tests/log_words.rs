@@ -5,6 +5,7 @@
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 use driftworld_curriculum::{
     CurriculumError, ENDING, Experience, FoundWorld, Journal, Plan, Sources, Surroundings, run,
@@ -69,6 +70,7 @@ fn live(log: &Path, most: u64, resume: bool) -> Result<(), CurriculumError> {
                 ControlFlow::Break(())
             }
         },
+        stop: &AtomicBool::new(false),
         catalogue: Catalogue::default(),
         jobs: NonZeroUsize::MIN,
     };

@@ -5,6 +5,7 @@ use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use driftworld_curriculum::{
     Choice, CurriculumError, Design, Drifting, Journal, Plan, Progress, Sources, Summary, Surroundings, Tried,
@@ -62,6 +63,7 @@ fn live(plan: &Plan, folder: &Path, jobs: usize, most: u64) -> Result<Summary, C
                 ControlFlow::Break(())
             }
         },
+        stop: &AtomicBool::new(false),
         catalogue: Catalogue::default(),
         jobs: NonZeroUsize::new(jobs).expect("somebody has to live it"),
     };

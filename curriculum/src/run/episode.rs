@@ -1,5 +1,7 @@
 //! One experience: an agent in a world from the first step to the last. Which world and what becomes of the numbers is said elsewhere.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use driftworld_env::{Agent, EnvError, Environment, Label, Step};
 
 /// Steps after which an experience in a world without a limit is over.
@@ -11,6 +13,8 @@ pub(super) struct Briefing<'a> {
     pub(super) seed: u64,
     pub(super) label: Option<&'a Label>,
     pub(super) learn: bool,
+    /// Looked at before each step: once it is set, the experience is cut off.
+    pub(super) stop: &'a AtomicBool,
 }
 
 /// One experience that is over.
@@ -43,12 +47,12 @@ impl Experience {
 /// Lives one experience in an environment that stands at its beginning.
 ///
 /// It ends as the environment says, so that the last of a block ends like any other: by what happened, or cut off by the
-/// limit of steps, never because the block does.
+/// limit of steps, never because the block does. Nothing comes back of one that was told to stop on its way.
 pub(super) fn live(
     agent: &mut dyn Agent,
     environment: &mut Environment,
     briefing: &Briefing,
-) -> Result<Experience, EnvError> {
+) -> Result<Option<Experience>, EnvError> {
     if let Some(label) = briefing.label {
         agent.told(label);
     }
@@ -57,6 +61,9 @@ pub(super) fn live(
     let limit = environment.world().step_limit().map_or(MOST_STEPS, |_| u32::MAX);
     let mut last = Step::default();
     while !environment.ended() && environment.num_steps() < limit {
+        if briefing.stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
         let action = agent.act(environment);
         last = environment.step(action)?;
         last.truncated |= !last.terminated && environment.num_steps() >= limit;
@@ -73,11 +80,11 @@ pub(super) fn live(
     } else {
         f64::INFINITY
     };
-    Ok(Experience {
+    Ok(Some(Experience {
         reward: environment.episode_return(),
         success: last.success,
         steps,
         seconds: (f64::from(steps) * step_seconds).min(most),
         truncated: last.truncated,
-    })
+    }))
 }

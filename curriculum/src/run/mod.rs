@@ -14,6 +14,7 @@ mod undrawable;
 
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use driftworld_env::{Agent, Catalogue, Environment};
 use driftworld_generator::Sampler;
@@ -37,6 +38,8 @@ pub struct Surroundings<'a> {
     pub now: &'a mut dyn FnMut() -> Timestamp,
     /// Told after each experience; may end the run there. What was lived until then is in the log.
     pub watch: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    /// Set from elsewhere, ends the run at the next step: experiences under way leave no row.
+    pub stop: &'a AtomicBool,
     /// Where worlds take their assets from.
     pub catalogue: Catalogue,
     /// How many experiences are lived at the same time, where they do not depend on each other. Changes no byte of the log.
@@ -44,6 +47,8 @@ pub struct Surroundings<'a> {
 }
 
 /// Lives a scenario from the first experience that is not in the log to its last, and logs each as soon as it is over.
+///
+/// A run that is told to stop ends at the next step, and its summary says that it is not finished.
 ///
 /// An experience whose world cannot be drawn ends the run, or is left out, as the plan says ([`Undrawable`]); a log that ended there goes
 /// on with a plan that leaves it out.
@@ -63,9 +68,10 @@ pub fn run(
     around: &mut Surroundings,
 ) -> Result<Summary, CurriculumError> {
     let total = plan.num_experiences();
-    let (jobs, catalogue) = (around.jobs.get(), around.catalogue.clone());
+    let (jobs, catalogue, stop) = (around.jobs.get(), around.catalogue.clone(), around.stop);
     let mut life = Life { plan, journal, around };
-    let mut desk = Desk::new(plan, catalogue.clone());
+    let desk = || Desk::new(plan, catalogue.clone(), stop);
+    let mut own = desk();
     let mut next = life.journal.num_experiences();
     while next < total {
         let learns = agent.learns();
@@ -73,7 +79,7 @@ pub fn run(
         let still = !learns || plan.regimes[plan.regime_of(next)].kind == BlockKind::Evaluation;
         let copies: Option<Vec<_>> = (still && jobs > 1)
             .then(|| {
-                let copy = |_| Some((agent.frozen()?, Desk::new(plan, catalogue.clone())));
+                let copy = |_| Some((agent.frozen()?, desk()));
                 (0..jobs).map(copy).collect()
             })
             .flatten();
@@ -83,7 +89,7 @@ pub fn run(
                     |(agent, desk): &mut (Box<dyn Agent + Send>, Desk), number| desk.live(agent.as_mut(), number);
                 in_order::in_order(next..end, copies, work, |number, lived| life.take(number, &lived?))?
             }
-            None => life.one_by_one(next..end, agent, &mut desk)?,
+            None => life.one_by_one(next..end, agent, &mut own)?,
         };
         if flow.is_break() {
             break;
@@ -102,28 +108,35 @@ enum Outcome {
     },
     /// It was left out, since its world cannot be drawn.
     LeftOut { reason: String },
+    /// The run was told to stop meanwhile.
+    CutOff,
 }
 
 /// Where experiences are lived, one at a time.
 struct Desk<'a> {
     plan: &'a Plan,
     catalogue: Catalogue,
+    stop: &'a AtomicBool,
     /// The regime that the last experience belonged to, and its sampler.
     sampler: Option<(usize, Option<Sampler>)>,
     environment: Option<Environment>,
 }
 
 impl<'a> Desk<'a> {
-    fn new(plan: &'a Plan, catalogue: Catalogue) -> Self {
+    fn new(plan: &'a Plan, catalogue: Catalogue, stop: &'a AtomicBool) -> Self {
         Self {
             plan,
             catalogue,
+            stop,
             sampler: None,
             environment: None,
         }
     }
 
     fn live(&mut self, agent: &mut dyn Agent, number: u64) -> Result<Outcome, CurriculumError> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Ok(Outcome::CutOff);
+        }
         let index = self.plan.regime_of(number);
         let planned = &self.plan.regimes[index];
         let sampler = match &mut self.sampler {
@@ -155,11 +168,13 @@ impl<'a> Desk<'a> {
             seed: planned.chance(number),
             label: planned.label(number),
             learn: planned.kind == BlockKind::Learning,
+            stop: self.stop,
         };
-        Ok(Outcome::Lived {
-            experience: episode::live(agent, environment, &briefing).map_err(failed)?,
+        let lived = episode::live(agent, environment, &briefing).map_err(failed)?;
+        Ok(lived.map_or(Outcome::CutOff, |experience| Outcome::Lived {
+            experience,
             between: assignment.between.map(Box::new),
-        })
+        }))
     }
 }
 
@@ -188,13 +203,14 @@ impl Life<'_, '_> {
 
     /// Logs an experience, counts it and tells whoever watches.
     fn take(&mut self, number: u64, outcome: &Outcome) -> Result<ControlFlow<()>, CurriculumError> {
-        let now = (self.around.now)();
+        let mut now = || (self.around.now)();
         let progress = match outcome {
+            Outcome::CutOff => return Ok(ControlFlow::Break(())),
             Outcome::Lived { experience, between } => {
                 self.journal
-                    .take(self.plan, number, experience, between.as_deref(), now)?
+                    .take(self.plan, number, experience, between.as_deref(), now())?
             }
-            Outcome::LeftOut { reason } => self.journal.leave_out(self.plan, number, reason, now)?,
+            Outcome::LeftOut { reason } => self.journal.leave_out(self.plan, number, reason, now())?,
         };
         Ok((self.around.watch)(&progress))
     }
