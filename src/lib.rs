@@ -20,6 +20,7 @@ pub use driftworld_report as report;
 pub use driftworld_similarity as similarity;
 pub use driftworld_spec as spec;
 
+pub mod clock;
 pub mod columns;
 pub mod commands;
 pub mod contents;

@@ -1,50 +1,149 @@
-//! Being asked to stop: the signals that a terminal and a job scheduler send, turned into a question that long work asks.
+//! Being told to stop: what the signals of a terminal and of a job scheduler do to a command. Long work asks whether it was told so
+//! and ends by itself; what cannot ask, or does not come to it in time, is ended. Either way nothing half written stays.
+//!
+//! Only in a program of its own ([`watch`]): where the command is asked by another program, signals are that one's.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError, mpsc};
+use std::thread;
+use std::time::Duration;
 
-use signal_hook::SigId;
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::flag::{register, register_conditional_shutdown};
-use signal_hook::low_level::unregister;
+use driftworld_atomic_files::remove_unfinished;
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+use signal_hook::low_level;
 
-use super::Failure;
+use super::{Failure, output};
 
-/// Whether the process was asked to stop. Dropped, it listens no more.
-pub(crate) struct Interrupt {
-    asked: Arc<AtomicBool>,
-    listeners: Vec<SigId>,
+/// How long work has to end by itself.
+const GRACE: Duration = Duration::from_millis(1500);
+
+/// How long it may take to remove what is half written and to say so: a disk or a terminal may be what all waits for.
+const LAST: Duration = Duration::from_millis(300);
+
+/// Set by the first signal while somebody listens.
+static ASKED: AtomicBool = AtomicBool::new(false);
+
+/// What to say if whoever listens does not end by itself; nothing while nobody does.
+static PARTING: Mutex<Option<String>> = Mutex::new(None);
+
+fn parting() -> MutexGuard<'static, Option<String>> {
+    PARTING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Whether the process was told to stop, for work that ends by itself then. Dropped, it listens no more.
+pub(crate) struct Interrupt(());
+
 impl Interrupt {
-    /// From now on the first interrupt or termination signal is a question; a second one ends the process at once.
-    pub(crate) fn listen() -> Result<Self, Failure> {
-        let asked = Arc::new(AtomicBool::new(false));
-        let mut interrupt = Self {
-            asked,
-            listeners: Vec::new(),
-        };
-        for signal in [SIGINT, SIGTERM] {
-            // In this order: what ends the process looks before the first signal has been taken down.
-            let ends = register_conditional_shutdown(signal, 1, Arc::clone(&interrupt.asked))?;
-            interrupt.listeners.push(ends);
-            interrupt
-                .listeners
-                .push(register(signal, Arc::clone(&interrupt.asked))?);
-        }
-        Ok(interrupt)
+    /// From now on the first interrupt, termination or hang-up is a question. Whoever has not ended by itself 1.5 seconds later, or
+    /// when the next signal comes, is ended with exit code 1 and these words.
+    pub(crate) fn listen(words: impl Into<String>) -> Self {
+        *parting() = Some(words.into());
+        Self(())
     }
 
     pub(crate) fn is_asked(&self) -> bool {
-        self.asked.load(Ordering::Relaxed)
+        self.flag().load(Ordering::Relaxed)
+    }
+
+    /// The answer to the same question, for other threads.
+    #[expect(clippy::unused_self, reason = "only who listens is told")]
+    pub(crate) fn flag(&self) -> &'static AtomicBool {
+        &ASKED
     }
 }
 
 impl Drop for Interrupt {
     fn drop(&mut self) {
-        // In a program that goes on, as Python's, a later signal must not end what this one knows nothing of.
-        for listener in self.listeners.drain(..) {
-            unregister(listener);
+        // Who was told to stop keeps its words until it has.
+        if !self.is_asked() {
+            parting().take();
         }
+    }
+}
+
+/// A command that runs as a program. Dropped, it is over, and nobody ends the process any more.
+pub(super) struct Watch(());
+
+/// Looks for signals from now on.
+pub(super) fn watch() -> Result<Watch, Failure> {
+    static WATCHED: OnceLock<Result<(), String>> = OnceLock::new();
+    let watched = WATCHED.get_or_init(|| {
+        let signals = Signals::new(signals()).map_err(|error| error.to_string())?;
+        let thread = thread::Builder::new().name("signals".to_owned());
+        thread
+            .spawn(move || follow(signals))
+            .map(drop)
+            .map_err(|error| error.to_string())
+    });
+    match watched {
+        Ok(()) => Ok(Watch(())),
+        Err(error) => Err(Failure::input(format!("signals cannot be looked for: {error}"))),
+    }
+}
+
+impl Drop for Watch {
+    fn drop(&mut self) {
+        parting().take();
+        ASKED.store(false, Ordering::SeqCst);
+    }
+}
+
+/// Hanging up is passed over where whoever started the command had it so, as `nohup` does.
+fn signals() -> Vec<i32> {
+    let mut signals = vec![SIGINT, SIGTERM];
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    if ignored.is_some_and(|mask| mask & (1 << (SIGHUP - 1)) == 0) {
+        signals.push(SIGHUP);
+    }
+    signals
+}
+
+fn follow(mut signals: Signals) {
+    for signal in signals.forever() {
+        let words = parting().clone();
+        match words {
+            // Nobody can end by itself: the process ends as if it had not looked for signals.
+            None => {
+                leave(None);
+                let _ = low_level::emulate_default_handler(signal);
+                low_level::exit(128 + signal);
+            }
+            Some(words) if ASKED.swap(true, Ordering::SeqCst) => end(words),
+            Some(_) => {
+                let waits = thread::Builder::new().spawn(|| {
+                    thread::sleep(GRACE);
+                    // By then the command may be over, in a program that goes on.
+                    if let Some(words) = parting().clone() {
+                        end(words);
+                    }
+                });
+                if waits.is_err() {
+                    end(parting().clone().unwrap_or_default());
+                }
+            }
+        }
+    }
+}
+
+fn end(words: String) -> ! {
+    leave(Some(format!("error: {words}")));
+    low_level::exit(1)
+}
+
+/// Removes what is half written, and says the words, as far as there is time.
+fn leave(words: Option<String>) {
+    let (done, wait) = mpsc::channel();
+    let leaving = thread::Builder::new().spawn(move || {
+        remove_unfinished();
+        if let Some(words) = words {
+            output::to_standard_error(&words);
+        }
+        let _ = done.send(());
+    });
+    if leaving.is_ok() {
+        let _ = wait.recv_timeout(LAST);
     }
 }

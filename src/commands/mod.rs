@@ -35,7 +35,6 @@ mod scoring;
 mod sheet;
 mod table;
 mod tasks;
-mod temporary;
 mod transfer_report;
 mod trials;
 mod unity;
@@ -55,12 +54,17 @@ pub use ask::{Answer, Refusal, ask};
 /// Runs the command as a program of its own does, and prints what it has to say; `args` begins with the program's name.
 ///
 /// Returns the exit code: 0 when all went well, 1 when the input or the place for the output is wrong, 2 when the arguments are.
-/// When the reader of the output goes away, as with `| head`, the process ends.
+/// When the reader of the output goes away, as with `| head`, the process ends; so it does within two seconds of an interrupt, a
+/// termination or a hang-up, with nothing half written left: with exit code 1 where something was going on that can be gone on with or
+/// begun again, else by the signal.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     let _one_at_a_time = ask::alone();
     quiet_on_closed_pipe();
     match Command::try_parse_from(args) {
-        Ok(command) => command.run().map_or_else(|failure| failure.report(), |()| 0),
+        Ok(command) => {
+            let done = interrupt::watch().and_then(|_watch| command.run());
+            done.map_or_else(|failure| failure.report(), |()| 0)
+        }
         Err(help) => {
             // Where nobody reads, there is nobody to tell of it.
             let _ = help.print();

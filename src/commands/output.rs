@@ -1,15 +1,13 @@
 //! Where results go: standard output, or files that appear whole or not at all. What they say is the commands' own.
 
-use std::fs;
 use std::io::{IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use super::temporary::{Temporary, remove_leftovers};
 use super::{Answer, Failure};
 
 /// What is said while somebody wants it handed back. Not a thing of one thread: subcommands work with many.
@@ -91,85 +89,24 @@ pub(crate) fn warning(text: impl AsRef<str>) {
     note(format!("warning: {}", text.as_ref()));
 }
 
-/// Writes a file under a temporary name beside its own and renames it: it is there whole or not at all.
+/// Writes a file that is there whole or not at all; a device or a pipe is written straight.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| unwritable(path, &error);
-    let mut file = beside(path).map_err(failed)?;
-    file.write_all(bytes).map_err(failed)?;
-    persist(file, path)
+    driftworld_atomic_files::write(path, bytes).map_err(|error| unwritable(path, &error))
 }
 
-/// A file to write into for long until it can take `path`'s name, as [`beside`]; what killed processes left of it is removed.
-pub(crate) fn temporary(path: &Path) -> std::io::Result<Temporary> {
-    let file = beside(path)?;
-    if !is_special(path) {
-        let (folder, name) = place(&behind_links(path));
-        remove_leftovers(&folder, Some(&name));
-    }
-    Ok(file)
-}
-
-/// A file to write into until it can take `path`'s name: in the same folder, which is made where it is missing.
-fn beside(path: &Path) -> std::io::Result<Temporary> {
-    if is_special(path) {
-        return Temporary::nameless();
-    }
-    let (folder, name) = place(&behind_links(path));
-    fs::create_dir_all(&folder)?;
-    Temporary::new(&folder, &name)
-}
-
-/// The folder of a file, and its name there.
-fn place(path: &Path) -> (PathBuf, String) {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    (folder.unwrap_or(Path::new(".")).to_owned(), name)
-}
-
-/// Gives a finished temporary file its name.
-///
-/// A device or a pipe cannot be given away: what was written is copied into it instead.
-pub(crate) fn persist(file: Temporary, path: &Path) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| unwritable(path, &error);
-    if is_special(path) {
-        let mut out = fs::OpenOptions::new().write(true).open(path).map_err(failed)?;
-        std::io::copy(&mut file.reopen().map_err(failed)?, &mut out).map_err(failed)?;
-        return Ok(());
-    }
-    file.as_file().sync_all().map_err(failed)?;
-    let file = file.persist(&behind_links(path)).map_err(failed)?;
-    readable_by_all(&file).map_err(failed)
-}
-
-fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
+/// Why a file cannot be written.
+pub(crate) fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Failure {
     Failure::input(format!("{}: cannot be written: {error}", path.display()))
 }
 
-/// Whether the path is there and is neither a file nor a folder: `/dev/null`, a pipe, a terminal.
-fn is_special(path: &Path) -> bool {
-    fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
-}
-
-/// The file that a symbolic link leads to, so that the link stays; else the path itself.
-fn behind_links(path: &Path) -> PathBuf {
-    path.canonicalize().unwrap_or_else(|_| path.to_path_buf())
-}
-
-/// Temporary files are private to their owner; results are not.
-#[cfg(unix)]
-fn readable_by_all(file: &fs::File) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    file.set_permissions(fs::Permissions::from_mode(0o644))
-}
-
-#[cfg(not(unix))]
-fn readable_by_all(_: &fs::File) -> std::io::Result<()> {
-    Ok(())
+/// Whether a path stands for standard output: `-`, or a name that the system has for it.
+pub(crate) fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-") || driftworld_atomic_files::is_own_stdout(path)
 }
 
 /// To a file, or to standard output for `-`.
 pub(crate) fn write_or_print(path: &Path, text: &str) -> Result<(), Failure> {
-    if path == Path::new("-") {
+    if is_stdout(path) {
         print(text)
     } else {
         write(path, text.as_bytes())

@@ -4,9 +4,10 @@ use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use crate::clock::Clock;
 use crate::curriculum::{CurriculumError, Journal, Plan, Progress, Summary, Surroundings, Undrawable, run};
 use crate::env::Catalogue;
-use crate::metrics::{MetricsError, Timestamp};
+use crate::metrics::MetricsError;
 use crate::scenarios::{Missing, ScenarioFile};
 use crate::spec::BlockKind;
 use crate::tasks;
@@ -198,12 +199,16 @@ impl Life<'_> {
     /// Lives it, with a bar on a terminal. Whatever stops it, the log holds whole experiences, and the message says how to go on.
     pub(crate) fn live(mut self) -> Result<Summary, Failure> {
         // Before there is a log, so that whoever sees one may ask for its end.
-        let interrupt = Interrupt::listen()?;
+        let interrupt = Interrupt::listen(format!(
+            "interrupted in the middle of a step\n{}: each experience in it is whole; go on with the same command and --resume",
+            self.logs.display()
+        ));
+        let clock = Clock::from_environment()?;
         let mut journal = self.journal()?;
         let bar = output::progress(self.plan.num_experiences(), "living");
         bar.set_position(journal.num_experiences());
         let mut around = Surroundings {
-            now: &mut now,
+            now: &mut || clock.now(),
             watch: &mut |progress: &Progress| {
                 bar.set_position(progress.done);
                 bar.set_message(progress.variant.clone());
@@ -214,6 +219,7 @@ impl Life<'_> {
                     ControlFlow::Continue(())
                 }
             },
+            stop: interrupt.flag(),
             catalogue: self.catalogue.clone(),
             jobs: self.jobs,
         };
@@ -221,6 +227,11 @@ impl Life<'_> {
         bar.finish_and_clear();
         let done = journal.num_experiences();
         let finished = journal.finish();
+        if let Err(error) = &finished
+            && is_loss(error)
+        {
+            return Err(Failure::input(error.to_string()));
+        }
         match lived {
             Ok(summary) if summary.finished => finished
                 .map(|()| summary)
@@ -261,9 +272,14 @@ impl Life<'_> {
     }
 }
 
-fn now() -> Timestamp {
-    let micros = jiff::Timestamp::now().as_microsecond();
-    Timestamp::from_unix_micros(micros).expect("the clock shows a year from 1 to 9999")
+/// Whether what was logged is no longer there: then there is nothing whole to go on with.
+fn is_loss(error: &CurriculumError) -> bool {
+    matches!(
+        error,
+        CurriculumError::Log(
+            MetricsError::FolderLost { .. } | MetricsError::FileLost { .. } | MetricsError::MissingFile { .. }
+        )
+    )
 }
 
 /// What each regime came to.

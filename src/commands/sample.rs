@@ -11,10 +11,10 @@ use crate::generator::{Coverage, Drift, GeneratorError, Sampler, Schedule, Switc
 use crate::spec::{Variant, World, maps::MapLibrary};
 use crate::tasks;
 use clap::{Args, ValueEnum};
+use driftworld_atomic_files::AtomicFile;
 use rayon::prelude::*;
 
 use super::interrupt::Interrupt;
-use super::temporary::{Temporary, remove_leftovers};
 use super::{Failure, input, output};
 
 /// The most worlds that are drawn at once while streaming.
@@ -244,31 +244,33 @@ impl Sample {
         })
     }
 
-    /// A file under a temporary name in the folder of the output, which appears when it is whole.
-    fn temporary(&self) -> Result<BufWriter<Temporary>, Failure> {
-        let file = output::temporary(&self.output).map_err(|error| self.failed(&error))?;
-        Ok(BufWriter::new(file))
+    /// A file that appears when it is whole; a device or a pipe is written straight.
+    fn begin(&self) -> Result<AtomicFile, Failure> {
+        AtomicFile::create(&self.output).map_err(|error| self.failed(&error))
     }
 
     fn failed(&self, error: &dyn std::fmt::Display) -> Failure {
-        Failure::input(format!("{}: cannot be written: {error}", self.output.display()))
+        output::unwritable(&self.output, error)
     }
 
-    fn persist(&self, file: BufWriter<Temporary>) -> Result<(), Failure> {
+    fn commit(&self, file: BufWriter<AtomicFile>) -> Result<(), Failure> {
         let file = file.into_inner().map_err(|error| self.failed(&error.into_error()))?;
-        output::persist(file, &self.output)
+        file.commit().map_err(|error| self.failed(&error))
     }
 
     fn stream(&self, source: &Source, range: std::ops::Range<u64>) -> Result<(), Failure> {
-        if self.output == Path::new("-") {
+        if output::is_stdout(&self.output) {
             return each(source, range, |(_, _, world)| output::print(&(world.to_json() + "\n")));
         }
-        let mut file = self.temporary()?;
+        let file = self.begin()?;
+        let is_read_now = file.is_straight();
+        let mut file = BufWriter::new(file);
         each(source, range, |(_, _, world)| {
-            file.write_all((world.to_json() + "\n").as_bytes())
-                .map_err(|error| self.failed(&error))
+            let written = file.write_all((world.to_json() + "\n").as_bytes());
+            let written = written.and_then(|()| if is_read_now { file.flush() } else { Ok(()) });
+            written.map_err(|error| self.failed(&error))
         })?;
-        self.persist(file)
+        self.commit(file)
     }
 
     #[cfg(not(feature = "parquet"))]
@@ -290,7 +292,7 @@ impl Sample {
         range: std::ops::Range<u64>,
         format: Format,
     ) -> Result<(), Failure> {
-        let mut table = WorldTable::new(self.temporary()?, format).map_err(|error| self.failed(&error))?;
+        let mut table = WorldTable::new(BufWriter::new(self.begin()?), format).map_err(|error| self.failed(&error))?;
         let (task, seed, count) = (variant.task().name(), self.seed, range.end - range.start);
         each(source, range, |(index, variant, world)| {
             let row = Row {
@@ -302,13 +304,12 @@ impl Sample {
             };
             table.push(row).map_err(|error| self.failed(&error))
         })?;
-        self.persist(table.finish().map_err(|error| self.failed(&error))?)?;
+        self.commit(table.finish().map_err(|error| self.failed(&error))?)?;
         output::line(format!("{count} worlds in {}", self.output.display()))
     }
 
     fn files(&self, source: &Source, range: std::ops::Range<u64>) -> Result<(), Failure> {
         let count = range.end - range.start;
-        remove_leftovers(&self.output, None);
         each(source, range, |(index, _, world)| {
             let path = self.output.join(format!("{index:08}.json"));
             output::write(&path, world.to_json_pretty().as_bytes())
@@ -324,7 +325,7 @@ fn each(
     mut take: impl FnMut((u64, String, World)) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     // Whoever is asked to stop gives up what is half written, and removes it.
-    let interrupt = Interrupt::listen()?;
+    let interrupt = Interrupt::listen("interrupted; what was half written is removed");
     let bar = output::progress(range.end - range.start, "sampling");
     let mut first = range.start;
     let mut chunk = 16;

@@ -8,8 +8,8 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use driftworld_atomic_files::AtomicFile;
 use serde_json::json;
-use tempfile::NamedTempFile;
 
 use super::{Failure, output};
 
@@ -207,26 +207,10 @@ fn text(path: &Path) -> Result<&str, Failure> {
 /// Copies under a temporary name, which is given up for the right one when all is written and can be started.
 fn copy(source: &Path, target: &Path) -> Result<(), Failure> {
     let failed = |error: io::Error| Failure::input(format!("{}: cannot be written: {error}", target.display()));
-    let folder = target.parent().unwrap_or(Path::new("."));
-    fs::create_dir_all(folder).map_err(failed)?;
     let mut from = File::open(source).map_err(|error| unreadable(source, &error))?;
-    let mut copy = NamedTempFile::new_in(folder).map_err(failed)?;
+    let mut copy = AtomicFile::create_executable(target).map_err(failed)?;
     io::copy(&mut from, &mut copy).map_err(failed)?;
-    startable_by_all(copy.as_file()).map_err(failed)?;
-    copy.as_file().sync_all().map_err(failed)?;
-    copy.persist(target).map_err(|error| failed(error.error))?;
-    Ok(())
-}
-
-#[cfg(unix)]
-fn startable_by_all(file: &File) -> io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    file.set_permissions(fs::Permissions::from_mode(0o755))
-}
-
-#[cfg(not(unix))]
-fn startable_by_all(_: &File) -> io::Result<()> {
-    Ok(())
+    copy.commit().map_err(failed)
 }
 
 fn unreadable(path: &Path, error: &io::Error) -> Failure {
@@ -257,6 +241,8 @@ fn quoted(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use tempfile::NamedTempFile;
+
     use super::*;
 
     #[test]

@@ -3,10 +3,17 @@
 use std::fmt::Display;
 use std::io::{Write, stderr, stdout};
 use std::process::ExitCode;
+use std::thread;
 
+use driftworld_atomic_files::remove_unfinished;
 use driftworld_unity::{HELP, Journal, MARK, Request, UnityError, run};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+use signal_hook::low_level;
 
 fn main() -> ExitCode {
+    // Without a thread signals do what they always do.
+    let _ = thread::Builder::new().name("signals".to_owned()).spawn(follow_signals);
     let arguments: Vec<String> = std::env::args_os()
         .skip(1)
         .map(|argument| argument.to_string_lossy().into_owned())
@@ -33,6 +40,18 @@ fn main() -> ExitCode {
         }
     }
     ExitCode::SUCCESS
+}
+
+/// Ends the process at the first signal, as if nobody looked for it, but with nothing half written left.
+fn follow_signals() {
+    let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else {
+        return;
+    };
+    for signal in signals.forever() {
+        remove_unfinished();
+        let _ = low_level::emulate_default_handler(signal);
+        low_level::exit(128 + signal);
+    }
 }
 
 /// A terminal that is gone, or a full disk behind it, does not change how we end.

@@ -4,6 +4,8 @@ use std::fs;
 use std::io::{Read, Write};
 use std::path::{Component, Path, PathBuf};
 
+use driftworld_atomic_files::AtomicFile;
+
 /// The longest name of a file, in bytes.
 const LONGEST_NAME: usize = 200;
 
@@ -56,20 +58,9 @@ impl Screenshots {
                 "payload/filename: found {name:?}, which is a file but no picture, expected another name"
             ));
         }
-        let mut file = tempfile::Builder::new()
-            .prefix(".screenshot")
-            .tempfile_in(&folder)
-            .map_err(failed)?;
+        let mut file = AtomicFile::create_in_place_of_links(&path).map_err(failed)?;
         file.write_all(png).map_err(failed)?;
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // Temporary files are their owner's alone; pictures are as any other file.
-            file.as_file()
-                .set_permissions(fs::Permissions::from_mode(0o644))
-                .map_err(failed)?;
-        }
-        file.persist(&path).map_err(|error| failed(error.error))?;
+        file.commit().map_err(failed)?;
         Ok(path)
     }
 }

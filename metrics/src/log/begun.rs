@@ -5,6 +5,8 @@
 use std::fs;
 use std::path::Path;
 
+use driftworld_atomic_files::is_unfinished;
+
 use super::logger_info::{self, LoggerInfo};
 use super::scenario_info::{self, ScenarioInfo};
 use super::warning::LogWarning;
@@ -49,10 +51,7 @@ pub(super) fn is_free(dir: &Path) -> Result<bool, MetricsError> {
         let entry = entry.map_err(list)?;
         let name = entry.file_name();
         let name = name.to_string_lossy();
-        if names
-            .iter()
-            .any(|info| json_file::temporary_name(info) == name.as_ref())
-        {
+        if is_unfinished(&name) || names.iter().any(|info| older_name(info) == name) {
             continue;
         }
         if !names.contains(&name.as_ref()) || !entry.file_type().map_err(list)?.is_file() {
@@ -63,10 +62,16 @@ pub(super) fn is_free(dir: &Path) -> Result<bool, MetricsError> {
     Ok(whole < names.len())
 }
 
+/// What older versions called an info file until it was whole.
+fn older_name(info: &str) -> String {
+    format!(".{info}.tmp")
+}
+
 /// Removes the temporary files that an interrupted making of a log leaves.
 pub(super) fn remove_leftovers(dir: &Path) -> Result<(), MetricsError> {
+    driftworld_atomic_files::remove_leftovers(dir);
     for info in [scenario_info::FILE_NAME, logger_info::FILE_NAME] {
-        let path = dir.join(json_file::temporary_name(info));
+        let path = dir.join(older_name(info));
         match fs::remove_file(&path) {
             Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
                 return Err(MetricsError::io(path, "remove this file")(error));
@@ -104,6 +109,8 @@ mod tests {
         };
         check(&[]);
         check(&[(".scenario_info.json.tmp", "{ \"scen")]);
+        check(&[(".scenario_info.json.aB3.driftworld-part", "{ \"scen")]);
+        check(&[scenario, (".logger_info.json.aB3.driftworld-part", "{ \"scen")]);
         check(&[scenario]);
         check(&[("scenario_info.json", "{ \"scen")]);
         check(&[scenario, (".logger_info.json.tmp", "")]);

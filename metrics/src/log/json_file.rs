@@ -3,7 +3,7 @@
 //! Not here: what stands in them, see `logger_info` and `scenario_info`.
 
 use std::fs;
-use std::io::{Read, Write};
+use std::io::Read;
 use std::path::Path;
 
 use serde::Serialize;
@@ -67,24 +67,9 @@ pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Metr
     write_whole(path, &bytes)
 }
 
-/// Writes bytes under a temporary name beside the target and renames.
+/// Writes bytes under a temporary name beside the target and renames. The file keeps its mode if there was one.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), MetricsError> {
-    let temporary = path.with_file_name(temporary_name(&path.file_name().unwrap_or_default().to_string_lossy()));
-    let written = fs::File::create(&temporary).and_then(|mut file| {
-        file.write_all(bytes)?;
-        file.sync_all()
-    });
-    let renamed = written.and_then(|()| fs::rename(&temporary, path));
-    renamed.map_err(|error| {
-        // Nothing of a failed write is left behind; if even that fails, the first error is the one that tells.
-        let _ = fs::remove_file(&temporary);
-        MetricsError::io(path, "write this file")(error)
-    })
-}
-
-/// What a file is called until it is whole.
-pub(super) fn temporary_name(name: &str) -> String {
-    format!(".{name}.tmp")
+    driftworld_atomic_files::write(path, bytes).map_err(MetricsError::io(path, "write this file"))
 }
 
 /// The parser's words without "at line 1 column 2", which stands in front of the message already.

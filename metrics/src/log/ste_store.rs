@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use tempfile::TempDir;
+use driftworld_atomic_files::ScratchFolder;
 
 use super::reader::read_ste_log;
 use super::{data_files, folder_name, log_folder, logger_info, scenario_info};
@@ -218,18 +218,23 @@ fn give_name(new: &Path, task_dir: &Path, run: &str) -> Result<PathBuf, MetricsE
 }
 
 /// Moves a run where it is no longer found, to be removed with the temporary directory.
-fn take_away(run: &Path, temporary: &TempDir) -> Result<(), MetricsError> {
-    let grave = TempDir::with_prefix_in("old-", temporary.path());
-    let grave = grave.map_err(MetricsError::io(temporary.path(), "make a directory here"))?;
-    let grave = grave.keep().join("log");
+fn take_away(run: &Path, temporary: &ScratchFolder) -> Result<(), MetricsError> {
+    // As in the data folder: no two of them have one name.
+    let names = [run.parent().and_then(Path::file_name), run.file_name()];
+    let grave: PathBuf = std::iter::once(temporary.path())
+        .chain([Path::new("old")])
+        .chain(names.into_iter().flatten().map(Path::new))
+        .collect();
+    let above = grave.parent().unwrap_or(temporary.path());
+    fs::create_dir_all(above).map_err(MetricsError::io(above, "make this directory"))?;
     fs::rename(run, &grave).map_err(MetricsError::io(run, "take away this directory"))
 }
 
-fn temporary(data_folder: &Path) -> Result<TempDir, MetricsError> {
-    TempDir::with_prefix_in(TEMPORARY, data_folder).map_err(MetricsError::io(data_folder, "make a directory here"))
+fn temporary(data_folder: &Path) -> Result<ScratchFolder, MetricsError> {
+    ScratchFolder::new(TEMPORARY, data_folder).map_err(MetricsError::io(data_folder, "make a directory here"))
 }
 
-fn remove(temporary: TempDir) -> Result<(), MetricsError> {
+fn remove(temporary: ScratchFolder) -> Result<(), MetricsError> {
     let path = temporary.path().to_owned();
     temporary
         .close()

@@ -7,6 +7,7 @@ use crate::metrics::{
     BlockType, LogWriter, LoggerInfo, MetricsError, Options, Record, ScenarioInfo, TaskParams, Timestamp, read_log,
     score,
 };
+use driftworld_atomic_files::ScratchFolder;
 use serde_json::{Map, json};
 
 use super::super::Failure;
@@ -31,7 +32,7 @@ const PACE: i64 = 1_234_567;
 /// Seconds and rows each second of writing, reading and scoring.
 pub(super) fn measure(is_quick: bool) -> Result<Figures, Failure> {
     let num_rows = if is_quick { NUM_ROWS_QUICK } else { NUM_ROWS };
-    let base = tempfile::tempdir()?;
+    let base = ScratchFolder::new(".driftworld-bench-", &std::env::temp_dir())?;
     let dir = base.path().join("lifetime");
     let start = Instant::now();
     write(&dir, num_rows)?;

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use crate::columns;
 use crate::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
 use clap::{Args, ValueEnum};
+use driftworld_atomic_files::AtomicFile;
 
-use super::super::temporary::Temporary;
 use super::super::{Failure, log_folders, output};
 use super::count;
 
@@ -149,13 +149,11 @@ impl Aggregate {
     }
 
     fn write(&self, table: &LogTable, format: Format) -> Result<(), Failure> {
-        let failed = |error: &dyn std::fmt::Display| {
-            Failure::input(format!("{}: cannot be written: {error}", self.output.display()))
-        };
-        let file = output::temporary(&self.output).map_err(|error| failed(&error))?;
+        let failed = |error: &dyn std::fmt::Display| output::unwritable(&self.output, error);
+        let file = AtomicFile::create(&self.output).map_err(|error| failed(&error))?;
         let file = written(table, format, BufWriter::new(file)).map_err(|error| failed(&error))?;
-        let file: Temporary = file.into_inner().map_err(|error| failed(&error.into_error()))?;
-        output::persist(file, &self.output)
+        let file = file.into_inner().map_err(|error| failed(&error.into_error()))?;
+        file.commit().map_err(|error| failed(&error))
     }
 }
 

@@ -24,6 +24,7 @@ pub(super) struct Fence {
 
 /// Names crates that no room imports, so their versions stand nowhere else.
 pub(super) const FEATURES: &str = "driftworld-features";
+const ATOMIC_FILES: &str = "driftworld-atomic-files";
 const SPEC: &str = "driftworld-spec";
 const GENERATOR: &str = "driftworld-generator";
 const SIMILARITY: &str = "driftworld-similarity";
@@ -42,6 +43,11 @@ pub(super) const ROOMS: &[Room] = &[
     Room {
         package: FEATURES,
         floor: 0,
+        may_import: &[],
+    },
+    Room {
+        package: ATOMIC_FILES,
+        floor: 1,
         may_import: &[],
     },
     Room {
@@ -67,34 +73,53 @@ pub(super) const ROOMS: &[Room] = &[
     Room {
         package: METRICS,
         floor: 2,
-        may_import: &[],
+        may_import: &[ATOMIC_FILES],
     },
     Room {
         package: CURRICULUM,
         floor: 3,
-        may_import: &[FEATURES, SPEC, GENERATOR, SIMILARITY, ENV, METRICS],
+        may_import: &[FEATURES, ATOMIC_FILES, SPEC, GENERATOR, SIMILARITY, ENV, METRICS],
     },
     Room {
         package: REPORT,
         floor: 3,
-        may_import: &[METRICS],
+        may_import: &[ATOMIC_FILES, METRICS],
     },
     Room {
         package: FACADE,
         floor: 4,
-        may_import: &[FEATURES, SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM, REPORT],
+        may_import: &[
+            FEATURES,
+            ATOMIC_FILES,
+            SPEC,
+            GENERATOR,
+            SIMILARITY,
+            ENV,
+            METRICS,
+            CURRICULUM,
+            REPORT,
+        ],
     },
     Room {
         package: PYTHON,
         floor: 5,
         may_import: &[
-            FEATURES, SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM, REPORT, FACADE,
+            FEATURES,
+            ATOMIC_FILES,
+            SPEC,
+            GENERATOR,
+            SIMILARITY,
+            ENV,
+            METRICS,
+            CURRICULUM,
+            REPORT,
+            FACADE,
         ],
     },
     Room {
         package: UNITY,
         floor: 4,
-        may_import: &[FEATURES, SPEC, ENV],
+        may_import: &[FEATURES, ATOMIC_FILES, SPEC, ENV],
     },
     Room {
         package: FUZZ,

@@ -1,0 +1,47 @@
+//! Who may read and write a file that takes another's place: those who could before. A new one follows the umask.
+
+use std::fs::{File, Metadata};
+use std::io;
+
+use tempfile::Builder;
+
+/// The mode of a file that is new, before the umask takes from it.
+pub(crate) const PLAIN: u32 = 0o666;
+
+/// Lets a temporary file begin with no more than it will end with; the umask takes from that.
+#[cfg(unix)]
+pub(crate) fn begin(builder: &mut Builder<'_, '_>, mode: u32, before: Option<&Metadata>) {
+    use std::os::unix::fs::PermissionsExt;
+    let mode = before.map_or(mode, |before| before.permissions().mode() & 0o777);
+    builder.permissions(std::fs::Permissions::from_mode(mode));
+}
+
+#[cfg(not(unix))]
+pub(crate) fn begin(_: &mut Builder<'_, '_>, _: u32, _: Option<&Metadata>) {}
+
+/// Gives a file the owner and the mode of the one whose place it takes; `mode` is what a new one would have: those who may read it
+/// may run it where that one could be run.
+///
+/// Where it cannot have the same group, the group may do what everybody may.
+#[cfg(unix)]
+pub(crate) fn keep(file: &File, mode: u32, before: &Metadata) -> io::Result<()> {
+    use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
+    let own = file.metadata()?;
+    let (mut kept, wanted) = (before.permissions().mode() & 0o777, (before.uid(), before.gid()));
+    if mode & 0o100 != 0 {
+        kept |= (kept & 0o444) >> 2;
+    }
+    if (own.uid(), own.gid()) != wanted {
+        let both = fchown(file, Some(wanted.0), Some(wanted.1));
+        let group = both.or_else(|_| fchown(file, None, Some(wanted.1)));
+        if group.is_err() && own.gid() != wanted.1 {
+            kept = (kept & !0o070) | ((kept & 0o007) << 3);
+        }
+    }
+    file.set_permissions(std::fs::Permissions::from_mode(kept))
+}
+
+#[cfg(not(unix))]
+pub(crate) fn keep(_: &File, _: u32, _: &Metadata) -> io::Result<()> {
+    Ok(())
+}

@@ -1,0 +1,236 @@
+//! What is there at each moment, of a file that is written: nothing, what was there before, or all of it.
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+use driftworld_atomic_files::{AtomicFile, ScratchFolder, is_unfinished, remove_leftovers, write};
+
+fn scratch() -> tempfile::TempDir {
+    tempfile::tempdir().expect("the machine has a folder for temporary files")
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("the folder is there").flatten();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_file_is_there_whole_or_not_at_all() {
+    let folder = scratch();
+    let path = folder.path().join("made/for/it/a.txt");
+    let mut file = AtomicFile::create(&path).expect("the folder can be made");
+    file.write_all(b"half").expect("there is room");
+    assert!(!path.exists());
+    drop(file);
+    let parent = path.parent().expect("it lies in a folder");
+    assert_eq!(names(parent), [""; 0], "what is given up is gone");
+    write(&path, b"whole").expect("there is room");
+    let mut file = AtomicFile::create(&path).expect("the folder is ours");
+    file.write_all(b"other").expect("there is room");
+    assert_eq!(fs::read(&path).expect("it is there"), b"whole");
+    file.commit().expect("the folder is ours");
+    assert_eq!(fs::read(&path).expect("it is there"), b"other");
+    assert_eq!(names(parent), ["a.txt"]);
+}
+
+#[test]
+fn long_names_are_cut_and_folders_are_refused_at_once() {
+    let folder = scratch();
+    drop(AtomicFile::create(&folder.path().join("ä".repeat(120))).expect("long names are cut"));
+    assert!(names(folder.path()).is_empty());
+    let error = AtomicFile::create(folder.path()).expect_err("a folder is no file");
+    assert_eq!(error.kind(), std::io::ErrorKind::IsADirectory);
+}
+
+#[test]
+fn leftovers_go_and_what_is_being_written_stays() {
+    let folder = scratch();
+    let at = |name: &str| folder.path().join(name);
+    let mut file = AtomicFile::create(&at("a.jsonl")).expect("the folder is ours");
+    file.write_all(b"half").expect("there is room");
+    for name in [
+        ".a.jsonl.1.driftworld-part",
+        ".b.1.driftworld-part",
+        ".a.jsonl.swp",
+        "c.driftworld-part",
+    ] {
+        fs::write(at(name), "half").expect("the folder is ours");
+    }
+    remove_leftovers(folder.path());
+    let left = names(folder.path());
+    assert_eq!(left.len(), 3, "{left:?}");
+    assert!(left.contains(&".a.jsonl.swp".to_owned()) && left.contains(&"c.driftworld-part".to_owned()));
+    assert!(left.iter().any(|name| is_unfinished(name)));
+    file.commit().expect("the folder is ours");
+    assert!(at("a.jsonl").exists());
+}
+
+#[test]
+fn scratch_folders_of_others_go_when_nobody_works_in_them() {
+    let folder = scratch();
+    fs::create_dir_all(folder.path().join(".work-killed/deep")).expect("the folder is ours");
+    let first = ScratchFolder::new(".work-", folder.path()).expect("the folder is ours");
+    assert!(!folder.path().join(".work-killed").exists());
+    let second = ScratchFolder::new(".work-", folder.path()).expect("the folder is ours");
+    assert!(first.path().is_dir() && second.path().is_dir());
+    first.close().expect("it can be removed");
+    drop(second);
+    assert!(names(folder.path()).is_empty());
+}
+
+#[cfg(unix)]
+mod unix {
+    use std::io::Read;
+    use std::os::unix::fs::{MetadataExt, PermissionsExt, symlink};
+
+    use super::*;
+
+    fn mode(path: &Path) -> u32 {
+        fs::metadata(path).expect("it is there").permissions().mode() & 0o777
+    }
+
+    #[test]
+    fn a_file_keeps_its_mode_and_a_new_one_is_as_any_other() {
+        let folder = scratch();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("plain"), "").expect("the folder is ours");
+        write(&at("new"), b"x").expect("there is room");
+        assert_eq!(mode(&at("new")), mode(&at("plain")), "as the umask has it");
+        for kept in [0o600, 0o640, 0o666, 0o644, 0o755, 0o400] {
+            let path = at(&format!("{kept:o}"));
+            fs::write(&path, "before").expect("the folder is ours");
+            fs::set_permissions(&path, fs::Permissions::from_mode(kept)).expect("it is ours");
+            let mut file = AtomicFile::create(&path).expect("the folder is ours");
+            file.write_all(b"after").expect("there is room");
+            let part = names(folder.path()).into_iter().find(|name| is_unfinished(name));
+            let part = mode(&at(&part.expect("it is being written")));
+            assert_eq!(
+                part & !kept,
+                0,
+                "never open to more than the file will be: {part:o}, {kept:o}"
+            );
+            file.commit().expect("the folder is ours");
+            assert_eq!(mode(&path), kept, "{:o}, expected {kept:o}", mode(&path));
+        }
+    }
+
+    /// Only root may give files away; for others there is nothing to see.
+    #[test]
+    fn a_file_keeps_its_owner_where_that_is_allowed() {
+        let folder = scratch();
+        let path = folder.path().join("theirs");
+        fs::write(&path, "before").expect("the folder is ours");
+        if std::os::unix::fs::chown(&path, Some(12_345), Some(23_456)).is_err() {
+            return;
+        }
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).expect("it is ours");
+        write(&path, b"after").expect("the folder is ours");
+        let found = fs::metadata(&path).expect("it is there");
+        assert_eq!((found.uid(), found.gid(), mode(&path)), (12_345, 23_456, 0o640));
+    }
+
+    #[test]
+    fn programs_can_be_run_by_whoever_may_read_them() {
+        let folder = scratch();
+        let at = |name: &str| folder.path().join(name);
+        let install = |path: &Path| {
+            let file = AtomicFile::create_executable(path).expect("the folder is ours");
+            file.commit().expect("the folder is ours");
+        };
+        install(&at("new"));
+        assert_eq!(mode(&at("new")) & 0o700, 0o700);
+        fs::write(at("private"), "").expect("the folder is ours");
+        fs::set_permissions(at("private"), fs::Permissions::from_mode(0o640)).expect("it is ours");
+        install(&at("private"));
+        assert_eq!(mode(&at("private")), 0o750);
+    }
+
+    #[test]
+    fn links_stay_and_what_they_lead_to_is_written() {
+        let folder = scratch();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("far")).expect("the folder is ours");
+        for (link, to) in [("first", "far/a"), ("second", "first"), ("nowhere", "far/new")] {
+            symlink(to, at(link)).expect("links can be made");
+        }
+        write(&at("second"), b"1").expect("there is room");
+        write(&at("nowhere"), b"2").expect("there is room");
+        assert!(at("first").is_symlink() && at("second").is_symlink() && at("nowhere").is_symlink());
+        assert_eq!(fs::read(at("far/a")).expect("it is there"), b"1");
+        assert_eq!(fs::read(at("far/new")).expect("it is there"), b"2");
+        assert_eq!(names(&at("far")), ["a", "new"]);
+        let file = AtomicFile::create_in_place_of_links(&at("second")).expect("the folder is ours");
+        file.commit().expect("the folder is ours");
+        assert!(!at("second").is_symlink());
+        assert_eq!(fs::read(at("far/a")).expect("it is there"), b"1");
+    }
+
+    #[test]
+    fn links_in_a_circle_are_an_error() {
+        let folder = scratch();
+        let at = |name: &str| folder.path().join(name);
+        symlink("b", at("a")).expect("links can be made");
+        symlink("a", at("b")).expect("links can be made");
+        // Whatever becomes of the link, it ends.
+        let _ = write(&at("a"), b"x");
+    }
+
+    #[test]
+    fn devices_and_pipes_are_written_straight() {
+        let folder = scratch();
+        let mut null = AtomicFile::create(Path::new("/dev/null")).expect("every system has it");
+        assert!(null.is_straight());
+        null.write_all(b"gone").expect("it takes all");
+        null.commit().expect("nothing is left to do");
+        let pipe = folder.path().join("pipe");
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+        assert!(made.is_ok_and(|made| made.success()));
+        let reader = {
+            let pipe = pipe.clone();
+            std::thread::spawn(move || {
+                let mut file = fs::File::open(pipe).expect("it is there");
+                let mut first = [0; 5];
+                file.read_exact(&mut first).expect("the writer is at work");
+                let mut rest = String::new();
+                file.read_to_string(&mut rest).expect("the writer ends");
+                (first, rest)
+            })
+        };
+        let mut file = AtomicFile::create(&pipe).expect("somebody reads it");
+        file.write_all(b"first").expect("somebody reads it");
+        file.write_all(b"second").expect("somebody reads it");
+        assert!(file.is_straight());
+        file.commit().expect("nothing is left to do");
+        drop(
+            reader
+                .join()
+                .map(|found| assert_eq!(found, (*b"first", "second".to_owned()))),
+        );
+        assert_eq!(names(folder.path()), ["pipe"]);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn what_a_process_has_open_goes_on_at_its_end() {
+        use std::os::fd::AsRawFd;
+        let folder = scratch();
+        let path = folder.path().join("open");
+        fs::write(&path, "before ").expect("the folder is ours");
+        let open = fs::File::open(&path).expect("it is there");
+        let name = format!("/dev/fd/{}", open.as_raw_fd());
+        let link = folder.path().join("link");
+        symlink(&name, &link).expect("links can be made");
+        for place in [Path::new(&name), &link] {
+            write(place, b"after ").expect("it is open");
+        }
+        assert_eq!(fs::read_to_string(&path).expect("it is there"), "before after after ");
+        assert!(driftworld_atomic_files::is_own_stdout(Path::new("/dev/stdout")));
+        assert!(!driftworld_atomic_files::is_own_stdout(Path::new("/dev/stderr")));
+        assert!(!driftworld_atomic_files::is_own_stdout(&path));
+    }
+}

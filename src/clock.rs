@@ -1,0 +1,101 @@
+//! The time that logs are stamped with: the clock's, or one that stands still, so that two runs are equal to the byte.
+//!
+//! Not here: the form of a stamp, which is `metrics`'.
+
+use driftworld_metrics::Timestamp;
+
+/// The variable that stops the clock.
+pub const VARIABLE: &str = "DRIFTWORLD_CLOCK";
+
+/// Microseconds since 1970 of the first and the last moment that a stamp can show: the years 1 to 9999.
+const STAMPS: std::ops::RangeInclusive<i64> = -62_135_596_800_000_000..=253_402_300_799_999_999;
+
+/// Where the time comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// The system's clock.
+    System,
+    /// A clock that stands still.
+    Stopped(Timestamp),
+}
+
+/// The variable says something that is no time.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{VARIABLE}: found {found:?}, expected a time in UTC such as 2026-01-31T12:00:00Z, from the year 1 to 9999; unset it for the clock's own"
+)]
+pub struct ClockError {
+    /// What it says.
+    pub found: String,
+}
+
+impl Clock {
+    /// The clock's own time, unless `DRIFTWORLD_CLOCK` names one that every row is stamped with.
+    ///
+    /// # Errors
+    /// [`ClockError`] where that is no time.
+    pub fn from_environment() -> Result<Self, ClockError> {
+        match std::env::var_os(VARIABLE) {
+            None => Ok(Self::System),
+            Some(found) => Self::stopped(&found.to_string_lossy()),
+        }
+    }
+
+    fn stopped(found: &str) -> Result<Self, ClockError> {
+        let moment = found.parse::<jiff::Timestamp>().ok();
+        let stamp = moment.and_then(|moment| Timestamp::from_unix_micros(moment.as_microsecond()).ok());
+        stamp.map(Self::Stopped).ok_or_else(|| ClockError {
+            found: found.to_owned(),
+        })
+    }
+
+    /// The time now. A clock that is outside the years that a stamp can show is taken for the nearest of them.
+    #[expect(clippy::missing_panics_doc, reason = "the range is that of the type")]
+    pub fn now(self) -> Timestamp {
+        match self {
+            Self::Stopped(stamp) => stamp,
+            Self::System => Timestamp::from_unix_micros(micros(std::time::SystemTime::now()))
+                .expect("the moment was brought into the years from 1 to 9999"),
+        }
+    }
+}
+
+/// Microseconds since 1970, within what a stamp can show.
+fn micros(now: std::time::SystemTime) -> i64 {
+    let whole = |since: std::time::Duration| i64::try_from(since.as_micros()).unwrap_or(i64::MAX);
+    let micros = match now.duration_since(std::time::UNIX_EPOCH) {
+        Ok(since) => whole(since),
+        Err(before) => -whole(before.duration()),
+    };
+    micros.clamp(*STAMPS.start(), *STAMPS.end())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::{Duration, UNIX_EPOCH};
+
+    use super::*;
+
+    #[test]
+    fn a_stopped_clock_shows_what_it_is_told() {
+        let check = |text: &str, expected: &str| {
+            let clock = Clock::stopped(text).expect("it is a time");
+            assert_eq!(clock.now().to_string(), expected);
+        };
+        check("2020-09-13T12:26:40Z", "20200913T122640.000000");
+        check("2020-09-13T14:26:40.5+02:00", "20200913T122640.500000");
+        for wrong in ["", "now", "2020-09-13", "1600000000", "2020-13-01T00:00:00Z"] {
+            let error = Clock::stopped(wrong).expect_err(wrong).to_string();
+            assert!(error.contains(&format!("DRIFTWORLD_CLOCK: found {wrong:?}")), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_clock_that_is_far_off_has_a_stamp_all_the_same() {
+        let stamp = |now| Timestamp::from_unix_micros(micros(now)).map(|stamp| stamp.to_string());
+        let year = Duration::from_secs(31_557_600);
+        assert!(stamp(UNIX_EPOCH - year).is_ok_and(|stamp| stamp == "19681231T180000.000000"));
+        assert!(stamp(UNIX_EPOCH + 20_000 * year).is_ok_and(|stamp| stamp.starts_with("99991231")));
+        assert!(stamp(UNIX_EPOCH - 20_000 * year).is_ok_and(|stamp| stamp.starts_with("00010101")));
+    }
+}
