@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use driftworld_spec::{MAX_BYTES, Scenario};
+use driftworld_text::ShownPath;
 use serde_json::Value;
 
 /// What a file or folder holds.
@@ -105,7 +106,7 @@ impl Contents {
 
     /// What to do about it where one of `wanted` was asked for: how to make that, or else what takes this.
     fn advice(self, wanted: &[Self], path: &Path) -> String {
-        let path = path.display();
+        let path = path.shown();
         match self {
             Self::Task if wanted.contains(&Self::Scenario) => {
                 format!("make one of its variants by `driftworld curriculum {path} -o scenario.json`")
@@ -153,7 +154,7 @@ impl OtherContents {
     pub(crate) fn check(path: &Path, found: Option<Contents>, wanted: &[Contents]) -> Option<Self> {
         let found = found.filter(|found| !wanted.contains(found))?;
         Some(Self {
-            path: path.display().to_string(),
+            path: path.shown().to_string(),
             found,
             expected: Contents::either(wanted),
             advice: found.advice(wanted, path),

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use driftworld_curriculum::{CurriculumError, log_name};
 use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{Classes, Scenario, SpecError, TaskSpec, World, nearest};
+use driftworld_text::ShownPath;
 use serde_json::Value;
 
 use crate::contents::{Contents, OtherContents};
@@ -18,7 +19,7 @@ use crate::tasks::TaskError;
 #[non_exhaustive]
 pub enum DocumentError {
     /// The file cannot be read.
-    #[error("{}: cannot be read: {source}", path.display())]
+    #[error("{}: cannot be read: {source}", path.shown())]
     Unreadable {
         /// Its path.
         path: PathBuf,
@@ -26,7 +27,7 @@ pub enum DocumentError {
         source: std::io::Error,
     },
     /// The file is no text.
-    #[error("{}: byte {at} is not UTF-8; JSON documents are UTF-8 text", path.display())]
+    #[error("{}: byte {at} is not UTF-8; JSON documents are UTF-8 text", path.shown())]
     NotText {
         /// Its path.
         path: PathBuf,

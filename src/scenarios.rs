@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use driftworld_curriculum::{CurriculumError, FoundWorld, Plan, Sources, Undrawable};
 use driftworld_spec::{Scenario, SpecError, TaskSpec, World, nearest};
+use driftworld_text::ShownPath;
 use serde_json::Value;
 
 use crate::contents::Contents;
@@ -130,8 +131,8 @@ impl ScenarioFile {
         if beside.is_file() {
             warn(format!(
                 "{}: there is no such file; {} is lived, which lies beside the scenario",
-                meant.display(),
-                beside.display()
+                meant.shown(),
+                beside.shown()
             ));
             return Ok(FoundWorld {
                 world: self.read_world(&beside)?,
@@ -141,14 +142,14 @@ impl ScenarioFile {
         let looked = if meant == beside {
             meant.display().to_string()
         } else {
-            format!("{} and {}", meant.display(), beside.display())
+            format!("{} and {}", meant.shown(), beside.shown())
         };
         let stand_in = self.nearest(&[&meant, &beside]);
         match (stand_in, missing) {
             (Some(file), Missing::StandIn) => {
                 let lived = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
                 let note = format!("not there; {lived} stood in for it");
-                warn(format!("{}: {note}", named.display()));
+                warn(format!("{}: {note}", named.shown()));
                 Ok(FoundWorld {
                     world: self.read_world(&file)?,
                     note: Some(note),
@@ -161,7 +162,7 @@ impl ScenarioFile {
                     "with --stand-in"
                 };
                 let advice = stand_in.map_or_else(String::new, |file| {
-                    format!("; or let {} stand in for it {how}", file.display())
+                    format!("; or let {} stand in for it {how}", file.shown())
                 });
                 Err(format!(
                     "found no file {:?}, looked for {looked}, expected a world file; put it there{advice}",

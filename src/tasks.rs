@@ -7,6 +7,7 @@ use crate::contents::Contents;
 use crate::documents::{self, DocumentError};
 use driftworld_env::Catalogue;
 use driftworld_spec::{Classes, DEFAULT_VARIANT, SpecError, TaskSpec, Variant, nearest};
+use driftworld_text::ShownPath;
 
 /// The tasks that are built in: name and text. The files are `examples/tasks/`.
 pub const BUILT_IN: [(&str, &str); 6] = [
@@ -33,7 +34,7 @@ pub enum TaskError {
         name: String,
     },
     /// The file is there and cannot be read.
-    #[error("{}: cannot be read: {source}", path.display())]
+    #[error("{}: cannot be read: {source}", path.shown())]
     Unreadable {
         /// Its path.
         path: PathBuf,

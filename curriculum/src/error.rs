@@ -6,6 +6,7 @@ use driftworld_env::EnvError;
 use driftworld_generator::GeneratorError;
 use driftworld_metrics::MetricsError;
 use driftworld_similarity::SimilarityError;
+use driftworld_text::ShownPath;
 
 /// Everything that can go wrong in this crate.
 #[derive(Debug, thiserror::Error)]
@@ -223,7 +224,8 @@ pub enum CurriculumError {
     /// A log that is to be taken up was written by another run.
     #[error(
         "{}: {place}: found {found}, expected {expected} as in this run; \
-         go on with what the log was begun with, or choose another folder", path.display()
+         go on with what the log was begun with, or choose another folder",
+        path.shown()
     )]
     OtherRun {
         /// The log's folder.
@@ -237,7 +239,8 @@ pub enum CurriculumError {
     },
     /// A row of a log that is to be taken up is not the one that the scenario has there.
     #[error(
-        "{}: row {row}: found {found}, expected {expected}; is a file missing or changed? choose another folder", path.display()
+        "{}: row {row}: found {found}, expected {expected}; is a file missing or changed? choose another folder",
+        path.shown()
     )]
     OtherRow {
         /// The log's folder.

@@ -1,6 +1,7 @@
 //! What can go wrong while a world runs.
 
 use driftworld_spec::SpecError;
+use driftworld_text::one_line;
 
 use crate::sim::Obstacle;
 
@@ -199,7 +200,7 @@ pub enum EnvError {
         height: u32,
     },
     /// Bytes that are not a library of assets, or not a whole one.
-    #[error("library, byte {byte}: found {found}, expected {expected}")]
+    #[error("library, byte {byte}: found {found}, expected {expected}", found = one_line(found), expected = one_line(expected))]
     BadLibrary {
         /// Where in the file.
         byte: usize,
@@ -209,7 +210,7 @@ pub enum EnvError {
         expected: String,
     },
     /// A model that cannot be taken into a library.
-    #[error("{place}: found {found}, expected {expected}")]
+    #[error("{place}: found {found}, expected {expected}", place = one_line(place), found = one_line(found), expected = one_line(expected))]
     BadModel {
         /// Where in the model's file: a JSON pointer, or a few words.
         place: String,
@@ -219,7 +220,7 @@ pub enum EnvError {
         expected: String,
     },
     /// A line of an agent's script that says nothing an agent could do.
-    #[error("{script}:{line}: found {found}, expected {expected}")]
+    #[error("{script}:{line}: found {found}, expected {expected}", script = one_line(script), found = one_line(found), expected = one_line(expected))]
     BadScript {
         /// What the script is called, usually its path.
         script: String,
@@ -249,7 +250,8 @@ pub enum EnvError {
     /// A picture that a graphics card cannot hold.
     #[error(
         "picture: found {width} × {height} points, expected at most {most} each way on {adapter}; draw it with the renderer cpu, \
-         smaller, or with less supersampling"
+         smaller, or with less supersampling",
+        adapter = one_line(adapter)
     )]
     GpuPicture {
         /// Width in points: pixels times supersampling.
@@ -262,7 +264,7 @@ pub enum EnvError {
         adapter: String,
     },
     /// A graphics card fails.
-    #[error("renderer gpu: {adapter}: {reason}; expected a picture; the renderer cpu works everywhere")]
+    #[error("renderer gpu: {adapter}: {reason}; expected a picture; the renderer cpu works everywhere", adapter = one_line(adapter), reason = one_line(reason))]
     Gpu {
         /// The adapter's name.
         adapter: String,

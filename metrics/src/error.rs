@@ -5,6 +5,8 @@
 use std::io;
 use std::path::PathBuf;
 
+use driftworld_text::{ShownPath, one_line};
+
 /// Everything that can stop a log from being written or read, or metrics from being computed.
 ///
 /// Every message reads: where, what was found, what was expected, and what to do where that is not plain.
@@ -12,7 +14,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum MetricsError {
     /// The file system refused.
-    #[error("{}: cannot {doing}: {source}", path.display())]
+    #[error("{}: cannot {doing}: {source}", path.shown(), source = one_line(source))]
     Io {
         /// File or directory it happened at.
         path: PathBuf,
@@ -25,7 +27,8 @@ pub enum MetricsError {
     /// A new log was to be created where files are already.
     #[error(
         "{}: found a directory that is not empty, expected a new or an empty one; \
-         choose another name, or continue the log that is there with LogWriter::resume", path.display()
+         choose another name, or continue the log that is there with LogWriter::resume",
+        path.shown()
     )]
     LogExists {
         /// The directory that was asked for.
@@ -35,7 +38,8 @@ pub enum MetricsError {
     /// Another writer is at work on the log.
     #[error(
         "{}: found a log that another run is writing, expected one that nobody writes; \
-         wait for that run, or choose another name", path.display()
+         wait for that run, or choose another name",
+        path.shown()
     )]
     InUse {
         /// The log's directory.
@@ -76,7 +80,10 @@ pub enum MetricsError {
     },
 
     /// There is no such log directory.
-    #[error("{}: found {found}, expected the directory of a log, which holds logger_info.json", path.display())]
+    #[error(
+        "{}: found {found}, expected the directory of a log, which holds logger_info.json",
+        path.shown()
+    )]
     NotADirectory {
         /// The path that was given.
         path: PathBuf,
@@ -87,7 +94,8 @@ pub enum MetricsError {
     /// A log directory without a single data file.
     #[error(
         "{}: found no data-log.tsv, expected at least one as WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv; \
-         is this the directory of one log, and has its run begun?", path.display()
+         is this the directory of one log, and has its run begun?",
+        path.shown()
     )]
     NoDataFiles {
         /// The directory that was searched.
@@ -95,7 +103,7 @@ pub enum MetricsError {
     },
 
     /// A side file of the log is not there.
-    #[error("{}: found no such file, expected {expected}", path.display())]
+    #[error("{}: found no such file, expected {expected}", path.shown())]
     MissingFile {
         /// The file.
         path: PathBuf,
@@ -104,7 +112,10 @@ pub enum MetricsError {
     },
 
     /// A file of the log is something else.
-    #[error("{}: found {found}, expected a file; put the file in its place, or remove it", path.display())]
+    #[error(
+        "{}: found {found}, expected a file; put the file in its place, or remove it",
+        path.shown()
+    )]
     NotAFile {
         /// The path.
         path: PathBuf,
@@ -113,7 +124,7 @@ pub enum MetricsError {
     },
 
     /// A side file is not JSON, or not the JSON that was expected.
-    #[error("{}:{line}:{column}: found {found}, expected {expected}", path.display())]
+    #[error("{}:{line}:{column}: found {found}, expected {expected}", path.shown(), found = one_line(found))]
     Json {
         /// The file.
         path: PathBuf,
@@ -128,7 +139,7 @@ pub enum MetricsError {
     },
 
     /// A field of `logger_info.json`, or of the [`LoggerInfo`](crate::LoggerInfo) to be written there, is wrong.
-    #[error("logger_info.json, {field}: found {found}, expected {expected}")]
+    #[error("logger_info.json, {field}: found {found}, expected {expected}", found = one_line(found))]
     LoggerInfo {
         /// The field.
         field: &'static str,
@@ -139,7 +150,7 @@ pub enum MetricsError {
     },
 
     /// A limit of this crate was passed; limits keep a broken log from taking all memory.
-    #[error("{}: found {found} {what}, expected at most {limit}", path.display())]
+    #[error("{}: found {found} {what}, expected at most {limit}", path.shown())]
     TooLarge {
         /// The file or directory.
         path: PathBuf,
@@ -152,14 +163,17 @@ pub enum MetricsError {
     },
 
     /// A data file has no header line.
-    #[error("{}:1: found an empty file, expected a header line that begins with block_num", path.display())]
+    #[error(
+        "{}:1: found an empty file, expected a header line that begins with block_num",
+        path.shown()
+    )]
     EmptyFile {
         /// The data file.
         path: PathBuf,
     },
 
     /// A data file's header is one cell, as where something else than tabs stands between columns.
-    #[error("{}:1: found the header {found} without a tab, expected a tab between columns", path.display())]
+    #[error("{}:1: found the header {found} without a tab, expected a tab between columns", path.shown(), found = one_line(found))]
     NoTabs {
         /// The data file.
         path: PathBuf,
@@ -168,7 +182,7 @@ pub enum MetricsError {
     },
 
     /// A data file lacks a column.
-    #[error("{}:1: found the columns {found}, expected also {column}", path.display())]
+    #[error("{}:1: found the columns {found}, expected also {column}", path.shown(), column = one_line(column), found = one_line(found))]
     MissingColumn {
         /// The data file.
         path: PathBuf,
@@ -179,7 +193,7 @@ pub enum MetricsError {
     },
 
     /// A data file names a column twice.
-    #[error("{}:1: found the column {column} twice, expected every column once", path.display())]
+    #[error("{}:1: found the column {column} twice, expected every column once", path.shown(), column = one_line(column))]
     RepeatedColumn {
         /// The data file.
         path: PathBuf,
@@ -190,7 +204,9 @@ pub enum MetricsError {
     /// A log that is to be continued has a data file with other columns than its next record would be written under.
     #[error(
         "{}:1: found the columns {found}, expected {expected} to continue this log; \
-         only logs of format 1.1 written by one writer can be continued, begin a new one", path.display()
+         only logs of format 1.1 written by one writer can be continued, begin a new one", path.shown(),
+        found = one_line(found),
+        expected = one_line(expected)
     )]
     OtherColumns {
         /// The data file.
@@ -204,7 +220,8 @@ pub enum MetricsError {
     /// A row has more or fewer cells than the header.
     #[error(
         "{}:{line}: found {found} cells, expected {expected} as in the header; \
-         is a tab or a quote missing?", path.display()
+         is a tab or a quote missing?",
+        path.shown()
     )]
     RaggedRow {
         /// The data file.
@@ -218,7 +235,7 @@ pub enum MetricsError {
     },
 
     /// A cell does not hold what its column asks for.
-    #[error("{}:{line}, column {column}: found {found}, expected {expected}", path.display())]
+    #[error("{}:{line}, column {column}: found {found}, expected {expected}", path.shown(), column = one_line(column), found = one_line(found), expected = one_line(expected))]
     Cell {
         /// The data file.
         path: PathBuf,
@@ -235,7 +252,8 @@ pub enum MetricsError {
     /// The last line of a data file has no line end: its writer was stopped in the middle of a row.
     #[error(
         "{}:{line}: found a last line without a line end, expected whole rows; its writer was stopped in the middle \
-         of it: delete that line, or continue the log, which does so: `driftworld run … --resume`, LogWriter::resume", path.display()
+         of it: delete that line, or continue the log, which does so: `driftworld run … --resume`, LogWriter::resume",
+        path.shown()
     )]
     TornLastLine {
         /// The data file.
@@ -247,7 +265,8 @@ pub enum MetricsError {
     /// Lines of a data file end with a carriage return alone.
     #[error(
         "{}:{line}: found lines that end with a carriage return alone, expected a line feed at the end of each, alone or behind it; \
-         save the file with such line ends", path.display()
+         save the file with such line ends",
+        path.shown()
     )]
     CarriageReturns {
         /// The data file.
@@ -259,7 +278,8 @@ pub enum MetricsError {
     /// A quote was opened in a data file and never closed, so that it swallows the rows after it.
     #[error(
         "{}:{line}: found a quote that opens a cell and is never closed, expected another at the end of the cell; \
-         the rows after it were taken for a part of it", path.display()
+         the rows after it were taken for a part of it",
+        path.shown()
     )]
     OpenQuote {
         /// The data file.
@@ -269,7 +289,10 @@ pub enum MetricsError {
     },
 
     /// A data file is not text.
-    #[error("{}:{line}: found bytes that are not UTF-8, expected text", path.display())]
+    #[error(
+        "{}:{line}: found bytes that are not UTF-8, expected text",
+        path.shown()
+    )]
     NotUtf8 {
         /// The data file.
         path: PathBuf,
@@ -280,7 +303,8 @@ pub enum MetricsError {
     /// Block numbers fall while experience numbers rise.
     #[error(
         "{}:{line}, column block_num: found {found}, expected at least {expected}: \
-         read in order of exp_num, block numbers never fall", path.display()
+         read in order of exp_num, block numbers never fall",
+        path.shown()
     )]
     BlockOrder {
         /// The data file.
@@ -296,7 +320,8 @@ pub enum MetricsError {
     /// A number falls from one row of a data file to the next.
     #[error(
         "{}:{line}, column {column}: found {found}, expected at least {expected} as in the row above: \
-         numbers never fall", path.display()
+         numbers never fall",
+        path.shown()
     )]
     NumberFalls {
         /// The data file.
@@ -313,7 +338,9 @@ pub enum MetricsError {
 
     /// Two data files of one log have different columns.
     #[error(
-        "{}:1: found the columns {found}, expected {expected} as in {}", path.display(), first.display()
+        "{}:1: found the columns {found}, expected {expected} as in {}", path.shown(), first.shown(),
+        found = one_line(found),
+        expected = one_line(expected)
     )]
     ColumnsDiffer {
         /// The data file.
@@ -329,7 +356,8 @@ pub enum MetricsError {
     /// An experience has no complete row, though its worker went on to the next.
     #[error(
         "{}:{line}: found experience {exp_num} of {worker} without a complete row, expected exactly one: \
-         it is not scored", path.display()
+         it is not scored", path.shown(),
+        worker = one_line(worker)
     )]
     NotCompleted {
         /// The data file.
@@ -345,7 +373,8 @@ pub enum MetricsError {
     /// An experience goes on after its complete row.
     #[error(
         "{}:{line}: found another row of experience {exp_num} of {worker} after its complete one, expected the complete row \
-         to be the last: give the next experience a number of its own", path.display()
+         to be the last: give the next experience a number of its own", path.shown(),
+        worker = one_line(worker)
     )]
     RowAfterComplete {
         /// The data file.
@@ -359,7 +388,7 @@ pub enum MetricsError {
     },
 
     /// A record that was to be written breaks a rule of the format.
-    #[error("record of experience {exp_num}, {field}: found {found}, expected {expected}")]
+    #[error("record of experience {exp_num}, {field}: found {found}, expected {expected}", field = one_line(field), found = one_line(found), expected = one_line(expected))]
     Record {
         /// Experience number of the record.
         exp_num: u64,
@@ -373,7 +402,8 @@ pub enum MetricsError {
 
     /// A time stamp is not of the form `20200913T122640.000000`.
     #[error(
-        "timestamp: found {found}, expected YYYYMMDDTHHMMSS.ffffff as in 20200913T122640.000000, a day that exists"
+        "timestamp: found {found}, expected YYYYMMDDTHHMMSS.ffffff as in 20200913T122640.000000, a day that exists",
+        found = one_line(found)
     )]
     Timestamp {
         /// What was given.
@@ -381,7 +411,7 @@ pub enum MetricsError {
     },
 
     /// A word is not one of those that are understood.
-    #[error("{what}: found {found:?}, expected one of {expected}")]
+    #[error("{what}: found {found:?}, expected one of {expected}", expected = one_line(expected))]
     UnknownWord {
         /// What the word chooses.
         what: &'static str,
@@ -394,7 +424,9 @@ pub enum MetricsError {
     /// A log has a column under a name that the table of several logs gives to one of its own.
     #[error(
         "log {run_id}: found a column {column} of its own, expected another name: a table of logs has a column of that name; \
-         rename it in the log's files and in logger_info.json"
+         rename it in the log's files and in logger_info.json",
+        run_id = one_line(run_id),
+        column = one_line(column)
     )]
     TableColumn {
         /// Name of the log.
@@ -404,7 +436,7 @@ pub enum MetricsError {
     },
 
     /// The performance column is not in the log.
-    #[error("log {run_id}: found no metrics column {column:?}, expected one of {available}")]
+    #[error("log {run_id}: found no metrics column {column:?}, expected one of {available}", run_id = one_line(run_id), available = one_line(available))]
     UnknownColumn {
         /// Name of the log.
         run_id: String,
@@ -415,7 +447,7 @@ pub enum MetricsError {
     },
 
     /// After incomplete rows and rows without a number are dropped, none is left.
-    #[error("log {run_id}: found no complete row with a number in column {column:?}, expected at least one")]
+    #[error("log {run_id}: found no complete row with a number in column {column:?}, expected at least one", run_id = one_line(run_id))]
     NoUsableRows {
         /// Name of the log.
         run_id: String,
@@ -424,7 +456,7 @@ pub enum MetricsError {
     },
 
     /// A single-task expert's log must train exactly one task.
-    #[error("single-task expert log {run_id}: found {found}, expected exactly one trained task")]
+    #[error("single-task expert log {run_id}: found {found}, expected exactly one trained task", run_id = one_line(run_id), found = one_line(found))]
     NotSingleTask {
         /// Name of the log.
         run_id: String,
@@ -435,7 +467,8 @@ pub enum MetricsError {
     /// A data folder for single-task experts is not there, or is something else.
     #[error(
         "{}: found {found}, expected a folder of single-task experts as TASK/RUN/logger_info.json; \
-         store an expert's log there first", path.display()
+         store an expert's log there first",
+        path.shown()
     )]
     NoSteData {
         /// The path that was given.
@@ -447,7 +480,8 @@ pub enum MetricsError {
     /// A data folder holds experts in a form that is never read.
     #[error(
         "{}: found a pickle of l2metrics, expected folders of logs: reading a pickle runs the programs in it; \
-         store the logs it was made from again, and take it out of this folder", path.display()
+         store the logs it was made from again, and take it out of this folder",
+        path.shown()
     )]
     StePickle {
         /// The pickle.
@@ -455,7 +489,7 @@ pub enum MetricsError {
     },
 
     /// More regimes than a lifetime may have.
-    #[error("log {run_id}: found more than {limit} regimes, expected at most that; do tasks alternate row by row?")]
+    #[error("log {run_id}: found more than {limit} regimes, expected at most that; do tasks alternate row by row?", run_id = one_line(run_id))]
     TooManyRegimes {
         /// Name of the log.
         run_id: String,
@@ -465,7 +499,9 @@ pub enum MetricsError {
 
     /// Performances so large that sums of them would overflow.
     #[error(
-        "log {run_id}, task {task}: found a performance of {found:e} {after}, expected less than 1e100 in magnitude"
+        "log {run_id}, task {task}: found a performance of {found:e} {after}, expected less than 1e100 in magnitude",
+        run_id = one_line(run_id),
+        task = one_line(task)
     )]
     PerformanceOutOfRange {
         /// Name of the log.
@@ -479,7 +515,7 @@ pub enum MetricsError {
     },
 
     /// A metric of a user's own could not be computed.
-    #[error("metric {metric}, log {run_id}: {source}")]
+    #[error("metric {metric}, log {run_id}: {source}", metric = one_line(metric), run_id = one_line(run_id), source = one_line(source))]
     Metric {
         /// Name of the metric.
         metric: String,
@@ -490,7 +526,7 @@ pub enum MetricsError {
     },
 
     /// Scores of repeated runs, or what is asked of them, make no sense.
-    #[error("scores, {place}: found {found}, expected {expected}")]
+    #[error("scores, {place}: found {found}, expected {expected}", place = one_line(place), found = one_line(found), expected = one_line(expected))]
     Scores {
         /// Where: a run, a stratum of a run, the table as a whole.
         place: String,
@@ -501,7 +537,7 @@ pub enum MetricsError {
     },
 
     /// An option has a value that cannot be used.
-    #[error("option {option}: found {found}, expected {expected}")]
+    #[error("option {option}: found {found}, expected {expected}", found = one_line(found), expected = one_line(expected))]
     BadOption {
         /// The option.
         option: &'static str,

@@ -2,6 +2,8 @@
 //!
 //! Not here: what is wrong with a log, see `driftworld_metrics::MetricsError`.
 
+use driftworld_text::one_line;
+
 /// Everything that can stop a figure or a page.
 ///
 /// Every message reads: where, what was found, what was expected, and what to do where that is not plain.
@@ -34,7 +36,8 @@ pub enum ReportError {
     /// The horizontal axis cannot count steps.
     #[error(
         "log {run_id}: found no steps for every experience, expected the column episode_step_count with a number of 0 or more in \
-         each complete row; leave the unit at exp_num"
+         each complete row; leave the unit at exp_num",
+        run_id = one_line(run_id)
     )]
     NoSteps {
         /// The log.
@@ -44,7 +47,8 @@ pub enum ReportError {
     /// Distances that do not belong to the lifetime.
     #[error(
         "log {run_id}: found {found} distances, expected {expected}: one for each two neighbouring learning blocks, as \
-         neighbours() lists them"
+         neighbours() lists them",
+        run_id = one_line(run_id)
     )]
     Distances {
         /// The log.

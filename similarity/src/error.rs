@@ -1,5 +1,7 @@
 //! What can keep a distance or an order from being computed.
 
+use driftworld_text::one_line;
+
 /// Everything that can go wrong in this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -72,7 +74,8 @@ pub enum SimilarityError {
     },
     /// An object whose class a raster has no plane for.
     #[error(
-        "class of an object: found {found:?}, expected one of {expected}; make the raster of all worlds, or merge classes"
+        "class of an object: found {found:?}, expected one of {expected}; make the raster of all worlds, or merge classes",
+        expected = one_line(expected)
     )]
     UnknownClass {
         /// The class.
@@ -157,7 +160,7 @@ pub enum SimilarityError {
         limit: usize,
     },
     /// What was read, or handed in, is no matrix of distances.
-    #[error("matrix, {place}: found {found}, expected {expected}")]
+    #[error("matrix, {place}: found {found}, expected {expected}", place = one_line(place), found = one_line(found), expected = one_line(expected))]
     BadMatrix {
         /// Where in the text or the matrix.
         place: String,
@@ -167,7 +170,7 @@ pub enum SimilarityError {
         expected: String,
     },
     /// Features from which no distance follows.
-    #[error("features, {place}: found {found}, expected {expected}")]
+    #[error("features, {place}: found {found}, expected {expected}", place = one_line(place), found = one_line(found), expected = one_line(expected))]
     BadFeatures {
         /// Whose, and which.
         place: String,
@@ -328,7 +331,7 @@ pub enum SimilarityError {
         name: String,
     },
     /// A choice that a table of costs does not have.
-    #[error("choice: found {found:?}, expected one of {expected}; add it to the cost table")]
+    #[error("choice: found {found:?}, expected one of {expected}; add it to the cost table", expected = one_line(expected))]
     UnknownChoice {
         /// The choice.
         found: String,

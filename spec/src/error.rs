@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use driftworld_text::one_line;
+
 /// The most problems that one message shows.
 const SHOWN: usize = 20;
 
@@ -63,9 +65,11 @@ impl fmt::Display for Problem {
         if self.line > 0 {
             write!(f, "{}:{} ", self.line, self.column)?;
         }
-        let pointer = if self.pointer.is_empty() { "/" } else { &self.pointer };
-        write!(f, "({pointer}): found {}, expected {}", self.found, self.expected)?;
-        self.advice.iter().try_for_each(|advice| write!(f, "; {advice}"))
+        let pointer = one_line(if self.pointer.is_empty() { "/" } else { &self.pointer });
+        let (found, expected) = (one_line(&self.found), one_line(&self.expected));
+        write!(f, "({pointer}): found {found}, expected {expected}")?;
+        let mut advice = self.advice.iter();
+        advice.try_for_each(|advice| write!(f, "; {}", one_line(advice)))
     }
 }
 
@@ -74,7 +78,7 @@ impl fmt::Display for Problem {
 #[non_exhaustive]
 pub enum SpecError {
     /// The text is not JSON.
-    #[error("{name}:{line}:{column}: not valid JSON: {reason}")]
+    #[error("{name}:{line}:{column}: not valid JSON: {reason}", name = one_line(name), reason = one_line(reason))]
     Syntax {
         /// The document's name.
         name: String,
@@ -86,7 +90,7 @@ pub enum SpecError {
         reason: String,
     },
     /// The text is too long to be a document.
-    #[error("{name}: found {bytes} bytes, expected at most {limit}; split the document")]
+    #[error("{name}: found {bytes} bytes, expected at most {limit}; split the document", name = one_line(name))]
     TooLarge {
         /// The document's name.
         name: String,
@@ -106,8 +110,9 @@ pub enum SpecError {
     /// A task has no variant of this name.
     #[error(
         "{task}: found variant {found:?}, expected one of {}{}",
-        first_of(known),
-        did_you_mean(found, known)
+        one_line(first_of(known)),
+        did_you_mean(found, known),
+        task = one_line(task)
     )]
     UnknownVariant {
         /// The task's name.
@@ -150,6 +155,7 @@ impl SpecError {
 }
 
 fn list(name: &str, problems: &[Problem]) -> String {
+    let name = one_line(name);
     let mut lines: Vec<String> = problems
         .iter()
         .take(SHOWN)

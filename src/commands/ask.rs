@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use clap::Parser;
+use driftworld_text::printable_lines;
 
 use super::{Cause, Command, output};
 
@@ -50,7 +51,7 @@ pub fn ask(args: impl IntoIterator<Item = OsString>) -> Result<Answer, Refusal> 
     let _one_at_a_time = alone();
     let command =
         Command::try_parse_from(std::iter::once("driftworld".into()).chain(args)).map_err(|error| Refusal {
-            message: plain(&error.to_string()),
+            message: plain(&printable_lines(&error.to_string())),
             in_arguments: true,
             notes: Vec::new(),
             cause: None,
@@ -59,7 +60,7 @@ pub fn ask(args: impl IntoIterator<Item = OsString>) -> Result<Answer, Refusal> 
     match done {
         Ok(()) => Ok(answer),
         Err(failure) => Err(Refusal {
-            message: failure.text().to_owned(),
+            message: printable_lines(failure.text()).into_owned(),
             in_arguments: matches!(failure, super::Failure::Usage(_)),
             notes: answer.notes,
             cause: failure.cause(),

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::spec::Scenario;
 use clap::{Args, ValueEnum};
+use driftworld_text::ShownPath;
 
 use super::draw_maps::draw_maps;
 use super::input::WorldChoice;
@@ -70,7 +71,7 @@ impl Convert {
         for world in worlds.into_iter().filter(|world| !folder.join(world).is_file()) {
             output::note(format!(
                 "warning: {}: names the world file {world:?}, which is not there from its folder; put it there, or beside it",
-                self.output.display()
+                self.output.shown()
             ));
         }
     }

@@ -11,6 +11,7 @@ use crate::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
 use crate::spec::{BlockKind, Scenario, Variant, World};
 use crate::tasks;
 use clap::Args;
+use driftworld_text::ShownPath;
 
 use super::curriculum::{blocks, choices};
 use super::metrics::{Lived, summary};
@@ -218,14 +219,14 @@ fn block_table(summary: &Summary) -> String {
 
 /// A demo may be run again and again: its own log is replaced, anything else in the way is not.
 fn remove_old_log(logs: &Path) -> Result<(), Failure> {
-    let failed = |error| Failure::input(format!("{}: cannot be removed: {error}", logs.display()));
+    let failed = |error| Failure::input(format!("{}: cannot be removed: {error}", logs.shown()));
     if !logs.exists() {
         return Ok(());
     }
     if !logs.join("logger_info.json").exists() {
         return Err(Failure::input(format!(
             "{}: is not a log of an earlier demo; choose another folder with -o",
-            logs.display()
+            logs.shown()
         )));
     }
     std::fs::remove_dir_all(logs).map_err(failed)
@@ -243,6 +244,6 @@ fn contents(folder: &Path) -> String {
         ("report.html", "the lifetime on one page, for a browser"),
         ("scores/", "the metrics: driftworld metrics on the log prints them"),
     ];
-    let line = |(name, what): &(&str, &str)| format!("  {:<36} {what}", folder.join(name).display().to_string());
+    let line = |(name, what): &(&str, &str)| format!("  {:<36} {what}", folder.join(name).shown().to_string());
     entries.iter().map(line).collect::<Vec<_>>().join("\n")
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::curriculum::{Plan, log_name};
 use crate::spec::{Regime, Scenario};
+use driftworld_text::ShownPath;
 
 use super::{Failure, output};
 
@@ -65,7 +66,7 @@ pub(crate) fn draw_maps(scenario: &mut Scenario, plan: &Plan, file: &Path) -> Re
     output::note(format!(
         "{} maps in {}",
         maps.written.len(),
-        maps.beside.join(&maps.folder).display()
+        maps.beside.join(&maps.folder).shown()
     ));
     Ok(())
 }

@@ -12,6 +12,7 @@ use crate::spec::maps::MapLibrary;
 use crate::spec::{Variant, Warning, World};
 use crate::tasks;
 use clap::Args;
+use driftworld_text::ShownPath;
 use sha2::{Digest, Sha256};
 
 use super::{Failure, output};
@@ -83,7 +84,7 @@ pub(crate) fn maps(path: &Path) -> Result<MapLibrary, Failure> {
                 let id = layout.id;
                 return Err(Failure::input(format!(
                     "{}: found map {id}, which another file of the folder has too, expected each number once",
-                    file.display()
+                    file.shown()
                 )));
             }
         }
@@ -97,7 +98,7 @@ pub(crate) fn json_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
     }
-    let failed = |error| Failure::input(format!("{}: cannot be read: {error}", path.display()));
+    let failed = |error| Failure::input(format!("{}: cannot be read: {error}", path.shown()));
     let mut files = Vec::new();
     for entry in fs::read_dir(path).map_err(failed)? {
         let file = entry.map_err(failed)?.path();
@@ -106,7 +107,7 @@ pub(crate) fn json_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
         }
     }
     if files.is_empty() {
-        return Err(Failure::input(format!("{}: holds no .json file", path.display())));
+        return Err(Failure::input(format!("{}: holds no .json file", path.shown())));
     }
     files.sort();
     Ok(files)

@@ -7,6 +7,7 @@ use std::path::{Component, Path, PathBuf, absolute};
 use super::Failure;
 use crate::contents::{Contents, OtherContents};
 use crate::documents;
+use driftworld_text::ShownPath;
 
 /// How deep logs are looked for below a folder that is none itself.
 const MOST_LEVELS: usize = 4;
@@ -25,7 +26,7 @@ pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             return Err(Failure::input(format!(
                 "{}: found no log, expected a folder with logger_info.json, or folders of such up to {MOST_LEVELS} levels \
                  below; `driftworld run … --logs DIR` writes them",
-                argument.display()
+                argument.shown()
             )));
         }
     }
@@ -38,12 +39,12 @@ pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         is_folder(argument)?;
         let mut below = Vec::new();
         collect(argument, MOST_LEVELS, &mut below)?;
-        let path = argument.display();
+        let path = argument.shown();
         return Err(Failure::input(match below.first() {
             Some(first) => format!(
                 "{path}: found a folder of {} logs such as {}, expected one log; name that, or take all with --recursive",
                 below.len(),
-                first.display()
+                first.shown()
             ),
             None => format!(
                 "{path}: found no log, expected a folder with logger_info.json and WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv; \
@@ -109,7 +110,7 @@ fn is_folder(argument: &Path) -> Result<(), Failure> {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => "nothing".to_owned(),
         Err(error) => error.to_string(),
     };
-    let path = argument.display();
+    let path = argument.shown();
     Err(Failure::input(format!(
         "{path}: found {found}, expected the folder of a log, which holds logger_info.json"
     )))
@@ -124,7 +125,7 @@ fn each_once(mut logs: Vec<PathBuf>) -> Vec<PathBuf> {
 fn collect(folder: &Path, levels: usize, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
     if is_log(folder) {
         if found.len() == MOST_LOGS {
-            let path = folder.display();
+            let path = folder.shown();
             return Err(Failure::input(format!(
                 "{path}: found more than {MOST_LOGS} logs, expected at most that; name fewer folders"
             )));
@@ -155,7 +156,7 @@ fn is_log(folder: &Path) -> bool {
 
 /// The folders in a folder, by name.
 fn folders(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let unreadable = |error| Failure::input(format!("{}: cannot be read: {error}", folder.display()));
+    let unreadable = |error| Failure::input(format!("{}: cannot be read: {error}", folder.shown()));
     let mut below = Vec::new();
     for entry in fs::read_dir(folder).map_err(unreadable)? {
         let path = entry.map_err(unreadable)?.path();

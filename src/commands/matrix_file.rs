@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::contents::{Contents, OtherContents};
 use crate::documents;
 use crate::similarity::{DistanceMatrix, SimilarityError};
+use driftworld_text::ShownPath;
 
 use super::{Failure, input, output};
 
@@ -23,7 +24,7 @@ fn format(option: &str, path: &Path) -> Result<Format, Failure> {
         Some("npy") => Ok(Format::Npy),
         _ => Err(Failure::usage(format!(
             "{option}: found {}, expected a name that ends with .csv, .json or .npy",
-            path.display()
+            path.shown()
         ))),
     }
 }
@@ -42,7 +43,7 @@ pub(crate) fn write(option: &str, path: &Path, matrix: &DistanceMatrix) -> Resul
 
 /// Reads a matrix. Without a file of labels beside it, the items of an array are called by their numbers.
 pub(crate) fn read(option: &str, path: &Path) -> Result<DistanceMatrix, Failure> {
-    let named = |error: SimilarityError| Failure::input(format!("{}: {error}", path.display()));
+    let named = |error: SimilarityError| Failure::input(format!("{}: {error}", path.shown()));
     if let Some(other) = OtherContents::check(path, Contents::of_folder(path), &[Contents::Matrix]) {
         return Err(other.into());
     }
@@ -50,8 +51,8 @@ pub(crate) fn read(option: &str, path: &Path) -> Result<DistanceMatrix, Failure>
         Format::Csv => DistanceMatrix::from_csv(&input::text(path)?).map_err(named),
         Format::Json => DistanceMatrix::from_json(&documents::text_of(path, &[Contents::Matrix])?).map_err(named),
         Format::Npy => {
-            let bytes = fs::read(path)
-                .map_err(|error| Failure::input(format!("{}: cannot be read: {error}", path.display())))?;
+            let bytes =
+                fs::read(path).map_err(|error| Failure::input(format!("{}: cannot be read: {error}", path.shown())))?;
             let beside = labels_beside(path);
             let labels = if beside.exists() { Some(labels(&beside)?) } else { None };
             DistanceMatrix::from_npy(&bytes, labels).map_err(named)
@@ -61,7 +62,7 @@ pub(crate) fn read(option: &str, path: &Path) -> Result<DistanceMatrix, Failure>
 
 fn labels(path: &Path) -> Result<Vec<String>, Failure> {
     serde_json::from_str(&input::text(path)?)
-        .map_err(|error| Failure::input(format!("{}: {error}, expected a list of labels", path.display())))
+        .map_err(|error| Failure::input(format!("{}: {error}, expected a list of labels", path.shown())))
 }
 
 /// `matrix.labels.json` for `matrix.npy`.

@@ -66,8 +66,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
             done.map_or_else(|failure| failure.report(), |()| 0)
         }
         Err(help) => {
-            // Where nobody reads, there is nobody to tell of it.
-            let _ = help.print();
+            output::print_usage(&help);
             u8::try_from(help.exit_code()).unwrap_or(2)
         }
     }

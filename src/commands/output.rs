@@ -1,10 +1,13 @@
-//! Where results go: standard output, or files that appear whole or not at all. What they say is the commands' own.
+//! Where results go: standard output, or files that appear whole or not at all. What they say is the commands' own; what a terminal would
+//! obey or hide in it is shown here, so that no command can forget it.
 
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use driftworld_text::{ShownPath, printable_json, printable_lines};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
@@ -45,8 +48,26 @@ pub(crate) fn line(text: impl AsRef<str>) -> Result<(), Failure> {
     print(&format!("{}\n", text.as_ref()))
 }
 
-/// Prints text as it is.
+/// Prints text, in which unprintable characters are shown.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    print_as_is(&printable_lines(text))
+}
+
+/// Prints a document in JSON, in which unprintable characters are escaped as JSON has it.
+pub(crate) fn print_json(json: &str) -> Result<(), Failure> {
+    print_as_is(&printable_json(json))
+}
+
+/// Prints data for another program: to a terminal as [`print`], else as it is.
+pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
+    if std::io::stdout().is_terminal() {
+        return print(text);
+    }
+    print_as_is(text)
+}
+
+/// Prints text as it is: of our own making, with colours.
+pub(crate) fn print_as_is(text: &str) -> Result<(), Failure> {
     if keep(|answer| answer.output.push_str(text)) {
         return Ok(());
     }
@@ -68,20 +89,31 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 
 /// Prints a value as indented JSON.
 pub(crate) fn json(value: &impl Serialize) -> Result<(), Failure> {
-    line(serde_json::to_string_pretty(value)?)
+    print_json(&(serde_json::to_string_pretty(value)? + "\n"))
 }
 
 /// Says something on standard error that is not a result.
 pub(crate) fn note(text: impl AsRef<str>) {
-    if keep(|answer| answer.notes.push(text.as_ref().to_owned())) {
+    if keep(|answer| answer.notes.push(printable_lines(text.as_ref()).into_owned())) {
         return;
     }
     to_standard_error(text.as_ref());
 }
 
-/// A line on standard error. Where its reader has gone, there is nobody to tell, and the work goes on.
+/// A line on standard error, in which unprintable characters are shown. Where its reader has gone, there is nobody to tell, and the work goes on.
 pub(super) fn to_standard_error(text: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{text}");
+    let _ = writeln!(std::io::stderr().lock(), "{}", printable_lines(text));
+}
+
+/// Prints what the parser of arguments has to say: help, the version, or what is wrong with the arguments.
+pub(super) fn print_usage(said: &clap::Error) {
+    let text = said.render().to_string();
+    // Where nobody reads, there is nobody to tell of it.
+    match printable_lines(&text) {
+        // In colours on a terminal; there is nothing of others in it that a terminal would obey.
+        Cow::Borrowed(_) => drop(said.print()),
+        Cow::Owned(text) => drop(write!(std::io::stderr().lock(), "{text}")),
+    }
 }
 
 /// Says on standard error what is odd.
@@ -96,7 +128,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 /// Why a file cannot be written.
 pub(crate) fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Failure {
-    Failure::input(format!("{}: cannot be written: {error}", path.display()))
+    Failure::input(format!("{}: cannot be written: {error}", path.shown()))
 }
 
 /// Whether a path stands for standard output: `-`, or a name that the system has for it.
@@ -104,12 +136,12 @@ pub(crate) fn is_stdout(path: &Path) -> bool {
     path == Path::new("-") || driftworld_atomic_files::is_own_stdout(path)
 }
 
-/// To a file, or to standard output for `-`.
-pub(crate) fn write_or_print(path: &Path, text: &str) -> Result<(), Failure> {
+/// A document in JSON to a file, or to standard output for `-`.
+pub(crate) fn write_or_print(path: &Path, json: &str) -> Result<(), Failure> {
     if is_stdout(path) {
-        print(text)
+        print_json(json)
     } else {
-        write(path, text.as_bytes())
+        write(path, json.as_bytes())
     }
 }
 

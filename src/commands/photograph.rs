@@ -10,6 +10,7 @@ use crate::env::{
 };
 use crate::spec::{Object, World};
 use clap::Args;
+use driftworld_text::ShownPath;
 use serde::Serialize;
 
 use super::input::WorldChoice;
@@ -108,7 +109,7 @@ impl Photograph {
         output::write(&self.output.join("manifest.json"), text.as_bytes())?;
         output::line(format!(
             "{}: {} objects in {} pictures of {width} × {height} pixels",
-            self.output.display(),
+            self.output.shown(),
             world.objects.len(),
             manifest.photographs.len(),
         ))

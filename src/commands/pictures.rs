@@ -5,6 +5,7 @@ mod scatter;
 use std::path::Path;
 use std::sync::Once;
 
+use driftworld_text::ShownPath;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, register_font};
@@ -122,7 +123,7 @@ impl Picture {
         if OTHERS.iter().any(|other| ending.eq_ignore_ascii_case(other)) {
             return Err(Failure::usage(format!(
                 "{}: found a name that ends with .{ending}, expected .png: pictures are written as PNG",
-                path.display()
+                path.shown()
             )));
         }
         output::write(path, &self.to_png()?)
@@ -131,7 +132,7 @@ impl Picture {
     /// Writes the picture as a PNG file, and says so with its size.
     pub(crate) fn write_and_tell(&self, path: &Path) -> Result<(), Failure> {
         self.write(path)?;
-        output::line(format!("{}: {} × {} pixels", path.display(), self.width, self.height))
+        output::line(format!("{}: {} × {} pixels", path.shown(), self.width, self.height))
     }
 
     /// Draws texts.

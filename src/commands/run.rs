@@ -12,6 +12,7 @@ use crate::scenarios::{Missing, ScenarioFile};
 use crate::spec::BlockKind;
 use crate::tasks;
 use clap::Args;
+use driftworld_text::{ShownPath, printable};
 
 use super::assets::LibraryChoice;
 use super::interrupt::Interrupt;
@@ -131,7 +132,7 @@ impl Run {
             "\n{} experiences, {} steps; log in {}",
             summary.experiences,
             summary.steps,
-            self.logs.display()
+            self.logs.shown()
         ))
     }
 }
@@ -211,7 +212,7 @@ impl Life<'_> {
             now: &mut || clock.now(),
             watch: &mut |progress: &Progress| {
                 bar.set_position(progress.done);
-                bar.set_message(progress.variant.clone());
+                bar.set_message(printable(&progress.variant).into_owned());
                 // The last one needs no stopping.
                 if interrupt.is_asked() && progress.done < progress.total {
                     ControlFlow::Break(())
@@ -240,7 +241,7 @@ impl Life<'_> {
             // The same command would stop there again, and again.
             Err(error @ CurriculumError::World { .. }) => Err(Failure::input(format!(
                 "{error}\n{}: holds {done} of {} experiences, each of them whole; {}",
-                self.logs.display(),
+                self.logs.shown(),
                 self.plan.num_experiences(),
                 UNDRAWABLE
             ))),
@@ -256,7 +257,7 @@ impl Life<'_> {
         opened.map_err(|error| match error {
             CurriculumError::Log(MetricsError::LogExists { path }) => Failure::input(format!(
                 "{}: holds something already; choose a new folder with --logs, or go on with a log with --resume",
-                path.display()
+                path.shown()
             )),
             other => other.into(),
         })
@@ -266,7 +267,7 @@ impl Life<'_> {
     fn stopped(&self, why: &str, done: u64) -> Failure {
         Failure::input(format!(
             "{why}\n{}: holds {done} of {} experiences, each of them whole; go on with the same command and --resume",
-            self.logs.display(),
+            self.logs.shown(),
             self.plan.num_experiences()
         ))
     }

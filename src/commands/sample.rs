@@ -12,6 +12,7 @@ use crate::spec::{Variant, World, maps::MapLibrary};
 use crate::tasks;
 use clap::{Args, ValueEnum};
 use driftworld_atomic_files::AtomicFile;
+use driftworld_text::ShownPath;
 use rayon::prelude::*;
 
 use super::interrupt::Interrupt;
@@ -260,7 +261,9 @@ impl Sample {
 
     fn stream(&self, source: &Source, range: std::ops::Range<u64>) -> Result<(), Failure> {
         if output::is_stdout(&self.output) {
-            return each(source, range, |(_, _, world)| output::print(&(world.to_json() + "\n")));
+            return each(source, range, |(_, _, world)| {
+                output::print_json(&(world.to_json() + "\n"))
+            });
         }
         let file = self.begin()?;
         let is_read_now = file.is_straight();
@@ -305,7 +308,7 @@ impl Sample {
             table.push(row).map_err(|error| self.failed(&error))
         })?;
         self.commit(table.finish().map_err(|error| self.failed(&error))?)?;
-        output::line(format!("{count} worlds in {}", self.output.display()))
+        output::line(format!("{count} worlds in {}", self.output.shown()))
     }
 
     fn files(&self, source: &Source, range: std::ops::Range<u64>) -> Result<(), Failure> {
@@ -314,7 +317,7 @@ impl Sample {
             let path = self.output.join(format!("{index:08}.json"));
             output::write(&path, world.to_json_pretty().as_bytes())
         })?;
-        output::line(format!("{count} worlds in {}", self.output.display()))
+        output::line(format!("{count} worlds in {}", self.output.shown()))
     }
 }
 

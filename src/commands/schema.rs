@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use crate::spec::schema;
 use clap::Args;
+use driftworld_text::ShownPath;
 
 use super::{Failure, input, output};
 
@@ -35,11 +36,11 @@ impl Schema {
             for (name, expected) in texts()? {
                 let path = folder.join(name);
                 if input::text(&path)? != expected {
-                    let text = format!("{}: is stale; run: cargo xtask schemas", path.display());
+                    let text = format!("{}: is stale; run: cargo xtask schemas", path.shown());
                     return Err(Failure::input(text));
                 }
             }
-            return output::line(format!("{}: up to date", folder.display()));
+            return output::line(format!("{}: up to date", folder.shown()));
         }
         let Some(folder) = &self.output else {
             return Err(Failure::usage(
@@ -49,7 +50,7 @@ impl Schema {
         for (name, text) in texts()? {
             let path = folder.join(name);
             output::write(&path, text.as_bytes())?;
-            output::line(path.display().to_string())?;
+            output::line(path.shown().to_string())?;
         }
         Ok(())
     }

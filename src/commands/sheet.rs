@@ -6,6 +6,7 @@ use crate::generator::Sampler;
 use crate::spec::{BlockKind, Regime, Scenario, Value, Variant};
 use crate::tasks;
 use clap::Args;
+use driftworld_text::ShownPath;
 
 use super::pictures::{SheetRow, sheet};
 use super::render::Views;
@@ -145,7 +146,7 @@ fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
     if is_original(&text) {
         return Err(Failure::input(format!(
             "{}: found a scenario of L2Explorer, which lives map files, expected one of ours; draw its maps with driftworld render --l2explorer",
-            file.display()
+            file.shown()
         )));
     }
     let scenario = Scenario::from_json(&file.display().to_string(), &text)?;
@@ -158,7 +159,7 @@ fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
             if let Some(world) = &regime.world {
                 return Err(Failure::input(format!(
                     "{}: block {number} lives the world file {world}, expected variants of tasks; draw it with driftworld render",
-                    file.display()
+                    file.shown()
                 )));
             }
             let task = tasks::task(&regime.task)?;

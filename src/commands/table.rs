@@ -1,6 +1,7 @@
 //! Tables for people: plain columns that stay readable when they are pasted or piped. The JSON beside them is the commands' own.
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use driftworld_text::printable;
 
 /// A table with these headings; `numbers` are the columns that are set to the right.
 pub(crate) fn table<const N: usize>(headings: [&str; N], rows: Vec<[String; N]>, numbers: &[usize]) -> String {
@@ -17,9 +18,11 @@ pub(crate) fn wide_table(headings: Vec<String>, rows: Vec<Vec<String>>, numbers:
     table
         .load_style(presets::NOTHING)
         .set_content_arrangement(ContentArrangement::Disabled);
-    table.set_header(headings);
+    // A cell is one line, whatever it says.
+    let shown = |cells: Vec<String>| cells.into_iter().map(|cell| printable(&cell).into_owned());
+    table.set_header(shown(headings));
     for row in rows {
-        table.add_row(row);
+        table.add_row(shown(row));
     }
     for (index, column) in table.column_iter_mut().enumerate() {
         column.set_padding((0, 2));

@@ -3,6 +3,7 @@
 use crate::spec::{Domain, Parameter, ParameterType, Role, TaskSpec, Value, Variant};
 use crate::tasks;
 use clap::{Args, Subcommand};
+use driftworld_text::{one_line, printable};
 use serde_json::json;
 
 use super::table::wide_table;
@@ -54,9 +55,9 @@ fn list(as_json: bool) -> Result<(), Failure> {
         return output::json(&list);
     }
     for task in tasks {
-        output::line(format!("{}: {}", task.name(), task.description()))?;
+        output::line(format!("{}: {}", task.name(), printable(task.description())))?;
         for name in task.variant_names() {
-            let said = task.variant_description(name).unwrap_or_default();
+            let said = printable(task.variant_description(name).unwrap_or_default());
             output::line(format!("  {}#{name:<12} {said}", task.name()).trim_end())?;
         }
     }
@@ -72,9 +73,9 @@ fn show(task: &std::sync::Arc<TaskSpec>, as_json: bool) -> Result<(), Failure> {
             .collect();
         return output::json(&json!({ "task": task.name(), "parameters": task.parameters(), "variants": values }));
     }
-    output::line(format!("{}: {}", task.name(), task.description()))?;
+    output::line(format!("{}: {}", task.name(), printable(task.description())))?;
     for requirement in task.requirements() {
-        output::line(format!("require: {requirement}"))?;
+        output::line(format!("require: {}", one_line(requirement)))?;
     }
     let own: Vec<Vec<String>> = std::iter::once(["parameter", "role", "affects", "domain"].map(str::to_owned).to_vec())
         .chain(task.parameters().iter().map(|(name, parameter)| {

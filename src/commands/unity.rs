@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 use driftworld_atomic_files::AtomicFile;
+use driftworld_text::ShownPath;
 use serde_json::json;
 
 use super::{Failure, output};
@@ -86,7 +87,7 @@ impl Install {
         let target = target(&self.folder)?;
         self.check_target(&target)?;
         copy(&source, &target)?;
-        output::note(format!("{} is a copy of {}", target.display(), source.display()));
+        output::note(format!("{} is a copy of {}", target.shown(), source.shown()));
         if let Some(odd) = odd_for_the_client(&target) {
             output::warning(odd);
         }
@@ -106,7 +107,7 @@ impl Install {
 
     /// Refuses to write over what is not ours.
     fn check_target(&self, target: &Path) -> Result<(), Failure> {
-        let shown = target.display();
+        let shown = target.shown();
         // Of the path itself, not of what it links to: a link that leads nowhere is somebody's, too.
         let Ok(found) = fs::symlink_metadata(target) else {
             return Ok(());
@@ -114,7 +115,7 @@ impl Install {
         if found.is_dir() {
             return Err(Failure::input(format!(
                 "{shown}: found a folder, expected a file or nothing; name another folder than {}",
-                self.folder.display()
+                self.folder.shown()
             )));
         }
         let is_ours = target.is_file() && holds_marker(target).map_err(|error| unreadable(target, &error))?;
@@ -136,7 +137,7 @@ fn look_for_executable() -> Result<PathBuf, Failure> {
         .and_then(|program| program.parent().map(Path::to_path_buf));
     let path = env::var_os("PATH");
     find_in(beside.as_deref(), path.as_deref(), &name).ok_or_else(|| {
-        let beside = beside.map_or_else(String::new, |folder| format!("in {}, beside this program, nor ", folder.display()));
+        let beside = beside.map_or_else(String::new, |folder| format!("in {}, beside this program, nor ", folder.shown()));
         Failure::input(format!(
             "{name}: found neither {beside}in a folder of PATH; make it in a checkout of Driftworld with `{BUILD}`, and name it with \
              --executable target/release/{name}"
@@ -159,7 +160,7 @@ fn check_source(source: &Path) -> Result<(), Failure> {
     let found = if about.is_file() { "another file" } else { "no file" };
     Err(Failure::input(format!(
         "{}: found {found}, expected the executable that `{BUILD}` makes, target/release/{EXECUTABLE}",
-        source.display()
+        source.shown()
     )))
 }
 
@@ -184,11 +185,11 @@ fn target(folder: &Path) -> Result<PathBuf, Failure> {
     if fs::metadata(folder).is_ok_and(|found| !found.is_dir()) {
         return Err(Failure::input(format!(
             "{}: found a file, expected a folder to install into, or a path where one can be made",
-            folder.display()
+            folder.shown()
         )));
     }
     let whole = std::path::absolute(folder)
-        .map_err(|error| Failure::input(format!("\"{}\": expected a folder: {error}", folder.display())))?;
+        .map_err(|error| Failure::input(format!("\"{}\": expected a folder: {error}", folder.shown())))?;
     let target = whole.join(NAME);
     text(&target)?;
     Ok(target)
@@ -199,14 +200,14 @@ fn text(path: &Path) -> Result<&str, Failure> {
     path.to_str().ok_or_else(|| {
         Failure::input(format!(
             "{}: found a path that is not UTF-8 text, expected one that can be printed; name another folder",
-            path.display()
+            path.shown()
         ))
     })
 }
 
 /// Copies under a temporary name, which is given up for the right one when all is written and can be started.
 fn copy(source: &Path, target: &Path) -> Result<(), Failure> {
-    let failed = |error: io::Error| Failure::input(format!("{}: cannot be written: {error}", target.display()));
+    let failed = |error: io::Error| Failure::input(format!("{}: cannot be written: {error}", target.shown()));
     let mut from = File::open(source).map_err(|error| unreadable(source, &error))?;
     let mut copy = AtomicFile::create_executable(target).map_err(failed)?;
     io::copy(&mut from, &mut copy).map_err(failed)?;
@@ -214,7 +215,7 @@ fn copy(source: &Path, target: &Path) -> Result<(), Failure> {
 }
 
 fn unreadable(path: &Path, error: &io::Error) -> Failure {
-    Failure::input(format!("{}: cannot be read: {error}", path.display()))
+    Failure::input(format!("{}: cannot be read: {error}", path.shown()))
 }
 
 /// Why the client will not find the copy, if it will not.
@@ -224,13 +225,13 @@ fn odd_for_the_client(target: &Path) -> Option<String> {
     if let Some(cut) = CUT_OUT.into_iter().find(|cut| folder.contains(cut)) {
         return Some(format!(
             "{}: the client cuts \"{cut}\" out of paths, and will not find this one; {advice}",
-            target.display()
+            target.shown()
         ));
     }
     let pattern = folder.chars().find(|letter| "*?[".contains(*letter))?;
     Some(format!(
         "{}: the client takes \"{pattern}\" in paths for a pattern, and may find nothing or something else; {advice}",
-        target.display()
+        target.shown()
     ))
 }
 

@@ -9,6 +9,7 @@ use crate::scenarios::{Missing, ScenarioFile, task_from};
 use crate::spec::{Classes, Problem, TaskSpec};
 use crate::tasks;
 use clap::Args;
+use driftworld_text::ShownPath;
 use serde_json::{Value, json};
 
 use super::assets::LibraryChoice;
@@ -104,7 +105,7 @@ impl Validate {
 
     fn check(&self, path: &Path, classes: &Classes) -> Result<Found, Failure> {
         let text = documents::text_of(path, &DOCUMENTS)?;
-        let name = path.display().to_string();
+        let name = path.shown().to_string();
         let kind = match Kind::of(&text) {
             Kind::World if self.l2explorer => Kind::L2ExplorerWorld,
             kind => kind,
@@ -136,7 +137,7 @@ impl Validate {
         kind: Kind,
         classes: &Classes,
     ) -> Result<Vec<Trial>, (&'static str, String)> {
-        let name = path.display().to_string();
+        let name = path.shown().to_string();
         match kind {
             Kind::Task => {
                 let task = TaskSpec::from_json(&name, text).map_err(|error| (error.code(), error.to_string()))?;
@@ -198,7 +199,7 @@ impl Verdict {
             output::note(wrong);
             return Ok(());
         }
-        let (path, kind) = (self.path.display(), checked.kind.name());
+        let (path, kind) = (self.path.shown(), checked.kind.name());
         match trials::told(&found.trials) {
             Some(told) => output::note(format!("{path}: a {kind} of which {told}")),
             None => output::line(format!("{path}: a valid {kind}"))?,

@@ -94,7 +94,7 @@ impl Vary {
         let entry = serde_json::to_string_pretty(&json!({ self.name: declared }))?;
         // Without the outer braces it can be pasted between two variants.
         let inner: Vec<&str> = entry.lines().skip(1).collect();
-        output::line(inner[..inner.len() - 1].join("\n"))
+        output::print_json(&(inner[..inner.len() - 1].join("\n") + "\n"))
     }
 }
 

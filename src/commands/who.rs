@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use crate::env::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent};
 use crate::spec::nearest;
+use driftworld_text::ShownPath;
 
 use super::{Failure, input};
 
@@ -29,7 +30,7 @@ impl Who {
         match self {
             Self::Random => "random".to_owned(),
             Self::Onrails => "onrails".to_owned(),
-            Self::Scripted(path) => format!("scripted:{}", path.display()),
+            Self::Scripted(path) => format!("scripted:{}", path.shown()),
         }
     }
 

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use driftworld_env::EnvError;
 use driftworld_spec::SpecError;
+use driftworld_text::{ShownPath, one_line};
 
 use crate::behavior::BEHAVIOR;
 
@@ -12,13 +13,13 @@ use crate::behavior::BEHAVIOR;
 #[non_exhaustive]
 pub enum UnityError {
     /// Arguments that cannot be.
-    #[error("{text}")]
+    #[error("{text}", text = one_line(text))]
     Arguments {
         /// What was found where, and what was expected.
         text: String,
     },
     /// A file that cannot be read or written.
-    #[error("{option} {}: cannot be {purpose}: {source}", path.display())]
+    #[error("{option} {}: cannot be {purpose}: {source}", path.shown(), source = one_line(source))]
     File {
         /// The option that named it.
         option: &'static str,
@@ -30,7 +31,7 @@ pub enum UnityError {
         source: std::io::Error,
     },
     /// The system gives us no network.
-    #[error("network: cannot be used: {source}")]
+    #[error("network: cannot be used: {source}", source = one_line(source))]
     Network {
         /// What the system says.
         source: std::io::Error,
@@ -40,7 +41,8 @@ pub enum UnityError {
     Document(#[from] SpecError),
     /// Nobody listens where the client should be.
     #[error(
-        "{address}: no client within {seconds} s; start it first, or name its port by --mlagents-port (5004 in editor mode, else 5005 + worker id)"
+        "{address}: no client within {seconds} s; start it first, or name its port by --mlagents-port (5004 in editor mode, else 5005 + worker id)",
+        address = one_line(address)
     )]
     NoClient {
         /// Machine and port.
@@ -49,13 +51,13 @@ pub enum UnityError {
         seconds: f64,
     },
     /// Machine and port that make no address.
-    #[error("{address}: expected the name or address of a machine, such as 127.0.0.1")]
+    #[error("{address}: expected the name or address of a machine, such as 127.0.0.1", address = one_line(address))]
     NoAddress {
         /// Machine and port.
         address: String,
     },
     /// Something listens that does not speak the protocol.
-    #[error("{address}: what listens there does not answer as an ML-Agents client does: {reason}")]
+    #[error("{address}: what listens there does not answer as an ML-Agents client does: {reason}", address = one_line(address), reason = one_line(reason))]
     NotAClient {
         /// Machine and port.
         address: String,
@@ -69,7 +71,7 @@ pub enum UnityError {
         found: String,
     },
     /// A message that is no message of the protocol, or too long.
-    #[error("client: a message cannot be read: {reason}")]
+    #[error("client: a message cannot be read: {reason}", reason = one_line(reason))]
     Unreadable {
         /// Why; of one that is too long, this says the limit.
         reason: String,
@@ -111,7 +113,7 @@ pub enum UnityError {
         expected: usize,
     },
     /// A discrete action that the world's table does not have.
-    #[error("action: found {found}, expected the number of a row of the world's table of actions, 0 to {last}")]
+    #[error("action: found {found}, expected the number of a row of the world's table of actions, 0 to {last}", found = one_line(found))]
     ActionRow {
         /// The number.
         found: String,
@@ -119,7 +121,7 @@ pub enum UnityError {
         last: usize,
     },
     /// A library of models that is none.
-    #[error("--assets {}: {source}", path.display())]
+    #[error("--assets {}: {source}", path.shown())]
     Library {
         /// Its path.
         path: PathBuf,
@@ -137,7 +139,7 @@ pub enum UnityError {
         limit: usize,
     },
     /// A picture that cannot be made into a file.
-    #[error("picture: {reason}")]
+    #[error("picture: {reason}", reason = one_line(reason))]
     Picture {
         /// Why.
         reason: String,

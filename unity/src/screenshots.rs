@@ -5,6 +5,7 @@ use std::io::{Read, Write};
 use std::path::{Component, Path, PathBuf};
 
 use driftworld_atomic_files::AtomicFile;
+use driftworld_text::ShownPath;
 
 /// The longest name of a file, in bytes.
 const LONGEST_NAME: usize = 200;
@@ -34,7 +35,7 @@ impl Screenshots {
     pub(crate) fn write(&self, name: &str, png: &[u8]) -> Result<PathBuf, String> {
         let relative = inside(name)?;
         let path = self.folder.join(&relative);
-        let failed = |error: std::io::Error| format!("{}: {error}", path.display());
+        let failed = |error: std::io::Error| format!("{}: {error}", path.shown());
         let mut folder = self.folder.clone();
         fs::create_dir_all(&folder).map_err(failed)?;
         for part in relative.parent().into_iter().flat_map(Path::components) {

@@ -5,6 +5,8 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use driftworld_text::{ShownPath, one_line};
+
 use super::cell::shown;
 use super::timestamp::Timestamp;
 
@@ -78,6 +80,7 @@ impl fmt::Display for LogWarning {
         match self {
             Self::NoScenarioInfo => f.write_str("scenario_info.json: found no such file; read without it"),
             Self::ScenarioInfo { field, found, expected } => {
+                let found = one_line(found);
                 write!(
                     f,
                     "scenario_info.json, {field}: found {found}, expected one of {expected}; left out"
@@ -88,7 +91,8 @@ impl fmt::Display for LogWarning {
                 version,
                 has_subtype,
             } => {
-                let path = path.display();
+                let version = one_line(version);
+                let path = path.shown();
                 let found = if *has_subtype { "the column" } else { "no column" };
                 let expected = if *has_subtype { "none" } else { "one" };
                 let read = if *has_subtype { "it counts" } else { "read as wake" };
@@ -103,7 +107,7 @@ impl fmt::Display for LogWarning {
                 found,
                 before,
             } => {
-                let path = path.display();
+                let path = path.shown();
                 write!(
                     f,
                     "{path}:{line}, column timestamp: found {found}, expected not earlier than {before} in the row above; \
@@ -111,14 +115,15 @@ impl fmt::Display for LogWarning {
                 )
             }
             Self::OtherFolder { path, line, expected } => {
-                let path = path.display();
+                let expected = one_line(expected);
+                let path = path.shown();
                 write!(
                     f,
                     "{path}:{line}: found a row of another folder, expected it in {expected}; read all the same"
                 )
             }
             Self::Unfinished { path, line, exp_num } => {
-                let path = path.display();
+                let path = path.shown();
                 write!(
                     f,
                     "{path}:{line}: found experience {exp_num} without a complete row, the last of its worker; left out until \
@@ -126,6 +131,7 @@ impl fmt::Display for LogWarning {
                 )
             }
             Self::NoNumbers { column } => {
+                let column = one_line(column);
                 write!(
                     f,
                     "column {column}: found no number in any row, expected some; it cannot be scored"

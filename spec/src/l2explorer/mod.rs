@@ -15,6 +15,8 @@ mod write;
 
 use std::fmt;
 
+use driftworld_text::one_line;
+
 use crate::world::MotionModel;
 
 /// Something that did not pass between a file of the original and a world as it stands.
@@ -34,11 +36,11 @@ pub struct Warning {
 
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(&self.name)?;
+        write!(f, "{}", one_line(&self.name))?;
         if self.line > 0 {
             write!(f, ":{}:{}", self.line, self.column)?;
         }
-        write!(f, " ({}): {}", self.pointer, self.text)
+        write!(f, " ({}): {}", one_line(&self.pointer), one_line(&self.text))
     }
 }
 

@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::env::{Library, MAX_IMPORT_BYTES};
+use driftworld_text::ShownPath;
 
 use super::super::Failure;
 use super::source::{bytes, unreadable};
@@ -22,7 +23,7 @@ pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let found = "found a file that is no library, expected a new name or a library";
-    Err(Failure::input(format!("{}: {found}", path.display())))
+    Err(Failure::input(format!("{}: {found}", path.shown())))
 }
 
 /// The bytes of a glTF file.

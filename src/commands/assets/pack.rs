@@ -4,9 +4,10 @@
 use std::path::Path;
 use std::path::PathBuf;
 
-#[cfg(feature = "gltf")]
 use crate::env::{ColliderKind, ImportOptions, ImportSize, Library, LibraryModel};
 use clap::{Args, ValueEnum};
+#[cfg(feature = "gltf")]
+use driftworld_text::ShownPath;
 
 use super::super::Failure;
 #[cfg(feature = "gltf")]
@@ -91,14 +92,14 @@ impl Pack {
         output::line(list::models(&library.models()[first..]))?;
         output::line(format!(
             "\n{}: {} models, {} bytes",
-            self.output.display(),
+            self.output.shown(),
             library.models().len(),
             bytes.len()
         ))
     }
 
     fn pack(&self, path: &Path, library: &mut Library) -> Result<(), Failure> {
-        let in_file = |error: crate::env::EnvError| Failure::input(format!("{}: {error}", path.display()));
+        let in_file = |error: crate::env::EnvError| Failure::input(format!("{}: {error}", path.shown()));
         let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let class = self.class.clone().or(stem).unwrap_or_default().trim().to_lowercase();
         let options = ImportOptions {
@@ -111,7 +112,7 @@ impl Pack {
         let bytes = gltf::model(path)?;
         let imported = LibraryModel::from_gltf(&bytes, &options, &mut gltf::beside(path)).map_err(in_file)?;
         for warning in &imported.warnings {
-            output::note(format!("warning: {}: {warning}", path.display()));
+            output::note(format!("warning: {}: {warning}", path.shown()));
         }
         library.insert(imported.model).map_err(in_file)
     }

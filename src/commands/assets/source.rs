@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::env::{Catalogue, Library};
 use clap::Args;
+use driftworld_text::ShownPath;
 use serde_json::{Value, json};
 
 use super::super::{Failure, input};
@@ -50,11 +51,11 @@ impl LibraryChoice {
 /// A library from its file.
 pub(super) fn library(path: &Path) -> Result<Library, Failure> {
     let bytes = bytes(path, MAX_LIBRARY_BYTES).map_err(|reason| unreadable(path, &reason))?;
-    Library::from_bytes(&bytes).map_err(|error| Failure::input(format!("{}: {error}", path.display())))
+    Library::from_bytes(&bytes).map_err(|error| Failure::input(format!("{}: {error}", path.shown())))
 }
 
 pub(super) fn unreadable(path: &Path, reason: &str) -> Failure {
-    Failure::input(format!("{}: cannot be read: {reason}", path.display()))
+    Failure::input(format!("{}: cannot be read: {reason}", path.shown()))
 }
 
 /// The bytes of a regular file of at most `most` bytes.

@@ -2,6 +2,7 @@
 //! `screen.rs` and `map.rs`.
 
 use crate::env::{Frame, Image, top_down};
+use driftworld_text::ShownPath;
 
 use super::super::modality::Kind;
 use super::super::modality::target;
@@ -82,6 +83,6 @@ impl Session<'_> {
             Picture::Seen(Kind::Depth) => ", 1 cm a level",
             _ => "",
         };
-        Ok(format!("{}: {} × {} pixels{unit}", path.display(), size[0], size[1]))
+        Ok(format!("{}: {} × {} pixels{unit}", path.shown(), size[0], size[1]))
     }
 }

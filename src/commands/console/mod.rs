@@ -19,6 +19,7 @@ use std::io::{BufRead, IsTerminal, Read};
 use std::path::PathBuf;
 
 use clap::Args;
+use driftworld_text::ShownPath;
 
 use super::input::{self, WorldChoice};
 use super::{Failure, output};
@@ -69,7 +70,7 @@ impl Console {
         output::line(session.greeting())?;
         if let Some((path, text)) = script {
             let lines = text.lines().map(|line| Ok(line.to_owned()));
-            return self.follow(&mut session, &path.display().to_string(), lines);
+            return self.follow(&mut session, &path.shown().to_string(), lines);
         }
         if std::io::stdin().is_terminal() {
             return converse(&mut session);
@@ -93,8 +94,8 @@ impl Console {
             }
             output::line(format!("> {line}"))?;
             match session.execute(line) {
-                Ok(Reply::Said(text)) => say(&text)?,
                 Ok(Reply::Quit) => break,
+                Ok(reply) => say(&reply)?,
                 Err(text) => {
                     output::line(format!("error: {text}"))?;
                     failed += 1;
@@ -116,19 +117,25 @@ fn converse(session: &mut Session) -> Result<(), Failure> {
     let mut editor = Editor::new()?;
     while let Some(line) = editor.read(session.names())? {
         match session.execute(&line) {
-            Ok(Reply::Said(text)) => say(&text)?,
             Ok(Reply::Quit) => break,
+            Ok(reply) => say(&reply)?,
             Err(text) => output::line(format!("error: {text}"))?,
         }
     }
     Ok(())
 }
 
-fn say(text: &str) -> Result<(), Failure> {
+fn say(reply: &Reply) -> Result<(), Failure> {
+    let (text, print): (_, fn(&str) -> Result<(), Failure>) = match reply {
+        Reply::Said(text) => (text, output::print),
+        Reply::Json(text) => (text, output::print_json),
+        Reply::Picture(text) => (text, output::print_as_is),
+        Reply::Quit => return Ok(()),
+    };
     if text.is_empty() {
         return Ok(());
     }
-    output::line(text.trim_end_matches('\n'))
+    print(&format!("{}\n", text.trim_end_matches('\n')))
 }
 
 /// The lines of standard input, each as soon as it is there.

@@ -2,6 +2,8 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use driftworld_text::ShownPath;
+
 use super::super::Failure;
 use super::super::output;
 
@@ -27,7 +29,7 @@ impl Folder {
         let refuse = |found: &str| {
             Err(format!(
                 "file: found {name:?}, {found}, expected a name inside {} such as picture.{ending}",
-                self.0.display()
+                self.0.shown()
             ))
         };
         let mut relative = PathBuf::from(name);

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use crate::env::{Action, Category, Channels, CpuRenderer, Environment, Event, Level, Snapshot, Step};
 use crate::spec::{Object, World, nearest};
+use driftworld_text::ShownPath;
 
 use super::super::Failure;
 use super::super::input::WorldChoice;
@@ -38,6 +39,10 @@ pub(super) struct Session<'a> {
 /// What comes of a line.
 pub(super) enum Reply {
     Said(String),
+    /// What it says, as a document.
+    Json(String),
+    /// A picture in letters, or in colours of our own.
+    Picture(String),
     Quit,
 }
 
@@ -94,10 +99,10 @@ impl<'a> Session<'a> {
             Line::Info => self.info(),
             Line::Objects => self.objects(),
             Line::Agent => self.agent(),
-            Line::StateJson => self.environment.state().to_json_pretty(),
+            Line::StateJson => return Ok(Reply::Json(self.environment.state().to_json_pretty())),
             Line::StateFile(file) => {
                 let text = self.environment.state().to_json_pretty();
-                self.folder.write(&file, "json", text.as_bytes())?.display().to_string()
+                self.folder.write(&file, "json", text.as_bytes())?.shown().to_string()
             }
             Line::Act { action, count } => self.act(action, count)?,
             Line::Reset(to) => self.reset(to.as_deref())?,
@@ -108,7 +113,7 @@ impl<'a> Session<'a> {
                 self.environment.teleport(position, heading).map_err(plain)?;
                 self.agent()
             }
-            Line::Show { picture, columns } => self.show(picture, columns)?,
+            Line::Show { picture, columns } => return self.show(picture, columns).map(Reply::Picture),
             Line::Screenshot { file, picture, size } => self.screenshot(&file, picture, size)?,
             Line::Snapshot(name) => self.snapshot(name)?,
             Line::Restore(name) => self.restore(&name)?,

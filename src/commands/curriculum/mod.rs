@@ -14,6 +14,7 @@ use crate::spec::{
     DriftSchedule, DriftSwitch, Element, Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm, TaskLabel,
 };
 use clap::{Args, ValueEnum};
+use driftworld_text::ShownPath;
 
 use super::assets::LibraryChoice;
 use super::order::OrderArgs;
@@ -246,11 +247,7 @@ impl Curriculum {
                 let path = folder.join(format!("{}.json", options.name));
                 proof.check(&scenario)?;
                 write_checked(&path, &scenario)?;
-                say(format!(
-                    "{}: {}",
-                    path.display(),
-                    tables::path(&scenario, &chosen.matrix)
-                ))?;
+                say(format!("{}: {}", path.shown(), tables::path(&scenario, &chosen.matrix)))?;
             }
         }
         Ok(())
@@ -351,7 +348,7 @@ impl Curriculum {
             let path = self.output.join(format!("{}.json", scenario.name));
             proof.check(scenario)?;
             write_checked(&path, scenario)?;
-            output::line(format!("{}: {}", path.display(), tables::learned(scenario)))?;
+            output::line(format!("{}: {}", path.shown(), tables::learned(scenario)))?;
         }
         Ok(())
     }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::Drawn;
 use crate::commands::{Failure, output};
+use driftworld_text::ShownPath;
 
 /// A folder of figures, and what is in it already.
 pub(crate) struct Files {
@@ -49,7 +50,7 @@ impl Files {
 
     /// What was written, in words.
     pub(crate) fn told(&self) -> String {
-        let (folder, kilobytes) = (self.folder.display(), self.bytes.div_ceil(1000));
+        let (folder, kilobytes) = (self.folder.shown(), self.bytes.div_ceil(1000));
         format!("{folder}: {} figures, {kilobytes} kB", self.count)
     }
 }

@@ -3,11 +3,12 @@
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-#[cfg(feature = "parquet")]
 use crate::columns;
 use crate::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
 use clap::{Args, ValueEnum};
 use driftworld_atomic_files::AtomicFile;
+#[cfg(feature = "parquet")]
+use driftworld_text::ShownPath;
 
 use super::super::{Failure, log_folders, output};
 use super::count;
@@ -91,7 +92,7 @@ impl Aggregate {
             "{} of {} in {}",
             count(table.len() as u64, "row", "rows"),
             count(logs.len() as u64, "log", "logs"),
-            self.output.display()
+            self.output.shown()
         ))
     }
 
@@ -142,8 +143,8 @@ impl Aggregate {
             None => Ok(()),
             Some(log) => Err(Failure::input(format!(
                 "{}: found a name that is part of the log {}, expected another file; the log would be lost",
-                self.output.display(),
-                log.display()
+                self.output.shown(),
+                log.shown()
             ))),
         }
     }
@@ -185,5 +186,5 @@ fn print(table: &LogTable, format: Format) -> Result<(), Failure> {
     }
     let failed = |error: &dyn std::fmt::Display| Failure::input(format!("standard output: {error}"));
     let bytes = written(table, format, Vec::new()).map_err(|error| failed(&error))?;
-    output::print(&String::from_utf8(bytes).map_err(|error| failed(&error))?)
+    output::print_data(&String::from_utf8(bytes).map_err(|error| failed(&error))?)
 }

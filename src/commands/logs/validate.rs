@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::metrics::{Validation, begun_log, validate_log};
 use clap::Args;
+use driftworld_text::{ShownPath, printable};
 use serde_json::{Value, json};
 
 use super::super::{Failure, log_folders, output};
@@ -82,7 +83,7 @@ impl Verdict {
     }
 
     fn print(&self) -> Result<(), Failure> {
-        let (found, log) = (&self.found, self.log.display());
+        let (found, log) = (&self.found, self.log.shown());
         for problem in &found.problems {
             output::note(placed(&self.log, &problem.to_string()));
         }
@@ -117,7 +118,7 @@ impl Verdict {
         };
         let mut text = format!(
             "{}: {verdict}; {}{incomplete} in {}, {}, {}, {}",
-            self.log.display(),
+            self.log.shown(),
             count(counts.rows as u64, "row", "rows"),
             count(counts.files as u64, "file", "files"),
             count(counts.workers as u64, "worker", "workers"),
@@ -125,7 +126,8 @@ impl Verdict {
             count(counts.tasks as u64, "task", "tasks"),
         );
         if let Some((columns, version)) = &self.info {
-            text.extend(["; metrics ", &columns.join(", "), "; format ", version]);
+            let columns = columns.join(", ");
+            text.extend(["; metrics ", &printable(&columns), "; format ", &printable(version)]);
         }
         text
     }
@@ -155,7 +157,7 @@ impl Verdict {
 
 /// A message with the log in front, unless it begins with it: some name a file below the log, others only what is meant.
 fn placed(log: &Path, message: &str) -> String {
-    let log = log.display().to_string();
+    let log = log.shown().to_string();
     if message.starts_with(&log) {
         message.to_owned()
     } else {

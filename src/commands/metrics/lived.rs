@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::metrics::{ExpStatus, Lifetime, LifetimeMetrics, Log, MetricsError, Options, Scorer, read_log};
 use crate::spec::nearest;
+use driftworld_text::ShownPath;
 use rayon::prelude::*;
 
 use crate::commands::scoring::Experts;
@@ -35,7 +36,7 @@ impl Lived {
         warnings.extend(missing_numbers(&log, &options.perf_measure));
         warnings.extend(experts.left_aside(&log, options));
         for warning in &warnings {
-            output::note(format!("warning: {}: {warning}", folder.display()));
+            output::note(format!("warning: {}: {warning}", folder.shown()));
         }
         let lifetime = Lifetime::prepare(&log, &experts.of(&log, options)?, options).map_err(without_column)?;
         let metrics = Scorer::default().judge(&log, &lifetime, options)?;

@@ -11,6 +11,7 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::metrics::{BootstrapOptions, LifetimeMetrics, Options, Settings, SteStoreMode, save_all};
 use clap::Args;
+use driftworld_text::ShownPath;
 
 pub(crate) use lived::{Lived, score_logs};
 pub(crate) use tables::{own_scale, summary};
@@ -232,13 +233,13 @@ impl Metrics {
             }
         };
         for file in files {
-            output::note(format!("wrote {}", file.display()));
+            output::note(format!("wrote {}", file.shown()));
         }
         if let Some(repeats) = repeats {
             let name = self.output.as_deref().unwrap_or(NAME_OF_MANY).replace(' ', "_");
             let file = folder.join(format!("{name}_repeats.json"));
             output::write(&file, serde_json::to_string_pretty(&repeats)?.as_bytes())?;
-            output::note(format!("wrote {}", file.display()));
+            output::note(format!("wrote {}", file.shown()));
         }
         Ok(())
     }

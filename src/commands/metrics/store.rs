@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::metrics::{SteStoreMode, store_ste};
+use driftworld_text::ShownPath;
 
 use crate::commands::{Failure, output};
 
@@ -21,7 +22,7 @@ pub(super) fn store(logs: &[PathBuf], mode: SteStoreMode, data: &Path) -> Result
         let stored = store_ste(data, log, mode)?;
         output::line(format!(
             "{}: stored as an expert of {}",
-            stored.dir.display(),
+            stored.dir.shown(),
             stored.task_name
         ))?;
         replaced.push(task);

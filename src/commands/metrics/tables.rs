@@ -6,6 +6,8 @@ use crate::metrics::{
     AsLogged, Direction, Improvement, Interval, LifetimeMetrics, NormalizationMethod, Options, RepeatedMetric,
 };
 
+use driftworld_text::{one_line, printable};
+
 use super::many::Together;
 use crate::commands::table::{table, wide_table};
 
@@ -22,7 +24,10 @@ pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
     });
     let head = format!(
         "{}: {} learning and {} evaluation experiences, scored by {}",
-        scores.run_id, scores.num_lx, scores.num_ex, scores.metrics_column
+        one_line(&scores.run_id),
+        scores.num_lx,
+        scores.num_ex,
+        one_line(&scores.metrics_column)
     );
     let mut parts = vec![head, as_logged(&[("", std::slice::from_ref(scores))])];
     if scores.normalization_data_range.is_some() {
@@ -31,7 +36,7 @@ pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
     let mut metrics = table(["metric", "value", "good", "what it says"], rows.collect(), &[1]);
     for note in &scores.notes {
         metrics.push_str("\nnote: ");
-        metrics.push_str(note);
+        metrics.push_str(&printable(note));
     }
     parts.push(metrics);
     parts.join("\n\n")
@@ -83,7 +88,7 @@ pub(super) fn many(
             counted(lifetimes.len(), "lifetime"),
             lifetimes.iter().map(|life| life.num_lx).sum::<usize>(),
             lifetimes.iter().map(|life| life.num_ex).sum::<usize>(),
-            lifetimes.first().map_or("", |life| &life.metrics_column),
+            one_line(lifetimes.first().map_or("", |life| &life.metrics_column)),
         ),
         as_logged(&if others.is_empty() {
             vec![("", lifetimes)]
@@ -98,7 +103,7 @@ pub(super) fn many(
         .flat_map(|life| &life.notes)
         .map(String::as_str)
         .collect();
-    parts.extend(notes.into_iter().map(|note| format!("note: {note}")));
+    parts.extend(notes.into_iter().map(|note| format!("note: {}", one_line(note))));
     if let Some(own) = own_scale(options) {
         parts.push(own.to_owned());
     } else if options.data_range.is_some() {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::metrics::{LifetimeMetrics, Options, SmoothingMethod, compare_agents, over_repeats};
 use crate::report::{Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, ReportError};
 use clap::Args;
+use driftworld_text::ShownPath;
 
 use super::figures::{FigureChoice, Files, drawn};
 use super::metrics::{Intervals, Lived, Yardstick, own_scale, score_logs};
@@ -134,7 +135,7 @@ impl Report {
         }
         output::write(&self.output, html.as_bytes())?;
         let many = if logs.len() == 1 { "lifetime" } else { "lifetimes" };
-        let (path, kilobytes) = (self.output.display(), html.len().div_ceil(1000));
+        let (path, kilobytes) = (self.output.shown(), html.len().div_ceil(1000));
         output::line(format!("{path}: {} {many}, {kilobytes} kB", logs.len()))?;
         files.map_or(Ok(()), |files| output::line(files.told()))
     }

@@ -6,6 +6,7 @@ use crate::contents::Contents;
 use crate::documents;
 use crate::metrics::{DataRange, Options};
 use crate::spec::nearest;
+use driftworld_text::ShownPath;
 use serde_json::{Map, Value, json};
 
 use crate::commands::Failure;
@@ -71,11 +72,11 @@ pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
             .unwrap_or_default();
         return Err(Failure::input(format!(
             "{}: found the setting {strange:?}, expected one of l2metrics{near}",
-            path.display()
+            path.shown()
         )));
     }
     let mut options: Options = serde_json::from_value(Value::Object(settings))
-        .map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+        .map_err(|error| Failure::input(format!("{}: {error}", path.shown())))?;
     if let (Some(file), None) = (range_file, &options.data_range) {
         options.data_range = Some(data_range(&file)?.into_iter().collect());
     }
@@ -97,7 +98,7 @@ pub(super) fn data_range(path: &Path) -> Result<Vec<(String, DataRange)>, Failur
     let mut ranges = Vec::new();
     for (task, range) in object(path, &documents::text(path)?, expected)? {
         let range = serde_json::from_value(range)
-            .map_err(|error| Failure::input(format!("{}, {task:?}: {error}; expected {expected}", path.display())))?;
+            .map_err(|error| Failure::input(format!("{}, {task:?}: {error}; expected {expected}", path.shown())))?;
         ranges.push((task.to_lowercase(), range));
     }
     Ok(ranges)
@@ -108,11 +109,11 @@ fn object(path: &Path, text: &str, expected: &str) -> Result<Map<String, Value>,
         Ok(Value::Object(object)) => Ok(object),
         Ok(_) => Err(Failure::input(format!(
             "{}: found other JSON, expected {expected}",
-            path.display()
+            path.shown()
         ))),
         Err(error) => Err(Failure::input(format!(
             "{}:{}:{}: found no JSON ({error}), expected {expected}",
-            path.display(),
+            path.shown(),
             error.line(),
             error.column()
         ))),

@@ -9,6 +9,7 @@ use crate::curriculum::{TransferOptions, transfer_report};
 use crate::metrics::{NormalizationMethod, Options, SmoothingMethod, TransferMethod};
 use crate::similarity::MAX_RELABELLINGS;
 use clap::{Args, ValueEnum};
+use driftworld_text::ShownPath;
 
 use super::metrics::score_logs;
 use super::pictures::scatter;
@@ -110,7 +111,7 @@ impl TransferReport {
         let Some(path) = self.output else { return Ok(()) };
         let picture = scatter(&words::panels(&report))?;
         picture.write(&path)?;
-        output::note(format!("wrote {}", path.display()));
+        output::note(format!("wrote {}", path.shown()));
         Ok(())
     }
 }

@@ -25,6 +25,7 @@ pub(super) struct Fence {
 /// Names crates that no room imports, so their versions stand nowhere else.
 pub(super) const FEATURES: &str = "driftworld-features";
 const ATOMIC_FILES: &str = "driftworld-atomic-files";
+const TEXT: &str = "driftworld-text";
 const SPEC: &str = "driftworld-spec";
 const GENERATOR: &str = "driftworld-generator";
 const SIMILARITY: &str = "driftworld-similarity";
@@ -45,6 +46,12 @@ pub(super) const ROOMS: &[Room] = &[
         floor: 0,
         may_import: &[],
     },
+    // Below every room: what text of others becomes on its way out.
+    Room {
+        package: TEXT,
+        floor: 0,
+        may_import: &[],
+    },
     Room {
         package: ATOMIC_FILES,
         floor: 1,
@@ -53,43 +60,44 @@ pub(super) const ROOMS: &[Room] = &[
     Room {
         package: SPEC,
         floor: 1,
-        may_import: &[FEATURES],
+        may_import: &[FEATURES, TEXT],
     },
     Room {
         package: GENERATOR,
         floor: 2,
-        may_import: &[FEATURES, SPEC],
+        may_import: &[FEATURES, TEXT, SPEC],
     },
     Room {
         package: SIMILARITY,
         floor: 2,
-        may_import: &[FEATURES, SPEC],
+        may_import: &[FEATURES, TEXT, SPEC],
     },
     Room {
         package: ENV,
         floor: 2,
-        may_import: &[FEATURES, SPEC],
+        may_import: &[FEATURES, TEXT, SPEC],
     },
     Room {
         package: METRICS,
         floor: 2,
-        may_import: &[ATOMIC_FILES],
+        may_import: &[TEXT, ATOMIC_FILES],
     },
     Room {
         package: CURRICULUM,
         floor: 3,
-        may_import: &[FEATURES, ATOMIC_FILES, SPEC, GENERATOR, SIMILARITY, ENV, METRICS],
+        may_import: &[FEATURES, TEXT, ATOMIC_FILES, SPEC, GENERATOR, SIMILARITY, ENV, METRICS],
     },
     Room {
         package: REPORT,
         floor: 3,
-        may_import: &[ATOMIC_FILES, METRICS],
+        may_import: &[TEXT, ATOMIC_FILES, METRICS],
     },
     Room {
         package: FACADE,
         floor: 4,
         may_import: &[
             FEATURES,
+            TEXT,
             ATOMIC_FILES,
             SPEC,
             GENERATOR,
@@ -105,6 +113,7 @@ pub(super) const ROOMS: &[Room] = &[
         floor: 5,
         may_import: &[
             FEATURES,
+            TEXT,
             ATOMIC_FILES,
             SPEC,
             GENERATOR,
@@ -119,12 +128,23 @@ pub(super) const ROOMS: &[Room] = &[
     Room {
         package: UNITY,
         floor: 4,
-        may_import: &[FEATURES, ATOMIC_FILES, SPEC, ENV],
+        may_import: &[FEATURES, TEXT, ATOMIC_FILES, SPEC, ENV],
     },
     Room {
         package: FUZZ,
         floor: 5,
-        may_import: &[FEATURES, SPEC, GENERATOR, SIMILARITY, ENV, METRICS, CURRICULUM, UNITY],
+        may_import: &[
+            FEATURES,
+            TEXT,
+            ATOMIC_FILES,
+            SPEC,
+            GENERATOR,
+            SIMILARITY,
+            ENV,
+            METRICS,
+            CURRICULUM,
+            UNITY,
+        ],
     },
     // Beside the house: builds in seconds because it imports none of it.
     Room {

@@ -1,0 +1,113 @@
+//! Cells of tables for spreadsheets, which take what begins in certain ways for a formula and run it. Commas and quotes are the writer's.
+
+use std::borrow::Cow;
+
+use crate::printable::printable_lines;
+
+/// How texts of others stand in a table for spreadsheets.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Cells {
+    /// Guarded, see [`cell`].
+    #[default]
+    Guarded,
+    /// As they are.
+    Raw,
+}
+
+impl Cells {
+    /// The cell for a text.
+    pub fn cell(self, text: &str) -> Cow<'_, str> {
+        match self {
+            Self::Guarded => cell(text),
+            Self::Raw => Cow::Borrowed(text),
+        }
+    }
+}
+
+/// A cell that no spreadsheet takes for a formula.
+///
+/// A text that begins with `=`, `+`, `-`, `@`, a tab or a line end and is no number has an apostrophe before it, as OWASP advises against CSV
+/// injection; so has one that begins with an apostrophe before one of these. Unprintable characters are shown as [`printable_lines`] has
+/// them. [`Cells::Raw`] is the way around it.
+///
+/// # Example
+/// ```
+/// use driftworld_text::cell;
+/// assert_eq!(cell("=1+2"), "'=1+2");
+/// assert_eq!(cell("-0.5"), "-0.5");
+/// assert_eq!(cell("red"), "red");
+/// ```
+pub fn cell(text: &str) -> Cow<'_, str> {
+    let shown = printable_lines(text);
+    // Full-width forms of the four are taken for them where East Asian languages are set.
+    let starts = ['=', '+', '-', '@', '\t', '\n', '＝', '＋', '－', '＠'];
+    // What looks guarded already gets a guard, too: taking one away gives back what was there.
+    let is_formula = shown.trim_start_matches('\'').starts_with(starts);
+    if is_formula && shown.parse::<f64>().is_err() {
+        Cow::Owned(format!("'{shown}"))
+    } else {
+        shown
+    }
+}
+
+/// What a [`cell`] stands for: without the apostrophe that guards it, if one does.
+///
+/// # Example
+/// ```
+/// use driftworld_text::{cell, unguarded};
+/// assert_eq!(unguarded(&cell("=1+2")), "=1+2");
+/// assert_eq!(unguarded("'quoted'"), "'quoted'");
+/// ```
+pub fn unguarded(guarded: &str) -> &str {
+    match guarded.strip_prefix('\'') {
+        Some(bare) if cell(bare) == guarded => bare,
+        _ => guarded,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::is_unprintable;
+
+    fn check(text: &str, expected: &str) {
+        assert_eq!(cell(text), expected, "{text:?}");
+        assert_eq!(Cells::Raw.cell(text), text);
+        assert_eq!(Cells::Guarded.cell(text), expected);
+    }
+
+    #[test]
+    fn formulas_are_guarded_and_numbers_are_not() {
+        check("=HYPERLINK(\"http://x\";\"y\")", "'=HYPERLINK(\"http://x\";\"y\")");
+        check("+1+cmd|' /C calc'!A0", "'+1+cmd|' /C calc'!A0");
+        check("-2+3", "'-2+3");
+        check("@SUM(1)", "'@SUM(1)");
+        check("\t=1", "'\t=1");
+        check("\r=1", "\\u{d}=1");
+        check("a\nb\u{1b}", "a\nb\\u{1b}");
+        check("＝1", "'＝1");
+        check("-", "'-");
+        for plain in [
+            "-1", "+1.5e-3", "-inf", "a=1", "", "it's", "'quoted'", "1-2", "find#red",
+        ] {
+            check(plain, plain);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn no_cell_begins_a_formula_and_the_text_comes_back(
+            start in "['=+@\t\r\n-]{0,3}", rest in "(?s).{0,8}"
+        ) {
+            let text = start + &rest;
+            let guarded = cell(&text);
+            let dangerous = guarded.starts_with(['=', '+', '-', '@', '\t', '\r', '\n']);
+            prop_assert!(!dangerous || guarded.parse::<f64>().is_ok(), "{guarded:?}");
+            prop_assert!(!guarded.contains(|c| is_unprintable(c) && c != '\n' && c != '\t'));
+            let shown = printable_lines(&text);
+            prop_assert_eq!(unguarded(&guarded), shown.as_ref());
+        }
+    }
+}

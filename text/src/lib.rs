@@ -1,0 +1,12 @@
+//! Text that others wrote, on its way to a terminal, a table or a file name: documents, logs, settings and names of files may say anything.
+//!
+//! Three ideas, a file each: [`printable`] shows characters that a terminal obeys or hides, [`cell`] guards what a spreadsheet would take for
+//! a formula, [`name`] says what variants, tasks and groups may be called. Reading and printing are not here.
+
+mod cell;
+mod name;
+mod printable;
+
+pub use cell::{Cells, cell, unguarded};
+pub use name::{IDENTIFIER_PATTERN, MAX_NAME_BYTES, MAX_NAME_CHARACTERS, NAME_PATTERN, NameFault, check_name};
+pub use printable::{OneLine, ShownPath, is_unprintable, one_line, printable, printable_json, printable_lines, quoted};

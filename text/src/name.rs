@@ -1,0 +1,237 @@
+//! What variants, tasks, groups and scenarios may be called: one grammar, whose names are safe as names of files and of logs everywhere. Which
+//! names are taken already is the documents' to know.
+
+use std::fmt;
+
+use unicode_normalization::char::is_combining_mark;
+use unicode_normalization::is_nfc;
+
+use crate::printable::{is_unprintable, quoted};
+
+/// The longest name, in characters.
+pub const MAX_NAME_CHARACTERS: usize = 100;
+
+/// The longest name in bytes of UTF-8: file systems take 255, and endings and numbers follow.
+pub const MAX_NAME_BYTES: usize = 200;
+
+/// A name as far as a pattern of JSON Schema can say it. The rest is [`check_name`]'s: its length in bytes, normalisation, names of devices.
+///
+/// Beyond ASCII it leaves out white space, general punctuation and unprintable characters, and so takes a few symbols that are refused later.
+pub const NAME_PATTERN: &str = concat!(
+    r"^[^\x00-\x2f\x3a-\x40\x5b-\x5e\x60\x7b-\xa9\u2000-\u206f\u3000-\u3003\ufeff]",
+    r"(?:[^\x00-\x2a\x2c\x2f\x3a-\x40\x5b-\x5e\x60\x7b-\xa9\u2000-\u206f\u3000-\u3003\ufeff]*",
+    r"[^\x00-\x2a\x2c\x2e\x2f\x3a-\x40\x5b-\x5e\x60\x7b-\xa9\u2000-\u206f\u3000-\u3003\ufeff])?$"
+);
+
+/// The narrower form that tasks and parameters keep to, for they stand in expressions and in l2logger's `TASK_VARIANT`.
+pub const IDENTIFIER_PATTERN: &str = "^[a-z][a-z0-9_]*$";
+
+/// Names that Windows keeps for devices, whatever ending follows and in capitals or not.
+const DEVICES: [&str; 4] = ["con", "prn", "aux", "nul"];
+
+/// What is wrong with a name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum NameFault {
+    /// It has no character.
+    Empty,
+    /// It has more characters, or more bytes, than there may be.
+    TooLong {
+        /// How many characters.
+        characters: usize,
+        /// How many bytes of UTF-8.
+        bytes: usize,
+    },
+    /// A character that no name has.
+    Character(char),
+    /// A character that a name does not begin with.
+    Start(char),
+    /// It ends with a dot, which Windows drops.
+    EndsWithDot,
+    /// Composed characters are written as several, or in an order that is not the usual one: two names could look like one.
+    NotNormalised,
+    /// Windows keeps it for a device.
+    Device,
+}
+
+impl fmt::Display for NameFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => f.write_str("no character"),
+            Self::TooLong { characters, bytes } => write!(f, "{characters} characters, {bytes} bytes"),
+            Self::Character(letter) => write!(f, "the character {}", quoted(letter.encode_utf8(&mut [0; 4]))),
+            Self::Start(letter) => write!(f, "{} at its beginning", quoted(letter.encode_utf8(&mut [0; 4]))),
+            Self::EndsWithDot => f.write_str("a dot at its end"),
+            Self::NotNormalised => f.write_str("characters that are not in Unicode's form NFC"),
+            Self::Device => f.write_str("a name that Windows keeps for a device"),
+        }
+    }
+}
+
+impl NameFault {
+    /// What was expected instead.
+    pub fn expected(&self) -> &'static str {
+        match self {
+            Self::Empty | Self::TooLong { .. } => "1 to 100 characters, at most 200 bytes",
+            Self::Character(_) => "letters and digits of any script, _, -, + and . in a name",
+            Self::Start(_) => "a letter, a digit or _ at the beginning of a name",
+            Self::EndsWithDot => "a letter, a digit, _, - or + at the end of a name",
+            Self::NotNormalised => "a name in the form NFC, as keyboards write it",
+            Self::Device => "a name that can be that of a file everywhere",
+        }
+    }
+}
+
+/// Checks a name of a variant, a group or a scenario.
+///
+/// A name has 1 to 100 characters and at most 200 bytes. It begins with a letter, a digit or `_`; then come letters, digits, marks on
+/// letters, `_`, `-`, `+` and `.`; it does not end with `.`. Letters and digits are those of any script, in the form NFC. What Windows
+/// keeps for devices (`con`, `nul.txt`, `COM1`) is no name.
+///
+/// # Errors
+/// The first fault, from the beginning of the name.
+///
+/// # Example
+/// ```
+/// use driftworld_text::{NameFault, check_name};
+/// assert_eq!(check_name("look-red-0.5"), Ok(()));
+/// assert_eq!(check_name("größer"), Ok(()));
+/// assert_eq!(check_name(".."), Err(NameFault::Start('.')));
+/// assert_eq!(check_name("a/b"), Err(NameFault::Character('/')));
+/// ```
+pub fn check_name(name: &str) -> Result<(), NameFault> {
+    let Some(first) = name.chars().next() else {
+        return Err(NameFault::Empty);
+    };
+    let characters = name.chars().count();
+    if characters > MAX_NAME_CHARACTERS || name.len() > MAX_NAME_BYTES {
+        let bytes = name.len();
+        return Err(NameFault::TooLong { characters, bytes });
+    }
+    if let Some(letter) = name.chars().find(|letter| !may_follow(*letter)) {
+        return Err(NameFault::Character(letter));
+    }
+    if !may_begin(first) {
+        return Err(NameFault::Start(first));
+    }
+    if name.ends_with('.') {
+        return Err(NameFault::EndsWithDot);
+    }
+    if !is_nfc(name) {
+        return Err(NameFault::NotNormalised);
+    }
+    if is_device(name) {
+        return Err(NameFault::Device);
+    }
+    Ok(())
+}
+
+fn may_begin(letter: char) -> bool {
+    letter == '_' || (letter.is_alphanumeric() && !is_unprintable(letter) && !is_combining_mark(letter))
+}
+
+fn may_follow(letter: char) -> bool {
+    // Marks that take no place: they choose a picture for the letter before them.
+    let is_selector = matches!(letter, '\u{fe00}'..='\u{fe0f}' | '\u{e0100}'..='\u{e01ef}');
+    let is_mark = is_combining_mark(letter) && !is_unprintable(letter) && !is_selector;
+    may_begin(letter) || matches!(letter, '-' | '+' | '.') || is_mark
+}
+
+fn is_device(name: &str) -> bool {
+    let stem = name.split('.').next().unwrap_or_default().to_lowercase();
+    let numbered = |port: &str| {
+        let number = stem.strip_prefix(port);
+        number.is_some_and(|number| {
+            matches!(
+                number,
+                "0" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8" | "9" | "¹" | "²" | "³"
+            )
+        })
+    };
+    DEVICES.contains(&stem.as_str()) || numbered("com") || numbered("lpt")
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn check(name: &str, expected: Result<(), NameFault>) {
+        assert_eq!(check_name(name), expected, "{name:?}");
+    }
+
+    #[test]
+    fn names_of_files_everywhere_are_names() {
+        for name in [
+            "red",
+            "look-red-0.5",
+            "1a334d",
+            "_",
+            "a+b",
+            "a..b",
+            "größer",
+            "日本",
+            "हिन्दी",
+            "Ωmega",
+            "console",
+            "com",
+            "com10",
+            "nullable",
+            "map_1-v2",
+            "0",
+            "E+1",
+        ] {
+            check(name, Ok(()));
+        }
+        check(&"é".repeat(100), Ok(()));
+    }
+
+    #[test]
+    fn what_harms_a_terminal_a_file_system_or_a_spreadsheet_is_not() {
+        check("", Err(NameFault::Empty));
+        for letter in
+            "\0\t\n\r\x1b\x7f\u{9b}\u{202e}\u{200b}\u{feff} \u{a0}/\\:*?\"<>|#%,;=@&$'`~()[]{}!^→😀\u{fe0f}".chars()
+        {
+            check(&format!("a{letter}b"), Err(NameFault::Character(letter)));
+        }
+        for start in ['.', '-', '+'] {
+            check(&format!("{start}a"), Err(NameFault::Start(start)));
+        }
+        check(".", Err(NameFault::Start('.')));
+        check("..", Err(NameFault::Start('.')));
+        check("a.", Err(NameFault::EndsWithDot));
+        check("e\u{301}", Err(NameFault::NotNormalised));
+        for device in ["con", "CON", "nul.txt", "Aux", "prn.a.b", "COM1", "lpt9.log", "com²"] {
+            check(device, Err(NameFault::Device));
+        }
+        let long = |name: String| {
+            let (characters, bytes) = (name.chars().count(), name.len());
+            check(&name, Err(NameFault::TooLong { characters, bytes }));
+        };
+        long("a".repeat(101));
+        long("語".repeat(67));
+    }
+
+    #[test]
+    fn a_fault_says_what_was_found_and_what_was_expected() {
+        let fault = NameFault::Character('\u{202e}');
+        assert_eq!(fault.to_string(), "the character \"\\u{202e}\"");
+        assert!(!fault.expected().is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn a_name_can_be_that_of_a_file_a_log_and_a_cell(name in prop_oneof!["[ -~]{0,6}", "\\PC{0,6}", "(?s).{0,6}", "[a-z.+_-]{0,6}"]) {
+            if check_name(&name).is_ok() {
+                let path = std::path::Path::new(&name);
+                prop_assert_eq!(path.components().count(), 1);
+                prop_assert_eq!(path.file_name().and_then(|own| own.to_str()), Some(name.as_str()));
+                prop_assert!(!name.contains(|c: char| is_unprintable(c) || c.is_whitespace() || "/\\:*?\"<>|#,".contains(c)));
+                prop_assert_eq!(crate::cell(&name), name.as_str());
+                prop_assert_eq!(crate::printable(&name), name.as_str());
+                prop_assert!(!name.starts_with(['-', '.']) && !name.ends_with(['.', ' ']));
+            }
+        }
+    }
+}

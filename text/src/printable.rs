@@ -1,0 +1,231 @@
+//! Characters that a terminal obeys or does not show, written so that they are seen. Which of them a name may have is `name.rs`'s.
+
+use std::borrow::Cow;
+use std::fmt::{self, Display, Write};
+use std::path::Path;
+
+/// Characters that are controls by nature, turn the direction of text, or take no place on the screen, as ranges in rising order.
+///
+/// C0, DEL and C1; the soft hyphen; the bidirectional marks, embeddings, overrides and isolates (Unicode Standard Annex 9); joiners, fillers and
+/// other characters of no width; line and paragraph separators; interlinear marks; tags. Variation selectors choose a picture for the
+/// character before them and are shown.
+const UNPRINTABLE: [(char, char); 18] = [
+    ('\0', '\u{1f}'),
+    ('\u{7f}', '\u{9f}'),
+    ('\u{ad}', '\u{ad}'),
+    ('\u{34f}', '\u{34f}'),
+    ('\u{61c}', '\u{61c}'),
+    ('\u{115f}', '\u{1160}'),
+    ('\u{17b4}', '\u{17b5}'),
+    ('\u{180b}', '\u{180f}'),
+    ('\u{200b}', '\u{200f}'),
+    ('\u{2028}', '\u{202e}'),
+    ('\u{2060}', '\u{206f}'),
+    ('\u{3164}', '\u{3164}'),
+    ('\u{feff}', '\u{feff}'),
+    ('\u{ffa0}', '\u{ffa0}'),
+    ('\u{fff0}', '\u{fffb}'),
+    ('\u{1bca0}', '\u{1bca3}'),
+    ('\u{1d173}', '\u{1d17a}'),
+    ('\u{e0000}', '\u{e007f}'),
+];
+
+/// Whether a character is one that a terminal obeys or does not show. Line feed and tab are among them.
+pub fn is_unprintable(letter: char) -> bool {
+    // Almost all text is ASCII.
+    match letter {
+        ' '..='~' => false,
+        _ => {
+            let behind = UNPRINTABLE.partition_point(|(first, _)| *first <= letter);
+            behind > 0 && letter <= UNPRINTABLE[behind - 1].1
+        }
+    }
+}
+
+/// The text in one line: every unprintable character as Rust and Swift write it, `\u{202e}`, and `\n`, `\r`, `\t` for those three.
+///
+/// For text of others inside a sentence: it cannot end the line and begin one that looks like ours. What is escaped already
+/// stays as it is.
+///
+/// # Example
+/// ```
+/// use driftworld_text::printable;
+/// assert_eq!(printable("red"), "red");
+/// assert_eq!(printable("a\nerror: \u{1b}[2Jb"), r"a\nerror: \u{1b}[2Jb");
+/// ```
+pub fn printable(text: &str) -> Cow<'_, str> {
+    escaped(text, is_unprintable, |out, letter| match letter {
+        '\n' => out.push_str("\\n"),
+        '\r' => out.push_str("\\r"),
+        '\t' => out.push_str("\\t"),
+        _ => braces(out, letter),
+    })
+}
+
+/// Text of several lines: as [`printable`], but line feeds and tabs stay.
+///
+/// For whole messages, right before they are printed.
+pub fn printable_lines(text: &str) -> Cow<'_, str> {
+    let hostile = |letter: char| is_unprintable(letter) && !matches!(letter, '\n' | '\t');
+    escaped(text, hostile, braces)
+}
+
+/// A text of JSON: as [`printable_lines`], but with the escapes of JSON, so that it means what it meant.
+///
+/// In valid JSON such characters stand in texts only, where an escape is the same character.
+///
+/// # Example
+/// ```
+/// assert_eq!(driftworld_text::printable_json("{\"a\":\"\u{202e}\"}"), r#"{"a":"\u202e"}"#);
+/// ```
+pub fn printable_json(json: &str) -> Cow<'_, str> {
+    // Between values a carriage return is white space, and an escape is not.
+    let hostile = |letter: char| is_unprintable(letter) && !matches!(letter, '\n' | '\t' | '\r');
+    escaped(json, hostile, |out, letter| {
+        for unit in letter.encode_utf16(&mut [0; 2]) {
+            write!(out, "\\u{unit:04x}").expect("writing to a String does not fail");
+        }
+    })
+}
+
+/// Whatever can be displayed, in one line as [`printable`] has it, without a copy.
+///
+/// # Example
+/// ```
+/// assert_eq!(driftworld_text::one_line("a\tb").to_string(), r"a\tb");
+/// ```
+pub fn one_line<T: Display>(shown: T) -> OneLine<T> {
+    OneLine(shown)
+}
+
+/// Paths in messages.
+pub trait ShownPath {
+    /// The path in one line. In place of `Path::display`, which shows names of files as they are.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_text::ShownPath;
+    /// assert_eq!(std::path::Path::new("logs/a\nb").shown().to_string(), r"logs/a\nb");
+    /// ```
+    fn shown(&self) -> OneLine<std::path::Display<'_>>;
+}
+
+impl ShownPath for Path {
+    fn shown(&self) -> OneLine<std::path::Display<'_>> {
+        one_line(self.display())
+    }
+}
+
+/// In double quotes and one line, with backslashes and quotes escaped as in a Rust string.
+///
+/// # Example
+/// ```
+/// assert_eq!(driftworld_text::quoted("a\"b\u{202e}"), r#""a\"b\u{202e}""#);
+/// ```
+pub fn quoted(text: &str) -> String {
+    printable(&format!("{text:?}")).into_owned()
+}
+
+/// Shows in one line what is inside, see [`one_line`].
+#[derive(Clone, Copy, Debug)]
+pub struct OneLine<T>(T);
+
+impl<T: Display> Display for OneLine<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        /// Passes on what is written to it, escaped.
+        struct Escaping<'a, 'f>(&'a mut fmt::Formatter<'f>);
+        impl Write for Escaping<'_, '_> {
+            fn write_str(&mut self, text: &str) -> fmt::Result {
+                self.0.write_str(&printable(text))
+            }
+        }
+        write!(Escaping(f), "{}", self.0)
+    }
+}
+
+fn braces(out: &mut String, letter: char) {
+    write!(out, "\\u{{{:x}}}", u32::from(letter)).expect("writing to a String does not fail");
+}
+
+/// The text with some of its letters written otherwise; no copy where it has none of them.
+fn escaped(text: &str, is_hostile: impl Fn(char) -> bool, write: impl Fn(&mut String, char)) -> Cow<'_, str> {
+    let Some(first) = text.find(&is_hostile) else {
+        return Cow::Borrowed(text);
+    };
+    let mut out = String::with_capacity(text.len() + 16);
+    out.push_str(&text[..first]);
+    for letter in text[first..].chars() {
+        if is_hostile(letter) {
+            write(&mut out, letter);
+        } else {
+            out.push(letter);
+        }
+    }
+    Cow::Owned(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Texts in which characters that matter are as frequent as others.
+    fn texts() -> impl Strategy<Value = String> {
+        let hostile = (0..UNPRINTABLE.len(), any::<u8>()).prop_map(|(range, offset)| {
+            let (first, last) = UNPRINTABLE[range];
+            let span = u32::from(last) - u32::from(first) + 1;
+            char::from_u32(u32::from(first) + u32::from(offset) % span).expect("no range holds a surrogate")
+        });
+        let letter = prop_oneof![hostile, any::<char>(), proptest::char::range(' ', '~')];
+        proptest::collection::vec(letter, 0..40).prop_map(String::from_iter)
+    }
+
+    #[test]
+    fn the_ranges_rise_and_do_not_touch() {
+        for pair in UNPRINTABLE.windows(2) {
+            assert!(pair[0].0 <= pair[0].1 && pair[0].1 < pair[1].0, "{pair:?}");
+        }
+    }
+
+    #[test]
+    fn what_a_terminal_obeys_or_hides_is_unprintable_and_writing_is_not() {
+        for hostile in
+            "\0\x07\x08\t\n\r\x1b\x7f\u{80}\u{9b}\u{9f}\u{ad}\u{61c}\u{200b}\u{200d}\u{200e}\u{200f}\u{2028}\u{2029}\
+                        \u{202a}\u{202e}\u{2060}\u{2066}\u{2069}\u{206f}\u{feff}\u{e0041}"
+                .chars()
+        {
+            assert!(is_unprintable(hostile), "{hostile:?}");
+        }
+        for plain in " ~aZ0é한語ש\u{5b0}ش₂→×°½▀…«”‰\u{2027}\u{202f}\u{fe0f}😀".chars() {
+            assert!(!is_unprintable(plain), "{plain:?}");
+        }
+        // The one by the table is the one by Unicode's own word for it, as far as the standard library has it.
+        for letter in '\0'..=char::MAX {
+            assert!(!letter.is_control() || is_unprintable(letter), "{letter:?}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn nothing_unprintable_is_left_and_nothing_else_is_touched(text in texts()) {
+            let line = printable(&text);
+            prop_assert!(!line.contains(is_unprintable));
+            prop_assert_eq!(printable(&line), line.as_ref());
+            let display = one_line(&text).to_string();
+            prop_assert_eq!(display.as_str(), line.as_ref());
+            let lines = printable_lines(&text);
+            prop_assert!(!lines.contains(|c| is_unprintable(c) && c != '\n' && c != '\t'));
+            // Letter by letter, an independent way.
+            let expected: String = text.chars().map(|c| match c {
+                '\n' => "\\n".to_owned(),
+                '\r' => "\\r".to_owned(),
+                '\t' => "\\t".to_owned(),
+                c if is_unprintable(c) => c.escape_unicode().to_string(),
+                c => c.to_string(),
+            }).collect();
+            prop_assert_eq!(line.as_ref(), expected.as_str());
+            prop_assert!(!quoted(&text).contains(is_unprintable));
+        }
+    }
+}
