@@ -172,6 +172,18 @@ pub enum MetricsError {
         path: PathBuf,
     },
 
+    /// A data file begins with a row in place of its header.
+    #[error(
+        "{}:1: found {found:?}, which has none of the standard columns, expected a header line that begins with block_num",
+        path.display()
+    )]
+    NoHeader {
+        /// The data file.
+        path: PathBuf,
+        /// Its first line, cut after 60 characters.
+        found: String,
+    },
+
     /// A data file's header is one cell, as where something else than tabs stands between columns.
     #[error("{}:1: found the header {found} without a tab, expected a tab between columns", path.shown(), found = one_line(found))]
     NoTabs {
@@ -584,6 +596,7 @@ impl MetricsError {
             Self::LoggerInfo { .. } => "metrics/logger-info",
             Self::TooLarge { .. } => "metrics/too-large",
             Self::EmptyFile { .. } => "metrics/empty-file",
+            Self::NoHeader { .. } => "metrics/no-header",
             Self::NoTabs { .. } => "metrics/no-tabs",
             Self::MissingColumn { .. } => "metrics/missing-column",
             Self::RepeatedColumn { .. } => "metrics/repeated-column",

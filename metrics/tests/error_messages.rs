@@ -128,6 +128,15 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
             "run/w/0-train/data-log.tsv:1: found an empty file, expected a header line that begins with block_num",
         ),
         (
+            E::NoHeader {
+                path: path(),
+                found: text("0 0 worker-default"),
+            },
+            "metrics/no-header",
+            "run/w/0-train/data-log.tsv:1: found \"0 0 worker-default\", which has none of the standard columns, expected a \
+             header line that begins with block_num",
+        ),
+        (
             E::NoTabs {
                 path: path(),
                 found: text("\"block_num,exp_num\""),

@@ -117,6 +117,34 @@ fn every_column_that_is_missing_is_named() {
     check(header.clone(), &[&named("exp_num"), &named("reward")], &[]);
 }
 
+/// Whatever stands in the first line: what is said of it is short, and it is said once.
+#[test]
+fn a_row_in_place_of_the_header_is_told_in_few_words() {
+    for width in [2, 10, 900] {
+        for cell in ["7".to_owned(), "{\"a\": [1, 2]}".repeat(500), "ä".repeat(7000)] {
+            let row = vec![cell; width].join("\t") + "\n";
+            let (problems, _, _) = validate(&[("w/0-train", row.clone()), ("w/1-train", row)], "1.1");
+            assert_eq!(problems.len(), 2, "{problems:?}");
+            for problem in problems {
+                assert!(
+                    problem.contains("expected a header line that begins with block_num"),
+                    "{problem}"
+                );
+                assert!(problem.chars().count() < 300, "{problem}");
+            }
+        }
+    }
+    // One standard column shows that a header is meant.
+    let names: Vec<String> = (0..900).map(|number| format!("{number}{}", "x".repeat(8))).collect();
+    let header = format!("block_num\t{}\n", names.join("\t"));
+    let (problems, _, _) = validate(&[("w/0-train", header)], "1.1");
+    assert_eq!(problems.len(), 8, "{problems:?}");
+    for problem in problems {
+        assert!(problem.contains("and 881 more, expected also"), "{problem}");
+        assert!(problem.chars().count() < 600, "{problem}");
+    }
+}
+
 #[test]
 fn numbers_that_fall_are_faults_and_time_that_does_is_odd() {
     let early = row(0, 3, "complete").replace("20200913", "20200912");

@@ -10,6 +10,9 @@ use crate::MetricsError;
 /// Longest piece of a cell that is quoted in a message, in characters.
 const SHOWN: usize = 60;
 
+/// Most names that a message lists.
+const LISTED: usize = 20;
+
 /// Where a cell stands; makes the error when what it holds is wrong.
 #[derive(Clone, Copy)]
 pub(super) struct Cell<'a> {
@@ -73,7 +76,7 @@ impl Cell<'_> {
         MetricsError::Cell {
             path: self.path.to_owned(),
             line: self.line,
-            column: self.column.to_owned(),
+            column: cut(self.column),
             found: shown(self.text),
             expected: expected.into(),
         }
@@ -108,6 +111,23 @@ pub(super) fn shown(text: &str) -> String {
     match text.char_indices().nth(SHOWN) {
         Some((end, _)) => format!("{:?}…", &text[..end]),
         None => format!("{text:?}"),
+    }
+}
+
+/// A name as it stands in a message: not longer than one can bear.
+pub(super) fn cut(text: &str) -> String {
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// Names as a message lists them: the first of them, and how many more there are.
+pub(super) fn listed(names: &[String]) -> String {
+    let first: Vec<String> = names.iter().take(LISTED).map(|name| cut(name)).collect();
+    match names.len() - first.len() {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
     }
 }
 

@@ -7,9 +7,11 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use csv::{ErrorKind, StringRecord};
+use driftworld_files::Opened;
 
 use super::faults::Faults;
 use super::header::Header;
+use super::regular_file;
 use super::table::Table;
 use super::whole_rows::{self, WholeRows};
 use crate::MetricsError;
@@ -118,20 +120,7 @@ impl Source {
     /// Opens a data file after checking its size.
     fn open(path: &Path) -> Result<Self, MetricsError> {
         let failed = || MetricsError::io(path, "read this file");
-        let mut file = File::open(path).map_err(MetricsError::io(path, "open this file"))?;
-        let length = file
-            .metadata()
-            .map_err(MetricsError::io(path, "measure this file"))?
-            .len();
-        if length > MAX_FILE_BYTES {
-            let limit = MAX_FILE_BYTES;
-            return Err(MetricsError::TooLarge {
-                path: path.to_owned(),
-                what: "bytes",
-                found: length,
-                limit,
-            });
-        }
+        let Opened { mut file, length } = regular_file::open(path, MAX_FILE_BYTES)?;
         let (mut whole, mut torn) = (length, None);
         if length > 0 && last_byte(&mut file).map_err(failed())? != b'\n' {
             file.rewind().map_err(failed())?;

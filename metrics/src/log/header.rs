@@ -6,7 +6,7 @@ use std::path::Path;
 
 use csv::StringRecord;
 
-use super::cell::{Cell, shown};
+use super::cell::{Cell, cut, listed, shown};
 use super::columns::{SINCE_1_1, STANDARD};
 use super::data_file::MAX_CELL_BYTES;
 use super::faults::Faults;
@@ -45,10 +45,16 @@ impl<'a> Header<'a> {
             });
         }
         let place = |column: &str| names.iter().position(|name| name == column);
+        if STANDARD.iter().all(|column| place(column).is_none()) {
+            return Err(MetricsError::NoHeader {
+                path: path.to_owned(),
+                found: cut(&names.join(" ")),
+            });
+        }
         let missing = |column: &str| MetricsError::MissingColumn {
             path: path.to_owned(),
             column: column.to_owned(),
-            found: names.join(", "),
+            found: listed(&names),
         };
         let needed: Vec<&str> = (STANDARD.into_iter().filter(|column| *column != SINCE_1_1))
             .chain(metrics_columns.iter().map(String::as_str))
@@ -57,7 +63,7 @@ impl<'a> Header<'a> {
         let mut wrong: Vec<MetricsError> = Vec::new();
         wrong.extend(repeated.map(|index| MetricsError::RepeatedColumn {
             path: path.to_owned(),
-            column: names[index].clone(),
+            column: cut(&names[index]),
         }));
         wrong.extend(
             needed

@@ -2,55 +2,46 @@
 //!
 //! Not here: what stands in them, see `logger_info` and `scenario_info`.
 
-use std::fs;
-use std::io::Read;
 use std::path::Path;
 
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::regular_file;
+use super::{json_values, regular_file};
 use crate::MetricsError;
 
 /// Largest side file that is read, in bytes.
-const MAX_JSON_BYTES: u64 = 16 << 20;
+pub const MAX_JSON_BYTES: u64 = 16 << 20;
+
+/// Most values in a side file: numbers, texts, lists, objects and the like. Each takes a hundred bytes or more when read.
+pub const MAX_JSON_VALUES: u64 = 1_000_000;
 
 /// Reads a file that holds one JSON object.
 ///
 /// # Errors
-/// [`MetricsError::MissingFile`], [`MetricsError::NotAFile`], [`MetricsError::TooLarge`] over 16 MiB, [`MetricsError::Json`] with line and column.
+/// [`MetricsError::MissingFile`], [`MetricsError::NotAFile`], [`MetricsError::TooLarge`] over 16 MiB and over a million values, [`MetricsError::Json`] with line and column.
 pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<String, Value>, MetricsError> {
-    regular_file::check(path)?;
-    let file = match fs::File::open(path) {
-        Ok(file) => file,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            return Err(MetricsError::MissingFile {
-                path: path.to_owned(),
-                expected,
-            });
-        }
-        Err(error) => return Err(MetricsError::io(path, "open this file")(error)),
-    };
-    let mut bytes = Vec::new();
-    file.take(MAX_JSON_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .map_err(MetricsError::io(path, "read this file"))?;
-    if bytes.len() as u64 > MAX_JSON_BYTES {
-        let (found, limit) = (bytes.len() as u64, MAX_JSON_BYTES);
-        return Err(MetricsError::TooLarge {
-            path: path.to_owned(),
-            what: "bytes or more of JSON",
-            found,
-            limit,
-        });
-    }
-    serde_json::from_slice(&bytes).map_err(|error| MetricsError::Json {
+    let bytes = regular_file::read(path, MAX_JSON_BYTES)?.ok_or_else(|| MetricsError::MissingFile {
+        path: path.to_owned(),
+        expected,
+    })?;
+    let wrong = |error: serde_json::Error| MetricsError::Json {
         path: path.to_owned(),
         line: error.line(),
         column: error.column(),
         found: without_place(&error),
         expected,
-    })
+    };
+    let found = json_values::count(&bytes, MAX_JSON_VALUES).map_err(wrong)?;
+    if found > MAX_JSON_VALUES {
+        return Err(MetricsError::TooLarge {
+            path: path.to_owned(),
+            what: "values or more of JSON",
+            found,
+            limit: MAX_JSON_VALUES,
+        });
+    }
+    serde_json::from_slice(&bytes).map_err(wrong)
 }
 
 /// Writes a value as indented JSON, first under a temporary name beside the target, so that a reader never sees half.
@@ -81,6 +72,8 @@ fn without_place(error: &serde_json::Error) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]
@@ -93,6 +86,18 @@ mod tests {
             r#"{"b":1,"a":[0.1]}"#
         );
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn more_values_than_any_log_has_are_not_taken_into_memory() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("info.json");
+        fs::write(&path, format!("{{\"a\": [{}0]}}", "0,".repeat(1_200_000))).unwrap();
+        let message = read_object(&path, "an object").unwrap_err().to_string();
+        assert!(
+            message.ends_with("found 1000001 values or more of JSON, expected at most 1000000"),
+            "{message}"
+        );
     }
 
     #[test]

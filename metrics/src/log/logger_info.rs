@@ -7,8 +7,10 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::Value;
 
+use super::cell::cut;
 use super::columns::STANDARD;
 use super::json_file;
+use super::table::MAX_COLUMNS;
 use crate::MetricsError;
 
 /// Version of the log format that is written. 1.0 is read too.
@@ -58,7 +60,7 @@ impl LoggerInfo {
             field: "metrics_columns",
             found: object
                 .get("metrics_columns")
-                .map_or_else(|| "nothing".to_owned(), Value::to_string),
+                .map_or_else(|| "nothing".to_owned(), |found| cut(&found.to_string())),
             expected: EXPECTED_COLUMNS,
         })?;
         check_columns(&metrics_columns)?;
@@ -69,7 +71,7 @@ impl LoggerInfo {
                 let (field, expected) = ("log_format_version", "\"1.0\" or \"1.1\"");
                 return Err(MetricsError::LoggerInfo {
                     field,
-                    found: other.to_string(),
+                    found: cut(&other.to_string()),
                     expected,
                 });
             }
@@ -82,6 +84,14 @@ impl LoggerInfo {
 }
 
 fn check_columns(columns: &[String]) -> Result<(), MetricsError> {
+    // Before they are held against each other.
+    if columns.len() > MAX_COLUMNS {
+        return Err(MetricsError::LoggerInfo {
+            field: "metrics_columns",
+            found: format!("{} names", columns.len()),
+            expected: "at most 1000 names",
+        });
+    }
     let repeated = columns
         .iter()
         .enumerate()
@@ -90,7 +100,7 @@ fn check_columns(columns: &[String]) -> Result<(), MetricsError> {
         .iter()
         .any(|name| name.is_empty() || STANDARD.contains(&name.as_str()));
     if columns.is_empty() || repeated || unusable {
-        let found = format!("{columns:?}");
+        let found = cut(&format!("{columns:?}"));
         return Err(MetricsError::LoggerInfo {
             field: "metrics_columns",
             found,

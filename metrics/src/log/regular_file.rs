@@ -1,54 +1,64 @@
-//! What is to be read must be a regular file: a pipe would be waited for without an end, a device may never end.
+//! What is to be read must be a regular file: a pipe would be waited for without an end, a device may never end. How files are
+//! opened is `driftworld-files`'; here its errors become those of logs.
 //!
-//! Not here: opening it.
+//! Not here: reading what is in them.
 
-use std::fs::{self, FileType};
 use std::path::Path;
+
+use driftworld_files::{FileError, Opened};
 
 use crate::MetricsError;
 
 /// Refuses what is there, but is no regular file; links are followed. Where there is nothing, opening it says so.
 pub(super) fn check(path: &Path) -> Result<(), MetricsError> {
-    let found = match fs::metadata(path) {
-        Ok(found) if found.is_file() => return Ok(()),
-        Ok(found) => name(found.file_type()),
-        Err(_) if path.is_symlink() => LOST,
-        Err(_) => return Ok(()),
-    };
-    Err(error(path, found))
+    match driftworld_files::check(path) {
+        Err(error @ FileError::NotAFile { .. }) => Err(told(error)),
+        _ => Ok(()),
+    }
+}
+
+/// Opens a file of at most `limit` bytes.
+pub(super) fn open(path: &Path, limit: u64) -> Result<Opened, MetricsError> {
+    driftworld_files::open(path, limit).map_err(told)
+}
+
+/// The bytes of a file of at most `limit`; `None` where there is nothing.
+pub(super) fn read(path: &Path, limit: u64) -> Result<Option<Vec<u8>>, MetricsError> {
+    match driftworld_files::read(path, limit) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(error) if error.missing().is_some() => Ok(None),
+        Err(error) => Err(told(error)),
+    }
+}
+
+fn told(error: FileError) -> MetricsError {
+    match error {
+        FileError::Unreadable { path, source } => MetricsError::io(&path, "read this file")(source),
+        FileError::NotAFile { path, found } => MetricsError::NotAFile {
+            path,
+            // The word that all messages about logs have for it.
+            found: if found == "a folder" { "a directory" } else { found },
+        },
+        FileError::TooLarge { path, found, limit } => MetricsError::TooLarge {
+            path,
+            what: "bytes or more",
+            found,
+            limit,
+        },
+        other => MetricsError::Io {
+            path: Path::new("").to_owned(),
+            doing: "read this file",
+            source: std::io::Error::other(other),
+        },
+    }
 }
 
 /// The error for a link that leads nowhere.
 pub(super) fn lost_link(path: &Path) -> MetricsError {
-    error(path, LOST)
-}
-
-const LOST: &str = "a link that leads nowhere";
-
-fn error(path: &Path, found: &'static str) -> MetricsError {
     MetricsError::NotAFile {
         path: path.to_owned(),
-        found,
+        found: driftworld_files::LOST_LINK,
     }
-}
-
-#[cfg(unix)]
-fn name(kind: FileType) -> &'static str {
-    use std::os::unix::fs::FileTypeExt;
-    if kind.is_dir() {
-        "a directory"
-    } else if kind.is_fifo() {
-        "a named pipe"
-    } else if kind.is_socket() {
-        "a socket"
-    } else {
-        "a device"
-    }
-}
-
-#[cfg(not(unix))]
-fn name(kind: FileType) -> &'static str {
-    if kind.is_dir() { "a directory" } else { "something else" }
 }
 
 #[cfg(test)]
@@ -66,7 +76,7 @@ mod tests {
         assert_eq!(found(&base.path().join("absent")), None);
         assert_eq!(found(base.path()), Some("a directory"));
         let file = base.path().join("file");
-        fs::write(&file, "").unwrap();
+        std::fs::write(&file, "").unwrap();
         assert_eq!(found(&file), None);
         #[cfg(unix)]
         {

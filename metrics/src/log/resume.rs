@@ -8,6 +8,7 @@ use std::io::BufReader;
 use std::path::Path;
 
 use super::block_file::Written;
+use super::cell::listed;
 use super::faults::Faults;
 use super::log_folder::LogFolder;
 use super::logger_info::LoggerInfo;
@@ -90,8 +91,8 @@ fn check_header(path: &Path, header: &[String], metrics: &[String]) -> Result<()
     }
     Err(MetricsError::OtherColumns {
         path: path.to_owned(),
-        found: header.join(", "),
-        expected: expected.join(", "),
+        found: listed(header),
+        expected: listed(&expected),
     })
 }
 

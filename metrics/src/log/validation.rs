@@ -5,6 +5,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use super::cell::listed;
 use super::faults::{Faults, Listed};
 use super::logger_info::LoggerInfo;
 use super::reader::{block_order, warn_of_task_names};
@@ -158,8 +159,8 @@ impl Check {
             if sorted(names) != sorted(expected) {
                 self.problems.add(MetricsError::ColumnsDiffer {
                     path: files[*file].clone(),
-                    found: names.join(", "),
-                    expected: expected.join(", "),
+                    found: listed(names),
+                    expected: listed(expected),
                     first: files[*first].clone(),
                 });
             }

@@ -26,6 +26,7 @@ pub(super) struct Fence {
 pub(super) const FEATURES: &str = "driftworld-features";
 const ATOMIC_FILES: &str = "driftworld-atomic-files";
 const TEXT: &str = "driftworld-text";
+const FILES: &str = "driftworld-files";
 const SPEC: &str = "driftworld-spec";
 const GENERATOR: &str = "driftworld-generator";
 const SIMILARITY: &str = "driftworld-similarity";
@@ -58,6 +59,11 @@ pub(super) const ROOMS: &[Room] = &[
         may_import: &[],
     },
     Room {
+        package: FILES,
+        floor: 1,
+        may_import: &[],
+    },
+    Room {
         package: SPEC,
         floor: 1,
         may_import: &[FEATURES, TEXT],
@@ -80,17 +86,27 @@ pub(super) const ROOMS: &[Room] = &[
     Room {
         package: METRICS,
         floor: 2,
-        may_import: &[TEXT, ATOMIC_FILES],
+        may_import: &[TEXT, ATOMIC_FILES, FILES],
     },
     Room {
         package: CURRICULUM,
         floor: 3,
-        may_import: &[FEATURES, TEXT, ATOMIC_FILES, SPEC, GENERATOR, SIMILARITY, ENV, METRICS],
+        may_import: &[
+            FEATURES,
+            TEXT,
+            ATOMIC_FILES,
+            FILES,
+            SPEC,
+            GENERATOR,
+            SIMILARITY,
+            ENV,
+            METRICS,
+        ],
     },
     Room {
         package: REPORT,
         floor: 3,
-        may_import: &[TEXT, ATOMIC_FILES, METRICS],
+        may_import: &[TEXT, ATOMIC_FILES, FILES, METRICS],
     },
     Room {
         package: FACADE,
@@ -99,6 +115,7 @@ pub(super) const ROOMS: &[Room] = &[
             FEATURES,
             TEXT,
             ATOMIC_FILES,
+            FILES,
             SPEC,
             GENERATOR,
             SIMILARITY,
@@ -115,6 +132,7 @@ pub(super) const ROOMS: &[Room] = &[
             FEATURES,
             TEXT,
             ATOMIC_FILES,
+            FILES,
             SPEC,
             GENERATOR,
             SIMILARITY,
@@ -128,7 +146,7 @@ pub(super) const ROOMS: &[Room] = &[
     Room {
         package: UNITY,
         floor: 4,
-        may_import: &[FEATURES, TEXT, ATOMIC_FILES, SPEC, ENV],
+        may_import: &[FEATURES, TEXT, ATOMIC_FILES, FILES, SPEC, ENV],
     },
     Room {
         package: FUZZ,
@@ -137,6 +155,7 @@ pub(super) const ROOMS: &[Room] = &[
             FEATURES,
             TEXT,
             ATOMIC_FILES,
+            FILES,
             SPEC,
             GENERATOR,
             SIMILARITY,

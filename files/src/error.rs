@@ -1,0 +1,131 @@
+//! Why a file cannot be had. What its reader wanted of it is said by the reader.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// Why a file cannot be had. Each says the path, what was found, what was expected, and what to do.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FileError {
+    /// There is nothing, or the system does not let it be read.
+    #[error("{}: cannot be read: {source}", path.display())]
+    Unreadable {
+        /// Its path.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// There is something else.
+    #[error("{}: found {found}, expected a regular file; {}", path.display(), advice(found))]
+    NotAFile {
+        /// Its path.
+        path: PathBuf,
+        /// "a folder", "a named pipe", "a link that leads nowhere" and the like.
+        found: &'static str,
+    },
+    /// The file is too large.
+    #[error("{}: found {found} bytes or more, expected at most {limit}; name a smaller file, or split it", path.display())]
+    TooLarge {
+        /// Its path.
+        path: PathBuf,
+        /// How many bytes it has at least.
+        found: u64,
+        /// How many it may have.
+        limit: u64,
+    },
+    /// The file is no text.
+    #[error("{}: byte {at} (line {line}) is not UTF-8, expected UTF-8 text; save it as such", path.display())]
+    NotText {
+        /// Its path.
+        path: PathBuf,
+        /// The first byte that is no text, from 0.
+        at: usize,
+        /// The line that it stands in, from 1.
+        line: usize,
+    },
+}
+
+impl FileError {
+    /// The path, where there is nothing.
+    pub fn missing(&self) -> Option<&Path> {
+        match self {
+            Self::Unreadable { path, source } if source.kind() == ErrorKind::NotFound => Some(path),
+            _ => None,
+        }
+    }
+
+    /// The stable name of this kind of error.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Unreadable { .. } => "files/unreadable",
+            Self::NotAFile { .. } => "files/not-a-file",
+            Self::TooLarge { .. } => "files/too-large",
+            Self::NotText { .. } => "files/not-text",
+        }
+    }
+}
+
+/// What to do about something that is no regular file.
+fn advice(found: &str) -> &'static str {
+    match found {
+        "a folder" => "name a file in it",
+        "a link that leads nowhere" => "mend the link, or name a file",
+        _ => "write what it gives into a file, and name that",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every variant with its message.
+    #[test]
+    fn messages_say_what_was_found_what_was_expected_and_what_to_do() {
+        let path = || PathBuf::from("a.json");
+        let check = |error: FileError, code: &str, expected: &str| {
+            assert_eq!((error.code(), error.to_string().as_str()), (code, expected));
+        };
+        check(
+            FileError::Unreadable {
+                path: path(),
+                source: ErrorKind::PermissionDenied.into(),
+            },
+            "files/unreadable",
+            "a.json: cannot be read: permission denied",
+        );
+        let not_a_file = |found| FileError::NotAFile { path: path(), found };
+        check(
+            not_a_file("a folder"),
+            "files/not-a-file",
+            "a.json: found a folder, expected a regular file; name a file in it",
+        );
+        check(
+            not_a_file("a named pipe"),
+            "files/not-a-file",
+            "a.json: found a named pipe, expected a regular file; write what it gives into a file, and name that",
+        );
+        check(
+            not_a_file("a link that leads nowhere"),
+            "files/not-a-file",
+            "a.json: found a link that leads nowhere, expected a regular file; mend the link, or name a file",
+        );
+        check(
+            FileError::TooLarge {
+                path: path(),
+                found: 70,
+                limit: 64,
+            },
+            "files/too-large",
+            "a.json: found 70 bytes or more, expected at most 64; name a smaller file, or split it",
+        );
+        check(
+            FileError::NotText {
+                path: path(),
+                at: 7,
+                line: 2,
+            },
+            "files/not-text",
+            "a.json: byte 7 (line 2) is not UTF-8, expected UTF-8 text; save it as such",
+        );
+    }
+}
