@@ -213,7 +213,7 @@ fn what_is_lost_is_counted() {
     fs::write(&file, &whole[..first]).unwrap();
     let message = writer.finish().unwrap_err().to_string();
     let said = format!(
-        "{}: found 1 rows in {first} bytes, expected the 3 rows in {} bytes that were written",
+        "{}: found 1 row in {first} bytes, expected the 3 rows in {} bytes that were written",
         file.display(),
         whole.len()
     );

@@ -84,6 +84,7 @@ fn counted(path: &Path, bytes: u64) -> String {
         .from_path(path)
         .map(|file| file.into_byte_records().take_while(Result::is_ok).count());
     match rows {
+        Ok(1) => format!("1 row in {bytes} bytes"),
         Ok(rows) => format!("{rows} rows in {bytes} bytes"),
         Err(_) => format!("{bytes} bytes"),
     }
@@ -95,6 +96,7 @@ pub(super) struct BlockFile {
     /// Its path inside the log's directory.
     pub(super) inside: PathBuf,
     pub(super) written: Written,
+    place: PathBuf,
     file: File,
 }
 
@@ -121,14 +123,27 @@ impl BlockFile {
             return Err(written.lost(folder, &inside, counted(&path, found.len())));
         }
         written.identity = Some(Identity::of(&found));
-        let mut opened = Self { inside, written, file };
+        let mut opened = Self {
+            inside,
+            written,
+            place: path,
+            file,
+        };
         if found.len() == 0 {
             opened.append(folder, header)?;
         }
         Ok(opened)
     }
 
-    /// Adds a row. Nothing is added when the file is no longer the one that was opened, or has not the length that it was given.
+    /// Whether the file that was opened is still what its path leads to, and as long as it was left: one question to the system, which
+    /// answers for the log's directory, too. [`Written::check`] says what is wrong.
+    pub(super) fn is_as_it_was_left(&self) -> bool {
+        fs::metadata(&self.place).is_ok_and(|found| {
+            found.is_file() && found.len() == self.written.bytes && self.written.identity == Some(Identity::of(&found))
+        })
+    }
+
+    /// Adds a row.
     pub(super) fn add_row(&mut self, folder: &LogFolder, row: &[u8]) -> Result<(), MetricsError> {
         self.append(folder, row)?;
         self.written.rows += 1;

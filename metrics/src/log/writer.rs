@@ -142,11 +142,16 @@ impl LogWriter {
     /// Opens or makes the file of a record's worker and block if it is not the one that is open, and looks whether all is as it was left.
     fn turn_to(&mut self, record: &Record, columns: &[String]) -> Result<(), MetricsError> {
         let inside = data_path(&record.worker_id, record.block_num, record.block_type);
-        self.check_folder()?;
-        match &self.file {
-            Some(open) if open.inside == inside => return open.written.check(&self.folder, &inside),
-            _ => self.put_away()?,
+        let is_open = |open: &&BlockFile| open.inside == inside;
+        let open = self.file.as_ref().filter(is_open);
+        if open.is_some_and(BlockFile::is_as_it_was_left) {
+            return Ok(());
         }
+        self.check_folder()?;
+        if let Some(open) = open {
+            return open.written.check(&self.folder, &inside);
+        }
+        self.put_away()?;
         let before = self.files.get(&inside).copied();
         let header = columns::line(columns::header(columns));
         let opened = BlockFile::open(&self.folder, inside.clone(), before, &header)?;
