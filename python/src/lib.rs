@@ -12,6 +12,7 @@ mod document;
 mod dress;
 mod drift;
 mod errors;
+mod files;
 mod logs;
 mod patience;
 mod supply;
@@ -37,6 +38,8 @@ mod native {
     use super::document::check;
     #[pymodule_export]
     use super::drift::PyDrift;
+    #[pymodule_export]
+    use super::files::write_file;
     #[pymodule_export]
     use super::logs::{PyLogFile, read_log, validate_log};
     #[pymodule_export]

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::SystemTime;
 
+use driftworld::clock::Clock;
 use driftworld_metrics::{
     BlockType, LogWriter, LoggerInfo, Record, Rows, ScenarioInfo, SharedColumn, TaskParams, Timestamp,
 };
@@ -142,11 +142,10 @@ pub(crate) fn validate_log(py: Python<'_>, folder: PathBuf) -> Result<Bound<'_, 
     Ok(to_python(py, &said)?)
 }
 
-/// The time on the clock, to the microsecond.
+/// The time on the clock, to the microsecond, or the one that `DRIFTWORLD_CLOCK` says.
 pub(crate) fn now() -> Result<Timestamp> {
-    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
-    let micros = since.map_or(0, |since| since.as_micros());
-    Ok(Timestamp::from_unix_micros(i64::try_from(micros).unwrap_or(i64::MAX))?)
+    let clock = Clock::from_environment().map_err(|error| PyValueError::new_err(error.to_string()))?;
+    Ok(clock.now())
 }
 
 fn scenario_info(said: Value) -> Result<ScenarioInfo> {

@@ -8,6 +8,7 @@
 )]
 
 mod bench;
+mod chaos;
 mod deny;
 mod dist;
 mod documents;
@@ -51,6 +52,10 @@ Usage:
   cargo xtask dist                  what is handed out: the command with everything in, its checksum, a wheel; into target/dist-files
   cargo xtask fuzz SECONDS [TARGET]...
                                     look for input that breaks a law, so many seconds for each target; wants nightly Rust
+  cargo xtask chaos [--quick] [--kills N] [--seed S] [--only KIND]
+                                    the command under faults, for minutes (--quick: one): killed 1,000 times or N, system calls that
+                                    fail, full disks, a clock that jumps, logs that go away, signals; KIND is kills, python,
+                                    syscalls, disk, clock, folders or signals (may be given several times)
   cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, similarity,
                                     env, metrics, unity)
   cargo xtask bench peers PYTHON SCRIPTS
@@ -66,6 +71,7 @@ enum Request {
     RewriteProtocol,
     Dist,
     Fuzz(Fuzz),
+    Chaos(chaos::Options),
     Bench(Vec<Suite>),
     Peers { python: String, scripts: PathBuf },
 }
@@ -91,6 +97,7 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
         ["protocol"] => Ok(Request::RewriteProtocol),
         ["dist"] => Ok(Request::Dist),
         ["fuzz", rest @ ..] => Fuzz::parse(rest).map(Request::Fuzz),
+        ["chaos", rest @ ..] => chaos::Options::parse(rest).map(Request::Chaos),
         ["bench"] => Ok(Request::Bench(Suite::ALL.to_vec())),
         ["bench", "peers", python, scripts] => Ok(Request::Peers {
             python: (*python).to_owned(),
@@ -153,6 +160,7 @@ fn execute(request: Request) -> ExitCode {
         Request::Run(stages) => Workspace::load().and_then(|workspace| stage::run_all(&workspace, &stages)),
         Request::RewriteSchemas => Workspace::load().and_then(|workspace| schemas::rewrite(&workspace)),
         Request::RewriteProtocol => Workspace::load().and_then(|workspace| protocol::rewrite(&workspace)),
+        Request::Chaos(options) => Workspace::load().and_then(|workspace| chaos::unleash(&workspace, &options)),
         Request::Dist => Workspace::load().and_then(|workspace| dist::make(&workspace)),
         Request::Fuzz(wanted) => Workspace::load().and_then(|workspace| fuzz::search(&workspace, &wanted)),
         Request::Peers { python, scripts } => {

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import os
-import tempfile
 from pathlib import Path
+
+from driftworld import _native
 
 
 def write_whole(path: Path, content: bytes) -> None:
-    """Writes a file under a temporary name in its folder, which is made where it is missing, and renames it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    """Writes a file under a temporary name in its folder, which is made where it is missing, and renames it. It gets the mode that the
+    umask leaves to it, or keeps the one that it had; devices and pipes are written straight."""
     try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
+        _native.write_file(path, content)
+    except OSError as error:
+        # As Python's own functions say it.
+        error.filename = str(path)
         raise

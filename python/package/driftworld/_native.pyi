@@ -173,6 +173,10 @@ class Drift:
         """The variant when ``progress``, in 0..=1, has passed; ``index`` is the number of the world, which only mixtures
         look at."""
 
+# -- files.rs ----------------------------------------------------------------------------------------------------------
+
+def write_file(path: str | PathLike[str], content: bytes) -> None: ...
+
 # -- logs.rs -----------------------------------------------------------------------------------------------------------
 
 @final
