@@ -10,6 +10,7 @@ mod document;
 mod error;
 mod l2explorer;
 pub mod maps;
+mod names;
 mod oklab;
 mod scenario;
 pub mod schema;
@@ -26,6 +27,7 @@ pub use distribution::{
 pub use document::MAX_BYTES;
 pub use error::{Problem, SpecError, nearest};
 pub use l2explorer::Warning;
+pub use names::sound_name;
 pub use scenario::{
     Block, BlockKind, DriftSchedule, DriftSwitch, MAX_EXPERIENCES, Phase, Regime, RegimeDrift, Scenario,
     ScenarioComplexity, ScenarioDifficulty, ScenarioForm, TaskLabel,

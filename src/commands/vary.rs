@@ -2,7 +2,7 @@
 
 use crate::generator::{Subject, at_distance};
 use crate::similarity::{VariantMeasure, Weights};
-use crate::spec::{Element, Variant};
+use crate::spec::{DEFAULT_VARIANT, Element, Variant, sound_name};
 use crate::tasks;
 use clap::Args;
 use serde_json::{Map, json};
@@ -34,7 +34,7 @@ pub(crate) struct Vary {
     #[arg(long, default_value = "0.001", value_parser = distance, allow_negative_numbers = true)]
     tolerance: f64,
     /// The new variant's name.
-    #[arg(long, default_value = "found")]
+    #[arg(long, default_value = "found", value_parser = name)]
     name: String,
     /// Print the result as JSON.
     #[arg(long)]
@@ -55,9 +55,21 @@ fn distance(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "expected a number in 0..1".to_owned())
 }
 
+fn name(text: &str) -> Result<String, String> {
+    sound_name(text).map(|()| text.to_owned())
+}
+
 impl Vary {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let from = tasks::variant(&self.variant)?;
+        let task = from.task();
+        if task.variant_names().contains(&self.name.as_str()) || self.name == DEFAULT_VARIANT {
+            return Err(Failure::usage(format!(
+                "--name: found {:?}, which {} has already, expected a name that no variant has; pasted, it would take that one's place",
+                self.name,
+                task.name()
+            )));
+        }
         let subject = match self.element {
             Some(element) => Subject::Element(element),
             None => Subject::Parameters(self.parameters.clone()),

@@ -461,6 +461,25 @@ fn a_variant_is_found_at_a_distance_and_what_is_printed_can_be_pasted() {
 }
 
 #[test]
+fn a_variant_that_is_found_has_a_name_of_its_own_that_is_one() {
+    let vary = |name: &str| {
+        let distance = ["vary", "find_objects#red", "--element", "R", "--distance", "0.5"];
+        fail(2, &[&distance[..], &["--name", name]].concat())
+    };
+    // Under the name that it extends it would extend itself.
+    for taken in ["red", "blue", "default"] {
+        let error = vary(taken);
+        assert!(error.contains("expected a name that no variant has"), "{error}");
+    }
+    for odd in ["a/b", "..", "con", "extends itself", "\u{202e}"] {
+        let error = vary(odd);
+        assert!(error.contains("found the name"), "{error}");
+    }
+    let error = fail(2, &["curriculum", "find_objects", "--name", "a/b"]);
+    assert!(error.contains("with the character \"/\""), "{error}");
+}
+
+#[test]
 fn a_family_of_variants_is_named_as_one() {
     let order = succeed(&["order", "examples/tasks/settlement.json#looks", "--json"]);
     for member in ["looks-red-annulus0", "looks-gold-gaussian1"] {

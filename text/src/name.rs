@@ -63,7 +63,7 @@ impl fmt::Display for NameFault {
             Self::Start(letter) => write!(f, "{} at its beginning", quoted(letter.encode_utf8(&mut [0; 4]))),
             Self::EndsWithDot => f.write_str("a dot at its end"),
             Self::NotNormalised => f.write_str("characters that are not in Unicode's form NFC"),
-            Self::Device => f.write_str("a name that Windows keeps for a device"),
+            Self::Device => f.write_str("a word that Windows keeps for a device"),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The text form of what a scripted agent does: one command a line, read and checked. Carrying it out is in `scripted.rs`.
 
 use driftworld_spec::nearest;
+use driftworld_text::{is_unprintable, quoted};
 
 use crate::EnvError;
 use crate::sim::Action;
@@ -13,6 +14,9 @@ const WALK_STEPS: u32 = 300;
 
 /// The most lines of a script.
 const MOST_LINES: usize = 100_000;
+
+/// The longest name of an object, as worlds have it.
+const MOST_LETTERS: usize = 100;
 
 /// Every command with its arguments.
 const COMMANDS: [(&str, &str); 7] = [
@@ -85,6 +89,11 @@ type Problem = (String, String);
 
 fn command(name: &str, words: &[&str]) -> Result<Command, Problem> {
     let go = |object: &str, until, rest: &[&str]| -> Result<Command, Problem> {
+        // Worlds call their objects as they like, also those of the original: only what nobody could see is refused.
+        if object.chars().count() > MOST_LETTERS || object.contains(is_unprintable) {
+            let expected = format!("the name of an object: 1 to {MOST_LETTERS} characters that can be seen");
+            return Err((quoted(object), expected));
+        }
         Ok(Command::Go {
             name: object.to_owned(),
             until,
@@ -234,6 +243,10 @@ mod tests {
         refuse(
             "near goal",
             "way.txt:1: found \"near goal\", expected near NAME METRES [N]",
+        );
+        refuse(
+            "touch go\u{202e}al",
+            "way.txt:1: found \"go\\u{202e}al\", expected the name of an object: 1 to 100 characters that can be seen",
         );
         for metres in ["-1", "0", "inf", "far"] {
             refuse(

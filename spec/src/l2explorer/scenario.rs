@@ -7,6 +7,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use driftworld_text::check_name;
 use serde_json::{Map, Value as Json, json};
 
 use super::Warning;
@@ -99,11 +100,21 @@ impl Reader {
             );
             return "scenario".to_owned();
         };
-        let name: String = text
+        let mut name: String = text
             .chars()
             .take(100)
             .map(|letter| if fits(letter) { letter } else { '_' })
             .collect();
+        // What no file can be called: a dot or a hyphen at the beginning, a dot at the end, a word that Windows keeps for a device.
+        if name.starts_with(['.', '-']) {
+            name.replace_range(..1, "_");
+        }
+        if name.ends_with('.') {
+            name.replace_range(name.len() - 1.., "_");
+        }
+        if check_name(&name).is_err() {
+            name = format!("{}_", name.replace('.', "_"));
+        }
         if name != text {
             self.warn("/logging_base_dir", format!("{text:?} is read as the name {name:?}"));
         }

@@ -7,6 +7,7 @@ use indexmap::IndexMap;
 
 use super::{Phase, Regime, Scenario};
 use crate::error::{Problem, SpecError, nearest};
+use crate::names;
 use crate::task::{TaskSpec, Value};
 
 /// Each regime with the pointer to it.
@@ -88,6 +89,7 @@ impl<'a> Made<'a> {
 /// Everything wrong in a scenario that needs no task to be seen.
 pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
     let mut problems = phases(scenario);
+    problems.extend(names::problem("/name", &scenario.name));
     let mut called: BTreeMap<(&str, &str), Made> = BTreeMap::new();
     for (pointer, regime) in regimes(scenario) {
         if regime.first_index.checked_add(u64::from(regime.count)).is_none() {
@@ -109,7 +111,8 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
         }
         let mut sound = true;
         for made in made(&pointer, regime) {
-            if let Some(problem) = made.unnamed() {
+            let own = made.name.and_then(|name| names::problem(made.pointer_to_name(), name));
+            if let Some(problem) = made.unnamed().or(own) {
                 problems.push(problem);
                 sound = false;
                 break;

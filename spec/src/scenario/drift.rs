@@ -1,5 +1,6 @@
 //! [`RegimeDrift`]: what a document says of a drift from one variant to another. Drawing the variants between is the generator's job.
 
+use driftworld_text::NAME_PATTERN;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -21,7 +22,7 @@ pub struct RegimeDrift {
     pub values: IndexMap<String, Value>,
     /// What the variant with these values is called in tables and logs; goes with `values` only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(length(min = 1, max = 100), regex(pattern = r"^[^#/\\\s]+$"))]
+    #[schemars(length(min = 1, max = 100), regex(pattern = NAME_PATTERN))]
     pub name: Option<String>,
     /// How far it has come, as a function of its progress.
     #[serde(default, skip_serializing_if = "is_default")]

@@ -6,6 +6,7 @@ mod regime;
 
 use std::sync::Arc;
 
+use driftworld_text::NAME_PATTERN;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -33,7 +34,7 @@ pub struct Scenario {
     #[schemars(range(min = 1, max = 1))]
     pub version: u32,
     /// The scenario's name; logs are named after it.
-    #[schemars(length(min = 1, max = 100), regex(pattern = "^[0-9a-zA-Z_.-]+$"))]
+    #[schemars(length(min = 1, max = 100), regex(pattern = NAME_PATTERN))]
     pub name: String,
     /// What it is for, in a sentence or two.
     #[serde(default, skip_serializing_if = "String::is_empty")]

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use driftworld_text::{IDENTIFIER_PATTERN, NAME_PATTERN};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -26,7 +27,7 @@ pub struct Regime {
     pub values: IndexMap<String, Value>,
     /// What the variant with these values is called in tables and logs; goes with `values` only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(length(min = 1, max = 100), regex(pattern = r"^[^#/\\\s]+$"))]
+    #[schemars(length(min = 1, max = 100), regex(pattern = NAME_PATTERN))]
     pub name: Option<String>,
     /// How many experiences.
     #[schemars(range(min = 1, max = 10_000_000))]
@@ -55,7 +56,7 @@ pub struct Regime {
 pub(super) fn values_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
     schemars::json_schema!({
         "type": "object",
-        "propertyNames": { "pattern": "^[a-z][a-z0-9_]*$", "maxLength": 100 },
+        "propertyNames": { "pattern": IDENTIFIER_PATTERN, "maxLength": 100 },
         "additionalProperties": { "type": ["boolean", "number", "string", "array", "object"] }
     })
 }

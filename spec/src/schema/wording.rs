@@ -1,5 +1,6 @@
 //! How messages word what a schema asks for: types, limits, patterns. Which error is worth a message is decided in `explain.rs`.
 
+use driftworld_text::{IDENTIFIER_PATTERN, NAME_PATTERN};
 use jsonschema::ValidationError;
 use jsonschema::error::{TypeKind, ValidationErrorKind};
 use serde_json::Value;
@@ -60,9 +61,8 @@ pub(super) fn expected(error: &ValidationError, schema: &Value) -> String {
 /// The patterns of our schemas in words.
 fn letters(pattern: &str) -> String {
     match pattern {
-        "^[a-z][a-z0-9_]*$" => "lower-case letters, digits and underscores, starting with a letter".to_owned(),
-        "^[0-9a-zA-Z_.-]+$" => "letters, digits, underscores, dots and hyphens".to_owned(),
-        "^[^#/\\\\\\s]+$" => "a name without spaces, #, / and \\".to_owned(),
+        IDENTIFIER_PATTERN => "lower-case letters, digits and underscores, starting with a letter".to_owned(),
+        NAME_PATTERN => "a name of letters, digits, _, -, + and ., which begins with a letter, a digit or _ and does not end with a dot".to_owned(),
         other => format!("text of the form {other}"),
     }
 }

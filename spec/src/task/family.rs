@@ -9,6 +9,7 @@ use super::value::{ParameterType, Value};
 use super::variant::VariantSpec;
 use crate::document::escape;
 use crate::error::Problem;
+use crate::names;
 
 /// The most variants that one task may declare, families unfolded.
 const MAX_VARIANTS: usize = 10_000;
@@ -116,6 +117,12 @@ pub(crate) fn unfold(
                 let found = format!("the variant {:?} of {characters} characters", declared.0);
                 let problem = Problem::new("spec/length", &pointer, found, format!("names of at most {MAX_NAME}"));
                 problems.push(problem.advise("shorten the family's name, or list fewer parameters in it"));
+                break;
+            }
+            if declared.0 != *name
+                && let Some(problem) = names::problem(&pointer, &declared.0)
+            {
+                problems.push(problem);
                 break;
             }
             if variants.insert(declared.0.clone(), declared.1).is_some() {

@@ -1,5 +1,6 @@
 //! A group of objects that are made alike and placed by chance, as a spec declares it. Placing them is the generator's job.
 
+use driftworld_text::NAME_PATTERN;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,7 +14,7 @@ use crate::distribution::Number;
 #[serde(deny_unknown_fields)]
 pub struct Group {
     /// The group's name; its objects carry it as their `tag` unless the template gives another.
-    #[schemars(length(min = 1, max = 100))]
+    #[schemars(length(min = 1, max = 100), regex(pattern = NAME_PATTERN))]
     pub name: String,
     /// How many objects, or how many around each object of another group: a whole number, a parameter, or a distribution.
     #[schemars(schema_with = "super::template::count_schema")]

@@ -14,6 +14,7 @@ mod variant;
 
 use std::sync::Arc;
 
+use driftworld_text::{IDENTIFIER_PATTERN, NAME_PATTERN};
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -47,7 +48,7 @@ pub(crate) struct TaskDocument {
     #[schemars(range(min = 1, max = 2))]
     pub(crate) version: Option<u32>,
     /// The task's name: lower-case letters, digits and underscores.
-    #[schemars(length(max = 100), regex(pattern = "^[a-z][a-z0-9_]*$"))]
+    #[schemars(length(max = 100), regex(pattern = IDENTIFIER_PATTERN))]
     pub(crate) name: String,
     /// What the task is, in a sentence or two.
     #[serde(default)]
@@ -83,7 +84,7 @@ fn parameters_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Sch
     let mut schema = generator.subschema_for::<IndexMap<String, Parameter>>();
     schema.insert(
         "propertyNames".to_owned(),
-        serde_json::json!({ "pattern": "^[a-z][a-z0-9_]*$", "maxLength": 100 }),
+        serde_json::json!({ "pattern": IDENTIFIER_PATTERN, "maxLength": 100 }),
     );
     schema
 }
@@ -92,7 +93,7 @@ fn variants_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schem
     let mut schema = generator.subschema_for::<IndexMap<String, VariantSpec>>();
     schema.insert(
         "propertyNames".to_owned(),
-        serde_json::json!({ "pattern": "^[^#/\\\\\\s]+$", "minLength": 1, "maxLength": 100 }),
+        serde_json::json!({ "pattern": NAME_PATTERN, "minLength": 1, "maxLength": 100 }),
     );
     schema
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::Arc;
 
+use driftworld_text::IDENTIFIER_PATTERN;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -230,7 +231,7 @@ pub(crate) const RESERVED: [&str; 4] = ["extends", "description", "grid", "sweep
 fn values_of_parameters(schema: &mut schemars::Schema) {
     schema.insert(
         "propertyNames".to_owned(),
-        serde_json::json!({ "pattern": "^[a-z][a-z0-9_]*$", "maxLength": 100 }),
+        serde_json::json!({ "pattern": IDENTIFIER_PATTERN, "maxLength": 100 }),
     );
     for key in ["grid", "sweep"] {
         if let Some(map) = schema

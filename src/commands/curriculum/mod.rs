@@ -82,7 +82,7 @@ pub(crate) struct Curriculum {
     #[arg(long, requires = "drift")]
     mix: bool,
     /// The scenario's name.
-    #[arg(long, default_value = "curriculum")]
+    #[arg(long, default_value = "curriculum", value_parser = words::name)]
     name: String,
     /// Experiences of each learning block.
     #[arg(long, default_value_t = 20, value_name = "N")]

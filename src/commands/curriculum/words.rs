@@ -1,6 +1,11 @@
-//! Words of the command line that stand for elements and schedules.
+//! Words of the command line that stand for names, elements and schedules.
 
-use crate::spec::{DriftSchedule, Element};
+use crate::spec::{DriftSchedule, Element, sound_name};
+
+/// A name that a scenario may have.
+pub(super) fn name(text: &str) -> Result<String, String> {
+    sound_name(text).map(|()| text.to_owned())
+}
 
 /// An element by its letter or name.
 pub(super) fn element(text: &str) -> Result<Element, String> {

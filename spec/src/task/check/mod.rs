@@ -31,6 +31,7 @@ pub(super) fn compile(
     mut unsound: Unsound,
 ) -> Result<TaskSpec, Vec<Problem>> {
     let mut problems: Vec<Problem> = reserved_names(&document.parameters).collect();
+    problems.extend(names(&document));
     for (name, parameter) in &document.parameters {
         let found = parameter.problems(name);
         if !found.is_empty() {
@@ -89,6 +90,21 @@ pub(super) fn compile(
 
 fn fail_on(problems: Vec<Problem>) -> Result<(), Vec<Problem>> {
     if problems.is_empty() { Ok(()) } else { Err(problems) }
+}
+
+/// Names that a schema takes and the grammar does not; those of a family's variants are checked where it is unfolded.
+fn names(document: &TaskDocument) -> impl Iterator<Item = Problem> {
+    let variants = document
+        .variants
+        .keys()
+        .map(|name| (format!("/variants/{}", escape(name)), name));
+    let groups = document.groups.iter().enumerate();
+    let groups = groups.map(|(index, group)| (format!("/groups/{index}/name"), &group.name));
+    [("/name".to_owned(), &document.name)]
+        .into_iter()
+        .chain(variants)
+        .chain(groups)
+        .filter_map(|(pointer, name)| crate::names::problem(pointer, name))
 }
 
 fn reserved_names(parameters: &IndexMap<String, Parameter>) -> impl Iterator<Item = Problem> {

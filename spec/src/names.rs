@@ -1,0 +1,29 @@
+//! What is wrong with a name, as a problem of its document. The grammar itself is `driftworld-text`'s, which the schemas repeat as far as they can.
+
+use driftworld_text::{check_name, quoted};
+
+use crate::error::Problem;
+
+/// The problem of a name of a task, a variant, a group, a regime or a scenario; none for a sound one.
+pub(crate) fn problem(pointer: impl Into<String>, name: &str) -> Option<Problem> {
+    let fault = check_name(name).err()?;
+    let found = format!("the name {} with {fault}", quoted(name));
+    Some(Problem::new("spec/name", pointer, found, fault.expected()))
+}
+
+/// Checks a name that someone wants to give: as [`driftworld_text::check_name`], with the fault in words.
+///
+/// # Errors
+/// What was found and what was expected, as one sentence.
+///
+/// # Example
+/// ```
+/// assert!(driftworld_spec::sound_name("dusk-2").is_ok());
+/// let error = driftworld_spec::sound_name("a/b").unwrap_err();
+/// assert_eq!(error, "found the name \"a/b\" with the character \"/\", expected letters and digits of any script, _, -, + and . in a name");
+/// ```
+pub fn sound_name(name: &str) -> Result<(), String> {
+    problem("", name).map_or(Ok(()), |problem| {
+        Err(format!("found {}, expected {}", problem.found, problem.expected))
+    })
+}

@@ -1,0 +1,136 @@
+//! Names of variants, groups, regimes and scenarios: a document with one is read exactly when the grammar has it, whatever the name says.
+
+use std::sync::Arc;
+
+use driftworld_spec::{Scenario, SpecError, TaskSpec};
+use driftworld_text::{check_name, is_unprintable};
+use proptest::prelude::*;
+use serde_json::json;
+
+fn task(variant: &str, group: &str) -> Result<Arc<TaskSpec>, SpecError> {
+    let group = json!({ "name": group, "count": 1, "object": { "class": "geometric" }, "placement": { "disc": { "center": [0, 0], "radius": 9 } } });
+    let document = json!({ "version": 2, "name": "t", "groups": [group], "variants": { variant: {} } });
+    TaskSpec::from_json("t.json", &document.to_string())
+}
+
+fn scenario(name: &str, regime: &str) -> Result<Scenario, SpecError> {
+    let values = json!({ "light": 1 });
+    let regime = json!({ "task": "t", "variant": "v", "values": values, "name": regime, "count": 1 });
+    let document = json!({ "name": name, "blocks": [{ "type": "learning", "regimes": [regime] }] });
+    Scenario::from_json("s.json", &document.to_string())
+}
+
+/// Every place that a name can stand in.
+fn refusals(name: &str) -> [Option<SpecError>; 4] {
+    [
+        task(name, "g").err(),
+        task("v", name).err(),
+        scenario(name, "r").err(),
+        scenario("s", name).err(),
+    ]
+}
+
+#[track_caller]
+fn check(name: &str) {
+    let sound = check_name(name).is_ok();
+    for (place, refusal) in refusals(name).into_iter().enumerate() {
+        assert_eq!(refusal.is_none(), sound, "{name:?} in place {place}: {refusal:?}");
+        if let Some(refusal) = refusal {
+            let message = refusal.to_string();
+            assert!(!message.contains(is_unprintable), "{message:?}");
+            let known = ["spec/name", "spec/value", "spec/length"];
+            assert!(
+                known.contains(&refusal.code()),
+                "{name:?}: {} {message}",
+                refusal.code()
+            );
+        }
+    }
+}
+
+#[test]
+fn names_that_lead_out_of_a_folder_or_deceive_a_terminal_are_refused_everywhere() {
+    for name in [
+        ".",
+        "..",
+        "a.",
+        ".a",
+        "-a",
+        "+a",
+        "a/b",
+        "a\\b",
+        "a:b",
+        "con",
+        "NUL.txt",
+        "a\u{202e}b",
+        "a\u{1b}[2J",
+        "a\nb",
+        "a\u{0}",
+        "e\u{301}",
+        "é",
+        "größer",
+        "look-red-0.5",
+        "=1",
+        "@a",
+        "a b",
+        "a\u{a0}b",
+        "a\u{3164}",
+        "→",
+        "語",
+    ] {
+        check(name);
+    }
+    for long in [("a", 100), ("a", 101), ("語", 66), ("語", 67)] {
+        check(&long.0.repeat(long.1));
+    }
+}
+
+#[test]
+fn the_message_says_where_what_and_which() {
+    let said = |variant: &str| task(variant, "g").expect_err("it is no name").to_string();
+    assert_eq!(
+        said("con"),
+        "t.json:1:151 (/variants/con): found the name \"con\" with a word that Windows keeps for a device, expected a name that can be \
+         that of a file everywhere"
+    );
+    assert!(
+        said("..").contains("(/variants/..): found the name \"..\", expected a name of letters, digits"),
+        "{}",
+        said("..")
+    );
+}
+
+#[test]
+fn a_task_may_not_be_a_device_and_a_parameter_may() {
+    let spec = |task: &str| {
+        let parameters =
+            json!({ "aux": { "role": "variant", "type": "number", "affects": ["O"], "range": [0, 1], "default": 0 } });
+        let document = json!({ "version": 2, "name": task, "parameters": parameters, "variants": { "v": {} } });
+        TaskSpec::from_json("t.json", &document.to_string())
+    };
+    assert!(spec("task").is_ok());
+    assert_eq!(spec("con").expect_err("it is a device").code(), "spec/name");
+}
+
+#[test]
+fn members_of_a_family_have_sound_names() {
+    let choices = json!(["a b", "c/d", "x"]);
+    let parameters = json!({ "word": { "role": "variant", "type": "string", "affects": ["S"], "choices": choices, "default": "x" } });
+    let variants = json!({ "look": { "grid": { "word": choices } } });
+    let document = json!({ "version": 2, "name": "t", "parameters": parameters, "variants": variants });
+    let task = TaskSpec::from_json("t.json", &document.to_string()).expect("words become names");
+    assert!(
+        task.variant_names().iter().all(|name| check_name(name).is_ok()),
+        "{:?}",
+        task.variant_names()
+    );
+}
+
+proptest! {
+    #[test]
+    fn a_document_is_read_exactly_when_the_grammar_has_its_names(
+        name in prop_oneof!["[a-z._+-]{1,5}", "[ -~]{1,5}", "\\PC{1,4}", "(?s).{1,4}", "(con|nul|com1|lpt¹)(\\.[a-z]{0,2})?"]
+    ) {
+        check(&name);
+    }
+}
