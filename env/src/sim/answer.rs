@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use driftworld_spec::{Object, Stimulus};
+use driftworld_spec::Stimulus;
 
 use super::action::Intent;
 use super::chance::Luck;
@@ -16,6 +16,8 @@ impl Environment {
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.triggered.clear();
         scratch.triggered.reserve(32);
+        scratch.moved.sort_unstable_by_key(|(index, _)| *index);
+        scratch.arrived.sort_unstable();
         self.answer_contacts(&mut scratch);
         if intent.interact {
             let agent = &self.episode.agent;
@@ -26,7 +28,6 @@ impl Environment {
                 .triggered
                 .extend(reached.map(|index| (*index, Stimulus::AgentInteract)));
         }
-        scratch.moved.sort_unstable_by_key(|(index, _)| *index);
         for index in 0..self.episode.objects.len() {
             let reach = self.world.objects[index].range_stimulus_distance;
             if reach <= 0.0 {
@@ -41,9 +42,17 @@ impl Environment {
         }
         scratch.triggered.sort_unstable();
         scratch.triggered.dedup();
+        let num_returning = self.episode.returning.len();
         for &(index, stimulus) in &scratch.triggered {
             self.trigger(index as usize, stimulus, step);
         }
+        if self.episode.returning.len() > num_returning {
+            self.episode.returning.sort_unstable_by_key(|(index, _)| *index);
+        }
+        let objects = &self.episode.objects;
+        self.episode
+            .contacts
+            .retain(|contact| objects[*contact as usize].present);
         self.scratch = scratch;
     }
 
@@ -51,27 +60,37 @@ impl Environment {
     fn answer_contacts(&mut self, scratch: &mut Scratch) {
         let here = self.episode.agent.position;
         self.ground.note_touching(here, &mut scratch.met);
+        scratch.met.sort_unstable();
+        scratch.met.dedup();
         let contacts = &mut self.episode.contacts;
         contacts.reserve(scratch.met.len().max(16));
+        let known = contacts.len();
         for index in scratch.met.drain(..) {
-            if let Err(place) = contacts.binary_search(&index) {
+            if contacts[..known].binary_search(&index).is_err() {
                 scratch.triggered.push((index, Stimulus::AgentCollide));
-                contacts.insert(place, index);
+                contacts.push(index);
             }
         }
-        let new = &scratch.triggered;
+        contacts.sort_unstable();
+        let (new, moved) = (&scratch.triggered, &scratch.moved);
         let stays = |index: &u32| {
-            let is_new = new.iter().any(|(other, _)| other == index);
             // What was met in front of the agent, and moved on since, was touched when the agent had moved.
-            let ran_ahead = is_new && scratch.moved.iter().any(|(other, _)| *other == *index as usize);
-            ran_ahead || scratch.kept.binary_search(index).is_ok() || self.ground.is_still_touched(*index, here)
+            let is_new = new.binary_search_by_key(index, |(other, _)| *other).is_ok();
+            let has_moved = || {
+                moved
+                    .binary_search_by_key(&(*index as usize), |(other, _)| *other)
+                    .is_ok()
+            };
+            is_new && has_moved()
+                || scratch.kept.binary_search(index).is_ok()
+                || self.ground.is_still_touched(*index, here)
         };
         contacts.retain(stays);
     }
 
     /// Whether the agent is in an object's range anywhere on both their ways of this time step.
     fn comes_near(&self, index: usize, scratch: &Scratch) -> bool {
-        if scratch.arrived.contains(&index) {
+        if scratch.arrived.binary_search(&index).is_ok() || self.is_in_range(index) {
             return self.is_in_range(index);
         }
         let to = self.scene.items[index].position.map(f64::from);
@@ -87,7 +106,7 @@ impl Environment {
             path.map(|ends| squared_distance(to, ends[0], ends[1]))
                 .fold(f64::INFINITY, f64::min)
         };
-        self.is_in_range(index) || self.is_range(index, nearest, self.world.objects[index].range_stimulus_distance)
+        self.is_range(index, nearest, self.world.objects[index].range_stimulus_distance)
     }
 
     /// One stimulus on one object: what it pays, whether it destroys.
@@ -116,17 +135,18 @@ impl Environment {
         step.reward += reward;
         let state = &mut self.episode.objects[index];
         state.collected |= pays || destroyed;
+        self.episode.sequence.advance(&self.episode.objects);
+        let state = &mut self.episode.objects[index];
         if pays && once {
             state.reward = 0.0;
             self.scene.items[index].reward = 0.0;
         }
         if destroyed {
-            self.take_away(index);
+            self.take_body_away(index);
             if let Some(respawn) = &object.respawn {
                 let ticks = (respawn.delay / world.agent_params.time_step).ceil() as u64;
                 let back = (index, self.episode.ticks + ticks.max(1));
-                let place = self.episode.returning.partition_point(|(other, _)| *other < index);
-                self.episode.returning.insert(place, back);
+                self.episode.returning.push(back);
             }
         }
         step.events.push(Event {
@@ -140,13 +160,7 @@ impl Environment {
 
     /// Whether all objects with a lower place in the sequence have been collected.
     pub(super) fn is_due(&self, order: Option<u32>) -> bool {
-        let Some(order) = order else { return true };
-        let lower = |object: &Object| object.order.is_some_and(|other| other < order);
-        self.world
-            .objects
-            .iter()
-            .zip(&self.episode.objects)
-            .all(|(object, state)| !lower(object) || state.collected)
+        self.episode.sequence.is_due(order)
     }
 
     /// Centre to centre in 3D: the agent's at half its height, the object's at half of its own.

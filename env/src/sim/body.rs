@@ -2,11 +2,12 @@
 //! two are is in `footprint.rs`, what counts as a touch in `contact.rs`, what one is worth in `answer.rs`.
 
 use driftworld_spec::World;
-use rapier3d::parry::partitioning::Bvh;
 use rapier3d::prelude::*;
 
 use super::footprint::{Footprint, Gap, Point};
+use super::looks::{self, Looks};
 use super::outline::Outline;
+use super::places::Places;
 use super::slide::{Obstacles, SKIN};
 use crate::assets::ColliderShape;
 use crate::scene::{Item, Scene};
@@ -28,9 +29,8 @@ pub(super) const AGENT: Group = Group::GROUP_4;
 pub(crate) struct Ground {
     bodies: RigidBodySet,
     pub(super) colliders: ColliderSet,
-    /// Where colliders are, by the numbers of their handles. The engine's own broad phase, made for its step, lost bodies that
-    /// were taken away and put back many times without one.
-    tree: Bvh,
+    /// Where colliders are, by the numbers of their handles.
+    places: Places,
     pub(super) narrow_phase: NarrowPhase,
     islands: IslandManager,
     soft_bodies: SoftBodySet,
@@ -90,7 +90,7 @@ impl Ground {
         let mut ground = Self {
             bodies: RigidBodySet::new(),
             colliders: ColliderSet::new(),
-            tree: Bvh::new(),
+            places: Places::new(),
             narrow_phase: NarrowPhase::new(),
             islands: IslandManager::new(),
             soft_bodies: SoftBodySet::new(),
@@ -164,7 +164,8 @@ impl Ground {
         let collider = &self.colliders[handle];
         let area = collider.compute_aabb();
         let slot = slot(handle);
-        self.tree.insert(area, slot as u32);
+        self.places
+            .put(collider.collision_groups().memberships, slot as u32, area);
         let at = collider.translation();
         let at = [f64::from(at.x), f64::from(at.y)];
         let outline = &self.standing[slot].outline;
@@ -276,6 +277,7 @@ impl Ground {
     /// Takes an object away.
     pub(crate) fn remove(&mut self, index: u32) {
         if let Some(handle) = self.handles[index as usize].take() {
+            let group = self.colliders[handle].collision_groups().memberships;
             self.colliders.remove(
                 handle,
                 &mut self.islands,
@@ -283,7 +285,7 @@ impl Ground {
                 &mut self.soft_bodies,
                 false,
             );
-            self.tree.remove(handle.into_raw_parts().0);
+            self.places.remove(group, slot(handle) as u32);
         }
     }
 
@@ -292,25 +294,61 @@ impl Ground {
         let way = Vector::new(to[0] - from[0], to[1] - from[1], 0.0);
         let ray = Ray::new(Vector::new(from[0], from[1], 0.05), way);
         let own = self.handles.get(object as usize).copied().flatten();
-        self.query_but(WALL, own).cast_ray(&ray, 1.0, false).is_some()
+        let hit = |query: QueryPipeline| query.cast_ray(&ray, 1.0, false).is_some();
+        self.queries_but(WALL, own).any(hit)
     }
 
-    /// Questions about bodies of these groups, one body left aside.
-    pub(super) fn query_but(&self, groups: Group, but: Option<ColliderHandle>) -> QueryPipeline<'_> {
-        let groups = InteractionGroups::new(Group::ALL, groups, InteractionTestMode::And);
-        let mut filter = QueryFilter::default().groups(groups);
+    /// Questions about bodies of these groups, one body left aside: one for each tree that they are in.
+    pub(super) fn queries_but(
+        &self,
+        groups: Group,
+        but: Option<ColliderHandle>,
+    ) -> impl Iterator<Item = QueryPipeline<'_>> {
+        let interaction = InteractionGroups::new(Group::ALL, groups, InteractionTestMode::And);
+        let mut filter = QueryFilter::default().groups(interaction);
         filter.exclude_collider = but;
-        QueryPipeline {
+        self.places.of(groups).map(move |bvh| QueryPipeline {
             dispatcher: self.narrow_phase.query_dispatcher(),
-            bvh: &self.tree,
+            bvh,
             bodies: &self.bodies,
             colliders: &self.colliders,
             filter,
-        }
+        })
     }
 
-    /// Notes in `scratch.numbers` the bodies of these groups, one left aside, around the places from one to another.
-    pub(super) fn gather(&mut self, groups: Group, but: Option<ColliderHandle>, [from, to]: [Point; 2], reach: f64) {
+    /// The bodies of these groups, one left aside, whose boxes meet a rectangle on the ground.
+    pub(super) fn around(
+        &self,
+        groups: Group,
+        but: Option<ColliderHandle>,
+        [least, most]: [[f32; 2]; 2],
+    ) -> impl Iterator<Item = ColliderHandle> {
+        let interaction = InteractionGroups::new(Group::ALL, groups, InteractionTestMode::And);
+        let area = Aabb::new(
+            Vector::new(least[0], least[1], -1e3),
+            Vector::new(most[0], most[1], 1e3),
+        );
+        let boxes = self.places.of(groups);
+        let numbers = boxes.flat_map(move |boxes| boxes.leaves(move |node| node.aabb().intersects(&area)));
+        numbers.filter_map(move |number| {
+            let (collider, handle) = self.colliders.get_unknown_gen(number)?;
+            let asked_for = collider.collision_groups().test(interaction) && Some(handle) != but;
+            asked_for.then_some(handle)
+        })
+    }
+
+    /// Notes in `scratch.numbers` the bodies of these groups, one left aside, around the places from one to another, and hands back
+    /// how many corners they have in all.
+    ///
+    /// Nothing, and the list is not whole, if there are more of them than `looks`, which each body takes one of.
+    pub(super) fn gather(
+        &mut self,
+        groups: Group,
+        but: Option<ColliderHandle>,
+        [from, to]: [Point; 2],
+        reach: f64,
+        looks: &mut Looks,
+    ) -> Option<usize> {
         let mut numbers = std::mem::take(&mut self.scratch.numbers);
         numbers.clear();
         // Room for what most ways meet, so that no step takes memory.
@@ -321,16 +359,19 @@ impl Ground {
         self.scratch.places.reserve(64);
         let least = [0, 1].map(|axis| (from[axis].min(to[axis]) - reach) as f32);
         let most = [0, 1].map(|axis| (from[axis].max(to[axis]) + reach) as f32);
-        let area = Aabb::new(
-            Vector::new(least[0], least[1], -1e3),
-            Vector::new(most[0], most[1], 1e3),
-        );
-        let query = self.query_but(groups, but);
-        let around = query.intersect_aabb_conservative(area);
-        numbers.extend(around.map(|(handle, _)| slot(handle) as u32));
-        // The tree's order depends on its past, which a world that was written down does not have.
-        numbers.sort_unstable_by_key(|number| self.standing[*number as usize].rank);
+        // One more than may be looked at is one too many, wherever it stands in the tree.
+        let at_most = usize::try_from(looks.left()).unwrap_or(usize::MAX).saturating_add(1);
+        let around = self.around(groups, but, [least, most]).take(at_most);
+        numbers.extend(around.map(|handle| slot(handle) as u32));
+        let is_whole = looks.take(numbers.len());
+        if is_whole {
+            // The tree's order depends on its past, which a world that was written down does not have.
+            numbers.sort_unstable_by_key(|number| self.standing[*number as usize].rank);
+        }
+        let corners = || numbers.iter().map(|number| self.whole[*number as usize].num_corners());
+        let num_corners = is_whole.then(|| corners().sum());
         self.scratch.numbers = numbers;
+        num_corners
     }
 
     /// Moves the agent's body as far as solid things let it, sliding along them; hands back where it comes to.
@@ -347,26 +388,37 @@ impl Ground {
         }
         let to = [start[0] + way[0], start[1] + way[1]];
         let reach = self.radius + SKIN + 1e-3;
-        self.gather(SOLID | WALL, None, [start, to], reach);
+        let mut looks = Looks::new(looks::AGENTS);
+        self.gather(SOLID | WALL, None, [start, to], reach, &mut Looks::new(u64::MAX));
         let obstacles = Obstacles {
             footprints: &self.low,
             numbers: &self.scratch.numbers,
+            num_corners: 0,
         };
         if obstacles.is_clear(start, way, self.radius) {
             self.scratch.path.push(to);
         } else {
             // It may turn anywhere, but it goes no farther than it meant to.
-            self.gather(SOLID | WALL, None, [start, start], length + 2.0 + reach);
+            let whole = self.gather(SOLID | WALL, None, [start, start], length + 2.0 + reach, &mut looks);
+            let Some(num_corners) = whole else { return from };
             let mut scratch = std::mem::take(&mut self.scratch);
             let obstacles = Obstacles {
                 footprints: &self.low,
                 numbers: &scratch.numbers,
+                num_corners,
             };
             let clear = obstacles.out_of_overlap(start, self.radius);
             if clear != start {
                 scratch.path.push(clear);
             }
-            obstacles.slide(clear, way, self.radius, &mut scratch.touched, &mut scratch.path);
+            obstacles.slide(
+                clear,
+                way,
+                self.radius,
+                &mut looks,
+                &mut scratch.touched,
+                &mut scratch.path,
+            );
             self.scratch = scratch;
         }
         let end = self.scratch.path.last().copied().unwrap_or(start);
@@ -405,12 +457,9 @@ impl Ground {
     /// The solid objects that the agent's body would be inside of at a place, by index in rising order.
     pub(crate) fn blocking(&self, at: [f32; 2], found: &mut Vec<u32>) {
         found.clear();
-        let (x, y, radius) = (at[0], at[1], self.radius as f32);
-        let area = Aabb::new(
-            Vector::new(x - radius, y - radius, -1e3),
-            Vector::new(x + radius, y + radius, 1e3),
-        );
-        for (handle, _) in self.query_but(SOLID, None).intersect_aabb_conservative(area) {
+        let radius = self.radius as f32;
+        let area = [at.map(|metres| metres - radius), at.map(|metres| metres + radius)];
+        for handle in self.around(SOLID, None, area) {
             let slot = slot(handle);
             let inside = self.low[slot].gap(at.map(f64::from)).distance < self.radius;
             found.extend(self.standing[slot].object.filter(|_| inside));
@@ -425,12 +474,13 @@ impl Ground {
         let ahead = self.radius as f32 + 0.5;
         let centre = Vector::new(at[0] + forward[0] * ahead, at[1] + forward[1] * ahead, 0.5);
         let pose = Pose::new(centre, Vector::new(0.0, 0.0, libm::atan2f(forward[1], forward[0])));
-        let query = self.query_but(SOLID | GHOST, None);
-        found.extend(
-            query
-                .intersect_shape(pose, &cube)
-                .map(|(_, collider)| collider.user_data as u32),
-        );
+        for query in self.queries_but(SOLID | GHOST, None) {
+            found.extend(
+                query
+                    .intersect_shape(pose, &cube)
+                    .map(|(_, collider)| collider.user_data as u32),
+            );
+        }
         found.sort_unstable();
     }
 }

@@ -6,6 +6,7 @@
 
 use super::body::{GHOST, Ground, SOLID, slot};
 use super::footprint::Point;
+use super::looks::Looks;
 
 /// Widest gap that is a touch, in metres: a little more than the skin.
 const TOUCH: f64 = 0.03;
@@ -26,7 +27,7 @@ impl Ground {
             }
         }
         let reach = self.radius + TOUCH;
-        self.gather(SOLID | GHOST, None, [least, most], reach);
+        self.gather(SOLID | GHOST, None, [least, most], reach, &mut Looks::new(u64::MAX));
         for &number in &self.scratch.numbers {
             let Some(object) = self.standing[number as usize].object else {
                 continue;
@@ -61,7 +62,7 @@ impl Ground {
     pub(super) fn note_touching(&mut self, at: [f32; 2], met: &mut Vec<u32>) {
         let at: Point = at.map(f64::from);
         let reach = self.radius + TOUCH;
-        self.gather(SOLID | GHOST, None, [at, at], reach);
+        self.gather(SOLID | GHOST, None, [at, at], reach, &mut Looks::new(u64::MAX));
         for &number in &self.scratch.numbers {
             if self.low[number as usize].gap(at).distance <= reach
                 && let Some(object) = self.standing[number as usize].object
@@ -80,10 +81,9 @@ impl Ground {
     }
 }
 
+/// What is noted twice is met once: who reads the list sorts it.
 fn note(met: &mut Vec<u32>, object: u32) {
-    if !met.contains(&object) {
-        // Room for what most steps touch, so that no step takes memory.
-        met.reserve(16);
-        met.push(object);
-    }
+    // Room for what most steps touch, so that no step takes memory.
+    met.reserve(64);
+    met.push(object);
 }

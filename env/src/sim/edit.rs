@@ -70,6 +70,7 @@ impl Environment {
         self.ground
             .add_object(index as u32, &self.scene.items[index], object.solid);
         self.episode.objects.push(ObjectState::new(&object));
+        self.episode.sequence.add(index, object.order);
         self.episode
             .add_motives(index, &object, &self.seed, &mut self.identities);
         self.episode.pushed.extend(Pushed::new(index, &object));
@@ -96,16 +97,17 @@ impl Environment {
         }
         self.episode.returning.retain(|pending| !comes_back(pending));
         self.episode.objects[object].collected = true;
-        self.take_away(object);
+        self.episode.sequence.advance(&self.episode.objects);
+        self.take_body_away(object);
+        self.episode.contacts.retain(|contact| *contact as usize != object);
         Ok(())
     }
 
-    /// An object's body and look go; whether they come back is for the caller to say.
-    pub(super) fn take_away(&mut self, object: usize) {
+    /// An object's body and look go; whether they come back, and that it is not touched any more, is for the caller to say.
+    pub(super) fn take_body_away(&mut self, object: usize) {
         self.episode.objects[object].present = false;
         self.scene.items[object].visible = false;
         self.ground.remove(object as u32);
-        self.episode.contacts.retain(|contact| *contact as usize != object);
     }
 
     /// Puts the agent somewhere else, looking along a heading in degrees clockwise from +y; any number of turns.

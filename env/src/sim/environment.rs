@@ -60,6 +60,9 @@ pub(super) struct Scratch {
     pub(super) arrived: Vec<usize>,
     pub(super) reached: Vec<u32>,
     pub(super) triggered: Vec<(u32, Stimulus)>,
+    /// How much the time steps so far looked at.
+    #[cfg(test)]
+    pub(super) looked: u64,
 }
 
 impl Environment {

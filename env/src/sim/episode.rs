@@ -5,6 +5,7 @@ use driftworld_spec::{ActionModel, LastEvent, Object, World};
 use super::chance::{Identities, Luck, Seed};
 use super::motion::Mover;
 use super::pushing::Pushed;
+use super::sequence::Sequence;
 use crate::agents::OnRailsAgent;
 
 /// Where the agent is and how it moves.
@@ -83,6 +84,8 @@ pub(crate) struct Episode {
     /// Destroyed objects that come back, in rising order, with the time step in which they do.
     pub(super) returning: Vec<(usize, u64)>,
     pub(super) rails: Option<OnRailsAgent>,
+    /// Whose turn it is, where objects have one.
+    pub(super) sequence: Sequence,
 }
 
 impl Episode {
@@ -109,6 +112,7 @@ impl Episode {
             pushed: Pushed::all(world),
             returning: Vec::new(),
             rails: (start.action_model == ActionModel::OnRails).then(OnRailsAgent::new),
+            sequence: Sequence::of(&world.objects),
         };
         for (index, object) in world.objects.iter().enumerate() {
             episode.add_motives(index, object, seed, identities);
@@ -126,6 +130,12 @@ impl Episode {
         };
         self.movers.extend(Mover::new(index, object, seed, identity));
         self.luck.extend(Luck::new(index, object, seed, identity));
+    }
+
+    /// The motion of an object that is pushed.
+    pub(super) fn pushed_of(&mut self, object: usize) -> Option<&mut Pushed> {
+        let found = self.pushed.binary_search_by_key(&object, |body| body.object).ok()?;
+        self.pushed.get_mut(found)
     }
 
     /// What an object draws, if it draws for pulls or returns.

@@ -99,6 +99,11 @@ impl Footprint {
         &self.corners
     }
 
+    /// How many corners it has: what a question about it costs.
+    pub(super) fn num_corners(&self) -> usize {
+        self.corners.len()
+    }
+
     /// How far it reaches from the origin, in metres.
     pub(super) fn reach(&self) -> f64 {
         let far = |corner: &Point| (corner[0] * corner[0] + corner[1] * corner[1]).sqrt();

@@ -5,11 +5,22 @@ use rapier3d::prelude::*;
 
 use super::body::{AGENT, EDGE, Ground, SOLID, WALL, shows_heading, slot};
 use super::footprint::Footprint;
+use super::looks::Looks;
 use super::outline::Outline;
 use super::slide::{Obstacles, SKIN};
 
 /// How far a body that turns beside a wall is moved for its corners, in metres.
 const TURN_ROOM: f64 = 0.25;
+
+/// With so many bodies around a place, it is taken.
+const MOST_NEAR: usize = 256;
+
+/// What it costs to ask whether two shapes meet.
+const LOOKS_PER_SHAPE: usize = 16;
+
+/// How often each body is asked for before one with corners moves: its corners are given to it twice at most, and room is looked
+/// for eight times.
+const LOOKS_TO_TURN: usize = 12;
 
 impl Ground {
     /// Tells the objects where the agent is: they stop in front of it.
@@ -43,8 +54,15 @@ impl Ground {
 
     /// Turns an object's body from one heading in degrees to another and moves it towards where it means to go; it stops at walls,
     /// solid objects and the agent, and slides along them. A body with corners turns only where it finds room for them; else it
-    /// slides on as it stands. Hands back where it is then and where it faces; nothing for an object that is not there.
-    pub(crate) fn push(&mut self, index: u32, by: [f32; 2], turn_deg: [f32; 2]) -> Option<([f32; 2], f32)> {
+    /// slides on as it stands. Hands back where it is then and where it faces; nothing for an object that is not there, and for one
+    /// with more around it than it may look at, which waits.
+    pub(crate) fn push(
+        &mut self,
+        index: u32,
+        by: [f32; 2],
+        turn_deg: [f32; 2],
+        looks: &mut Looks,
+    ) -> Option<([f32; 2], f32)> {
         let handle = self.handles[index as usize]?;
         let start = self.colliders[handle].translation();
         let start = [start.x, start.y];
@@ -55,15 +73,27 @@ impl Ground {
         let outline = &self.standing[slot(handle)].outline;
         outline.turned_into(heading_deg, &mut body);
         let reach = length + TURN_ROOM + body.reach() + 2.0 * SKIN;
-        self.gather(SOLID | WALL | AGENT, Some(handle), [from, from], reach);
+        let around = self.gather(SOLID | WALL | AGENT, Some(handle), [from, from], reach, looks);
+        // Corners are given to corners, and there is room to be found.
+        let given = if body.as_disc().is_some() {
+            0
+        } else {
+            body.num_corners()
+        };
+        let num_corners = around.map(|corners| corners + given * self.scratch.numbers.len());
+        let Some(num_corners) = num_corners.filter(|corners| given == 0 || looks.take(LOOKS_TO_TURN * corners)) else {
+            self.scratch.body = body;
+            return None;
+        };
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.strides.clear();
         if let Some(radius) = body.as_disc() {
             let obstacles = Obstacles {
                 footprints: &self.whole,
                 numbers: &scratch.numbers,
+                num_corners,
             };
-            obstacles.slide(from, way, radius, &mut scratch.touched, &mut scratch.strides);
+            obstacles.slide(from, way, radius, looks, &mut scratch.touched, &mut scratch.strides);
         } else {
             // Its corners are given to what it may meet, so that it is a point among wider bodies.
             let count = scratch.numbers.len();
@@ -79,6 +109,7 @@ impl Ground {
                 let turned = Obstacles {
                     footprints: &scratch.widened,
                     numbers: &scratch.places,
+                    num_corners,
                 };
                 if let Some(room) = turned.room_near(from, TURN_ROOM) {
                     begun = room;
@@ -91,9 +122,10 @@ impl Ground {
             let obstacles = Obstacles {
                 footprints: &scratch.widened,
                 numbers: &scratch.places,
+                num_corners,
             };
             scratch.strides.push(begun);
-            obstacles.slide(begun, way, 0.0, &mut scratch.touched, &mut scratch.strides);
+            obstacles.slide(begun, way, 0.0, looks, &mut scratch.touched, &mut scratch.strides);
         }
         let end = scratch.strides.last().copied().unwrap_or(from);
         scratch.body = body;
@@ -118,17 +150,28 @@ impl Ground {
         }
     }
 
-    /// Whether an object's body, taken away before, would stand free at a place.
-    pub(crate) fn is_free(&self, at: [f32; 2], radius: f32) -> bool {
+    /// Whether an object's body, taken away before, would stand free at a place. It would not where there is more around it than
+    /// may be looked at.
+    pub(crate) fn is_free(&self, at: [f32; 2], radius: f32, looks: &mut Looks) -> bool {
         let [x, y] = [0, 1].map(|axis| self.half[axis] - radius - SKIN as f32 - at[axis].abs());
         if x < 0.0 || y < 0.0 {
             return false;
         }
         let ball = Ball::new(radius.max(0.05));
         let pose = Pose::from_translation(Vector::new(at[0], at[1], radius.max(0.05) + 0.01));
-        self.query_but(SOLID | WALL | AGENT, None)
-            .intersect_shape(pose, &ball)
-            .next()
-            .is_none()
+        let around = ball.compute_aabb(&pose);
+        let area = [around.mins, around.maxs].map(|corner| [corner.x, corner.y]);
+        let mut near: Vec<ColliderHandle> = self.around(SOLID | WALL | AGENT, None, area).take(MOST_NEAR).collect();
+        // The tree's order depends on its past, and looks are counted until one is met.
+        near.sort_unstable_by_key(|handle| self.standing[slot(*handle)].rank);
+        let meets = |handle: &ColliderHandle| {
+            let collider = &self.colliders[*handle];
+            let between = pose.inv_mul(collider.position());
+            let dispatcher = self.narrow_phase.query_dispatcher();
+            dispatcher
+                .intersection_test(&between, &ball, collider.shape())
+                .is_ok_and(|met| met.intersecting)
+        };
+        looks.take(LOOKS_PER_SHAPE * near.len()) && near.len() < MOST_NEAR && !near.iter().any(meets)
     }
 }

@@ -1,6 +1,7 @@
 //! What objects do by themselves between the agent's steps: moving, and coming back. Where each wants to go is in `motion.rs`.
 
 use super::environment::Environment;
+use super::looks::{self, Looks, Shared};
 use super::motion::View;
 use super::walls;
 
@@ -14,7 +15,9 @@ impl Environment {
         let half = self.scene.arena_size().map(|side| side / 2.0);
         let seconds = self.world.agent_params.time_step as f32;
         let mut movers = std::mem::take(&mut self.episode.movers);
-        for mover in &mut movers {
+        let count = looks::MOVERS + looks::EACH_MOVER * movers.len() as u64;
+        let mut looks = Shared::new(count, movers.len(), self.episode.ticks);
+        for (place, mover) in movers.iter_mut().enumerate() {
             let index = mover.object;
             if !self.episode.objects[index].present {
                 continue;
@@ -31,7 +34,8 @@ impl Environment {
             if let Some(stride) = mover.decide(&self.world.objects[index], view) {
                 let turn = [item.heading_deg, stride.heading_deg];
                 // Where the body is, the item is, to the last bit: a world that was written down has nothing else to go on from.
-                if let Some(pose) = self.ground.push(index as u32, stride.by, turn) {
+                let pose = self.ground.push(index as u32, stride.by, turn, looks.at(place));
+                if let Some(pose) = pose {
                     (item.position, item.heading_deg) = pose;
                     mover.moved(stride.by, [0, 1].map(|axis| item.position[axis] - from[axis]));
                 }
@@ -39,6 +43,8 @@ impl Environment {
             self.note_mover(index, from);
         }
         self.episode.movers = movers;
+        #[cfg(test)]
+        (self.scratch.looked += count - looks.left());
     }
 
     /// Notes what an object that moves by itself, and came from a place, met on its way.
@@ -62,18 +68,30 @@ impl Environment {
     /// Puts back the destroyed objects whose time has come: near their first place, where nothing stands.
     pub(super) fn bring_back(&mut self) {
         let now = self.episode.ticks;
-        let mut next = 0;
-        while let Some(&(index, due)) = self.episode.returning.get(next) {
-            if due <= now && self.put_back(index) {
-                self.episode.returning.remove(next);
-            } else {
-                next += 1;
-            }
-        }
+        let mut returning = std::mem::take(&mut self.episode.returning);
+        let waiting = returning.len();
+        let count = looks::RETURNS + looks::EACH_RETURN * waiting as u64;
+        let mut looks = Shared::new(count, waiting, now);
+        let per_place = if waiting > 0 { 1 + self.num_wall_corners() } else { 0 };
+        let mut place = 0;
+        returning.retain(|&(index, due)| {
+            place += 1;
+            due > now || !self.put_back(index, per_place, looks.at(place - 1))
+        });
+        self.episode.returning = returning;
+        #[cfg(test)]
+        (self.scratch.looked += count - looks.left());
     }
 
-    /// Puts an object back at a free place; false if none is found in this step.
-    fn put_back(&mut self, index: usize) -> bool {
+    /// How many corners the walls of the world have.
+    fn num_wall_corners(&self) -> usize {
+        let environment = &self.world.environment_params;
+        let regions: usize = environment.regions().into_iter().map(<[_]>::len).sum();
+        regions + environment.walls.iter().map(|wall| wall.polygon.len()).sum::<usize>()
+    }
+
+    /// Puts an object back at a free place; false if none is found in this step. Each place that is tried takes `per_place` looks.
+    fn put_back(&mut self, index: usize, per_place: usize, looks: &mut Looks) -> bool {
         /// Places tried in one step.
         const TRIES: u32 = 16;
         let object = &self.world.objects[index];
@@ -82,6 +100,9 @@ impl Environment {
         let radius = self.scene.items[index].asset.collider.radius() * self.scene.items[index].scale;
         let first = object.coordinates.map(|metres| metres as f32);
         for _ in 0..TRIES {
+            if !looks.take(per_place) {
+                return false;
+            }
             // What comes back has luck: it is made with the episode, or when it is spawned.
             let Some(luck) = self.episode.luck_of(index) else {
                 return true;
@@ -94,7 +115,7 @@ impl Environment {
                 first[1] + distance * libm::sinf(angle),
             ];
             let in_wall = walls::obstacle(&self.world, place.map(f64::from), f64::from(radius)).is_some();
-            if !in_wall && self.ground.is_free(place, radius) {
+            if !in_wall && self.ground.is_free(place, radius, looks) {
                 self.ground.remove(index as u32);
                 let item = &mut self.scene.items[index];
                 item.position = place;
@@ -108,7 +129,7 @@ impl Environment {
                 if let Some(luck) = self.episode.luck_of(index) {
                     luck.came_back();
                 }
-                if let Some(body) = self.episode.pushed.iter_mut().find(|body| body.object == index) {
+                if let Some(body) = self.episode.pushed_of(index) {
                     (body.velocity, body.spin_deg) = ([0.0; 2], 0.0);
                 }
                 return true;

@@ -10,6 +10,7 @@ use rapier3d::prelude::*;
 use super::body::{EDGE, Ground, SOLID, WALL, slot};
 use super::environment::Environment;
 use super::episode::wrapped;
+use super::neighbours::MARGIN;
 use super::outline::Outline;
 use super::slide::SKIN;
 
@@ -28,9 +29,6 @@ const MOST_PARTS: u32 = 60;
 /// Standard gravity in metres per second squared: what friction with the ground grows with.
 const GRAVITY: f32 = 9.806_65;
 
-/// Distance in metres within which bodies are taken to be able to meet, on top of their ways.
-const MARGIN: f32 = 0.2;
-
 /// The motion of one body that is pushed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pushed {
@@ -47,7 +45,6 @@ struct Active {
     /// Its number among the pushed bodies.
     index: usize,
     handle: RigidBodyHandle,
-    collider: ColliderHandle,
     radius: f32,
     friction: f32,
 }
@@ -91,27 +88,46 @@ impl Environment {
         let pushed = || self.episode.pushed.iter();
         let agent_pushes = pushed().any(|body| present(body) && self.may_meet_agent(body, by));
         let first = (0..).zip(pushed()).filter(|(_, body)| may_move(body));
-        let chosen = self.with_neighbours(first.map(|(index, _)| index).collect(), seconds);
+        let parts = ((seconds / LONGEST).ceil() as u32).clamp(FEWEST_PARTS, MOST_PARTS);
+        let chosen = self.with_neighbours(first.map(|(index, _)| index).collect(), seconds, parts);
+        if !chosen.is_whole {
+            self.rest_but(&chosen.indices);
+        }
+        #[cfg(test)]
+        (self.scratch.looked += chosen.looked);
         let mut physics = PhysicsWorld {
             gravity: Vector::ZERO,
             ..PhysicsWorld::default()
         };
         let active: Vec<Active> = chosen
-            .into_iter()
+            .indices
+            .iter()
+            .copied()
             .map(|index| self.add_active(&mut physics, index))
             .collect();
         self.add_surroundings(&mut physics, &active, seconds);
         let agent = agent_pushes.then(|| self.add_agent(&mut physics, by, seconds));
-        let parts = ((seconds / LONGEST).ceil() as u32).clamp(FEWEST_PARTS, MOST_PARTS);
         physics.integration_parameters.dt = seconds / parts as f32;
+        let mut is_jammed = false;
         for _ in 0..parts {
             physics.step();
             if let Some((_, collider)) = agent {
-                self.note_contacts(&physics, collider, &active);
+                self.note_contacts(&physics, collider);
             }
             rub(&mut physics, &active);
+            let num_pairs = physics.narrow_phase.contact_pairs().count();
+            #[cfg(test)]
+            (self.scratch.looked += num_pairs as u64);
+            if num_pairs > chosen.most_pairs {
+                // More have met on their ways than may: there they stay.
+                is_jammed = true;
+                break;
+            }
         }
         self.take_over(&physics, &active);
+        if is_jammed {
+            self.rest_but(&[]);
+        }
         let Some((body, _)) = agent else { return by };
         let end = physics.bodies[body].translation();
         let start = self.episode.agent.position;
@@ -125,30 +141,16 @@ impl Environment {
         (x * x + y * y).sqrt() < reach + self.body_radius(body.object) + MARGIN
     }
 
-    /// The pushed bodies that may move in a time step: the chosen ones, and what these may meet.
-    fn with_neighbours(&self, mut chosen: Vec<usize>, seconds: f32) -> Vec<usize> {
-        let pushed = &self.episode.pushed;
-        let present = |index: usize| self.episode.objects[pushed[index].object].present;
-        let agent_speed = self.world.agent_params.max_linear_speed as f32;
-        let mut next = 0;
-        while let Some(&index) = chosen.get(next) {
-            next += 1;
-            for other in (0..pushed.len()).filter(|&other| present(other)) {
-                let [a, b] = [index, other].map(|index| pushed[index].object);
-                let (at, to) = (self.scene.items[a].position, self.scene.items[b].position);
-                let distance = ((to[0] - at[0]).powi(2) + (to[1] - at[1]).powi(2)).sqrt();
-                let [vx, vy] = pushed[index].velocity;
-                let way = (vx * vx + vy * vy).sqrt().max(agent_speed) * seconds;
-                if distance < self.body_radius(a) + self.body_radius(b) + way + MARGIN && !chosen.contains(&other) {
-                    chosen.push(other);
-                }
+    /// Brings all pushed bodies but these to rest; their numbers rise.
+    fn rest_but(&mut self, indices: &[usize]) {
+        for (index, body) in self.episode.pushed.iter_mut().enumerate() {
+            if indices.binary_search(&index).is_err() {
+                (body.velocity, body.spin_deg) = ([0.0; 2], 0.0);
             }
         }
-        chosen.sort_unstable();
-        chosen
     }
 
-    fn body_radius(&self, object: usize) -> f32 {
+    pub(super) fn body_radius(&self, object: usize) -> f32 {
         let item = &self.scene.items[object];
         item.asset.collider.radius() * item.scale
     }
@@ -186,12 +188,12 @@ impl Environment {
             .friction(friction)
             .restitution(0.0)
             .user_data(u128::from(index as u64));
+        physics
+            .colliders
+            .insert_with_parent(collider, handle, &mut physics.bodies);
         Active {
             index,
             handle,
-            collider: physics
-                .colliders
-                .insert_with_parent(collider, handle, &mut physics.bodies),
             radius: self.body_radius(body.object).max(0.05),
             friction,
         }
@@ -199,35 +201,26 @@ impl Environment {
 
     /// Walls and objects that stand fast around the bodies, in an order that does not depend on how the world came to be.
     fn add_surroundings(&self, physics: &mut PhysicsWorld, active: &[Active], seconds: f32) {
-        let speed = self.world.agent_params.max_linear_speed as f32;
-        let mut around: Vec<(ColliderHandle, u64)> = Vec::new();
+        let mut around: Vec<(u64, ColliderHandle)> = Vec::new();
+        // Both rise: numbers among the pushed bodies, and their objects.
+        let moves = |object: u32| {
+            let own = |body: &Active| self.episode.pushed[body.index].object;
+            active.binary_search_by_key(&(object as usize), own).is_ok()
+        };
         for body in active {
-            let pushed = &self.episode.pushed[body.index];
-            let [x, y] = self.scene.items[pushed.object].position;
-            let [vx, vy] = pushed.velocity;
-            let reach = body.radius + (vx * vx + vy * vy).sqrt().max(speed) * seconds + MARGIN;
-            let half = Vector::new(reach, reach, 1e3);
-            let area = Aabb::from_half_extents(Vector::new(x, y, 0.0), half);
-            let own = |object: usize| {
-                active
-                    .iter()
-                    .any(|other| self.episode.pushed[other.index].object == object)
-            };
-            for (handle, collider) in self
-                .ground
-                .query_but(SOLID | WALL, None)
-                .intersect_aabb_conservative(area)
-            {
-                let groups = collider.collision_groups().memberships;
-                let standing = (groups & (SOLID | WALL)) != Group::NONE;
-                let fast = groups == WALL || !own(collider.user_data as usize);
-                if standing && fast && !around.iter().any(|(known, _)| *known == handle) {
-                    around.push((handle, self.ground.standing[slot(handle)].rank));
+            let at = self.scene.items[self.episode.pushed[body.index].object].position;
+            let reach = self.standing_reach(body.index, seconds);
+            let area = [at.map(|metres| metres - reach), at.map(|metres| metres + reach)];
+            for handle in self.ground.around(SOLID | WALL, None, area) {
+                let standing = &self.ground.standing[slot(handle)];
+                if !standing.object.is_some_and(moves) {
+                    around.push((standing.rank, handle));
                 }
             }
         }
-        around.sort_unstable_by_key(|(_, key)| *key);
-        for (handle, _) in around {
+        around.sort_unstable_by_key(|(rank, _)| *rank);
+        around.dedup_by_key(|(rank, _)| *rank);
+        for (_, handle) in around {
             let standing = &self.ground.colliders[handle];
             let mut place = *standing.position();
             place.translation.z = 0.0;
@@ -273,12 +266,18 @@ impl Environment {
         (body, collider)
     }
 
-    fn note_contacts(&mut self, physics: &PhysicsWorld, agent: ColliderHandle, active: &[Active]) {
-        for body in active {
-            let pair = physics.narrow_phase.contact_pair(agent, body.collider);
-            let object = self.episode.pushed[body.index].object as u32;
-            if pair.is_some_and(ContactPair::has_any_active_contact) && !self.scratch.met.contains(&object) {
-                self.scratch.met.push(object);
+    fn note_contacts(&mut self, physics: &PhysicsWorld, agent: ColliderHandle) {
+        for pair in physics.narrow_phase.contact_pairs_with(agent) {
+            let other = if pair.collider1 == agent {
+                pair.collider2
+            } else {
+                pair.collider1
+            };
+            let body = &physics.colliders[other];
+            // What stands fast has no body.
+            if body.parent().is_some() && pair.has_any_active_contact() {
+                let index = body.user_data as usize;
+                self.scratch.met.push(self.episode.pushed[index].object as u32);
             }
         }
     }

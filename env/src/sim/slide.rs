@@ -5,6 +5,7 @@
 //! wall it keeps the part of its speed that points along the wall, whatever the wall's length, the body's width or the time step.
 
 use super::footprint::{Footprint, Gap, Point};
+use super::looks::Looks;
 
 /// Distance that a body keeps from what it slides along, in metres.
 pub(super) const SKIN: f64 = 0.01;
@@ -19,6 +20,9 @@ const SAGITTA: f64 = 1e-3;
 /// Most parts of a way: each is a straight way along one thing. A way of 1 km along a thousand bodies ends early.
 const MOST_PARTS: usize = 4096;
 
+/// How often each body is asked for in a part of a way: whether it is touched, when it will be, and whether it is what is followed.
+const LOOKS_PER_PART: usize = 4;
+
 /// What may be in the way: the footprints of these numbers.
 #[derive(Clone, Copy)]
 pub(super) struct Obstacles<'a> {
@@ -26,6 +30,8 @@ pub(super) struct Obstacles<'a> {
     pub(super) footprints: &'a [Footprint],
     /// The numbers of those that may be met, in an order that depends on the world alone.
     pub(super) numbers: &'a [u32],
+    /// How many corners these have in all.
+    pub(super) num_corners: usize,
 }
 
 impl Obstacles<'_> {
@@ -97,13 +103,25 @@ impl Obstacles<'_> {
     /// Lets a round body, driven a way in a unit of time, slide; notes in `path` where its way bends, and its end.
     ///
     /// What its middle is inside of does not hold it: where something was put on it, it walks out whichever way it likes.
-    pub(super) fn slide(&self, from: Point, by: Point, radius: f64, touched: &mut Vec<Gap>, path: &mut Vec<Point>) {
+    /// Its way ends where its looks do.
+    pub(super) fn slide(
+        &self,
+        from: Point,
+        by: Point,
+        radius: f64,
+        looks: &mut Looks,
+        touched: &mut Vec<Gap>,
+        path: &mut Vec<Point>,
+    ) {
         let (mut at, mut left) = (from, 1.0);
         for _ in 0..MOST_PARTS {
+            if !looks.take(LOOKS_PER_PART * self.num_corners) {
+                break;
+            }
             touched.clear();
             let gaps = self.footprints().map(|footprint| footprint.gap(at));
             touched.extend(gaps.filter(|gap| is_touched(gap, radius)));
-            let Some((way, held_by)) = allowed(by, touched) else {
+            let Some((way, held_by)) = allowed(by, touched, looks) else {
                 break;
             };
             let mut time = left;
@@ -173,24 +191,39 @@ fn is_touched(gap: &Gap, radius: f64) -> bool {
 }
 
 /// The part of a way that leads into nothing that is touched, and the way out of what turned it; nothing where no way is left.
-fn allowed(by: Point, touched: &[Gap]) -> Option<(Point, Option<Point>)> {
+fn allowed(by: Point, touched: &[Gap], looks: &mut Looks) -> Option<(Point, Option<Point>)> {
     let length = dot(by, by).sqrt();
-    let free = |way: Point, slack: f64| touched.iter().all(|gap| dot(way, gap.out) >= -slack);
+    // What a way led into, the next one is likely to lead into, too.
+    let mut suspect = 0;
+    let mut free = |way: Point, slack: f64| {
+        let leads_into = |gap: &Gap| dot(way, gap.out) < -slack;
+        if touched.get(suspect).is_some_and(leads_into) {
+            return false;
+        }
+        let found = touched.iter().position(leads_into);
+        suspect = found.unwrap_or(suspect);
+        found.is_none()
+    };
     if length <= 1e-9 {
         return None;
     }
     if free(by, 0.0) {
         return Some((by, None));
     }
-    // Of the ways along one thing each, the nearest to what was meant among those that lead into no other.
+    // Of the ways along one thing each, the nearest to what was meant among those that lead into no other. It is as far from what was
+    // meant as that leads into the deepest, less what the slack allows: ways that are nearer need not be looked at.
+    let deepest = touched.iter().map(|gap| -dot(by, gap.out)).fold(0.0, f64::max);
     let mut best: Option<(f64, Point, Point)> = None;
     for gap in touched {
         let into = dot(by, gap.out);
-        if into >= 0.0 {
+        if into >= 0.0 || -into < deepest - 4e-6 * length || best.is_some_and(|(least, ..)| -into >= least) {
             continue;
         }
         let way = add(by, gap.out, -into);
-        if free(way, 1e-6 * length) && best.is_none_or(|(least, ..)| -into < least) {
+        if !looks.take(touched.len()) {
+            break;
+        }
+        if free(way, 1e-6 * length) {
             best = Some((-into, way, gap.out));
         }
     }
@@ -204,4 +237,57 @@ fn dot(a: Point, b: Point) -> f64 {
 
 fn add(at: Point, by: Point, share: f64) -> Point {
     [at[0] + by[0] * share, at[1] + by[1] * share]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The rule as it reads: every way along everything, against everything.
+    fn allowed_by_all(by: Point, touched: &[Gap]) -> Option<(Point, Option<Point>)> {
+        let length = dot(by, by).sqrt();
+        let free = |way: Point, slack: f64| touched.iter().all(|gap| dot(way, gap.out) >= -slack);
+        if length <= 1e-9 {
+            return None;
+        }
+        if free(by, 0.0) {
+            return Some((by, None));
+        }
+        let mut best: Option<(f64, Point, Point)> = None;
+        for gap in touched {
+            let into = dot(by, gap.out);
+            let way = add(by, gap.out, -into);
+            if into < 0.0 && free(way, 1e-6 * length) && best.is_none_or(|(least, ..)| -into < least) {
+                best = Some((-into, way, gap.out));
+            }
+        }
+        let (_, way, out) = best?;
+        (dot(way, way).sqrt() > 1e-6 * length).then_some((way, Some(out)))
+    }
+
+    /// Directions from a few degrees, with some that are nearly or exactly alike.
+    fn direction() -> impl Strategy<Value = Point> {
+        let noise = prop_oneof![Just(0.0), -1e-5..1e-5_f64, -1e-7..1e-7_f64, -0.5..0.5_f64];
+        (0..24_i32, noise).prop_map(|(step, noise)| {
+            let angle = f64::from(step) * std::f64::consts::TAU / 24.0 + noise;
+            [angle.sin(), angle.cos()]
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(2000))]
+
+        #[test]
+        fn the_allowed_way_is_that_of_the_rule_to_the_last_bit(
+            by in direction(),
+            length in prop_oneof![1e-8..1e-3_f64, 1e-3..1e3_f64],
+            outs in prop::collection::vec(direction(), 0..12),
+        ) {
+            let by = by.map(|part| part * length);
+            let touched: Vec<Gap> = outs.into_iter().map(|out| Gap { distance: 0.0, out }).collect();
+            let found = allowed(by, &touched, &mut Looks::new(u64::MAX));
+            prop_assert_eq!(found, allowed_by_all(by, &touched));
+        }
+    }
 }

@@ -114,18 +114,24 @@ impl Environment {
     fn note_object(&self, index: usize, object: &mut Object) -> ObjectProgress {
         let state = &self.episode.objects[index];
         let origin = self.put_where_it_is(index, object);
-        let mover = self.episode.movers.iter().find(|mover| mover.object == index);
-        let pushed = self.episode.pushed.iter().find(|body| body.object == index);
-        let returns = self.episode.returning.iter().find(|(other, _)| *other == index);
-        let luck = self.episode.luck.iter().find(|luck| luck.object == index);
+        let episode = &self.episode;
+        // All of these lists rise.
+        let mover = episode.movers.binary_search_by_key(&index, |mover| mover.object);
+        let pushed = episode.pushed.binary_search_by_key(&index, |body| body.object);
+        let returns = episode.returning.binary_search_by_key(&index, |(other, _)| *other);
+        let luck = episode.luck.binary_search_by_key(&index, |luck| luck.object);
+        let mover = mover.ok().map(|place| &episode.movers[place]);
+        let pushed = pushed.ok().map(|place| &episode.pushed[place]);
+        let returns = returns.ok().map(|place| episode.returning[place]);
+        let luck = luck.ok().map(|place| &episode.luck[place]);
         let (waypoint, goal, goals) = mover.map_or((0, None, 0), Mover::progress);
         ObjectProgress {
             present: state.present,
             collected: state.collected,
-            touched: self.episode.contacts.contains(&(index as u32)),
+            touched: self.touches(index),
             in_range: state.in_range,
             origin,
-            returns_at: returns.map(|(_, tick)| *tick),
+            returns_at: returns.map(|(_, tick)| tick),
             goal,
             waypoint,
             goals,
@@ -160,6 +166,7 @@ impl Environment {
         for (index, own) in progress.objects.iter().enumerate().take(self.world.objects.len()) {
             self.resume_object(index, own, came.objects[index]);
         }
+        self.episode.sequence.advance(&self.episode.objects);
     }
 
     fn resume_object(&mut self, index: usize, own: &ObjectProgress, now: ([f32; 2], f32, f64)) {
@@ -174,13 +181,14 @@ impl Environment {
             self.episode.contacts.push(index as u32);
         }
         self.episode.returning.extend(own.returns_at.map(|tick| (index, tick)));
-        if let Some(mover) = self.episode.movers.iter_mut().find(|mover| mover.object == index) {
-            mover.resume(own.waypoint, own.goal, own.goals);
+        let movers = &mut self.episode.movers;
+        if let Ok(place) = movers.binary_search_by_key(&index, |mover| mover.object) {
+            movers[place].resume(own.waypoint, own.goal, own.goals);
         }
         if let Some(luck) = self.episode.luck_of(index) {
             (luck.pulls, luck.returns, luck.tries) = (own.pulls, own.returns, own.tries);
         }
-        if let Some(body) = self.episode.pushed.iter_mut().find(|body| body.object == index) {
+        if let Some(body) = self.episode.pushed_of(index) {
             body.velocity = own
                 .velocity
                 .map_or([0.0; 2], |velocity| velocity.map(|speed| speed as f32));

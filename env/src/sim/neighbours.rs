@@ -1,0 +1,173 @@
+//! Which of the bodies that can be pushed move in a time step: those that the agent may meet or that are moving, and what these may
+//! meet in turn. How they move is in `pushing.rs`.
+//!
+//! Physics costs as much as bodies meet, and in a heap all meet all. So there is a limit to how many meet in a time step; what
+//! is over it stands fast for this time step, and is at rest after it.
+
+use rapier3d::prelude::ColliderHandle;
+
+use super::body::{Ground, SOLID, WALL, slot};
+use super::environment::Environment;
+use super::looks::Looks;
+
+/// Distance in metres within which bodies are taken to be able to meet, on top of their ways.
+pub(super) const MARGIN: f32 = 0.2;
+
+/// How many bodies are looked at around all that may move.
+const LOOKS: u64 = 200_000;
+
+/// How many bodies all that move may meet on their ways in a time step, each as often as it may be met, times the parts that
+/// the physics takes the time step in. One that moves counts for some more.
+const MAY_MEET: u64 = 200_000;
+const MOVES: usize = 8;
+
+/// How many bodies all that move overlap from the start, by the boxes around them, counted in the same way.
+const OVERLAP: u64 = 30_000;
+
+/// How many pairs of bodies may be near to each other while they move, counted in the same way.
+const PAIRS: u64 = 60_000;
+
+/// How many bodies are looked at around one, how many it may meet, and overlap: what many hold at once costs more than its share.
+const ONE_LOOKS: usize = 8192;
+const ONE_MAY_MEET: usize = 1024;
+const ONE_OVERLAPS: usize = 256;
+
+/// The bodies that move in a time step.
+pub(super) struct Chosen {
+    /// Numbers among the pushed bodies, rising.
+    pub(super) indices: Vec<usize>,
+    /// Whether all that should move do.
+    pub(super) is_whole: bool,
+    /// How many pairs may be near to each other while they move.
+    pub(super) most_pairs: usize,
+    /// How many bodies were looked at.
+    #[cfg(test)]
+    pub(super) looked: u64,
+}
+
+/// What is around one body.
+struct Around {
+    /// Other bodies that can be pushed and that it may meet, by their numbers among these.
+    neighbours: Vec<usize>,
+    /// How many bodies it may meet.
+    may_meet: usize,
+    /// How many it overlaps from the start.
+    overlaps: usize,
+}
+
+impl Environment {
+    /// The bodies that move in a time step of so many parts: the first ones, and what these may meet.
+    pub(super) fn with_neighbours(&self, first: Vec<usize>, seconds: f32, parts: u32) -> Chosen {
+        let pushed = &self.episode.pushed;
+        let radii = pushed.iter().map(|body| self.body_radius(body.object));
+        let widest = radii.fold(0.0, f32::max);
+        let mut looks = Looks::new(LOOKS);
+        let mut may_meet = Looks::new(MAY_MEET / u64::from(parts));
+        let mut overlap = Looks::new(OVERLAP / u64::from(parts));
+        let mut seen = vec![false; pushed.len()];
+        first.iter().for_each(|index| seen[*index] = true);
+        let (mut waiting, mut next) = (first, 0);
+        let mut indices = Vec::new();
+        while let Some(&index) = waiting.get(next) {
+            next += 1;
+            let Some(around) = self.around_pushed(index, seconds, widest, &mut looks) else {
+                continue;
+            };
+            let fits = |left: Looks, count: usize| count as u64 <= left.left();
+            if around.may_meet > ONE_MAY_MEET || around.overlaps > ONE_OVERLAPS {
+                continue;
+            }
+            if !fits(may_meet, around.may_meet + MOVES) || !fits(overlap, around.overlaps) {
+                continue;
+            }
+            may_meet.take(around.may_meet + MOVES);
+            overlap.take(around.overlaps);
+            indices.push(index);
+            for other in around.neighbours {
+                if !std::mem::replace(&mut seen[other], true) {
+                    waiting.push(other);
+                }
+            }
+        }
+        indices.sort_unstable();
+        Chosen {
+            is_whole: indices.len() == waiting.len(),
+            indices,
+            most_pairs: (PAIRS / u64::from(parts)) as usize,
+            #[cfg(test)]
+            looked: LOOKS - looks.left(),
+        }
+    }
+
+    /// What is around a body that may move; nothing if that is more than may be looked at.
+    fn around_pushed(&self, index: usize, seconds: f32, widest: f32, looks: &mut Looks) -> Option<Around> {
+        let pushed = &self.episode.pushed;
+        let object = pushed[index].object;
+        let own = self.ground.handles[object]?;
+        let at = self.scene.items[object].position;
+        let radius = self.body_radius(object);
+        let reach = self.pushed_way(index, seconds) + MARGIN;
+        let box_around = |half: f32| [at.map(|metres| metres - half), at.map(|metres| metres + half)];
+        let area = box_around(radius.max(0.05) + reach + 2.0 * widest);
+        let own_box = self.ground.box_of(own);
+        let surroundings = box_around(self.standing_reach(index, seconds));
+        let mut around = Around {
+            neighbours: Vec::new(),
+            may_meet: 0,
+            overlaps: 0,
+        };
+        for (count, handle) in self.ground.around(SOLID | WALL, Some(own), area).enumerate() {
+            if !looks.take(1) || count > ONE_LOOKS {
+                return None;
+            }
+            let other = self.ground.standing[slot(handle)].object;
+            let place = other.and_then(|other| {
+                let other = other as usize;
+                pushed.binary_search_by_key(&other, |body| body.object).ok()
+            });
+            let other_box = self.ground.box_of(handle);
+            around.overlaps += usize::from(overlap(other_box, own_box));
+            let may_be_met = if let Some(place) = place {
+                let other = pushed[place].object;
+                let to = self.scene.items[other].position;
+                let distance = ((to[0] - at[0]).powi(2) + (to[1] - at[1]).powi(2)).sqrt();
+                // In this order, for the sum is rounded.
+                let way = self.pushed_way(index, seconds);
+                let is_near = distance < radius + self.body_radius(other) + way + MARGIN;
+                if is_near {
+                    around.neighbours.push(place);
+                }
+                is_near
+            } else {
+                overlap(other_box, surroundings)
+            };
+            around.may_meet += usize::from(may_be_met);
+        }
+        Some(around)
+    }
+
+    /// How far a pushed body may come in a time step, in metres.
+    pub(super) fn pushed_way(&self, index: usize, seconds: f32) -> f32 {
+        let agent_speed = self.world.agent_params.max_linear_speed as f32;
+        let [vx, vy] = self.episode.pushed[index].velocity;
+        (vx * vx + vy * vy).sqrt().max(agent_speed) * seconds
+    }
+
+    /// How far from a pushed body's middle the bodies lie that stand fast and that it may meet, in metres along each axis.
+    pub(super) fn standing_reach(&self, index: usize, seconds: f32) -> f32 {
+        let radius = self.body_radius(self.episode.pushed[index].object).max(0.05);
+        radius + self.pushed_way(index, seconds) + MARGIN
+    }
+}
+
+impl Ground {
+    /// The box around a body on the ground.
+    fn box_of(&self, handle: ColliderHandle) -> [[f32; 2]; 2] {
+        let area = self.colliders[handle].compute_aabb();
+        [area.mins, area.maxs].map(|corner| [corner.x, corner.y])
+    }
+}
+
+fn overlap(a: [[f32; 2]; 2], b: [[f32; 2]; 2]) -> bool {
+    (0..2).all(|axis| a[0][axis] <= b[1][axis] && b[0][axis] <= a[1][axis])
+}

@@ -1,0 +1,90 @@
+//! Whose turn it is in a scavenger sequence. What is paid in turn, and out of it, is in `answer.rs`.
+
+use driftworld_spec::Object;
+
+use super::episode::ObjectState;
+
+/// The places of a sequence in their order, and how many of them have been collected from the first on.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sequence {
+    /// Place and object, in rising order.
+    places: Vec<(u32, u32)>,
+    /// All before this one have been collected.
+    next: usize,
+}
+
+impl Sequence {
+    /// The sequence of a world in which nothing has been collected yet.
+    pub(super) fn of(objects: &[Object]) -> Self {
+        let ordered = objects.iter().zip(0..);
+        let mut places: Vec<(u32, u32)> = ordered
+            .filter_map(|(object, index)| object.order.map(|order| (order, index)))
+            .collect();
+        places.sort_unstable();
+        Self { places, next: 0 }
+    }
+
+    /// Adds an object that has not been collected, if it has a place.
+    pub(super) fn add(&mut self, index: usize, order: Option<u32>) {
+        let Some(order) = order else { return };
+        let own = (order, index as u32);
+        let place = self.places.partition_point(|other| *other < own);
+        self.places.insert(place, own);
+        self.next = self.next.min(place);
+    }
+
+    /// Takes note of what has been collected; nothing ever becomes uncollected.
+    pub(super) fn advance(&mut self, objects: &[ObjectState]) {
+        let is_collected = |(_, index): &(u32, u32)| objects[*index as usize].collected;
+        while self.places.get(self.next).is_some_and(is_collected) {
+            self.next += 1;
+        }
+    }
+
+    /// Whether all objects with a lower place have been collected.
+    pub(super) fn is_due(&self, order: Option<u32>) -> bool {
+        let first = self.places.get(self.next);
+        order.is_none_or(|own| first.is_none_or(|(first, _)| own <= *first))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Against the rule as it reads: every lower place has been collected.
+        #[test]
+        fn it_is_ones_turn_when_all_lower_places_have_been_collected(
+            orders in prop::collection::vec(prop::option::of(1u32..6), 1..12),
+            spawned in prop::collection::vec((0usize..30, prop::option::of(1u32..6)), 0..6),
+            collected in prop::collection::vec(0usize..18, 0..30),
+        ) {
+            let object = |order: &Option<u32>| {
+                let mut object = Object::new("coin", [0.0; 2]);
+                object.order = *order;
+                object
+            };
+            let mut objects: Vec<Object> = orders.iter().map(object).collect();
+            let mut states: Vec<ObjectState> = objects.iter().map(ObjectState::new).collect();
+            let mut sequence = Sequence::of(&objects);
+            for (moment, index) in collected.into_iter().enumerate() {
+                for (_, order) in spawned.iter().filter(|(at, _)| *at == moment) {
+                    objects.push(object(order));
+                    states.push(ObjectState::new(&objects[objects.len() - 1]));
+                    sequence.add(objects.len() - 1, *order);
+                }
+                if let Some(state) = states.get_mut(index) {
+                    state.collected = true;
+                }
+                sequence.advance(&states);
+                for own in &objects {
+                    let lower = |other: &Object| other.order.zip(own.order).is_some_and(|(other, own)| other < own);
+                    let expected = objects.iter().zip(&states).all(|(other, state)| !lower(other) || state.collected);
+                    prop_assert_eq!(sequence.is_due(own.order), expected);
+                }
+            }
+        }
+    }
+}
