@@ -16,16 +16,19 @@ pub(super) const MARGIN: f32 = 0.2;
 /// How many bodies are looked at around all that may move.
 const LOOKS: u64 = 200_000;
 
-/// How many bodies all that move may meet on their ways in a time step, each as often as it may be met, times the parts that
-/// the physics takes the time step in. One that moves counts for some more.
-const MAY_MEET: u64 = 200_000;
-const MOVES: usize = 8;
+/// How many bodies all that move may meet on their ways in a time step, each as often as it may be met.
+const MAY_MEET: u64 = 40_000;
 
-/// How many bodies all that move overlap from the start, by the boxes around them, counted in the same way.
+/// How many bodies move, times the parts that the physics takes the time step in.
+const MOVE: u64 = 36_000;
+
+/// How many bodies all that move overlap from the start, by the boxes around them, times these parts; and fewest.
 const OVERLAP: u64 = 30_000;
+const FEWEST_OVERLAPS: u64 = 1_500;
 
-/// How many pairs of bodies may be near to each other while they move, counted in the same way.
+/// How many pairs of bodies may be near to each other while they move, times these parts; and fewest.
 const PAIRS: u64 = 60_000;
+const FEWEST_PAIRS: u64 = 4_000;
 
 /// How many bodies are looked at around one, how many it may meet, and overlap: what many hold at once costs more than its share.
 const ONE_LOOKS: usize = 8192;
@@ -62,8 +65,10 @@ impl Environment {
         let radii = pushed.iter().map(|body| self.body_radius(body.object));
         let widest = radii.fold(0.0, f32::max);
         let mut looks = Looks::new(LOOKS);
-        let mut may_meet = Looks::new(MAY_MEET / u64::from(parts));
-        let mut overlap = Looks::new(OVERLAP / u64::from(parts));
+        let parts = u64::from(parts);
+        let mut may_meet = Looks::new(MAY_MEET);
+        let mut overlap = Looks::new(FEWEST_OVERLAPS.max(OVERLAP / parts));
+        let most = (MOVE / parts) as usize;
         let mut seen = vec![false; pushed.len()];
         first.iter().for_each(|index| seen[*index] = true);
         let (mut waiting, mut next) = (first, 0);
@@ -77,10 +82,11 @@ impl Environment {
             if around.may_meet > ONE_MAY_MEET || around.overlaps > ONE_OVERLAPS {
                 continue;
             }
-            if !fits(may_meet, around.may_meet + MOVES) || !fits(overlap, around.overlaps) {
+            let is_one_too_many = indices.len() >= most;
+            if is_one_too_many || !fits(may_meet, around.may_meet) || !fits(overlap, around.overlaps) {
                 continue;
             }
-            may_meet.take(around.may_meet + MOVES);
+            may_meet.take(around.may_meet);
             overlap.take(around.overlaps);
             indices.push(index);
             for other in around.neighbours {
@@ -93,7 +99,7 @@ impl Environment {
         Chosen {
             is_whole: indices.len() == waiting.len(),
             indices,
-            most_pairs: (PAIRS / u64::from(parts)) as usize,
+            most_pairs: FEWEST_PAIRS.max(PAIRS / parts) as usize,
             #[cfg(test)]
             looked: LOOKS - looks.left(),
         }
