@@ -1,6 +1,8 @@
-//! What must hold of every error about a text: it says something, at a place that is there, and does not fill the screen.
+//! What must hold of every error about a text: it says something, at a place that is there, does not fill the screen, and holds nothing
+//! that a terminal would obey or hide.
 
 use driftworld_spec::SpecError;
+use driftworld_text::is_unprintable;
 
 /// The longest message, in bytes: fifty problems of a few hundred letters.
 const LONGEST: usize = 100_000;
@@ -19,4 +21,6 @@ pub(crate) fn check(error: &SpecError, text: &str) {
 pub(crate) fn message(text: &str) {
     assert!(!text.trim().is_empty(), "an error says something");
     assert!(text.len() <= LONGEST, "{} bytes", text.len());
+    let raw = |letter: &char| *letter != '\n' && is_unprintable(*letter);
+    assert!(!text.chars().any(|letter| raw(&letter)), "{text:?}");
 }

@@ -34,12 +34,18 @@ impl Problem {
         found: impl Into<String>,
         expected: impl Into<String>,
     ) -> Self {
+        let found = found.into();
         Self {
             code,
             pointer: pointer.into(),
             line: 0,
             column: 0,
-            found: found.into(),
+            // A text that shows nothing is shown in quotes.
+            found: if found.trim().is_empty() {
+                format!("{found:?}")
+            } else {
+                found
+            },
             expected: expected.into(),
             advice: None,
         }
