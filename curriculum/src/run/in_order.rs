@@ -12,7 +12,7 @@ const AHEAD: u64 = 16;
 /// Does every item of a range, a worker to a thread, and hands the results on in order; ends early when `take` says so.
 ///
 /// Items are begun in order, each by whichever worker is free. After an early end the items under way are finished and
-/// dropped.
+/// dropped. Where the system has no threads to give, fewer do the work, or this one alone.
 pub(super) fn in_order<W: Send, T: Send, E>(
     items: Range<u64>,
     workers: Vec<W>,
@@ -21,23 +21,36 @@ pub(super) fn in_order<W: Send, T: Send, E>(
 ) -> Result<ControlFlow<()>, E> {
     let window = AHEAD * workers.len() as u64;
     let gate = Gate::new(items.clone());
+    // Handed out one by one: who gets no thread is still there.
+    let workers = Mutex::new(workers);
+    let hire = || workers.lock().unwrap_or_else(PoisonError::into_inner).pop();
     thread::scope(|scope| {
         let (results, arrived) = mpsc::channel();
-        for mut worker in workers {
-            let (results, gate, work) = (results.clone(), &gate, &work);
-            scope.spawn(move || {
+        let num_workers = workers.lock().unwrap_or_else(PoisonError::into_inner).len();
+        let mut num_threads = 0;
+        for _ in 0..num_workers {
+            let (results, gate, work, hire) = (results.clone(), &gate, &work, &hire);
+            let thread = thread::Builder::new().spawn_scoped(scope, move || {
                 // If this one panics, the others must not wait for its result for ever.
                 let _closing = Closing(gate);
+                let Some(mut worker) = hire() else { return };
                 while let Some(item) = gate.next(window) {
                     if results.send((item, work(&mut worker, item))).is_err() {
                         break;
                     }
                 }
             });
+            if thread.is_err() {
+                break;
+            }
+            num_threads += 1;
         }
         drop(results);
         // However this ends, no thread may go on waiting for its turn.
         let _closing = Closing(&gate);
+        if num_threads == 0 {
+            return alone(items, hire(), &work, &mut take);
+        }
         let (mut early, mut wanted) = (BTreeMap::new(), items.start);
         for (item, result) in arrived {
             early.insert(item, result);
@@ -51,6 +64,24 @@ pub(super) fn in_order<W: Send, T: Send, E>(
         }
         Ok(ControlFlow::Continue(()))
     })
+}
+
+/// Does every item in this thread.
+fn alone<W, T, E>(
+    items: Range<u64>,
+    worker: Option<W>,
+    work: &impl Fn(&mut W, u64) -> T,
+    take: &mut impl FnMut(u64, T) -> Result<ControlFlow<()>, E>,
+) -> Result<ControlFlow<()>, E> {
+    let Some(mut worker) = worker else {
+        return Ok(ControlFlow::Continue(()));
+    };
+    for item in items {
+        if take(item, work(&mut worker, item))?.is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
+    }
+    Ok(ControlFlow::Continue(()))
 }
 
 /// Gives out items in order, none too far ahead of those that were handed on.
@@ -168,6 +199,27 @@ mod tests {
             let panicked = ended.recv_timeout(std::time::Duration::from_mins(1));
             assert_eq!(panicked, Ok(true), "{jobs} threads: it ends, by the panic");
         }
+    }
+
+    #[test]
+    fn one_alone_does_the_same() {
+        let mut taken = Vec::new();
+        let work = |(): &mut (), item: u64| item * item;
+        let end: End = alone(10..15, Some(()), &work, &mut |item, square| {
+            taken.push((item, square));
+            Ok(if item == 13 {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            })
+        });
+        assert_eq!(
+            (taken, end),
+            (
+                (10..14).map(|item| (item, item * item)).collect(),
+                Ok(ControlFlow::Break(()))
+            )
+        );
     }
 
     #[test]

@@ -158,7 +158,8 @@ impl Disk<'_> {
 
 /// Files of the same names and of other content.
 fn older(out: &Path, names: &Files) -> Result<Files, XtaskError> {
-    for name in names.keys() {
+    // Libraries of models are written over by libraries only.
+    for name in names.keys().filter(|name| !name.ends_with(".assets")) {
         let path = out.join(name);
         let folder = path.parent().unwrap_or(out);
         fs::create_dir_all(folder)

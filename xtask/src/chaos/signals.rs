@@ -79,8 +79,8 @@ const CASES: [Case; 7] = [
         is_blocked: false,
     },
     Case {
-        what: "bench",
-        arguments: &["bench"],
+        what: "bench similarity",
+        arguments: &["bench", "similarity"],
         wait_millis: 500,
         is_blocked: false,
     },

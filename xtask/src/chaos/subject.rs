@@ -66,7 +66,10 @@ impl Subject {
         let folder = workspace.target.join("chaos").join(std::process::id().to_string());
         fs::create_dir_all(&folder).map_err(|source| file_error(&folder, source))?;
         // A copy: what is built meanwhile is another.
-        let (built, command) = (workspace.target.join("debug").join("driftworld"), folder.join("driftworld"));
+        let (built, command) = (
+            workspace.target.join("debug").join("driftworld"),
+            folder.join("driftworld"),
+        );
         fs::copy(&built, &command).map_err(|source| file_error(&built, source))?;
         let (scenario, short) = (folder.join("scenario.json"), folder.join("short.json"));
         let count = if is_quick { 10 } else { 25 };
