@@ -130,7 +130,8 @@ impl Place<'_> {
             self.jobs, figures.faults
         );
         figures.notes.push(format!(
-            "{} jobs, {begun}: {not_started} before the program was loaded, {of_std} in closedir"
+            "{} jobs, {begun}: {not_started} before the program was loaded, {of_std} in closedir",
+            self.jobs
         ));
         Ok(figures)
     }
