@@ -45,7 +45,7 @@ fn signal(child: &Child, signal: &str) {
 
 #[test]
 fn a_stopped_sample_leaves_nothing() {
-    for name in ["-INT", "-TERM"] {
+    for name in ["-INT", "-TERM", "-HUP"] {
         let folder = scratch();
         let child = begun(folder.path());
         signal(&child, name);

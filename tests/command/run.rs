@@ -95,11 +95,22 @@ fn a_run_killed_again_and_again_writes_what_an_undisturbed_one_does() {
     assert!(kills >= 8, "{kills} kills are too few to mean anything");
 }
 
-/// Sends a signal to a run as soon as there is a log; what it says when it stops. `None` if it was done before.
+/// Rows of a log that is being written, or is not there yet.
+#[cfg(unix)]
+fn num_whole_rows(log: &Path) -> usize {
+    let table = log.join("worker-default/0-test/data-log.tsv");
+    let text = fs::read_to_string(table).unwrap_or_default();
+    text.matches('\n').count().saturating_sub(1)
+}
+
+/// Sends a signal to a run as soon as there is a row; what it says when it stops. `None` if it was done before.
 #[cfg(unix)]
 fn told_to_stop(arguments: &[&str], log: &Path, signal: &str) -> Option<String> {
     let mut child = start(arguments);
-    grown(&mut child, log, 1);
+    // Experiences that are cut off leave no row: wait for one that is whole.
+    while num_whole_rows(log) == 0 && child.try_wait().expect("the child can be asked").is_none() {
+        std::thread::yield_now();
+    }
     let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
     assert!(sent.is_ok(), "the system has the command kill");
     let output = child.wait_with_output().expect("the child can be waited for");

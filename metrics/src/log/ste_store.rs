@@ -194,7 +194,12 @@ fn copy(log_dir: &Path, data_files: &[PathBuf], to: &Path) -> Result<(), Metrics
         let target = to.join(inside);
         let parent = target.parent().unwrap_or(to);
         fs::create_dir_all(parent).map_err(MetricsError::io(parent, "make this directory"))?;
-        let copied = fs::copy(file, &target).and_then(|_| fs::File::open(&target)?.sync_all());
+        // Not the system's copy: that takes the mode along, whatever the umask says.
+        let copied = fs::File::open(file).and_then(|mut from| {
+            let mut to = fs::File::create(&target)?;
+            std::io::copy(&mut from, &mut to)?;
+            to.sync_all()
+        });
         copied.map_err(MetricsError::io(&target, "copy into this file"))?;
     }
     Ok(())

@@ -1,0 +1,179 @@
+//! A log that is removed, renamed, replaced or cut while `run` writes it: the run ends with exit code 1 and says what is lost.
+//!
+//! What the writer of logs does by itself is tested in its room; runs are hit at random moments by `cargo xtask chaos`.
+#![cfg(unix)]
+
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+
+use crate::lived::{files, write};
+use crate::terminal::{driftworld, scratch, succeed, text};
+
+/// Many experiences, more than are lived before a mishap.
+fn scenario(folder: &Path) -> String {
+    let path = folder.join("scenario.json");
+    let regime = r#"{ "task": "find_objects", "variant": "red", "count": 2000, "max_steps": 100 }"#;
+    write(
+        &path,
+        &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),
+    );
+    text(&path).to_owned()
+}
+
+/// Lives until there are rows, lets something happen to the log, and returns what the run says at its end.
+fn hit(jobs: &str, log: &Path, scenario: &str, mishap: impl FnOnce(&Path)) -> String {
+    let arguments = [
+        "run",
+        scenario,
+        "--agent",
+        "random",
+        "--jobs",
+        jobs,
+        "--logs",
+        text(log),
+    ];
+    let mut command = driftworld(&arguments);
+    let mut child = command
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the command starts");
+    let table = log.join("worker-default/0-train/data-log.tsv");
+    while fs::metadata(&table).map_or(0, |found| found.len()) < 3000 {
+        assert!(
+            child.try_wait().expect("the child can be asked").is_none(),
+            "it is over before anything happens"
+        );
+        std::thread::yield_now();
+    }
+    mishap(&table);
+    let ended = child.wait_with_output().expect("the child can be waited for");
+    let error = String::from_utf8_lossy(&ended.stderr).into_owned();
+    assert_eq!(ended.status.code(), Some(1), "{error}");
+    assert!(
+        !error.contains("panicked") && !error.contains("each of them whole"),
+        "{error}"
+    );
+    error
+}
+
+#[test]
+fn a_folder_that_goes_away_is_an_error_and_is_not_made_anew() {
+    let folder = scratch();
+    let scenario = scenario(folder.path());
+    for jobs in ["1", "3"] {
+        let log = folder.path().join(format!("deleted-{jobs}"));
+        let error = hit(jobs, &log, &scenario, |_| {
+            // What is written meanwhile may hinder it.
+            while log.exists() {
+                let _ = fs::remove_dir_all(&log);
+            }
+        });
+        assert!(
+            error.contains(&format!(
+                "{}: found no directory, expected the directory",
+                log.display()
+            )) && error.contains(" rows in "),
+            "{error}"
+        );
+        assert!(!log.exists());
+        let log = folder.path().join(format!("swapped-{jobs}"));
+        let away = log.with_extension("away");
+        let error = hit(jobs, &log, &scenario, |_| {
+            fs::rename(&log, &away).expect("the folder is ours");
+            fs::create_dir(&log).expect("the folder is ours");
+        });
+        assert!(error.contains("found another directory"), "{error}");
+        assert_eq!(fs::read_dir(&log).expect("it is there").count(), 0);
+        assert!(away.join("logger_info.json").exists(), "what was put aside is whole");
+    }
+}
+
+#[test]
+fn a_file_that_is_cut_removed_or_replaced_is_an_error() {
+    let folder = scratch();
+    let scenario = scenario(folder.path());
+    for jobs in ["1", "3"] {
+        let check = |name: &str, mishap: &dyn Fn(&Path), expected: &str| {
+            let log = folder.path().join(format!("{name}-{jobs}"));
+            let error = hit(jobs, &log, &scenario, mishap);
+            assert!(
+                error.contains("data-log.tsv: found ") && error.contains(expected),
+                "{error}"
+            );
+        };
+        let cut = |table: &Path| {
+            let file = fs::OpenOptions::new().write(true).open(table);
+            file.and_then(|file| file.set_len(1000)).expect("the file is ours");
+        };
+        check("cut", &cut, " in 1");
+        check(
+            "removed",
+            &|table| fs::remove_file(table).expect("the file is ours"),
+            "found no file",
+        );
+        let replace = |table: &Path| {
+            fs::copy(table, table.with_extension("copy"))
+                .and_then(|_| fs::rename(table.with_extension("copy"), table))
+                .expect("the file is ours");
+        };
+        check("replaced", &replace, "expected the ");
+    }
+}
+
+#[test]
+fn after_a_folder_went_away_another_run_has_it_alone() {
+    let folder = scratch();
+    let scenario = scenario(folder.path());
+    let (log, small) = (folder.path().join("log"), folder.path().join("small.json"));
+    let text_of = fs::read_to_string(&scenario).expect("it was written");
+    write(&small, &text_of.replace("2000", "20"));
+    hit("2", &log, &scenario, |_| {
+        fs::rename(&log, log.with_extension("away")).expect("the folder is ours");
+        succeed(&["run", text(&small), "--agent", "random", "--logs", text(&log)]);
+    });
+    let alone = folder.path().join("alone");
+    succeed(&["run", text(&small), "--agent", "random", "--logs", text(&alone)]);
+    assert_eq!(files(&log), files(&alone));
+    succeed(&["logs", "validate", text(&log)]);
+}
+
+#[test]
+fn with_a_clock_that_stands_still_two_logs_are_equal_to_the_byte() {
+    let folder = scratch();
+    let scenario = scenario(folder.path()).replace("scenario.json", "small.json");
+    let text_of = fs::read_to_string(folder.path().join("scenario.json")).expect("it was written");
+    write(Path::new(&scenario), &text_of.replace("2000", "20"));
+    let bytes = |name: &str, jobs: &str| {
+        let log = folder.path().join(name);
+        let mut run = driftworld(&[
+            "run",
+            &scenario,
+            "--agent",
+            "random",
+            "--jobs",
+            jobs,
+            "--logs",
+            text(&log),
+        ]);
+        let run = run.env("DRIFTWORLD_CLOCK", "2026-01-31T12:00:00Z").output();
+        assert!(run.is_ok_and(|run| run.status.success()));
+        let table = fs::read_to_string(log.join("worker-default/0-train/data-log.tsv")).expect("it was written");
+        assert_eq!(table.matches("\t20260131T120000.000000\t").count(), 20, "{table}");
+        table
+    };
+    assert_eq!(bytes("first", "1"), bytes("second", "2"));
+    let mut wrong = driftworld(&["run", &scenario, "--logs", text(&folder.path().join("wrong"))]);
+    let wrong = wrong
+        .env("DRIFTWORLD_CLOCK", "yesterday")
+        .output()
+        .expect("the command starts");
+    assert_eq!(wrong.status.code(), Some(1));
+    let error = String::from_utf8_lossy(&wrong.stderr).into_owned();
+    assert!(
+        error.contains("DRIFTWORLD_CLOCK: found \"yesterday\", expected a time in UTC"),
+        "{error}"
+    );
+    assert!(!folder.path().join("wrong").exists(), "nothing was begun");
+}

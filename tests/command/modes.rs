@@ -1,0 +1,153 @@
+//! Who may read what commands write: whoever the umask lets, and of a file that was there before, those who could.
+#![cfg(unix)]
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::terminal::{output, scratch, text};
+
+/// Every command that writes, one after the other: some read what others wrote. All of it goes below the folder `out`.
+const COMMANDS: [&str; 25] = [
+    "demo --output out/demo",
+    "sample find_objects#red -o out/world.json",
+    "sample find_objects#red --count 3 --jsonl -o out/worlds.jsonl",
+    "sample find_objects#red --count 3 -o out/worlds",
+    "convert out/world.json --to l2explorer -o out/original.json",
+    "render out/world.json --size 16 -o out/view.png",
+    "sheet find_objects#red --size 32 -o out/sheet.png",
+    "photograph small.json -o out/photographs",
+    "order find_objects#red find_objects#blue --matrix out/matrix.csv --plot out/path.png",
+    "order find_objects#red find_objects#blue --matrix out/matrix.npy",
+    "order find_objects#red find_objects#blue --matrix out/matrix.json",
+    "curriculum find_objects#red find_objects#blue --learn 1 --eval-episodes 1 -o out/scenario.json --plot out/plan.png",
+    "run out/scenario.json --agent random --logs out/log",
+    "logs aggregate out/log -o out/rows.tsv",
+    "logs aggregate out/log -o out/rows.csv",
+    "metrics out/log -O out/results -o scores",
+    "metrics out/log -O out/results -o pictured --do-plot",
+    "metrics out/expert -s a --ste-data out/experts",
+    "report out/log -o out/page.html --plots out/figures",
+    "transfer-report out/log --distances out/matrix.csv -o out/transfer.png",
+    "schema -o out/schemas",
+    "unity install out/app --executable driftworld-unity",
+    "console out/world.json --script screen.txt",
+    "sample find_objects#red --count 3 -o out/worlds.parquet",
+    "logs aggregate out/log -o out/rows.parquet",
+];
+
+/// Commands that may fail here: their features are not always built in, or their input is not always there.
+fn may_fail(command: &str) -> bool {
+    command.ends_with(".parquet")
+        || ["unity", "console", "transfer-report"]
+            .iter()
+            .any(|name| command.starts_with(name))
+}
+
+fn below(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).expect("the folder is there").flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            found.extend(below(&path));
+        }
+        found.push(path);
+    }
+    found.sort();
+    found
+}
+
+fn mode(path: &Path) -> u32 {
+    fs::metadata(path).expect("it is there").permissions().mode() & 0o777
+}
+
+/// Runs a command under an umask in a folder.
+fn under(umask: &str, folder: &Path, command: &str) {
+    let mut shell = Command::new("sh");
+    let script = format!("umask {umask}; exec \"$0\" {command}");
+    shell
+        .args(["-c", &script, env!("CARGO_BIN_EXE_driftworld")])
+        .current_dir(folder);
+    let ended = output(&mut shell);
+    let said = String::from_utf8_lossy(&ended.stderr);
+    assert!(ended.status.success() || may_fail(command), "{command}: {said}");
+}
+
+fn prepare(folder: &Path) {
+    let world = r#"{ "objects": [{ "class": "cube", "coordinates": [3, 4] }] }"#;
+    fs::write(folder.join("small.json"), world).expect("the folder is ours");
+    let regime = r#"{ "task": "find_objects", "variant": "red", "count": 2, "max_steps": 5 }"#;
+    let expert = format!(r#"{{ "name": "e", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#);
+    fs::write(folder.join("expert.json"), expert).expect("the folder is ours");
+}
+
+/// Runs all of them; the modes of what they wrote.
+fn write_all(umask: &str, folder: &Path) {
+    for command in COMMANDS {
+        if command.contains("out/expert ") {
+            under(
+                "022",
+                folder,
+                "run expert.json --agent random --logs out/expert --resume",
+            );
+        }
+        if command.starts_with("demo") || command.starts_with("run") || command.starts_with("curriculum") {
+            // Logs are never written over.
+            let _ = fs::remove_dir_all(folder.join("out/log"));
+        }
+        under(umask, folder, command);
+    }
+    // Written under another umask, to see that copies of it do not keep its modes.
+    let _ = fs::remove_dir_all(folder.join("out/expert"));
+}
+
+#[test]
+fn new_files_are_as_the_umask_has_them() {
+    for (umask, files, folders) in [("077", 0o600, 0o700), ("022", 0o644, 0o755)] {
+        let folder = scratch();
+        prepare(folder.path());
+        write_all(umask, folder.path());
+        let found = below(&folder.path().join("out"));
+        assert!(found.len() > 60, "too little was written: {found:?}");
+        for path in found {
+            let expected = if path.is_dir() { folders } else { files };
+            let runs = text(&path).contains("/app/") && path.is_file();
+            let expected = if runs { folders } else { expected };
+            assert_eq!(
+                mode(&path),
+                expected,
+                "umask {umask}: {} is {:o}",
+                path.display(),
+                mode(&path)
+            );
+        }
+    }
+}
+
+#[test]
+fn a_file_that_is_written_over_keeps_its_mode() {
+    let folder = scratch();
+    prepare(folder.path());
+    write_all("022", folder.path());
+    let out = folder.path().join("out");
+    let is_kept = |path: &PathBuf| {
+        let inside = text(path.strip_prefix(&out).expect("it lies there")).to_owned();
+        // Logs and stored experts are never written over.
+        path.is_file()
+            && !["log/", "experts/", "demo/log/"]
+                .iter()
+                .any(|begin| inside.starts_with(begin))
+    };
+    let files: Vec<PathBuf> = below(&out).into_iter().filter(is_kept).collect();
+    let modes = [0o600, 0o640, 0o604];
+    for (path, mode) in files.iter().zip(modes.iter().cycle()) {
+        fs::set_permissions(path, fs::Permissions::from_mode(*mode)).expect("it is ours");
+    }
+    write_all("022", folder.path());
+    for (path, kept) in files.iter().zip(modes.iter().cycle()) {
+        let runs = text(path).contains("/app/");
+        let expected = if runs { kept | ((kept & 0o444) >> 2) } else { *kept };
+        assert_eq!(mode(path), expected, "{} is {:o}", path.display(), mode(path));
+    }
+}

@@ -1,0 +1,142 @@
+//! A command that is told to stop ends wherever it is, also where it waits for somebody who never comes. How soon, `cargo xtask chaos`
+//! measures; here a command that does not end lets the test run into its limit.
+#![cfg(unix)]
+
+use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+
+use crate::lived::write;
+use crate::terminal::{driftworld_in, scratch};
+
+const SIGNALS: [(&str, i32); 3] = [("-HUP", 1), ("-INT", 2), ("-TERM", 15)];
+
+fn start(folder: &Path, arguments: &[&str]) -> Child {
+    let mut command = driftworld_in(folder, arguments);
+    let command = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command.spawn().expect("the command starts")
+}
+
+fn signal(child: &Child, signal: &str) {
+    let sent = Command::new("kill").args([signal, &child.id().to_string()]).status();
+    assert!(sent.is_ok_and(|sent| sent.success()));
+}
+
+/// Waits until something is so of a command that goes on.
+fn wait_until(child: &mut Child, is_so: impl Fn(&Child) -> bool) {
+    while !is_so(child) {
+        let ended = child.try_wait().expect("it can be asked");
+        assert!(ended.is_none(), "it is over before: {ended:?}");
+        std::thread::yield_now();
+    }
+}
+
+/// Whether the command looks for signals by now, as the system sees it.
+#[cfg(target_os = "linux")]
+fn looks_for_signals(child: &Child) -> bool {
+    let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
+    let caught = caught.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    caught.is_some_and(|mask| mask & (1 << 14) != 0)
+}
+
+fn ended(child: Child) -> (Output, String) {
+    let output = child.wait_with_output().expect("it ends");
+    let error = String::from_utf8_lossy(&output.stderr).into_owned();
+    (output, error)
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn what_waits_for_a_reader_ends_by_the_signal() {
+    let folder = scratch();
+    let made = Command::new("mkfifo").arg(folder.path().join("pipe")).status();
+    assert!(made.is_ok_and(|made| made.success()));
+    for (name, number) in SIGNALS {
+        let mut child = start(
+            folder.path(),
+            &["sample", "find_objects", "--count", "3", "--jsonl", "-o", "pipe"],
+        );
+        wait_until(&mut child, looks_for_signals);
+        signal(&child, name);
+        let (output, error) = ended(child);
+        assert_eq!(output.status.signal(), Some(number), "{error}");
+    }
+}
+
+#[test]
+fn what_nobody_reads_ends_with_words() {
+    let folder = scratch();
+    for (name, _) in SIGNALS {
+        // The pipe fills, and the command waits in the middle of a line.
+        let mut child = start(
+            folder.path(),
+            &["sample", "find_objects", "--count", "100000000", "--jsonl", "-o", "-"],
+        );
+        let mut unread = child.stdout.take().expect("it is a pipe");
+        std::io::Read::read_exact(&mut unread, &mut [0; 1]).expect("a world comes");
+        signal(&child, name);
+        let (output, error) = ended(child);
+        drop(unread);
+        assert_eq!(output.status.code(), Some(1), "{error}");
+        assert!(error.contains("error: interrupted"), "{error}");
+    }
+}
+
+#[test]
+fn an_experience_of_a_million_steps_is_not_waited_for() {
+    let folder = scratch();
+    let path = folder.path();
+    let regime = r#"{ "task": "find_objects", "variant": "red", "count": 3, "max_steps": 1000000 }"#;
+    write(
+        &path.join("scenario.json"),
+        &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),
+    );
+    for (name, _) in SIGNALS {
+        let log = format!("log{name}");
+        let mut child = start(path, &["run", "scenario.json", "--agent", "random", "--logs", &log]);
+        wait_until(&mut child, |_| path.join(&log).join("logger_info.json").exists());
+        signal(&child, name);
+        let (output, error) = ended(child);
+        assert_eq!(output.status.code(), Some(1), "{error}");
+        assert!(error.contains("interrupted") && error.contains("--resume"), "{error}");
+        let mut rows = fs::read_dir(path.join(&log)).expect("the log was begun");
+        assert!(
+            !rows.any(|entry| entry.is_ok_and(|entry| entry.path().is_dir())),
+            "an experience that was cut off left a row"
+        );
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn hanging_up_is_passed_over_under_nohup() {
+    let folder = scratch();
+    let mut command = Command::new("nohup");
+    let mut child = command
+        .args([
+            env!("CARGO_BIN_EXE_driftworld"),
+            "sample",
+            "find_objects",
+            "--count",
+            "2000",
+            "--jsonl",
+            "-o",
+            "worlds.jsonl",
+        ])
+        .current_dir(folder.path())
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the system has nohup");
+    wait_until(&mut child, looks_for_signals);
+    signal(&child, "-HUP");
+    let (output, _) = ended(child);
+    assert!(output.status.success());
+    assert!(folder.path().join("worlds.jsonl").exists());
+}
