@@ -43,15 +43,18 @@ impl AtomicFile {
     /// # Errors
     /// Those of the system; [`io::ErrorKind::IsADirectory`] for a folder.
     pub fn create(path: &Path) -> io::Result<Self> {
-        Self::with_mode(path, permissions::PLAIN)
+        match Destination::of(path)? {
+            Destination::File(target) => Self::beside(target, permissions::PLAIN),
+            Destination::Straight(file) => Ok(Self(Kind::Straight(file))),
+        }
     }
 
-    /// The same for a program: whoever may read it may run it.
+    /// The same for a program: whoever may read it may run it. A link of that name is replaced, and what it leads to stays as it is.
     ///
     /// # Errors
     /// As [`create`](Self::create).
     pub fn create_executable(path: &Path) -> io::Result<Self> {
-        Self::with_mode(path, 0o777)
+        Self::beside(path.to_owned(), 0o777)
     }
 
     /// The same for a name that is no other's: a link of that name is replaced, and what it leads to stays as it is.
@@ -60,13 +63,6 @@ impl AtomicFile {
     /// As [`create`](Self::create).
     pub fn create_in_place_of_links(path: &Path) -> io::Result<Self> {
         Self::beside(path.to_owned(), permissions::PLAIN)
-    }
-
-    fn with_mode(path: &Path, mode: u32) -> io::Result<Self> {
-        match Destination::of(path)? {
-            Destination::File(target) => Self::beside(target, mode),
-            Destination::Straight(file) => Ok(Self(Kind::Straight(file))),
-        }
     }
 
     fn beside(target: PathBuf, mode: u32) -> io::Result<Self> {
