@@ -8,7 +8,7 @@ use std::sync::Arc;
 use driftworld_curriculum::{CurriculumError, log_name};
 use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{Classes, Scenario, SpecError, TaskSpec, World, nearest};
-use driftworld_text::ShownPath;
+use driftworld_text::{ShownPath, one_line};
 use serde_json::Value;
 
 use crate::contents::{Contents, OtherContents};
@@ -200,7 +200,13 @@ pub fn check(
         Kind::Scenario => {
             let mut found: BTreeMap<String, Arc<TaskSpec>> = BTreeMap::new();
             let read = Scenario::from_json_with(name, text, |called| {
-                let unchecked = |error| format!("{name}: the variants of {called} are not checked: {error}");
+                let unchecked = |error| {
+                    format!(
+                        "{}: the variants of {} are not checked: {error}",
+                        one_line(name),
+                        one_line(called)
+                    )
+                };
                 let task = task(called).map_err(|error| warnings.push(unchecked(error))).ok()?;
                 found.insert(called.to_owned(), Arc::clone(&task));
                 Some(task)

@@ -140,7 +140,7 @@ impl ScenarioFile {
             });
         }
         let looked = if meant == beside {
-            meant.display().to_string()
+            meant.shown().to_string()
         } else {
             format!("{} and {}", meant.shown(), beside.shown())
         };

@@ -6,7 +6,7 @@ use driftworld_env::EnvError;
 use driftworld_generator::GeneratorError;
 use driftworld_metrics::MetricsError;
 use driftworld_similarity::SimilarityError;
-use driftworld_text::ShownPath;
+use driftworld_text::{ShownPath, one_line};
 
 /// Everything that can go wrong in this crate.
 #[derive(Debug, thiserror::Error)]
@@ -179,7 +179,9 @@ pub enum CurriculumError {
     Generator(#[from] GeneratorError),
     /// Two variants would have the same name in the log.
     #[error(
-        "found {a} and {b}, which are both {name:?} in a log, expected names that differ in letters and digits; rename one"
+        "found {a} and {b}, which are both {name:?} in a log, expected names that differ in letters and digits; rename one",
+        a = one_line(a),
+        b = one_line(b)
     )]
     SameLogName {
         /// The first variant.
@@ -190,7 +192,7 @@ pub enum CurriculumError {
         name: String,
     },
     /// A task or variant of the scenario is not to be had.
-    #[error("block {block}, regime {regime}: {task}#{variant}: {reason}")]
+    #[error("block {block}, regime {regime}: {task}#{variant}: {reason}", task = one_line(task), variant = one_line(variant))]
     Unknown {
         /// The block, from 0.
         block: usize,
@@ -225,7 +227,10 @@ pub enum CurriculumError {
     #[error(
         "{}: {place}: found {found}, expected {expected} as in this run; \
          go on with what the log was begun with, or choose another folder",
-        path.shown()
+        path.shown(),
+        place = one_line(place),
+        found = one_line(found),
+        expected = one_line(expected)
     )]
     OtherRun {
         /// The log's folder.
@@ -240,7 +245,9 @@ pub enum CurriculumError {
     /// A row of a log that is to be taken up is not the one that the scenario has there.
     #[error(
         "{}: row {row}: found {found}, expected {expected}; is a file missing or changed? choose another folder",
-        path.shown()
+        path.shown(),
+        found = one_line(found),
+        expected = one_line(expected)
     )]
     OtherRow {
         /// The log's folder.
@@ -268,7 +275,7 @@ pub enum CurriculumError {
         differs: String,
     },
     /// A world of the scenario cannot be drawn.
-    #[error("block {block}, regime {regime}, experience {experience}, {variant}{}: {source}", on_its_way(*progress))]
+    #[error("block {block}, regime {regime}, experience {experience}, {variant}{}: {source}", on_its_way(*progress), variant = one_line(variant))]
     World {
         /// The block, from 0.
         block: usize,
@@ -308,7 +315,9 @@ pub enum CurriculumError {
     #[error(
         "transfer: found {found} variants that are both in the logs ({logs}) and in the distance matrix ({matrix}), \
          expected at least 2; measure the distances of the variants that were lived: task#variant there is task_variant \
-         in a log, letters and digits alone"
+         in a log, letters and digits alone",
+        logs = one_line(logs),
+        matrix = one_line(matrix)
     )]
     NoCommonNames {
         /// How many are in both.

@@ -7,6 +7,7 @@
 use std::path::Path;
 
 use driftworld_metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts, validate_log};
+use driftworld_text::Cells;
 
 /// Rows of cells, header first.
 fn cells(tsv: &[u8]) -> Vec<Vec<String>> {
@@ -36,7 +37,7 @@ fn a_log_of_two_workers_gives_the_table_of_l2logger() {
     let mut table = LogTable::new(KeptRows::Complete);
     table.add(&read_log_with_texts(&dir).unwrap()).unwrap();
     let mut bytes = Vec::new();
-    table.write(&mut bytes, Delimiter::Tab).unwrap();
+    table.write(&mut bytes, Delimiter::Tab, Cells::Guarded).unwrap();
     let (found, expected) = (cells(&bytes), cells(include_bytes!("oracles/l2logger_aggregate.tsv")));
     assert_eq!(found[0], expected[0]);
     assert_eq!(found.len(), 13);

@@ -1,20 +1,19 @@
 //! Words that come from outside, made fit to be shown. Escaping them is left to what writes them.
 
+use driftworld_text::printable;
+
 /// Letters of a name that are shown.
 const LONGEST: usize = 48;
 
-/// A name as it is shown: cut to a readable length, without characters that break a page or turn its direction around.
+/// A name as it is shown: in one line, cut to a readable length, with characters escaped that break a page, hide in it or turn its direction
+/// around.
 pub(crate) fn shown(name: &str) -> String {
-    let calm = |letter: char| {
-        let turns =
-            matches!(letter, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}');
-        let forbidden = matches!(letter, '\u{fffe}' | '\u{ffff}');
-        if letter.is_control() || turns || forbidden {
-            '\u{fffd}'
-        } else {
-            letter
-        }
+    // What XML has no character for.
+    let calm = |letter: char| match letter {
+        '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
+        letter => letter,
     };
+    let name = printable(name);
     let mut letters = name.chars().map(calm);
     let mut text: String = letters.by_ref().take(LONGEST).collect();
     if letters.next().is_some() {
@@ -32,7 +31,7 @@ mod tests {
         let check = |name: &str, expected: &str| assert_eq!(shown(name), expected);
         check("find_red", "find_red");
         check("größe 大", "größe 大");
-        check("a\u{0}b\u{202e}c\n", "a\u{fffd}b\u{fffd}c\u{fffd}");
+        check("a\u{0}b\u{202e}c\n\u{ffff}", "a\\u{0}b\\u{202e}c\\n\u{fffd}");
         check("<script>", "<script>");
         assert_eq!(shown(&"x".repeat(1000)), "x".repeat(48) + "…");
     }

@@ -3,10 +3,9 @@
 use std::ffi::OsString;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use clap::Parser;
 use driftworld_text::printable_lines;
 
-use super::{Cause, Command, output};
+use super::{Cause, output};
 
 /// What the command said.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -49,13 +48,12 @@ pub struct Refusal {
 /// ```
 pub fn ask(args: impl IntoIterator<Item = OsString>) -> Result<Answer, Refusal> {
     let _one_at_a_time = alone();
-    let command =
-        Command::try_parse_from(std::iter::once("driftworld".into()).chain(args)).map_err(|error| Refusal {
-            message: plain(&printable_lines(&error.to_string())),
-            in_arguments: true,
-            notes: Vec::new(),
-            cause: None,
-        })?;
+    let command = super::parse(std::iter::once("driftworld".into()).chain(args)).map_err(|error| Refusal {
+        message: plain(&printable_lines(&error.to_string())),
+        in_arguments: true,
+        notes: Vec::new(),
+        cause: None,
+    })?;
     let (done, answer) = output::kept(|| command.run());
     match done {
         Ok(()) => Ok(answer),

@@ -7,6 +7,7 @@ use crate::similarity::{Distance as Measured, Part};
 use crate::spec::Element;
 use crate::tasks;
 use clap::Args;
+use driftworld_text::one_line;
 
 use serde_json::json;
 
@@ -65,7 +66,7 @@ impl Distance {
             found["compared"] = json!(how);
             return output::json(&found);
         }
-        output::line(format!("{} to {}, {how}\n", self.a, self.b))?;
+        output::line(format!("{} to {}, {how}\n", one_line(&self.a), one_line(&self.b)))?;
         output::line(by_element(&distance))?;
         if self.explain {
             output::line("")?;

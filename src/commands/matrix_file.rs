@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::contents::{Contents, OtherContents};
 use crate::documents;
 use crate::similarity::{DistanceMatrix, SimilarityError};
-use driftworld_text::ShownPath;
+use driftworld_text::{Cells, ShownPath};
 
 use super::{Failure, input, output};
 
@@ -30,9 +30,11 @@ fn format(option: &str, path: &Path) -> Result<Format, Failure> {
 }
 
 /// Writes a matrix. The labels, for which numpy's format has no place, come into a JSON file beside it.
-pub(crate) fn write(option: &str, path: &Path, matrix: &DistanceMatrix) -> Result<(), Failure> {
+///
+/// CSV guards labels that a spreadsheet would take for formulas, unless `cells` are raw.
+pub(crate) fn write(option: &str, path: &Path, matrix: &DistanceMatrix, cells: Cells) -> Result<(), Failure> {
     match format(option, path)? {
-        Format::Csv => output::write(path, matrix.to_csv().as_bytes()),
+        Format::Csv => output::write(path, matrix.to_csv_with(cells).as_bytes()),
         Format::Json => output::write(path, matrix.to_json().as_bytes()),
         Format::Npy => {
             output::write(path, &matrix.to_npy())?;

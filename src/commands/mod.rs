@@ -43,11 +43,13 @@ mod vary;
 mod weights;
 mod who;
 
+use std::borrow::Cow;
 use std::error::Error;
 use std::ffi::OsString;
 use std::sync::Arc;
 
 use clap::Parser;
+use driftworld_text::printable;
 
 pub use ask::{Answer, Refusal, ask};
 
@@ -60,16 +62,29 @@ pub use ask::{Answer, Refusal, ask};
 pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     let _one_at_a_time = ask::alone();
     quiet_on_closed_pipe();
-    match Command::try_parse_from(args) {
+    match parse(args) {
         Ok(command) => {
             let done = interrupt::watch().and_then(|_watch| command.run());
             done.map_or_else(|failure| failure.report(), |()| 0)
         }
         Err(help) => {
-            output::print_usage(&help);
+            // Where nobody reads, there is nobody to tell of it.
+            let _ = help.print();
             u8::try_from(help.exit_code()).unwrap_or(2)
         }
     }
+}
+
+/// Reads arguments. What is said of wrong ones quotes them, in one line each and without what a terminal would obey.
+fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, clap::Error> {
+    let args: Vec<OsString> = args.into_iter().collect();
+    Command::try_parse_from(&args).map_err(|said| {
+        let shown = |arg: &OsString| match arg.to_str().map(printable) {
+            Some(Cow::Owned(shown)) => shown.into(),
+            _ => arg.clone(),
+        };
+        Command::try_parse_from(args.iter().map(shown)).err().unwrap_or(said)
+    })
 }
 
 /// Typed task specs to worlds, distances, curricula, and a first-person environment for lifelong reinforcement learning.

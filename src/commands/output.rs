@@ -1,7 +1,6 @@
 //! Where results go: standard output, or files that appear whole or not at all. What they say is the commands' own; what a terminal would
 //! obey or hide in it is shown here, so that no command can forget it.
 
-use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -103,17 +102,6 @@ pub(crate) fn note(text: impl AsRef<str>) {
 /// A line on standard error, in which unprintable characters are shown. Where its reader has gone, there is nobody to tell, and the work goes on.
 pub(super) fn to_standard_error(text: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{}", printable_lines(text));
-}
-
-/// Prints what the parser of arguments has to say: help, the version, or what is wrong with the arguments.
-pub(super) fn print_usage(said: &clap::Error) {
-    let text = said.render().to_string();
-    // Where nobody reads, there is nobody to tell of it.
-    match printable_lines(&text) {
-        // In colours on a terminal; there is nothing of others in it that a terminal would obey.
-        Cow::Borrowed(_) => drop(said.print()),
-        Cow::Owned(text) => drop(write!(std::io::stderr().lock(), "{text}")),
-    }
 }
 
 /// Says on standard error what is odd.

@@ -1,7 +1,12 @@
 //! Tables for people: plain columns that stay readable when they are pasted or piped. The JSON beside them is the commands' own.
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
-use driftworld_text::printable;
+use driftworld_text::{Cells, printable};
+
+/// How texts stand in a table for spreadsheets, by the option `--raw-cells`.
+pub(crate) fn cells(raw: bool) -> Cells {
+    if raw { Cells::Raw } else { Cells::Guarded }
+}
 
 /// A table with these headings; `numbers` are the columns that are set to the right.
 pub(crate) fn table<const N: usize>(headings: [&str; N], rows: Vec<[String; N]>, numbers: &[usize]) -> String {

@@ -7,6 +7,7 @@ mod console;
 mod curriculum;
 mod general;
 mod half_written;
+mod hostile_text;
 mod lived;
 mod logs;
 mod lost_logs;

@@ -2,9 +2,11 @@
 //!
 //! Not here: the table as Parquet or Arrow, which the facade writes from its columns.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
+use driftworld_text::Cells;
 use indexmap::IndexSet;
 
 use super::columns::delimited;
@@ -172,24 +174,31 @@ impl LogTable {
         run_ids.into_iter().chain(standard).chain(own).collect()
     }
 
-    /// Writes the table as text with a header line; lines end with `\n`, cells are quoted where they must be.
+    /// Writes the table as text with a header line; lines end with `\n`, cells are quoted where they must be, and texts are guarded against
+    /// being taken for formulas unless they are wanted as they are.
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn write(&self, mut out: impl Write, delimiter: Delimiter) -> io::Result<()> {
+    pub fn write(&self, mut out: impl Write, delimiter: Delimiter, cells: Cells) -> io::Result<()> {
         let delimiter = match delimiter {
             Delimiter::Tab => b'\t',
             Delimiter::Comma => b',',
         };
         let columns = self.columns();
-        out.write_all(&delimited(delimiter, columns.iter().map(|(name, _)| *name)))?;
-        let mut cells = vec![String::new(); columns.len()];
+        out.write_all(&delimited(
+            delimiter,
+            columns.iter().map(|(name, _)| cells.cell(name).into_owned()),
+        ))?;
+        let mut line = vec![String::new(); columns.len()];
         for row in 0..self.len() {
-            for (cell, (_, column)) in cells.iter_mut().zip(&columns) {
+            for (cell, (_, column)) in line.iter_mut().zip(&columns) {
                 cell.clear();
                 column.write(row, cell);
+                if let Cow::Owned(guarded) = cells.cell(cell) {
+                    *cell = guarded;
+                }
             }
-            out.write_all(&delimited(delimiter, &cells))?;
+            out.write_all(&delimited(delimiter, &line))?;
         }
         out.flush()
     }
@@ -385,7 +394,7 @@ mod tests {
 
     fn text(table: &LogTable, delimiter: Delimiter) -> String {
         let mut bytes = Vec::new();
-        table.write(&mut bytes, delimiter).unwrap();
+        table.write(&mut bytes, delimiter, Cells::Guarded).unwrap();
         String::from_utf8(bytes).unwrap()
     }
 

@@ -33,7 +33,7 @@ pub(super) fn lifetimes_tsv(lifetimes: &[LifetimeMetrics]) -> String {
 fn cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
-        Value::String(text) => text.clone(),
+        Value::String(text) => driftworld_text::cell(text).into_owned(),
         other => other.to_string(),
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Not here: how they are computed, see `score`.
 
+use driftworld_text::cell as guarded;
 use indexmap::IndexSet;
 
 use super::{LifetimeMetrics, Value, Values};
@@ -88,7 +89,7 @@ fn tsv(lifetimes: &[LifetimeMetrics], put_run_id: fn(&mut Vec<String>, String)) 
                 .iter()
                 .map(|name| regime.values.get(name).map(cell).unwrap_or_default());
             let mut row: Vec<String> = identity.map(|(_, text)| text).chain(values).collect();
-            put_run_id(&mut row, lifetime.run_id.clone());
+            put_run_id(&mut row, guarded(&lifetime.run_id).into_owned());
             text.extend(line(row));
         }
     }
@@ -113,7 +114,7 @@ impl RegimeMetrics {
             self.block_num.to_string(),
             self.block_type.to_string(),
             self.block_subtype.to_string(),
-            self.task_name.clone(),
+            guarded(&self.task_name).into_owned(),
             self.regime_num.to_string(),
             shortened(&self.task_params),
         ]

@@ -117,7 +117,7 @@ fn improvement(comparison: &Comparison, percent: &str, confidence: f64) -> Marku
     html! {
         h3 { (title) }
         p.note {
-            "Probability of improvement: how likely a lifetime of " (shown(&comparison.agent)) " has the better value; 0.5 means that "
+            "Probability of improvement: how likely a lifetime of " bdi { (shown(&comparison.agent)) } " has the better value; 0.5 means that "
             "neither is better. In brackets, its " (percent) " bootstrap interval, and by Student’s t where there are few lifetimes. p: how often two "
             "equal agents differ as much, by sharing out all lifetimes among the two; they are called different where it is at most "
             (number_plain(1.0 - confidence)) "."

@@ -1,19 +1,27 @@
 //! Distance matrices as CSV: a line of labels behind an empty cell, then a line for each item, its label first. Files are the
 //! callers'.
 
+use driftworld_text::{Cells, unguarded};
 use ndarray::Array2;
 
 use super::DistanceMatrix;
 use crate::SimilarityError;
 
 impl DistanceMatrix {
-    /// The matrix as CSV (RFC 4180 with bare line feeds). Every number reads back as the same one.
+    /// The matrix as CSV (RFC 4180 with bare line feeds). Every number reads back as the same one. Labels that a spreadsheet would take for
+    /// formulas are guarded by an apostrophe, which is taken away when they are read.
     pub fn to_csv(&self) -> String {
+        self.to_csv_with(Cells::Guarded)
+    }
+
+    /// As [`DistanceMatrix::to_csv`], with labels guarded or as they are.
+    pub fn to_csv_with(&self, cells: Cells) -> String {
         let cell = |text: &str| {
+            let text = cells.cell(text);
             if text.contains([',', '"', '\n', '\r']) {
                 format!("\"{}\"", text.replace('"', "\"\""))
             } else {
-                text.to_owned()
+                text.into_owned()
             }
         };
         let names: Vec<String> = self.labels().iter().map(|label| cell(label)).collect();
@@ -46,7 +54,10 @@ impl DistanceMatrix {
             let found = format!("{:?} in the first cell of {}", heading.cells[0], heading.cells.len());
             return Err(bad(heading.line, found, "a line of labels behind an empty cell"));
         }
-        let labels = heading.cells[1..].to_vec();
+        let labels: Vec<String> = heading.cells[1..]
+            .iter()
+            .map(|label| unguarded(label).to_owned())
+            .collect();
         let n = Self::bounded(labels.len())?;
         if rows.len() != n {
             let line = rows.last().map_or(heading.line, |row| row.line);
@@ -59,7 +70,7 @@ impl DistanceMatrix {
                 let found = format!("{} cells", row.cells.len());
                 return Err(bad(row.line, found, format!("{}: a label and {n} numbers", n + 1)));
             }
-            if row.cells[0] != labels[a] {
+            if unguarded(&row.cells[0]) != labels[a] {
                 let expected = format!("{:?}, as in the first line", labels[a]);
                 return Err(bad(row.line, format!("the label {:?}", row.cells[0]), expected));
             }
@@ -148,13 +159,25 @@ mod tests {
     proptest! {
         #[test]
         fn what_is_written_reads_back_the_same(
-            labels in prop::collection::btree_set("[a-z,\"\n\r #é]{1,6}", 1..6),
+            labels in prop::collection::btree_set("['=+@-]{0,2}[a-z1,\"\n\r\t #é]{1,5}", 1..6),
             numbers in prop::collection::vec(0.0..1e9_f64, 15),
         ) {
             let measure = |a: usize, b: usize| Ok::<_, SimilarityError>(numbers[(a * 5 + b) % 15]);
             let matrix = DistanceMatrix::measure(labels.into_iter().collect(), measure).unwrap();
-            prop_assert_eq!(DistanceMatrix::from_csv(&matrix.to_csv()).unwrap(), matrix);
+            prop_assert_eq!(&DistanceMatrix::from_csv(&matrix.to_csv()).unwrap(), &matrix);
+            // What is written raw reads back the same, too, but for labels that look guarded.
+            if matrix.labels().iter().all(|label| !label.starts_with('\'')) {
+                prop_assert_eq!(DistanceMatrix::from_csv(&matrix.to_csv_with(Cells::Raw)).unwrap(), matrix);
+            }
         }
+    }
+
+    #[test]
+    fn labels_that_are_formulas_are_guarded() {
+        let names = vec!["=1+2".to_owned(), "-3".to_owned()];
+        let matrix = DistanceMatrix::measure(names, |_, _| Ok::<_, SimilarityError>(0.5)).unwrap();
+        assert_eq!(matrix.to_csv(), ",'=1+2,-3\n'=1+2,0,0.5\n-3,0.5,0\n");
+        assert_eq!(matrix.to_csv_with(Cells::Raw), ",=1+2,-3\n=1+2,0,0.5\n-3,0.5,0\n");
     }
 
     #[test]

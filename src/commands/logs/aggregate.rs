@@ -8,8 +8,9 @@ use crate::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
 use clap::{Args, ValueEnum};
 use driftworld_atomic_files::AtomicFile;
 #[cfg(feature = "parquet")]
-use driftworld_text::ShownPath;
+use driftworld_text::{Cells, ShownPath};
 
+use super::super::table::cells;
 use super::super::{Failure, log_folders, output};
 use super::count;
 
@@ -46,6 +47,10 @@ pub(crate) struct Aggregate {
     /// Keep rows that do not complete an experience.
     #[arg(long)]
     incomplete: bool,
+    /// Write texts as they are into TSV and CSV, also what a spreadsheet would take for a formula; by default an apostrophe guards what
+    /// begins with =, +, -, @, a tab or a line end and is no number.
+    #[arg(long)]
+    raw_cells: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -85,7 +90,7 @@ impl Aggregate {
             table.add(&log)?;
         }
         if self.output == Path::new("-") {
-            return print(&table, format);
+            return self.print(&table, format);
         }
         self.write(&table, format)?;
         output::line(format!(
@@ -152,9 +157,26 @@ impl Aggregate {
     fn write(&self, table: &LogTable, format: Format) -> Result<(), Failure> {
         let failed = |error: &dyn std::fmt::Display| output::unwritable(&self.output, error);
         let file = AtomicFile::create(&self.output).map_err(|error| failed(&error))?;
-        let file = written(table, format, BufWriter::new(file)).map_err(|error| failed(&error))?;
+        let file =
+            written(table, format, cells(self.raw_cells), BufWriter::new(file)).map_err(|error| failed(&error))?;
         let file = file.into_inner().map_err(|error| failed(&error.into_error()))?;
         file.commit().map_err(|error| failed(&error))
+    }
+
+    fn print(&self, table: &LogTable, format: Format) -> Result<(), Failure> {
+        if matches!(format, Format::Parquet | Format::Feather) {
+            return Err(Failure::usage(
+                "--output: Parquet and Feather are no text, expected the name of a file",
+            ));
+        }
+        let failed = |error: &dyn std::fmt::Display| Failure::input(format!("standard output: {error}"));
+        let bytes = written(table, format, cells(self.raw_cells), Vec::new()).map_err(|error| failed(&error))?;
+        let text = String::from_utf8(bytes).map_err(|error| failed(&error))?;
+        if self.raw_cells {
+            output::print_data(&text)
+        } else {
+            output::print(&text)
+        }
     }
 }
 
@@ -164,10 +186,15 @@ fn lacks_parquet() -> Failure {
 }
 
 /// Writes the table and hands back what it was written to.
-fn written<W: Write + Send>(table: &LogTable, format: Format, mut to: W) -> Result<W, Box<dyn std::error::Error>> {
+fn written<W: Write + Send>(
+    table: &LogTable,
+    format: Format,
+    cells: Cells,
+    mut to: W,
+) -> Result<W, Box<dyn std::error::Error>> {
     match format {
-        Format::Tsv => table.write(&mut to, Delimiter::Tab)?,
-        Format::Csv => table.write(&mut to, Delimiter::Comma)?,
+        Format::Tsv => table.write(&mut to, Delimiter::Tab, cells)?,
+        Format::Csv => table.write(&mut to, Delimiter::Comma, cells)?,
         #[cfg(feature = "parquet")]
         Format::Parquet => return Ok(columns::write_log_table(table, to, columns::Format::Parquet)?),
         #[cfg(feature = "parquet")]
@@ -176,15 +203,4 @@ fn written<W: Write + Send>(table: &LogTable, format: Format, mut to: W) -> Resu
         Format::Parquet | Format::Feather => return Err("the feature `parquet` is missing".into()),
     }
     Ok(to)
-}
-
-fn print(table: &LogTable, format: Format) -> Result<(), Failure> {
-    if matches!(format, Format::Parquet | Format::Feather) {
-        return Err(Failure::usage(
-            "--output: Parquet and Feather are no text, expected the name of a file",
-        ));
-    }
-    let failed = |error: &dyn std::fmt::Display| Failure::input(format!("standard output: {error}"));
-    let bytes = written(table, format, Vec::new()).map_err(|error| failed(&error))?;
-    output::print_data(&String::from_utf8(bytes).map_err(|error| failed(&error))?)
 }

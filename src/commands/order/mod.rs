@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 pub(crate) use arguments::OrderArgs;
 use compare::Comparison;
 
-use super::table::table;
+use super::table::{cells, table};
 use super::weights::WeightArgs;
 use super::{Failure, input, matrix_file, output, pictures};
 
@@ -49,6 +49,9 @@ pub(crate) struct Order {
     /// Write the distance matrix into this file: .csv, .json, or .npy with the labels in a .labels.json beside it.
     #[arg(long, value_name = "FILE")]
     matrix: Option<PathBuf>,
+    /// Write labels into CSV as they are, also what a spreadsheet would take for a formula; by default an apostrophe guards it.
+    #[arg(long, requires = "matrix")]
+    raw_cells: bool,
     /// Draw the path over a map of the distances into this PNG file.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
@@ -64,7 +67,7 @@ impl Order {
             None => matrix(&input::variants(&self.tasks)?, &self.weights)?,
         };
         if let Some(path) = &self.matrix {
-            matrix_file::write("--matrix", path, &matrix)?;
+            matrix_file::write("--matrix", path, &matrix, cells(self.raw_cells))?;
         }
         if self.compare {
             return self.compare(&matrix);

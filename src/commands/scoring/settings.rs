@@ -6,7 +6,7 @@ use crate::contents::Contents;
 use crate::documents;
 use crate::metrics::{DataRange, Options};
 use crate::spec::nearest;
-use driftworld_text::ShownPath;
+use driftworld_text::{ShownPath, one_line};
 use serde_json::{Map, Value, json};
 
 use crate::commands::Failure;
@@ -76,7 +76,7 @@ pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
         )));
     }
     let mut options: Options = serde_json::from_value(Value::Object(settings))
-        .map_err(|error| Failure::input(format!("{}: {error}", path.shown())))?;
+        .map_err(|error| Failure::input(format!("{}: {}", path.shown(), one_line(error))))?;
     if let (Some(file), None) = (range_file, &options.data_range) {
         options.data_range = Some(data_range(&file)?.into_iter().collect());
     }
@@ -97,8 +97,13 @@ pub(super) fn data_range(path: &Path) -> Result<Vec<(String, DataRange)>, Failur
     let expected = "an object of ranges, such as {\"find_red\": {\"min\": 0, \"max\": 10}}";
     let mut ranges = Vec::new();
     for (task, range) in object(path, &documents::text(path)?, expected)? {
-        let range = serde_json::from_value(range)
-            .map_err(|error| Failure::input(format!("{}, {task:?}: {error}; expected {expected}", path.shown())))?;
+        let range = serde_json::from_value(range).map_err(|error| {
+            Failure::input(format!(
+                "{}, {task:?}: {}; expected {expected}",
+                path.shown(),
+                one_line(error)
+            ))
+        })?;
         ranges.push((task.to_lowercase(), range));
     }
     Ok(ranges)

@@ -1,0 +1,522 @@
+//! Documents, logs, settings and names of files that try to work the terminal: escape sequences, line ends that fake a line, text whose
+//! direction is turned. Whatever a subcommand says of them, none of it reaches the terminal as it was.
+//!
+//! Not here: which characters those are, which is `driftworld-text`'s.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use driftworld_text::is_unprintable;
+use serde_json::{Value, json};
+
+use crate::lived::write;
+use crate::terminal::{driftworld_in, output, scratch, succeed, text};
+
+/// What a hostile text says, without what no file name can have.
+const HOSTILE: &str =
+    "\u{1b}]0;owned\u{7}\u{1b}[2J\u{202e}dne\u{2066}\r\nerror: FAKE\u{9b}31m\u{7f}\u{200b}\u{feff}\u{e0041}";
+
+/// With NUL, which a JSON document can hold by an escape, and a slash.
+fn hostile() -> String {
+    format!("{HOSTILE}\0/=1+2")
+}
+
+/// The folder of a test, and which subcommands have been tried in it.
+struct Stage {
+    folder: tempfile::TempDir,
+    tried: BTreeSet<String>,
+    /// What reached an output, and must not.
+    let_through: Vec<String>,
+}
+
+/// Whether a character may not stand in what the command prints.
+fn is_hostile(letter: char) -> bool {
+    is_unprintable(letter) && letter != '\n' && letter != '\t'
+}
+
+impl Stage {
+    fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Writes a document and hands back its name.
+    fn document(&self, name: &str, json: &Value) -> String {
+        write(&self.path().join(name), &json.to_string());
+        name.to_owned()
+    }
+
+    /// Runs the command. Neither of its outputs may hold what a terminal obeys or hides, nor a line that we did not begin: what does is
+    /// noted.
+    #[track_caller]
+    fn run(&mut self, arguments: &[&str]) -> Output {
+        self.tried.insert(arguments[0].to_owned());
+        let said = output(driftworld_in(self.path(), arguments).env("COLUMNS", "200"));
+        for bytes in [&said.stdout, &said.stderr] {
+            let shown = String::from_utf8_lossy(bytes);
+            let raw = shown.find(is_hostile);
+            // A line end within a cell of a table is the cell's.
+            let is_table = arguments.get(1) == Some(&"aggregate");
+            let faked = !is_table && shown.lines().any(|line| line.starts_with("error: FAKE"));
+            if raw.is_some() || faked || shown.contains("panicked") {
+                let from = shown.floor_char_boundary(raw.unwrap_or(0).saturating_sub(80));
+                let part: String = shown[from..].chars().take(600).collect();
+                self.let_through.push(format!("{arguments:?}: {part:?}"));
+            }
+        }
+        assert!(
+            matches!(said.status.code(), Some(0..=2)),
+            "{arguments:?}: {:?}",
+            said.status
+        );
+        said
+    }
+
+    /// The same, and it must end well.
+    #[track_caller]
+    fn succeed(&mut self, arguments: &[&str]) -> String {
+        let said = self.run(arguments);
+        let error = String::from_utf8_lossy(&said.stderr);
+        assert_eq!(said.status.code(), Some(0), "{arguments:?}: {error}");
+        String::from_utf8(said.stdout).expect("the command prints UTF-8")
+    }
+
+    /// The same, and it must fail.
+    #[track_caller]
+    fn fail(&mut self, arguments: &[&str]) -> String {
+        let said = self.run(arguments);
+        assert_ne!(
+            said.status.code(),
+            Some(0),
+            "{arguments:?}: {}",
+            String::from_utf8_lossy(&said.stdout)
+        );
+        String::from_utf8(said.stderr).expect("the command prints UTF-8")
+    }
+}
+
+/// A task that is sound, and says hostile things wherever it may.
+fn sound_task() -> Value {
+    let word = json!({
+        "role": "variant", "type": "string", "affects": ["S"], "choices": ["plain", hostile()], "default": "plain", "description": hostile()
+    });
+    let object = json!({ "class": "geometric", "tag": HOSTILE.chars().take(40).collect::<String>() });
+    let group = json!({ "name": "g", "count": 3, "object": object, "placement": { "disc": { "center": [0, 0], "radius": 9 } } });
+    json!({
+        "version": 2, "name": "task", "description": hostile(), "parameters": { "word": word }, "groups": [group],
+        "variants": { "a": { "description": hostile(), "word": hostile() }, "b": {} }
+    })
+}
+
+fn sound_world() -> Value {
+    let name: String = HOSTILE.chars().take(60).collect();
+    let object = json!({ "class": "geometric", "coordinates": [5, 5], "unique_name": name, "tag": name });
+    json!({ "max_steps": 20, "objects": [object] })
+}
+
+fn scenario(task: &str, variant: &str, world: Option<&str>) -> Value {
+    let mut regime = json!({ "task": task, "variant": variant, "count": 1 });
+    if let Some(world) = world {
+        regime["world"] = world.into();
+    }
+    let learning = json!({ "type": "learning", "regimes": [regime] });
+    let evaluation = json!({ "type": "evaluation", "regimes": [regime] });
+    json!({ "name": "s", "description": hostile(), "blocks": [evaluation, learning, evaluation] })
+}
+
+/// A log that can be read, whose names and words are hostile as far as a table can hold them.
+fn write_log(folder: &Path, column: &str, task: &str) {
+    let info = json!({ "metrics_columns": [column], "log_format_version": "1.1" });
+    write(&folder.join("logger_info.json"), &info.to_string());
+    let scenario =
+        json!({ "complexity": hostile(), "difficulty": "1-easy", "scenario_type": "custom", "author": hostile() });
+    write(&folder.join("scenario_info.json"), &scenario.to_string());
+    let quoted = |text: &str| format!("\"{}\"", text.replace('"', "\"\""));
+    let header = format!(
+        "block_num\texp_num\tworker_id\tblock_type\tblock_subtype\ttask_name\ttask_params\texp_status\ttimestamp\t{}\tnote\n",
+        quoted(column)
+    );
+    for (block, kind) in [(0, "test"), (1, "train"), (2, "test")] {
+        let rows = (0..4).map(|row| {
+            let number = block * 4 + row;
+            let (task, note) = (quoted(task), quoted(HOSTILE));
+            format!("{block}\t{number}\tw\t{kind}\twake\t{task}\t{{}}\tcomplete\t20200101T000000.0\t{number}\t{note}\n")
+        });
+        write(
+            &folder.join(format!("w/{block}-{kind}/data-log.tsv")),
+            &(header.clone() + &rows.collect::<String>()),
+        );
+    }
+}
+
+/// Subcommands that say nothing of what others wrote, but for names of files and arguments.
+const OF_ARGUMENTS: [&str; 4] = ["bench", "demo", "doctor", "schema"];
+
+impl Stage {
+    fn new() -> Self {
+        Self {
+            folder: scratch(),
+            tried: BTreeSet::new(),
+            let_through: Vec::new(),
+        }
+    }
+
+    /// Fails with all that came through, and where one of these subcommands was not tried.
+    #[track_caller]
+    fn close(self, commands: impl IntoIterator<Item = String>) {
+        assert!(self.let_through.is_empty(), "{}", self.let_through.join("\n"));
+        for command in commands {
+            assert!(self.tried.contains(&command), "{command} was not tried");
+        }
+    }
+}
+
+#[test]
+fn no_subcommand_lets_a_document_work_the_terminal() {
+    let mut stage = Stage::new();
+    documents(&mut stage);
+    worlds(&mut stage);
+    lives(&mut stage);
+    logs(&mut stage);
+    matrices(&mut stage);
+    // A subcommand that is added is to be tried here, too.
+    let help = succeed(&["--help"]);
+    let listed = help
+        .lines()
+        .filter_map(|line| line.strip_prefix("  ")?.split("  ").next());
+    let is_word = |word: &&str| word.starts_with(|letter: char| letter.is_ascii_lowercase());
+    let commands: Vec<String> = listed
+        .filter(is_word)
+        .filter(|command| *command != "help" && !OF_ARGUMENTS.contains(command))
+        .map(str::to_owned)
+        .collect();
+    assert!(commands.len() > 15, "{commands:?}");
+    stage.close(commands);
+}
+
+#[test]
+fn no_subcommand_lets_a_name_of_a_file_work_the_terminal() {
+    let mut stage = Stage::new();
+    names_of_files(&mut stage);
+    stage.close(["demo", "schema", "run", "report"].map(str::to_owned));
+}
+
+#[test]
+fn no_subcommand_lets_an_argument_work_the_terminal() {
+    let mut stage = Stage::new();
+    arguments(&mut stage);
+    stage.close(["bench", "doctor"].map(str::to_owned));
+}
+
+fn documents(stage: &mut Stage) {
+    let hostile = hostile();
+    let task = stage.document("task.json", &sound_task());
+    assert!(stage.succeed(&["validate", &task]).contains("a valid task spec"));
+    let shown = stage.succeed(&["tasks", "show", &task]);
+    assert!(shown.contains("\\u{202e}dne"), "{shown}");
+    stage.succeed(&["tasks", "show", &task, "--json"]);
+    // JSON means what it meant.
+    let world = stage.succeed(&["sample", &format!("{task}#a")]);
+    let world: Value = serde_json::from_str(&world).expect("worlds are JSON");
+    assert!(
+        world["objects"][0]["tag"].as_str().expect("a tag").contains('\u{202e}'),
+        "{world}"
+    );
+    stage.succeed(&["sample", &format!("{task}#a"), "--count", "3", "--jsonl"]);
+    stage.run(&[
+        "vary",
+        &format!("{task}#a"),
+        "--parameters",
+        "word",
+        "--distance",
+        "0.5",
+    ]);
+    stage.succeed(&["distance", &format!("{task}#a"), &format!("{task}#b")]);
+    stage.succeed(&["sheet", &task, "--size", "32"]);
+    stage.succeed(&["order", &task]);
+    stage.succeed(&["curriculum", &task]);
+
+    for (name, bad) in [
+        ("key.json", json!({ "name": "t", hostile.as_str(): 1 })),
+        (
+            "variant.json",
+            json!({ "version": 2, "name": "t", "variants": { hostile.as_str(): { hostile.as_str(): hostile } } }),
+        ),
+        (
+            "value.json",
+            json!({ "version": 2, "name": hostile, "require": [hostile], "groups": [hostile] }),
+        ),
+        (
+            "extends.json",
+            json!({ "version": 2, "name": "t", "variants": { "a": { "extends": hostile } } }),
+        ),
+        (
+            "world.json",
+            json!({ "max_steps": hostile, "objects": [{ "class": hostile, "color": hostile, hostile.as_str(): 0 }] }),
+        ),
+        (
+            "scenario.json",
+            json!({ "name": hostile, "blocks": [{ "type": hostile, hostile.as_str(): [] }] }),
+        ),
+        ("maps.json", json!({ "maps": [{ "id": hostile, hostile.as_str(): 1 }] })),
+        (
+            "original.json",
+            json!({ "logging_base_dir": hostile, "scenario": [{ "type": hostile, "regimes": [{ "task": hostile }] }] }),
+        ),
+    ] {
+        let name = stage.document(name, &bad);
+        stage.run(&["validate", &name]);
+        let json = stage.run(&["validate", &name, "--json"]);
+        serde_json::from_slice::<Value>(&json.stdout).expect("--json prints JSON");
+        for command in [
+            "sample",
+            "render",
+            "console",
+            "photograph",
+            "sheet",
+            "order",
+            "curriculum",
+            "convert",
+        ] {
+            stage.run(&[command, &name]);
+        }
+    }
+    write(
+        &stage.path().join("syntax.json"),
+        &format!("{{\"{HOSTILE}\": {HOSTILE}"),
+    );
+    stage.fail(&["validate", "syntax.json"]);
+}
+
+fn worlds(stage: &mut Stage) {
+    let world = stage.document("w.json", &sound_world());
+    stage.succeed(&["validate", &world]);
+    let shown = stage.succeed(&["convert", &world, "-o", "-"]);
+    serde_json::from_str::<Value>(&shown).expect("it is JSON");
+    stage.run(&["render", &world, "--size", "32"]);
+    stage.run(&["photograph", &world, "--output", "photos"]);
+    write(
+        &stage.path().join("script.txt"),
+        &format!("objects\ninfo\nstate\nlog\nstep 3\nsend {{\"{HOSTILE}\"\n{HOSTILE}\ndestroy {HOSTILE}\nagent\n"),
+    );
+    stage.run(&["console", &world, "--script", "script.txt", "--keep-going"]);
+    stage.run(&["assets", "show", HOSTILE]);
+    let library = stage.path().join("bad.assets");
+    fs::write(&library, HOSTILE).expect("the folder can be written");
+    stage.fail(&["assets", "list", text(&library)]);
+    stage.run(&["unity", "install", "no such folder\u{1b}[2J/x"]);
+}
+
+fn lives(stage: &mut Stage) {
+    let script = format!("touch {}\n", HOSTILE.replace(['\r', '\n'], ""));
+    write(&stage.path().join("agent.txt"), &script);
+    let name: String = HOSTILE.chars().take(60).collect();
+    for (file, document) in [
+        ("task_lived.json", scenario("task.json", "a", None)),
+        ("world_lived.json", scenario(&name, &name, Some("w.json"))),
+        ("unknown_variant.json", scenario("task.json", &name, None)),
+        ("unknown_task.json", scenario(&name, "a", None)),
+        ("unknown_world.json", scenario("t", "a", Some(&name))),
+    ] {
+        let file = stage.document(file, &document);
+        stage.run(&["validate", &file, "--worlds", "2"]);
+        let logs = format!("logs-{file}");
+        stage.run(&["run", &file, "--agent", "random", "--logs", &logs]);
+        stage.run(&[
+            "run",
+            &file,
+            "--agent",
+            "scripted:agent.txt",
+            "--logs",
+            &format!("{logs}-scripted"),
+        ]);
+        stage.run(&[
+            "run",
+            &file,
+            "--agent",
+            &format!("scripted:{HOSTILE}"),
+            "--logs",
+            "none",
+        ]);
+    }
+    assert!(
+        stage.path().join("logs-world_lived.json/logger_info.json").exists(),
+        "it was lived"
+    );
+    stage.succeed(&["metrics", "logs-world_lived.json"]);
+}
+
+fn logs(stage: &mut Stage) {
+    let task: String = HOSTILE.replace(['\r', '\n'], "");
+    for (number, column) in ["reward", HOSTILE, "re\u{202e}ward", "=1+2"].into_iter().enumerate() {
+        let log = format!("log{number}");
+        write_log(&stage.path().join(&log), column, &task);
+        stage.run(&["logs", "validate", &log]);
+        stage.run(&["logs", "validate", &log, "--json"]);
+        stage.run(&["logs", "aggregate", &log, "-o", "-", "--format", "csv"]);
+        stage.run(&["logs", "aggregate", &log, "-o", "-", "--format", "tsv"]);
+        stage.run(&["logs", "aggregate", &log, "-o", &format!("{log}.csv")]);
+        let raw = output(&mut driftworld_in(
+            stage.path(),
+            &["logs", "aggregate", &log, "-o", "-", "--format", "csv", "--raw-cells"],
+        ));
+        assert!(
+            String::from_utf8_lossy(&raw.stdout).contains('\u{202e}'),
+            "what is wanted raw is raw"
+        );
+        stage.run(&["metrics", &log]);
+        stage.run(&["metrics", &log, "--json"]);
+        stage.run(&["metrics", &log, "--perf-measure", column]);
+        stage.run(&["metrics", &log, "--perf-measure", HOSTILE]);
+        stage.run(&["metrics", &log, "log0"]);
+        stage.run(&[
+            "report",
+            &log,
+            "-o",
+            &format!("{log}.html"),
+            "--title",
+            HOSTILE,
+            "--plots",
+            "plots",
+        ]);
+        let page = fs::read_to_string(stage.path().join(format!("{log}.html"))).unwrap_or_default();
+        let hostile = |letter: char| is_unprintable(letter) && letter != '\n' && letter != '\t';
+        assert_eq!(
+            page.find(hostile)
+                .map(|at| page[at..].chars().take(60).collect::<String>()),
+            None,
+            "{log}: the page"
+        );
+        let shown = stage.run(&["report", &log, "-o", "-"]).stdout;
+        assert!(number > 0 || !shown.is_empty());
+    }
+    let plots = fs::read_dir(stage.path().join("plots")).expect("figures were drawn");
+    for plot in plots.map(|plot| plot.expect("the folder can be listed").path()) {
+        if plot.extension().is_some_and(|ending| ending == "svg") {
+            let drawn = fs::read_to_string(&plot).expect("SVG is text");
+            assert!(
+                !drawn.contains(|letter: char| is_unprintable(letter) && letter != '\n' && letter != '\t'),
+                "{}",
+                plot.display()
+            );
+        }
+    }
+    for (name, settings) in [
+        ("keys.json", json!({ hostile(): 1, "perf_measure": hostile() })),
+        (
+            "words.json",
+            json!({ "perf_measure": "reward", "maintenance_method": hostile(), "normalization_method": hostile() }),
+        ),
+    ] {
+        let name = stage.document(name, &settings);
+        stage.run(&["metrics", "log0", "--load-settings", &name]);
+    }
+    // What a log names is in no way more trusted than what it says.
+    write(
+        &stage.path().join("log0/scenario_info.json"),
+        &json!({ "scenario_type": hostile(), "task": hostile(), hostile(): 1 }).to_string(),
+    );
+    stage.run(&["logs", "validate", "log0"]);
+    stage.run(&["report", "log0", "-o", "again.html"]);
+    stage.run(&["metrics", "log0", "--ste", "log1"]);
+}
+
+fn matrices(stage: &mut Stage) {
+    let matrix = stage.document(
+        "matrix.json",
+        &json!({ "labels": [hostile(), "=1+2", "c"], "values": [[0, 1, 2], [1, 0, 1], [2, 1, 0]] }),
+    );
+    stage.run(&["order", "--from-matrix", &matrix]);
+    stage.run(&["order", "--from-matrix", &matrix, "--json"]);
+    stage.run(&["order", "--from-matrix", &matrix, "--matrix", "matrix.csv"]);
+    stage.run(&["order", "--from-matrix", "matrix.csv"]);
+    stage.run(&["order", "--from-matrix", &matrix, "--first", HOSTILE]);
+    stage.run(&["transfer-report", "log0", "--distances", &matrix]);
+    stage.run(&["transfer-report", "log0", "--distances", "matrix.csv", "--json"]);
+    let bad = stage.document(
+        "bad_matrix.json",
+        &json!({ "labels": [hostile(), hostile()], "values": [[0, hostile()]] }),
+    );
+    stage.fail(&["order", "--from-matrix", &bad]);
+}
+
+/// Files and folders may be called anything but NUL and a slash.
+#[cfg(unix)]
+fn names_of_files(stage: &mut Stage) {
+    write_log(&stage.path().join("log1"), "reward", "a_b");
+    let inside = |name: &str| PathBuf::from(HOSTILE).join(name);
+    write(&stage.path().join(inside("task.json")), &sound_task().to_string());
+    write(&stage.path().join(inside("bad.json")), "{");
+    write(&stage.path().join(inside("w.json")), &sound_world().to_string());
+    write_log(&stage.path().join(inside("log")), "reward", "a_b");
+    let scenario_text = scenario("task.json", "a", None).to_string();
+    write(&stage.path().join(inside("s.json")), &scenario_text);
+    let names = ["task.json", "bad.json", "w.json", "s.json", "log", "none"].map(|name| text(&inside(name)).to_owned());
+    for name in &names {
+        for command in [
+            &["validate"][..],
+            &["validate", "--json"],
+            &["sample"],
+            &["tasks", "show"],
+            &["render", "--size", "32"],
+            &["sheet", "--size", "32"],
+            &["order"],
+            &["curriculum"],
+            &["convert"],
+            &["console", "--script"],
+            &["photograph"],
+            &["metrics"],
+            &["metrics", "-R"],
+            &["logs", "validate"],
+            &["logs", "validate", "-R"],
+            &["report", "-o", "r.html"],
+            &["assets", "list"],
+            &["assets", "pack"],
+            &["run", "--agent", "random", "--logs", "x"],
+            &["order", "--from-matrix"],
+            &["metrics", "log1", "--load-settings"],
+            &["sample", "find_objects#red", "--maps"],
+            &["sample", "find_objects#red", "-o"],
+            &["order", "find_objects", "--matrix"],
+            &["logs", "aggregate", "log1", "-o"],
+            &["distance", "find_objects#red"],
+            &["vary", "--element", "R", "--distance", "0.5"],
+        ] {
+            stage.run(&[command, &[name.as_str()]].concat());
+        }
+    }
+    stage.run(&["metrics", "-R", HOSTILE]);
+    stage.run(&["schema", "--check", HOSTILE]);
+    stage.run(&["schema", "-o", &format!("{HOSTILE}-schemas")]);
+    stage.run(&["sample", "find_objects#red", "--count", "2", "-o", HOSTILE]);
+    stage.run(&["demo", "-o", text(&inside("task.json"))]);
+}
+
+#[cfg(not(unix))]
+fn names_of_files(stage: &mut Stage) {
+    for command in ["schema", "demo"] {
+        stage.run(&[command, "--help"]);
+    }
+}
+
+/// What the parser of arguments has to say of them.
+fn arguments(stage: &mut Stage) {
+    stage.fail(&[HOSTILE]);
+    for arguments in [
+        &["sample"][..],
+        &["sample", "find_objects#red", "--seed"],
+        &["order", "find_objects", "--method"],
+        &["run", "s.json", "--agent"],
+        &["tasks"],
+        &["vary", "find_objects#red", "--element"],
+        &["bench"],
+        &["doctor"],
+        &["metrics", "log1", "--variant-mode"],
+        &["distance", "find_objects#red"],
+    ] {
+        stage.fail(&[arguments, &[HOSTILE]].concat());
+    }
+    stage.run(&["doctor"]);
+    stage.run(&["bench", "--help"]);
+}
