@@ -167,3 +167,16 @@ fn an_index_is_checked_against_the_shortest_vector_that_there_can_be() {
     assert_eq!(said(&text.replace("INDEX", "1")), None);
     assert!(said(&text.replace("INDEX", "2")).is_some_and(|said| said.contains("which has 2 numbers")));
 }
+
+#[test]
+fn a_requirement_that_names_no_parameter_and_never_holds_is_said_as_it_stands() {
+    for variants in ["{}", r#"{ "v": {} }"#] {
+        let text = format!(r#"{{ "version": 2, "name": "t", "require": ["1 > 2"], "variants": {variants} }}"#);
+        let error = TaskSpec::from_json("t.json", &text).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "t.json:1:44 (/require/0): found \"1 > 2\", which names no parameter and never holds, expected a condition that some values of \
+             the parameters meet"
+        );
+    }
+}

@@ -15,13 +15,28 @@ const MOST_LEVELS: usize = 4;
 /// The most logs that are taken together.
 const MOST_LOGS: usize = 10_000;
 
+/// The most folders that are looked into for logs.
+const MOST_FOLDERS: usize = 200_000;
+
+/// What a search for logs has looked into and found. A link below the folder that it begins at is taken if it leads to a log, and is not looked
+/// into: one to `/` would have it read the machine, one to a folder above would have it go round.
+#[derive(Default)]
+struct Search {
+    found: Vec<PathBuf>,
+    /// Folders whose entries were read.
+    read: usize,
+}
+
 /// Every log that the arguments name, in order, those below a folder by name; each once.
 pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for argument in arguments {
         is_folder(argument)?;
         let before = found.len();
-        collect(argument, MOST_LEVELS, &mut found)?;
+        let mut search = Search::default();
+        search.collect(argument, MOST_LEVELS)?;
+        found.append(&mut search.found);
+        too_many(argument, found.len())?;
         if found.len() == before {
             return Err(Failure::input(format!(
                 "{}: found no log, expected a folder with logger_info.json, or folders of such up to {MOST_LEVELS} levels \
@@ -37,8 +52,9 @@ pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
 pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     if let Some(argument) = arguments.iter().find(|argument| !is_log(argument)) {
         is_folder(argument)?;
-        let mut below = Vec::new();
-        collect(argument, MOST_LEVELS, &mut below)?;
+        let mut search = Search::default();
+        search.collect(argument, MOST_LEVELS)?;
+        let below = search.found;
         let path = argument.shown();
         return Err(Failure::input(match below.first() {
             Some(first) => format!(
@@ -122,50 +138,112 @@ fn each_once(mut logs: Vec<PathBuf>) -> Vec<PathBuf> {
     logs
 }
 
-fn collect(folder: &Path, levels: usize, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
-    if is_log(folder) {
-        if found.len() == MOST_LOGS {
-            let path = folder.shown();
-            return Err(Failure::input(format!(
-                "{path}: found more than {MOST_LOGS} logs, expected at most that; name fewer folders"
-            )));
+impl Search {
+    fn collect(&mut self, folder: &Path, levels: usize) -> Result<(), Failure> {
+        if self.is_log(folder)? {
+            self.found.push(folder.to_owned());
+            return too_many(folder, self.found.len());
         }
-        found.push(folder.to_owned());
+        if levels == 0 {
+            return Ok(());
+        }
+        for below in self.entries(folder)? {
+            match below {
+                Entry::Folder(below) => self.collect(&below, levels - 1)?,
+                Entry::Link(link) if has_info(&link) => self.found.push(link),
+                Entry::Link(_) => {}
+            }
+        }
+        too_many(folder, self.found.len())
+    }
+
+    /// Whether a folder is a log, be it one that lacks something.
+    fn is_log(&mut self, folder: &Path) -> Result<bool, Failure> {
+        if has_info(folder) {
+            return Ok(true);
+        }
+        for worker in listed(folder) {
+            self.count(&worker)?;
+            let blocks = listed(&worker);
+            if blocks.iter().any(|block| block.join("data-log.tsv").is_file()) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn entries(&mut self, folder: &Path) -> Result<Vec<Entry>, Failure> {
+        self.count(folder)?;
+        entries(folder).map_err(|error| Failure::input(format!("{}: cannot be read: {error}", folder.shown())))
+    }
+
+    /// Takes down that a folder's entries are read.
+    fn count(&mut self, folder: &Path) -> Result<(), Failure> {
+        self.read += 1;
+        if self.read <= MOST_FOLDERS {
+            return Ok(());
+        }
+        Err(Failure::input(format!(
+            "{}: found more than {MOST_FOLDERS} folders on the search for logs, expected at most that; name a folder nearer to the logs",
+            folder.shown()
+        )))
+    }
+}
+
+fn too_many(path: &Path, logs: usize) -> Result<(), Failure> {
+    if logs <= MOST_LOGS {
         return Ok(());
     }
-    if levels > 0 {
-        for folder in folders(folder)? {
-            collect(&folder, levels - 1, found)?;
-        }
-    }
-    Ok(())
+    Err(Failure::input(format!(
+        "{}: found more than {MOST_LOGS} logs, expected at most that; name fewer folders",
+        path.shown()
+    )))
+}
+
+fn has_info(folder: &Path) -> bool {
+    ["logger_info.json", "scenario_info.json"]
+        .iter()
+        .any(|name| folder.join(name).is_file())
 }
 
 /// Whether a folder is a log, be it one that lacks something.
 fn is_log(folder: &Path) -> bool {
-    let has_info = ["logger_info.json", "scenario_info.json"]
-        .iter()
-        .any(|name| folder.join(name).is_file());
-    let below = |folder: &Path| folders(folder).unwrap_or_default();
-    has_info
-        || below(folder)
-            .iter()
-            .flat_map(|worker| below(worker))
-            .any(|block| block.join("data-log.tsv").is_file())
+    // A folder of more folders than are looked into is none.
+    has_info(folder) || Search::default().is_log(folder).unwrap_or(false)
 }
 
-/// The folders in a folder, by name.
-fn folders(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let unreadable = |error| Failure::input(format!("{}: cannot be read: {error}", folder.shown()));
+/// What may hold logs in a folder.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum Entry {
+    Folder(PathBuf),
+    Link(PathBuf),
+}
+
+/// The folders in a folder, and the links, each by name.
+fn entries(folder: &Path) -> std::io::Result<Vec<Entry>> {
     let mut below = Vec::new();
-    for entry in fs::read_dir(folder).map_err(unreadable)? {
-        let path = entry.map_err(unreadable)?.path();
-        if path.is_dir() {
-            below.push(path);
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let kind = entry.file_type()?;
+        if kind.is_dir() {
+            below.push(Entry::Folder(entry.path()));
+        } else if kind.is_symlink() {
+            below.push(Entry::Link(entry.path()));
         }
     }
     below.sort();
     Ok(below)
+}
+
+/// The folders in a folder, links to folders not among them.
+fn listed(folder: &Path) -> Vec<PathBuf> {
+    // What cannot be listed here is told when it is looked into.
+    let entries = entries(folder).unwrap_or_default().into_iter();
+    let folders = entries.filter_map(|entry| match entry {
+        Entry::Folder(path) => Some(path),
+        Entry::Link(_) => None,
+    });
+    folders.collect()
 }
 
 #[cfg(test)]
@@ -246,5 +324,39 @@ mod tests {
                 .text()
                 .contains("found a file")
         );
+    }
+    #[cfg(unix)]
+    #[test]
+    fn links_are_not_looked_into_and_a_link_to_a_log_is_taken() {
+        use std::os::unix::fs::symlink;
+        let base = tempfile::tempdir().unwrap();
+        let root = base.path().join("logs");
+        fs::create_dir_all(root.join("a")).unwrap();
+        fs::write(root.join("a/logger_info.json"), "").unwrap();
+        fs::create_dir_all(base.path().join("elsewhere/log")).unwrap();
+        fs::write(base.path().join("elsewhere/log/logger_info.json"), "").unwrap();
+        symlink("/", root.join("machine")).unwrap();
+        symlink(&root, root.join("round")).unwrap();
+        symlink(base.path().join("elsewhere"), root.join("beside")).unwrap();
+        symlink(base.path().join("elsewhere/log"), root.join("best")).unwrap();
+        let mut search = Search::default();
+        search.collect(&root, MOST_LEVELS).unwrap();
+        assert_eq!(search.found, [root.join("a"), root.join("best")]);
+        // The folder itself; in `a`, which is a log, nothing is looked for.
+        assert_eq!(search.read, 2, "one look at the root for workers, one for logs");
+        // A folder that is named is looked into, also by a link.
+        assert_eq!(below(&[root.join("beside")]).unwrap(), [root.join("beside/log")]);
+    }
+
+    #[test]
+    fn a_search_ends_after_so_many_folders() {
+        let base = tempfile::tempdir().unwrap();
+        fs::create_dir(base.path().join("a")).unwrap();
+        let mut search = Search {
+            read: MOST_FOLDERS,
+            ..Search::default()
+        };
+        let error = search.collect(base.path(), MOST_LEVELS).unwrap_err();
+        assert!(error.text().contains("more than 200000 folders"), "{}", error.text());
     }
 }

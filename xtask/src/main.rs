@@ -7,6 +7,7 @@
     reason = "a command line speaks through its terminal"
 )]
 
+mod advisories;
 mod bench;
 mod chaos;
 mod deny;
@@ -17,6 +18,7 @@ mod examples;
 mod finding;
 mod fuzz;
 mod layers;
+mod lock;
 mod metadata;
 mod peers;
 mod process;
@@ -49,6 +51,7 @@ Usage:
   cargo xtask STAGE                 the same as `test --only STAGE`, but for `schemas` and `protocol`
   cargo xtask schemas               rewrite schemas/*.json from the Rust types
   cargo xtask protocol              rewrite unity/src/protocol.rs from unity/proto/*.proto
+  cargo xtask advisories            check advisories, and write xtask/advisories-checked.txt
   cargo xtask dist                  what is handed out: the command with everything in, its checksum, a wheel; into target/dist-files
   cargo xtask fuzz SECONDS [TARGET]...
                                     look for input that breaks a law, so many seconds for each target; wants nightly Rust
@@ -69,6 +72,7 @@ enum Request {
     Run(Vec<Stage>),
     RewriteSchemas,
     RewriteProtocol,
+    Advisories,
     Dist,
     Fuzz(Fuzz),
     Chaos(chaos::Options),
@@ -95,6 +99,7 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
         ["-h" | "--help" | "help", ..] => Ok(Request::Help),
         ["schemas"] => Ok(Request::RewriteSchemas),
         ["protocol"] => Ok(Request::RewriteProtocol),
+        ["advisories"] => Ok(Request::Advisories),
         ["dist"] => Ok(Request::Dist),
         ["fuzz", rest @ ..] => Fuzz::parse(rest).map(Request::Fuzz),
         ["chaos", rest @ ..] => chaos::Options::parse(rest).map(Request::Chaos),
@@ -161,6 +166,7 @@ fn execute(request: Request) -> ExitCode {
         Request::RewriteSchemas => Workspace::load().and_then(|workspace| schemas::rewrite(&workspace)),
         Request::RewriteProtocol => Workspace::load().and_then(|workspace| protocol::rewrite(&workspace)),
         Request::Chaos(options) => Workspace::load().and_then(|workspace| chaos::unleash(&workspace, &options)),
+        Request::Advisories => Workspace::load().and_then(|workspace| deny::write_down(&workspace)),
         Request::Dist => Workspace::load().and_then(|workspace| dist::make(&workspace)),
         Request::Fuzz(wanted) => Workspace::load().and_then(|workspace| fuzz::search(&workspace, &wanted)),
         Request::Peers { python, scripts } => {

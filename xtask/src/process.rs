@@ -18,6 +18,11 @@ pub(crate) fn bare_cargo() -> Command {
     Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
+/// A program by its name.
+pub(crate) fn bare(program: &str) -> Command {
+    Command::new(program)
+}
+
 /// Prints the command, runs it with our own input and output, and fails when it does.
 pub(crate) fn run(mut command: Command) -> Result<(), XtaskError> {
     let shown = shown(&command);

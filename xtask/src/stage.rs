@@ -39,6 +39,8 @@ pub(crate) enum Stage {
 pub(crate) enum Outcome {
     Passed,
     PassedWith(String),
+    /// What was checked was as it should be; what was not is said.
+    Partly(String),
     Skipped(String),
 }
 
@@ -123,7 +125,9 @@ impl Stage {
             Self::Unity => {
                 "Python clients of ML-Agents, old and new, drive driftworld-unity as they drive a Unity build"
             }
-            Self::Deny => "licences, advisories and sources of dependencies are as deny.toml allows",
+            Self::Deny => {
+                "licences, advisories and sources of dependencies are as deny.toml allows; advisories as far as their database can be had"
+            }
             Self::Rebuilds => "no crate of others was built twice under one profile",
         }
     }
@@ -180,6 +184,7 @@ impl Stage {
 pub(crate) fn run_all(workspace: &Workspace, stages: &[Stage]) -> Result<(), XtaskError> {
     let start = Instant::now();
     let mut table = Vec::new();
+    let mut in_part = Vec::new();
     for (index, stage) in stages.iter().enumerate() {
         println!("\n{}/{} {}: {}", index + 1, stages.len(), stage.name(), stage.about());
         let stage_start = Instant::now();
@@ -188,6 +193,10 @@ pub(crate) fn run_all(workspace: &Workspace, stages: &[Stage]) -> Result<(), Xta
         let ending = match outcome {
             Ok(Outcome::Passed) => "passed".to_owned(),
             Ok(Outcome::PassedWith(note)) => format!("passed  {note}"),
+            Ok(Outcome::Partly(note)) => {
+                in_part.push(stage.name());
+                format!("passed in part: {note}")
+            }
             Ok(Outcome::Skipped(reason)) => format!("skipped: {reason}"),
             Err(source) => {
                 return Err(XtaskError::Stage {
@@ -204,17 +213,18 @@ pub(crate) fn run_all(workspace: &Workspace, stages: &[Stage]) -> Result<(), Xta
     println!("\n{}", table.join("\n"));
     println!(
         "xtask: {} in {:.1} s",
-        verdict(stages.len()),
+        verdict(stages.len(), &in_part),
         start.elapsed().as_secs_f64()
     );
     Ok(())
 }
 
-fn verdict(count: usize) -> String {
-    if count == 1 {
-        "the stage passed".into()
-    } else {
-        format!("all {count} stages passed")
+fn verdict(count: usize, in_part: &[&str]) -> String {
+    match (count, in_part) {
+        (1, []) => "the stage passed".into(),
+        (1, _) => "the stage passed in part".into(),
+        (count, []) => format!("all {count} stages passed"),
+        (count, in_part) => format!("all {count} stages passed, in part only: {}", in_part.join(", ")),
     }
 }
 
@@ -228,6 +238,14 @@ mod tests {
             assert_eq!(Stage::from_name(stage.name()), Some(stage));
         }
         assert_eq!(Stage::from_name("bake"), None);
+    }
+
+    #[test]
+    fn what_passed_in_part_is_not_called_passed() {
+        assert_eq!(verdict(1, &[]), "the stage passed");
+        assert_eq!(verdict(1, &["deny"]), "the stage passed in part");
+        assert_eq!(verdict(3, &[]), "all 3 stages passed");
+        assert_eq!(verdict(3, &["deny"]), "all 3 stages passed, in part only: deny");
     }
 
     #[test]

@@ -175,7 +175,7 @@ def metrics(
         logs: The folder of a log, or several, which are taken as repeats by one agent.
         ste: Folders of logs of single-task experts to compare with.
         against: Folders of another agent's logs.
-        recursive: Take all logs in the folders, also further below.
+        recursive: Take all logs in the folders, also up to four levels below; links are not looked into.
         ste_data: The folder where ``driftworld metrics --ste-store-mode`` keeps experts.
         perf_measure: The column that holds the performance; ``"reward"`` if not given.
         variant_mode: Whether variants of a task count as tasks: ``"aware"`` (default) or ``"agnostic"``.

@@ -55,7 +55,11 @@ impl Requirement {
             let value = value_of(name).map_or_else(|| "?".to_owned(), |value| value.to_string());
             format!("{name} = {value}")
         });
-        shown.collect::<Vec<_>>().join(", ")
+        let shown = shown.collect::<Vec<_>>().join(", ");
+        if shown.is_empty() {
+            return format!("{}, which names no parameter", self.text);
+        }
+        shown
     }
 }
 

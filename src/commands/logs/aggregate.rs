@@ -41,7 +41,7 @@ pub(crate) struct Aggregate {
     /// The format, where the ending does not say it.
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Option<Format>,
-    /// Take every log below the folders.
+    /// Take every log below the folders, up to four levels; links are not looked into.
     #[arg(short = 'R', long)]
     recursive: bool,
     /// Keep rows that do not complete an experience.

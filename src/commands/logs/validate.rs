@@ -24,7 +24,7 @@ pub(crate) struct Validate {
     /// Folders of logs.
     #[arg(required = true, value_name = "DIR")]
     logs: Vec<PathBuf>,
-    /// Take every log below the folders.
+    /// Take every log below the folders, up to four levels; links are not looked into.
     #[arg(short = 'R', long)]
     recursive: bool,
     /// Print the result as JSON.

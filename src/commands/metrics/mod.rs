@@ -47,7 +47,7 @@ pub(crate) struct Metrics {
     /// The same, as l2metrics has it.
     #[arg(short, long = "log-dir", value_name = "DIR", hide = true)]
     log_dir: Vec<PathBuf>,
-    /// Take all logs in the folders, also further below.
+    /// Take all logs in the folders, also up to four levels below; links are not looked into.
     #[arg(short = 'R', long)]
     recursive: bool,
     /// Folders of another agent's logs: how probably is a lifetime of the first better?

@@ -304,7 +304,14 @@ impl<'a> Check<'a> {
                     .cast(parameter.kind)
             })
         };
-        let sound = requirement.holds(example).is_some();
+        let truth = requirement.holds(example);
+        if truth == Some(false) && requirement.names().is_empty() {
+            let found = format!("{:?}, which names no parameter and never holds", requirement.text());
+            let expected = "a condition that some values of the parameters meet";
+            self.report(Problem::new("spec/requirement", pointer, found, expected));
+            return false;
+        }
+        let sound = truth.is_some();
         if !sound {
             let found = format!("{:?}, which is neither true nor false", requirement.text());
             let expected = "a condition: numbers compared with numbers, colours with colours, joined by and, or, not";
