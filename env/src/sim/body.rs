@@ -79,6 +79,9 @@ pub(super) struct Scratch {
     pub(super) body: Footprint,
     /// Footprints widened by it.
     pub(super) widened: Vec<Footprint>,
+    /// How much the agent's ways so far looked at.
+    #[cfg(test)]
+    pub(super) looked: u64,
 }
 
 impl Ground {

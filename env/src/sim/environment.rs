@@ -223,6 +223,7 @@ impl Environment {
         }
         let objects = 0..self.world.objects.len();
         warnings.extend(objects.flat_map(|index| self.warnings_of(index)));
+        warnings.extend(self.heap());
         warnings
     }
 

@@ -84,6 +84,16 @@ pub enum Warning {
         /// Index of the object.
         object: usize,
     },
+    /// The object can be pushed, and stands in a heap: more bodies are in its place than are moved out of each other in a time
+    /// step. It stands fast until there are fewer. The first such object of a world stands for all.
+    Heap {
+        /// Index of the object.
+        object: usize,
+        /// How many others overlap it, by the boxes around them.
+        bodies: usize,
+        /// How many may.
+        limit: usize,
+    },
     /// The world is for photographs of its objects ([`Studio`](crate::Studio)); stepped, it runs as if it were for learning.
     ForPhotographs,
 }
@@ -119,6 +129,13 @@ impl std::fmt::Display for Warning {
                 write!(
                     f,
                     "/objects/{object}/pushable: found an object that moves by itself or is not solid; it is not pushed"
+                )
+            }
+            Self::Heap { object, bodies, limit } => {
+                write!(
+                    f,
+                    "/objects/{object}/coordinates: found {bodies} bodies in the place of one that can be pushed, expected at \
+                     most {limit}; it stands fast until there are fewer: spread them"
                 )
             }
             Self::ForPhotographs => f.write_str(

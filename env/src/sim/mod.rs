@@ -5,6 +5,8 @@ mod answer;
 mod body;
 mod chance;
 mod contact;
+#[cfg(test)]
+mod crowds;
 mod edit;
 mod environment;
 mod episode;

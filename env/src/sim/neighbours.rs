@@ -8,6 +8,7 @@ use rapier3d::prelude::ColliderHandle;
 
 use super::body::{Ground, SOLID, WALL, slot};
 use super::environment::Environment;
+use super::event::Warning;
 use super::looks::Looks;
 
 /// Distance in metres within which bodies are taken to be able to meet, on top of their ways.
@@ -149,7 +150,26 @@ impl Environment {
             };
             around.may_meet += usize::from(may_be_met);
         }
+        // The tree's order depends on its past, which a world that was written down does not have.
+        around.neighbours.sort_unstable();
         Some(around)
+    }
+
+    /// The first object that can be pushed and that more bodies overlap than may.
+    pub(super) fn heap(&self) -> Option<Warning> {
+        let others = |object: usize| {
+            let own = self.ground.handles[object];
+            let area = own.map(|own| self.ground.box_of(own));
+            area.into_iter()
+                .flat_map(move |area| self.ground.around(SOLID | WALL, own, area))
+        };
+        let mut objects = self.episode.pushed.iter().map(|body| body.object);
+        let object = objects.find(|object| others(*object).nth(ONE_OVERLAPS).is_some())?;
+        Some(Warning::Heap {
+            object,
+            bodies: others(object).count(),
+            limit: ONE_OVERLAPS,
+        })
     }
 
     /// How far a pushed body may come in a time step, in metres.

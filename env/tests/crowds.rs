@@ -1,0 +1,160 @@
+//! Heaps and crowds: that they step at all, that nothing of them depends on how the world came to be, and that a heap is pointed out.
+
+use driftworld_env::{Action, Environment, Warning};
+use driftworld_spec::{MotionModel, Object, Pushable, Respawn, Stimulus, World};
+use proptest::prelude::*;
+
+/// A way to make the body of a crowd.
+type Make = fn([f64; 2]) -> Object;
+
+const MAKES: [Make; 5] = [pushable, predator, ghost, wanderer, returning];
+
+fn pushable(at: [f64; 2]) -> Object {
+    let mut object = Object::new("cube", at);
+    object.pushable = Some(Pushable {
+        mass: 5.0,
+        friction: 0.3,
+    });
+    object
+}
+
+fn predator(at: [f64; 2]) -> Object {
+    let mut object = Object::new("cube", at);
+    (object.motion_model, object.speed) = (MotionModel::Predator, 4.0);
+    object.reward = 1.0;
+    object.reward_stimulus = vec![Stimulus::AgentCollide];
+    object
+}
+
+fn ghost(at: [f64; 2]) -> Object {
+    let mut object = predator(at);
+    object.solid = false;
+    object
+}
+
+fn wanderer(at: [f64; 2]) -> Object {
+    let mut object = Object::new("barrel", at);
+    (object.motion_model, object.speed) = (MotionModel::RandomWaypoint, 4.0);
+    object
+}
+
+/// Comes back near to where all others do.
+fn returning(at: [f64; 2]) -> Object {
+    let mut object = Object::new("barrel", at);
+    object.range_stimulus_distance = 50.0;
+    object.destroy_stimulus = vec![Stimulus::AgentInRange];
+    object.respawn = Some(Respawn {
+        delay: 0.0,
+        radius: 1.0,
+    });
+    object
+}
+
+/// Bodies within so many metres of a place in front of the agent.
+fn crowd(makes: &[Make], count: usize, spread: f64) -> World {
+    let at = |k: usize| {
+        let share = |step: f64| spread * ((k as f64 * step).fract() - 0.5);
+        [share(0.618_034), 1.2 + share(0.754_878)]
+    };
+    let mut world = World {
+        objects: (0..count).map(|k| makes[k % makes.len()](at(k))).collect(),
+        seed: Some(7),
+        ..World::default()
+    };
+    world.environment_params.map_size = [60.0, 60.0];
+    world
+}
+
+fn start(world: World) -> Environment {
+    Environment::new(world).expect("every checked world starts")
+}
+
+fn go(environment: &mut Environment, steps: u32) -> f64 {
+    let mut paid = 0.0;
+    for step in 0..steps {
+        let action = Action::Continuous([2.0, f64::from(step % 5) * 20.0 - 40.0, 0.0]);
+        paid += environment.step(action).expect("the episode goes on").reward;
+    }
+    paid
+}
+
+/// All that is seen of a world.
+fn places(environment: &Environment) -> Vec<([f32; 2], f32, bool)> {
+    let items = environment.scene().items.iter();
+    items
+        .map(|item| (item.position, item.heading_deg, item.visible))
+        .collect()
+}
+
+/// A heap of two and a half thousand cubes did not get through its first step in a hundred seconds, and took gigabytes.
+#[test]
+fn every_heap_of_ten_thousand_steps() {
+    for make in MAKES {
+        for spread in [0.0, 2.0] {
+            go(&mut start(crowd(&[make], 10_000, spread)), 3);
+        }
+    }
+}
+
+#[test]
+fn a_heap_is_pushed_apart_or_holds_and_the_agent_is_not_let_through() {
+    let mut environment = start(crowd(&[pushable], 1000, 0.0));
+    for _ in 0..30 {
+        environment
+            .step(Action::Continuous([2.0, 0.0, 0.0]))
+            .expect("the episode goes on");
+    }
+    let [_, y] = environment.agent().position;
+    assert!(y < 1.0, "it came to {y}");
+}
+
+#[test]
+fn a_heap_is_pointed_out_with_its_place_and_size() {
+    let heaps = |count: usize| {
+        let is_heap = |warning: &Warning| matches!(warning, Warning::Heap { .. });
+        let warnings = start(crowd(&[pushable], count, 0.0)).warnings();
+        let heaps: Vec<String> = warnings
+            .iter()
+            .filter(|warning| is_heap(warning))
+            .map(ToString::to_string)
+            .collect();
+        heaps
+    };
+    assert!(heaps(200).is_empty());
+    let said = heaps(1000);
+    assert_eq!(said.len(), 1, "the first of them stands for all");
+    assert!(
+        said[0].starts_with(
+            "/objects/0/coordinates: found 999 bodies in the place of one that can be pushed, expected at most 256"
+        ),
+        "{said:?}"
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// What is over a limit is so by where things stand alone: a world that was written down in the midst of a crowd, whose trees
+    /// were built in another order, goes on to the last bit, and so does one that came back to a moment.
+    #[test]
+    fn a_crowd_goes_on_from_its_state_and_from_a_snapshot(
+        first in 0usize..5,
+        second in 0usize..5,
+        count in 300usize..1200,
+        spread in prop_oneof![Just(0.0), 0.1..4.0],
+        before in 1u32..5,
+    ) {
+        let mut here = start(crowd(&[MAKES[first], MAKES[second]], count, spread));
+        go(&mut here, before);
+        let written = here.state().to_json();
+        let moment = here.snapshot();
+        let paid = go(&mut here, 3);
+        let there = World::from_json("state", &written).expect("a state is a sound world");
+        let mut there = start(there);
+        prop_assert_eq!(go(&mut there, 3), paid);
+        prop_assert!(places(&there) == places(&here), "after a state");
+        here.restore(&moment).expect("every moment can be gone back to");
+        prop_assert_eq!(go(&mut here, 3), paid);
+        prop_assert!(places(&there) == places(&here), "after a snapshot");
+    }
+}
