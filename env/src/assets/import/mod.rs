@@ -6,6 +6,7 @@ mod buffers;
 mod color;
 mod coloring;
 mod container;
+mod deviation;
 mod document;
 mod fit;
 mod nodes;

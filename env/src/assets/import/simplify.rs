@@ -3,9 +3,8 @@
 
 use meshopt::SimplifyOptions;
 use rapier3d::math::Vector;
-use rapier3d::parry::query::PointQuery;
-use rapier3d::parry::shape::TriMesh;
 
+use super::deviation::{Deviation, Looks};
 use crate::assets::library::{Detail, MAX_MODEL_LEVELS};
 
 /// Triangles below which a surface is not worth simplifying: a few blocks of the renderer.
@@ -76,7 +75,7 @@ fn size<'a, I: Iterator<Item = &'a [f32; 3]>>(points: impl Fn() -> I) -> f32 {
 }
 
 /// How far the corners of groups lie from their coarser forms at most; the size of a group of which nothing is left. None as soon
-/// as that is above `most`.
+/// as that is above `most`. Where triangles lie through each other in thousands, fewer corners are measured.
 fn error(corners: &[[f32; 3]], fine: &[Vec<[u32; 3]>], coarse: &[Vec<[u32; 3]>], most: f32) -> Option<f32> {
     let used: Vec<Vec<u32>> = fine.iter().map(|triangles| used(triangles)).collect();
     // Each group has at least one corner measured, which rounding up may add to the most.
@@ -86,39 +85,31 @@ fn error(corners: &[[f32; 3]], fine: &[Vec<[u32; 3]>], coarse: &[Vec<[u32; 3]>],
     );
     let stride = usize::max(1, usize::div_ceil(total, at_most));
     let mut error = 0.0_f32;
+    let mut looks = Looks::new();
     for (used, coarse) in used.iter().zip(coarse) {
-        let surface = mesh(corners, coarse);
-        let Some(surface) = surface else {
+        let Some(surface) = Deviation::new(corners, coarse) else {
             error = error.max(size(|| used.iter().map(|corner| &corners[*corner as usize])));
             continue;
         };
-        for corner in used.iter().step_by(stride) {
-            error = error.max(surface.distance_to_local_point(point(corners, *corner), false));
-            if error > most {
-                return None;
-            }
-        }
+        let measured: Vec<Vector> = used
+            .iter()
+            .step_by(stride)
+            .map(|corner| point(corners, *corner))
+            .collect();
+        error = surface.farthest(&measured, error, most, &mut looks)?;
     }
     (error <= most).then_some(error)
 }
 
-/// The triangles of a group as a surface that distances are measured from; none if nothing is left of them.
-fn mesh(corners: &[[f32; 3]], triangles: &[[u32; 3]]) -> Option<TriMesh> {
-    let left = used(triangles);
-    let place = |corner: u32| left.binary_search(&corner).map_or(0, |place| place as u32);
-    let triangles = triangles.iter().map(|triangle| triangle.map(place)).collect();
-    TriMesh::new(left.iter().map(|corner| point(corners, *corner)).collect(), triangles).ok()
-}
-
 /// The corners that triangles have, each once.
-fn used(triangles: &[[u32; 3]]) -> Vec<u32> {
+pub(super) fn used(triangles: &[[u32; 3]]) -> Vec<u32> {
     let mut used = triangles.as_flattened().to_vec();
     used.sort_unstable();
     used.dedup();
     used
 }
 
-fn point(corners: &[[f32; 3]], corner: u32) -> Vector {
+pub(super) fn point(corners: &[[f32; 3]], corner: u32) -> Vector {
     let [x, y, z] = corners[corner as usize];
     Vector::new(x, y, z)
 }
@@ -180,9 +171,8 @@ mod tests {
         let coarse = Mesh::ball(1.0, 1.0, 16, 12);
         let both = ball.clone().with(&coarse);
         let coarse = [both.triangles[ball.triangles.len()..].to_vec()];
-        let surface = mesh(&both.corners, &coarse[0]).expect("half a thousand triangles are a surface");
-        let far = (0..ball.corners.len() as u32)
-            .map(|corner| surface.distance_to_local_point(point(&both.corners, corner), false));
+        let surface = Deviation::new(&both.corners, &coarse[0]).expect("half a thousand triangles are a surface");
+        let far = (0..ball.corners.len() as u32).map(|corner| surface.distance(point(&both.corners, corner)));
         let at_all = far.fold(0.0, f32::max);
         let found = error(&both.corners, &[ball.triangles], &coarse, 1.0);
         assert!(

@@ -1,0 +1,190 @@
+//! How far points lie from a surface at most, with bounded work. Which points and surfaces these are is in `simplify.rs`.
+
+use rapier3d::math::Vector;
+use rapier3d::parry::partitioning::{BvhNode, TraversalAction};
+use rapier3d::parry::query::PointQuery;
+use rapier3d::parry::shape::TriMesh;
+
+use super::simplify::{point, used};
+
+/// How many triangles are looked at for one level of detail: a second's work or two. Most models need a hundredth of it; where large
+/// triangles lie through each other in thousands, boxes around them tell nothing apart, and every point would ask for all.
+const LOOKS: u64 = 30_000_000;
+
+/// A point as much nearer than the farthest so far, in squares, is passed over: more than the rounding of two ways to a distance.
+const PASSED_OVER: f32 = 1.0 - 1e-4;
+
+/// Triangles that may still be looked at.
+pub(super) struct Looks {
+    left: u64,
+}
+
+impl Looks {
+    pub(super) fn new() -> Self {
+        Self { left: LOOKS }
+    }
+
+    fn take(&mut self, count: u64) {
+        self.left = self.left.saturating_sub(count);
+    }
+}
+
+/// A surface that distances are measured from.
+pub(super) struct Deviation {
+    surface: TriMesh,
+}
+
+impl Deviation {
+    /// The surface of triangles; none if nothing is left of them.
+    pub(super) fn new(corners: &[[f32; 3]], triangles: &[[u32; 3]]) -> Option<Self> {
+        let left = used(triangles);
+        let place = |corner: u32| left.binary_search(&corner).map_or(0, |place| place as u32);
+        let triangles = triangles.iter().map(|triangle| triangle.map(place)).collect();
+        let surface = TriMesh::new(left.iter().map(|corner| point(corners, *corner)).collect(), triangles);
+        Some(Self { surface: surface.ok()? })
+    }
+
+    /// How far a point is from the surface.
+    pub(super) fn distance(&self, point: Vector) -> f32 {
+        self.surface.distance_to_local_point(point, false)
+    }
+
+    /// How far the farthest of points is, or `least` if none is farther. None as soon as that is above `most`.
+    ///
+    /// A point with a triangle nearer than the farthest so far need not be measured. When looks run out, those measured so far,
+    /// evenly chosen, stand for all; at least one is measured.
+    pub(super) fn farthest(&self, points: &[Vector], least: f32, most: f32, looks: &mut Looks) -> Option<f32> {
+        let mut farthest = least;
+        for (number, index) in evenly(points.len()).enumerate() {
+            if looks.left == 0 && number > 0 {
+                break;
+            }
+            let point = points[index];
+            if self.is_within(point, farthest * farthest * PASSED_OVER, looks) {
+                continue;
+            }
+            let distance = self.distance(point);
+            // About what that looked at: every triangle whose box is as near as the surface.
+            let reach = distance * distance;
+            let near = self.surface.bvh().leaves(|node| squared_distance(node, point) <= reach);
+            looks.take(near.count() as u64);
+            farthest = farthest.max(distance);
+            if farthest > most {
+                return None;
+            }
+        }
+        Some(farthest)
+    }
+
+    /// Whether any triangle is found to be as near to a point as this, in squares.
+    fn is_within(&self, point: Vector, squared: f32, looks: &mut Looks) -> bool {
+        let mut found = false;
+        self.surface.bvh().traverse(|node| {
+            if squared_distance(node, point) > squared {
+                return TraversalAction::Prune;
+            }
+            let Some(triangle) = node.leaf_data() else {
+                return TraversalAction::Continue;
+            };
+            looks.take(1);
+            let nearest = self.surface.triangle(triangle).project_local_point(point, false).point;
+            found = (nearest - point).length_squared() <= squared;
+            if found || looks.left == 0 {
+                TraversalAction::EarlyExit
+            } else {
+                TraversalAction::Continue
+            }
+        });
+        found
+    }
+}
+
+/// The square of the distance of a point from a box.
+fn squared_distance(node: &BvhNode, point: Vector) -> f32 {
+    let nearest = point.clamp(node.mins(), node.maxs());
+    (nearest - point).length_squared()
+}
+
+/// All of so many numbers, each once, in an order whose beginnings are spread evenly.
+fn evenly(count: usize) -> impl Iterator<Item = usize> {
+    let shares_none = |step: &usize| {
+        let (mut a, mut b) = (*step, count);
+        while b > 0 {
+            (a, b) = (b, a % b);
+        }
+        a == 1
+    };
+    // Near to the golden section of the count, without a common divisor.
+    let first = (count as f64 * 0.618_034) as usize;
+    let step = (first.max(1)..).find(shares_none).unwrap_or(1);
+    (0..count).map(move |number| (number as u64 * step as u64 % count as u64) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn place() -> impl Strategy<Value = [f32; 3]> {
+        [-5.0..5.0_f32, -5.0..5.0_f32, -5.0..5.0_f32]
+    }
+
+    proptest! {
+        #[test]
+        fn every_number_comes_once(count in 0usize..3000) {
+            let mut numbers: Vec<usize> = evenly(count).collect();
+            numbers.sort_unstable();
+            prop_assert!(numbers.into_iter().eq(0..count));
+        }
+
+        /// Against every point to every triangle.
+        #[test]
+        fn the_farthest_is_that_of_all_points_to_the_last_bit(
+            corners in prop::collection::vec(place(), 3..60),
+            // A point of the surface's own is at no distance.
+            others in prop::collection::vec(place(), 1..60),
+            least in prop_oneof![Just(0.0_f32), 0.0..4.0_f32],
+        ) {
+            let triangles: Vec<[u32; 3]> = (0..corners.len() as u32 / 3).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+            let Some(surface) = Deviation::new(&corners, &triangles) else { return Ok(()) };
+            let points: Vec<Vector> = corners.iter().chain(&others).map(|[x, y, z]| Vector::new(*x, *y, *z)).collect();
+            let expected = points.iter().map(|point| surface.distance(*point)).fold(least, f32::max);
+            let mut looks = Looks::new();
+            prop_assert_eq!(surface.farthest(&points, least, 1e9, &mut looks), Some(expected));
+            prop_assert!(expected <= least || surface.farthest(&points, least, expected * 0.999, &mut looks).is_none());
+            // With few looks some points stand for all.
+            let some = surface.farthest(&points, 0.0, 1e9, &mut Looks { left: 40 });
+            prop_assert!(some.is_some_and(|some| some <= expected));
+            // Another way to the distance: the nearest of all triangles.
+            for point in &points {
+                let to = |triangle: u32| (surface.surface.triangle(triangle).project_local_point(*point, false).point - *point).length();
+                let nearest = (0..triangles.len() as u32).map(to).fold(f32::INFINITY, f32::min);
+                prop_assert!((surface.distance(*point).max(0.0) - nearest).abs() < 1e-4);
+            }
+        }
+    }
+
+    #[test]
+    fn large_triangles_through_each_other_are_measured_within_the_looks() {
+        let mut at = 1_u32;
+        let mut number = || {
+            at = at.wrapping_mul(0x9E37_79B9) ^ (at >> 15);
+            (at >> 8) as f32 / (1 << 24) as f32 * 10.0
+        };
+        let corners: Vec<[f32; 3]> = (0..30_000).map(|_| [number(), number(), number()]).collect();
+        let triangles: Vec<[u32; 3]> = (0..10_000).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+        let surface = Deviation::new(&corners, &triangles[..2500]).expect("triangles are left");
+        let points: Vec<Vector> = corners.iter().map(|[x, y, z]| Vector::new(*x, *y, *z)).collect();
+        let mut looks = Looks::new();
+        let found = surface.farthest(&points, 0.0, 10.0, &mut looks);
+        // One by one these are a quarter of 30,000 times 2,500.
+        let looked = LOOKS - looks.left;
+        assert!(looked < 6_000_000, "{looked}");
+        let expected = points
+            .iter()
+            .step_by(10)
+            .map(|point| surface.distance(*point))
+            .fold(0.0, f32::max);
+        assert!(found.is_some_and(|found| found >= expected), "{found:?} {expected}");
+    }
+}
