@@ -3,9 +3,8 @@
 
 use std::path::Path;
 
-use driftworld_spec::{MAX_BYTES, Scenario};
 use driftworld_text::ShownPath;
-use serde_json::Value;
+use crate::top_level::TopLevel;
 
 /// What a file or folder holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,13 +43,9 @@ impl Contents {
     /// What a JSON text shows itself to be; `None` for one that shows nothing, or is no JSON.
     pub fn of_text(text: &str) -> Option<Self> {
         // A text that is too long is refused by whoever reads it.
-        if text.len() > MAX_BYTES {
-            return None;
-        }
-        let json: Value = serde_json::from_str(text.trim_start_matches('\u{feff}')).ok()?;
-        let map = json.as_object()?;
-        let has = |keys: &[&str]| keys.iter().any(|key| map.contains_key(*key));
-        if has(&["blocks"]) || Scenario::is_l2explorer(&json) {
+        let keys = TopLevel::of(text)?;
+        let has = |wanted: &[&str]| keys.has_any(wanted);
+        if has(&["blocks"]) || keys.is_l2explorer_scenario() {
             Some(Self::Scenario)
         } else if has(&["maps"]) {
             Some(Self::Maps)

@@ -1,39 +1,27 @@
 //! Documents as files and texts: what one is, seen from its keys, and all that is wrong with it. What may stand in each is `spec`'s.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::str::FromStr;
 use std::sync::Arc;
 
 use driftworld_curriculum::{CurriculumError, log_name};
+use driftworld_files::FileError;
 use driftworld_spec::maps::MapLibrary;
-use driftworld_spec::{Classes, Scenario, SpecError, TaskSpec, World, nearest};
-use driftworld_text::{ShownPath, one_line};
-use serde_json::Value;
+use driftworld_spec::{Classes, MAX_BYTES, Scenario, SpecError, TaskSpec, World, nearest};
+use driftworld_text::one_line;
 
 use crate::contents::{Contents, OtherContents};
 use crate::tasks::TaskError;
+use crate::top_level::TopLevel;
 
 /// Why a document cannot be had from its file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DocumentError {
-    /// The file cannot be read.
-    #[error("{}: cannot be read: {source}", path.shown())]
-    Unreadable {
-        /// Its path.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// The file is no text.
-    #[error("{}: byte {at} is not UTF-8; JSON documents are UTF-8 text", path.shown())]
-    NotText {
-        /// Its path.
-        path: PathBuf,
-        /// The first byte that is no text.
-        at: usize,
-    },
+    /// The file cannot be read, is no regular file, is too large or is no text.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// The document is of another kind.
     #[error(transparent)]
     OtherContents(#[from] OtherContents),
@@ -42,23 +30,12 @@ pub enum DocumentError {
     Spec(#[from] SpecError),
 }
 
-/// The text of a file, without the byte order mark that some editors put in front.
+/// The text of a file of at most [`MAX_BYTES`], without the byte order mark that some editors put in front.
 ///
 /// # Errors
-/// [`DocumentError::Unreadable`], [`DocumentError::NotText`].
+/// [`DocumentError::File`], also for what is no regular file.
 pub fn text(path: &Path) -> Result<String, DocumentError> {
-    let bytes = std::fs::read(path).map_err(|source| DocumentError::Unreadable {
-        path: path.to_owned(),
-        source,
-    })?;
-    let text = String::from_utf8(bytes).map_err(|error| DocumentError::NotText {
-        path: path.to_owned(),
-        at: error.utf8_error().valid_up_to(),
-    })?;
-    Ok(match text.strip_prefix('\u{feff}') {
-        Some(text) => text.to_owned(),
-        None => text,
-    })
+    Ok(driftworld_files::text(path, MAX_BYTES as u64)?)
 }
 
 /// The text of a file that should hold one of several kinds of documents.
@@ -107,15 +84,14 @@ impl Kind {
     /// What a text is, seen from its keys: `blocks` make a scenario, `scenario` one of L2Explorer's, `maps` a maps file, `name`,
     /// `parameters` or `groups` a task spec, anything else a world.
     pub fn of(text: &str) -> Self {
-        let json: Value = serde_json::from_str(text.trim_start_matches('\u{feff}')).unwrap_or_default();
-        let has = |key: &str| json.get(key).is_some();
-        if has("blocks") {
+        let keys = TopLevel::of(text).unwrap_or_default();
+        if keys.has("blocks") {
             Self::Scenario
-        } else if Scenario::is_l2explorer(&json) {
+        } else if keys.is_l2explorer_scenario() {
             Self::L2ExplorerScenario
-        } else if has("maps") {
+        } else if keys.has("maps") {
             Self::Maps
-        } else if has("name") || has("parameters") || has("groups") {
+        } else if keys.has_any(&["name", "parameters", "groups"]) {
             Self::Task
         } else {
             Self::World

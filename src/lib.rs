@@ -29,6 +29,7 @@ pub mod documents;
 pub mod picture_distance;
 pub mod scenarios;
 pub mod tasks;
+mod top_level;
 
 /// The README's Rust example is compiled with the documentation's tests.
 #[cfg(doctest)]

@@ -9,11 +9,11 @@ use std::sync::Arc;
 use driftworld_curriculum::{CurriculumError, FoundWorld, Plan, Sources, Undrawable};
 use driftworld_spec::{Scenario, SpecError, TaskSpec, World, nearest};
 use driftworld_text::ShownPath;
-use serde_json::Value;
 
 use crate::contents::Contents;
 use crate::documents::{self, DocumentError};
 use crate::tasks::{self, TaskError};
+use crate::top_level::TopLevel;
 
 /// Told of what is odd.
 pub type Warn<'a> = &'a mut dyn FnMut(String);
@@ -68,8 +68,7 @@ impl ScenarioFile {
     /// Whether a file is a scenario, in whichever form.
     pub fn is_one(path: &Path) -> bool {
         let text = documents::text(path).unwrap_or_default();
-        let json: Value = serde_json::from_str(&text).unwrap_or_default();
-        json.get("blocks").is_some() || Scenario::is_l2explorer(&json)
+        TopLevel::of(&text).is_some_and(|keys| keys.has("blocks") || keys.is_l2explorer_scenario())
     }
 
     /// The scenario with everything that it names.
@@ -301,5 +300,5 @@ pub fn plan_to_try(scenario: &Scenario) -> Result<Plan, CurriculumError> {
 
 /// Whether a text is a scenario of the original's.
 pub fn is_original(text: &str) -> bool {
-    serde_json::from_str(text).is_ok_and(|json: Value| Scenario::is_l2explorer(&json))
+    TopLevel::of(text).is_some_and(|keys| keys.is_l2explorer_scenario())
 }

@@ -1,13 +1,13 @@
 //! The names by which tasks are called: `PATH`, `PATH#variant`, or a built-in such as `find_objects#red`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use crate::contents::Contents;
 use crate::documents::{self, DocumentError};
 use driftworld_env::Catalogue;
+use driftworld_files::FileError;
 use driftworld_spec::{Classes, DEFAULT_VARIANT, SpecError, TaskSpec, Variant, nearest};
-use driftworld_text::ShownPath;
 
 /// The tasks that are built in: name and text. The files are `examples/tasks/`.
 pub const BUILT_IN: [(&str, &str); 6] = [
@@ -33,14 +33,9 @@ pub enum TaskError {
         /// The name asked for.
         name: String,
     },
-    /// The file is there and cannot be read.
-    #[error("{}: cannot be read: {source}", path.shown())]
-    Unreadable {
-        /// Its path.
-        path: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
+    /// The file is there and cannot be read, is no regular file, is too large or is no text.
+    #[error(transparent)]
+    Unreadable(FileError),
     /// The file holds another kind of document, or is a folder.
     #[error(transparent)]
     Document(DocumentError),
@@ -66,7 +61,11 @@ pub fn check_classes(name: &str, task: &TaskSpec, classes: &Classes) -> Result<(
         return Ok(());
     }
     let name = name.to_owned();
-    Err(SpecError::Document { name, problems })
+    Err(SpecError::Document {
+        name,
+        problems,
+        more: false,
+    })
 }
 
 /// The names of the built-in tasks.
@@ -97,17 +96,8 @@ pub fn task(name: &str) -> Result<Arc<TaskSpec>, TaskError> {
     }
     let path = Path::new(task);
     let text = documents::text_of(path, &[Contents::Task]).map_err(|error| match error {
-        DocumentError::Unreadable { source, .. } if source.kind() == std::io::ErrorKind::NotFound => {
-            TaskError::Unknown { name: task.to_owned() }
-        }
-        DocumentError::Unreadable { path, source } => TaskError::Unreadable { path, source },
-        DocumentError::NotText { path, at } => TaskError::Unreadable {
-            path,
-            source: std::io::Error::new(
-                std::io::ErrorKind::InvalidData,
-                format!("byte {at} is not UTF-8; JSON documents are UTF-8 text"),
-            ),
-        },
+        DocumentError::File(error) if error.missing().is_some() => TaskError::Unknown { name: task.to_owned() },
+        DocumentError::File(error) => TaskError::Unreadable(error),
         other => TaskError::Document(other),
     })?;
     Ok(TaskSpec::from_json(task, &text)?)

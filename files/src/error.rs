@@ -54,6 +54,19 @@ impl FileError {
         }
     }
 
+    /// The message without the path, for those who have named the file already.
+    pub fn without_path(&self) -> String {
+        let path = match self {
+            Self::Unreadable { path, .. }
+            | Self::NotAFile { path, .. }
+            | Self::TooLarge { path, .. }
+            | Self::NotText { path, .. } => path.display(),
+        };
+        let message = self.to_string();
+        let alone = message.strip_prefix(&format!("{path}: ")).unwrap_or(&message);
+        alone.strip_prefix("cannot be read: ").unwrap_or(alone).to_owned()
+    }
+
     /// The stable name of this kind of error.
     pub fn code(&self) -> &'static str {
         match self {
@@ -84,6 +97,8 @@ mod tests {
         let path = || PathBuf::from("a.json");
         let check = |error: FileError, code: &str, expected: &str| {
             assert_eq!((error.code(), error.to_string().as_str()), (code, expected));
+            let alone = error.without_path();
+            assert!(expected.ends_with(&alone) && !alone.contains("a.json"), "{alone}");
         };
         check(
             FileError::Unreadable {

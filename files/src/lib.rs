@@ -1,5 +1,5 @@
 //! Opens every file that a user or a log names: regular files only, and never more of one than a limit. What stands in a file is
-//! its reader's affair; writing is not done here.
+//! its reader's affair; nothing is written here, but a file is opened for additions in the same careful way.
 //!
 //! A pipe would be waited for without an end, a device may never end, and a file may be larger than the memory. So a path is looked
 //! at before it is opened, the opened file once more, its length before it is read, and no more is read than the limit allows.
@@ -124,6 +124,22 @@ pub fn text(path: &Path, limit: u64) -> Result<String, FileError> {
     Ok(text)
 }
 
+/// Opens a file for additions, made if need be. A named pipe that nobody reads is refused, and one whose reader is slow is not waited
+/// for: what it does not take is an error of the writing.
+///
+/// # Errors
+/// What the system says.
+pub fn append(path: &Path) -> std::io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.append(true).create(true);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        options.custom_flags(libc::O_NONBLOCK | libc::O_NOCTTY);
+    }
+    options.open(path)
+}
+
 /// Opens for reading. A pipe that has just taken the file's place is not waited for, and no terminal is taken over.
 #[cfg(unix)]
 fn without_waiting(path: &Path) -> std::io::Result<File> {
@@ -230,6 +246,8 @@ mod tests {
         let opened = without_waiting(&pipe).expect("it can be opened");
         let kind = opened.metadata().expect("it can be looked at").file_type();
         assert!(kind::check(&pipe, kind).is_err());
+        drop(opened);
+        assert!(append(&pipe).is_err(), "nobody reads it");
     }
 
     /// Files that the system makes while they are read say that they are empty.

@@ -179,7 +179,7 @@ def test_problems_go_into_json() -> None:
 
 def test_what_is_no_text_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "bytes.json").write_bytes(b"\xff\xfe")
-    with pytest.raises(driftworld.TaskError, match="cannot be read: byte 0 is not UTF-8") as refused:
+    with pytest.raises(driftworld.TaskError, match="byte 0 \\(line 1\\) is not UTF-8") as refused:
         TaskSpec.load(tmp_path / "bytes.json")
     assert refused.value.code == "task/unreadable"
 

@@ -4,6 +4,9 @@ use std::fmt;
 
 use driftworld_text::one_line;
 
+/// The most problems of a document that are listed; beyond them is only said that there are more.
+pub const MAX_PROBLEMS: usize = 300;
+
 /// The most problems that one message shows.
 const SHOWN: usize = 20;
 
@@ -105,13 +108,37 @@ pub enum SpecError {
         /// The most that is read.
         limit: usize,
     },
+    /// The text has too many values to be a document: each takes a hundred bytes or more while it is checked.
+    #[error(
+        "{name}: found more than {limit} values (numbers, texts, lists, objects), expected at most that; split the document"
+    )]
+    TooManyValues {
+        /// The document's name.
+        name: String,
+        /// The most that are read.
+        limit: usize,
+    },
+    /// A key is longer than any that a document can have.
+    #[error("{name}:{line}:{column}: found a key of more than {limit} bytes, expected a name; is a quote missing?")]
+    LongKey {
+        /// The document's name.
+        name: String,
+        /// Line from 1.
+        line: usize,
+        /// Column behind the key, from 1.
+        column: usize,
+        /// The longest that is read, in bytes.
+        limit: usize,
+    },
     /// The document is JSON, and says something that it must not.
-    #[error("{}", list(name, problems))]
+    #[error("{}", list(name, problems, *more))]
     Document {
         /// The document's name.
         name: String,
-        /// All that is wrong, sorted by place.
+        /// All that is wrong, sorted by place; the first [`MAX_PROBLEMS`] of it.
         problems: Vec<Problem>,
+        /// Whether there is more that is not listed.
+        more: bool,
     },
     /// A task has no variant of this name.
     #[error(
@@ -129,7 +156,7 @@ pub enum SpecError {
         known: Vec<String>,
     },
     /// A variant cannot have the values asked for.
-    #[error("{}", list(variant, problems))]
+    #[error("{}", list(variant, problems, false))]
     Values {
         /// The variant's name, with its task's.
         variant: String,
@@ -144,11 +171,18 @@ impl SpecError {
         match self {
             Self::Syntax { .. } => "spec/syntax",
             Self::TooLarge { .. } => "spec/too-large",
+            Self::TooManyValues { .. } => "spec/too-many-values",
+            Self::LongKey { .. } => "spec/long-key",
             Self::Document { problems, .. } | Self::Values { problems, .. } => {
                 problems.first().map_or("spec/value", |problem| problem.code)
             }
             Self::UnknownVariant { .. } => "spec/unknown-variant",
         }
+    }
+
+    /// Whether a document has more problems than are listed.
+    pub fn has_more(&self) -> bool {
+        matches!(self, Self::Document { more: true, .. })
     }
 
     /// The problems of a document, sorted by place; empty for other errors.
@@ -160,7 +194,7 @@ impl SpecError {
     }
 }
 
-fn list(name: &str, problems: &[Problem]) -> String {
+fn list(name: &str, problems: &[Problem], more: bool) -> String {
     let name = one_line(name);
     let mut lines: Vec<String> = problems
         .iter()
@@ -168,7 +202,8 @@ fn list(name: &str, problems: &[Problem]) -> String {
         .map(|problem| format!("{name}:{problem}"))
         .collect();
     if problems.len() > SHOWN {
-        lines.push(format!("{name}: and {} more", problems.len() - SHOWN));
+        let at_least = if more { "at least " } else { "" };
+        lines.push(format!("{name}: and {at_least}{} more", problems.len() - SHOWN));
     }
     lines.join("\n")
 }
@@ -225,6 +260,7 @@ mod tests {
         let error = SpecError::Document {
             name: "find.json".into(),
             problems: vec![problem],
+            more: false,
         };
         assert_eq!(
             error.to_string(),

@@ -28,6 +28,8 @@ fn cases() -> Vec<SpecError> {
     vec![
         world("{"),
         World::from_json("w.json", &" ".repeat((64 << 20) + 1)).expect_err("the text is too long"),
+        task(&format!("\"world\": {{ \"objects\": [{}0] }}", "0,".repeat(1_000_000))),
+        world(&format!("{{ \"{}\": 1 }}", "k".repeat(401))),
         plain.variant("red").expect_err("the task declares no variant"),
         world(r#"{ "max_steps": 1, "max_steps": 2 }"#),
         world(r#"{ "max_step": 1 }"#),

@@ -11,6 +11,7 @@ use crate::generator::Sampler;
 use crate::spec::maps::MapLibrary;
 use crate::spec::{Variant, Warning, World};
 use crate::tasks;
+use crate::top_level::TopLevel;
 use clap::Args;
 use driftworld_text::ShownPath;
 use sha2::{Digest, Sha256};
@@ -55,11 +56,8 @@ pub(crate) fn is_world_file(name: &str) -> bool {
     let Ok(text) = documents::text(path) else {
         return false;
     };
-    match serde_json::from_str::<serde_json::Value>(&text) {
-        Ok(json) => json.get("name").is_none() && json.get("parameters").is_none() && json.get("groups").is_none(),
-        // What is not JSON is reported by whoever reads it as a task.
-        Err(_) => false,
-    }
+    // What is no JSON object is reported by whoever reads it as a task.
+    TopLevel::of(&text).is_some_and(|keys| !keys.has_any(&["name", "parameters", "groups"]))
 }
 
 /// Refuses a file that shows itself to be neither a world nor a task spec, and a folder.

@@ -1,14 +1,15 @@
 //! Distance matrices as files: CSV, JSON or numpy's, by the name's ending. The formats themselves are `similarity`'s.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::contents::{Contents, OtherContents};
-use crate::documents;
 use crate::similarity::{DistanceMatrix, SimilarityError};
 use driftworld_text::{Cells, ShownPath};
 
 use super::{Failure, input, output};
+
+/// The largest file of a matrix that is read, in bytes: 7,240 items in numpy's format. It and the matrix are in memory together.
+pub(crate) const MAX_MATRIX_BYTES: u64 = 400 << 20;
 
 /// What a file's name says it holds.
 enum Format {
@@ -50,11 +51,16 @@ pub(crate) fn read(option: &str, path: &Path) -> Result<DistanceMatrix, Failure>
         return Err(other.into());
     }
     match format(option, path)? {
-        Format::Csv => DistanceMatrix::from_csv(&input::text(path)?).map_err(named),
-        Format::Json => DistanceMatrix::from_json(&documents::text_of(path, &[Contents::Matrix])?).map_err(named),
+        Format::Csv => DistanceMatrix::from_csv(&driftworld_files::text(path, MAX_MATRIX_BYTES)?).map_err(named),
+        Format::Json => {
+            let text = driftworld_files::text(path, MAX_MATRIX_BYTES)?;
+            if let Some(other) = OtherContents::check(path, Contents::of_text(&text), &[Contents::Matrix]) {
+                return Err(other.into());
+            }
+            DistanceMatrix::from_json(&text).map_err(named)
+        }
         Format::Npy => {
-            let bytes =
-                fs::read(path).map_err(|error| Failure::input(format!("{}: cannot be read: {error}", path.shown())))?;
+            let bytes = driftworld_files::read(path, MAX_MATRIX_BYTES)?;
             let beside = labels_beside(path);
             let labels = if beside.exists() { Some(labels(&beside)?) } else { None };
             DistanceMatrix::from_npy(&bytes, labels).map_err(named)

@@ -3,7 +3,7 @@
 
 use std::env;
 use std::ffi::OsStr;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
@@ -168,7 +168,7 @@ fn check_source(source: &Path) -> Result<(), Failure> {
 fn holds_marker(path: &Path) -> io::Result<bool> {
     const PIECE: u64 = 1 << 16;
     let marker = MARKER.replace('_', " ");
-    let mut file = File::open(path)?;
+    let mut file = driftworld_files::open(path, u64::MAX).map_err(io::Error::other)?.file;
     let mut piece = Vec::new();
     while file.by_ref().take(PIECE).read_to_end(&mut piece)? > 0 {
         if piece.windows(marker.len()).any(|bytes| bytes == marker.as_bytes()) {
@@ -208,7 +208,7 @@ fn text(path: &Path) -> Result<&str, Failure> {
 /// Copies under a temporary name, which is given up for the right one when all is written and can be started.
 fn copy(source: &Path, target: &Path) -> Result<(), Failure> {
     let failed = |error: io::Error| Failure::input(format!("{}: cannot be written: {error}", target.shown()));
-    let mut from = File::open(source).map_err(|error| unreadable(source, &error))?;
+    let mut from = driftworld_files::open(source, u64::MAX)?.file;
     let mut copy = AtomicFile::create_executable(target).map_err(failed)?;
     io::copy(&mut from, &mut copy).map_err(failed)?;
     copy.commit().map_err(failed)

@@ -6,7 +6,7 @@ use crate::contents::Contents;
 use crate::curriculum::{Trial, Tried, Undrawable, try_worlds};
 use crate::documents::{self, Checked, Kind};
 use crate::scenarios::{Missing, ScenarioFile, task_from};
-use crate::spec::{Classes, Problem, TaskSpec};
+use crate::spec::{Classes, Problem, SpecError, TaskSpec};
 use crate::tasks;
 use clap::Args;
 use driftworld_text::ShownPath;
@@ -235,6 +235,9 @@ impl Verdict {
             "file": self.path, "kind": checked.kind.name(), "valid": found.is_valid(),
             "problems": problems.unwrap_or_else(|| failure.collect()), "warnings": checked.warnings,
         });
+        if checked.error.as_ref().is_some_and(SpecError::has_more) {
+            told["more_problems"] = json!(true);
+        }
         if !found.trials.is_empty() {
             told["worlds"] = json!(found.trials);
         }

@@ -181,7 +181,7 @@ fn what_cannot_be_packed_says_why_and_leaves_no_library() {
         &library,
         "absent.glb: cannot be read",
     );
-    check(folder.path(), &library, "it is a folder or a device, not a file");
+    check(folder.path(), &library, "found a folder, expected a regular file");
     let hostile = root().join("env/tests/hostile");
     check(
         &hostile.join("uri_above.gltf"),

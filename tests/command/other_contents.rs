@@ -161,7 +161,7 @@ fn every_file_is_judged_whatever_the_others_are() {
     assert_eq!(judged.status.code(), Some(1));
     assert_eq!(said.lines().count(), 2, "{said}");
     assert!(
-        error.contains("missing.json: cannot be read") && error.contains("latin.json: byte 14 is not UTF-8"),
+        error.contains("missing.json: cannot be read") && error.contains("latin.json: byte 14 (line 1) is not UTF-8"),
         "{error}"
     );
     assert!(

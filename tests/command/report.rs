@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::lived::write;
-use crate::terminal::{driftworld_in, fail_in, output, read, scratch, succeed_in};
+use crate::terminal::{driftworld_in, fail_in, output, read, root, scratch, succeed_in};
 
 /// A lifetime of ours in `log`: three learning blocks of two variants with an evaluation before each.
 fn live(folder: &Path) {
@@ -213,4 +213,53 @@ fn every_log_that_cannot_be_shown_is_named_and_the_page_may_go_to_standard_outpu
     let page = succeed_in(folder.path(), &["report", "log", "-o", "-", "--title", " "]);
     assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>\n") || page.ends_with("</html>"));
     assert!(page.contains("<h1>log</h1>"), "an empty title is none");
+}
+
+/// A log may name any file: none is opened but what the command line names.
+#[cfg(unix)]
+#[test]
+fn files_that_a_log_names_are_not_opened() {
+    let folder = scratch();
+    let path = folder.path();
+    let regime = |variant: &str| {
+        let keys = format!(r#""task": "mine.json", "variant": "{variant}", "count": 3, "max_steps": 5"#);
+        format!(r#"{{ "type": "learning", "regimes": [{{ {keys} }}] }}"#)
+    };
+    let blocks = [regime("red"), regime("blue")];
+    let scenario = format!(r#"{{ "name": "s", "blocks": [{}] }}"#, blocks.join(", "));
+    write(&path.join("scenario.json"), &scenario);
+    std::fs::copy(root().join("examples/tasks/find_objects.json"), path.join("mine.json")).expect("the folder is ours");
+    succeed_in(path, &["run", "scenario.json", "--agent", "random", "--logs", "log"]);
+    // Not even one that would be the right one.
+    succeed_in(path, &["report", "log"]);
+    let page = read(path.join("report.html"));
+    assert!(page.contains("name it with --task FILE") && !page.contains("as measured from"));
+    succeed_in(path, &["report", "log", "--task", "mine.json"]);
+    assert!(read(path.join("report.html")).contains("as measured from the scenario in the log"));
+    // From another folder the file's name says which is meant.
+    std::fs::create_dir(path.join("tasks")).expect("the folder is ours");
+    std::fs::rename(path.join("mine.json"), path.join("tasks/mine.json")).expect("the folder is ours");
+    succeed_in(path, &["report", "log", "--task", "tasks/mine.json"]);
+    assert!(read(path.join("report.html")).contains("as measured from the scenario in the log"));
+    let info = path.join("log/scenario_info.json");
+    let made = std::process::Command::new("mkfifo").arg(path.join("pipe")).status();
+    assert!(made.expect("every unix has mkfifo").success());
+    for named in ["/dev/zero", "pipe", "../../etc/passwd"] {
+        let text = read(&info).replace("mine.json", named);
+        write(&path.join("other/scenario_info.json"), &text);
+        for file in ["logger_info.json"] {
+            std::fs::copy(path.join("log").join(file), path.join("other").join(file)).expect("the folder is ours");
+        }
+        let copied = std::process::Command::new("cp")
+            .arg("-r")
+            .arg(path.join("log/worker-default"))
+            .arg(path.join("other/"))
+            .status();
+        assert!(copied.expect("every unix has cp").success());
+        succeed_in(path, &["report", "other"]);
+        assert!(
+            read(path.join("report.html")).contains("files that a log names are not opened"),
+            "{named}"
+        );
+    }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use driftworld_env::EnvError;
+use driftworld_files::FileError;
 use driftworld_spec::SpecError;
 use driftworld_text::{ShownPath, one_line};
 
@@ -18,15 +19,21 @@ pub enum UnityError {
         /// What was found where, and what was expected.
         text: String,
     },
-    /// A file that cannot be read or written.
-    #[error("{option} {}: cannot be {purpose}: {source}", path.shown(), source = one_line(source))]
-    File {
+    /// A file that cannot be read, is no regular file, is too large or is no text.
+    #[error("{option} {source}")]
+    Reading {
+        /// The option that named it.
+        option: &'static str,
+        /// Why not.
+        source: FileError,
+    },
+    /// A file that cannot be written.
+    #[error("{option} {}: cannot be written: {source}", path.shown(), source = one_line(source))]
+    Writing {
         /// The option that named it.
         option: &'static str,
         /// Its path.
         path: PathBuf,
-        /// What it is for: to be "read" or "written".
-        purpose: &'static str,
         /// What the system says.
         source: std::io::Error,
     },
@@ -158,7 +165,7 @@ impl UnityError {
     pub fn code(&self) -> &'static str {
         match self {
             Self::Arguments { .. } => "unity/arguments",
-            Self::File { .. } => "unity/file",
+            Self::Reading { .. } | Self::Writing { .. } => "unity/file",
             Self::Network { .. } => "unity/network",
             Self::Document(_) => "unity/document",
             Self::NoClient { .. } => "unity/no-client",

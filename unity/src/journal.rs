@@ -1,6 +1,6 @@
 //! [`Journal`]: remarks, line by line, on the terminal or in a file. What is remarked is decided elsewhere.
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 
@@ -16,14 +16,12 @@ impl Journal {
     /// A journal at the end of a file, or on the terminal.
     ///
     /// # Errors
-    /// [`UnityError::File`] where the file cannot be opened for writing.
+    /// [`UnityError::Writing`] where the file cannot be opened for writing.
     pub fn open(path: Option<&Path>) -> Result<Self, UnityError> {
         let open = |path: &Path| {
-            let file = OpenOptions::new().create(true).append(true).open(path);
-            file.map_err(|source| UnityError::File {
+            driftworld_files::append(path).map_err(|source| UnityError::Writing {
                 option: "-logFile",
                 path: path.to_owned(),
-                purpose: "written",
                 source,
             })
         };

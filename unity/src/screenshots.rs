@@ -69,8 +69,10 @@ impl Screenshots {
 /// Whether a file begins as PNG files do; one that cannot be read does not.
 fn is_png(path: &Path) -> bool {
     let mut start = [0; SIGNATURE.len()];
-    let read = fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
-    read.is_ok() && start == SIGNATURE
+    let Ok(mut opened) = driftworld_files::open(path, u64::MAX) else {
+        return false;
+    };
+    opened.file.read_exact(&mut start).is_ok() && start == SIGNATURE
 }
 
 /// The path inside the folder that a name stands for.

@@ -1,14 +1,14 @@
 //! [`run`]: a session over a connection, from the first look for a client to its end. What is said is decided in `session/mod.rs`.
 
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use driftworld_env::{Catalogue, Library};
-use driftworld_spec::World;
 use driftworld_spec::maps::MapLibrary;
+use driftworld_spec::{MAX_BYTES, World};
 use prost::Message;
-use serde_json::Value;
+use serde::Deserialize;
+use serde::de::IgnoredAny;
 use tokio::runtime;
 use tokio::time::timeout;
 
@@ -25,6 +25,9 @@ use crate::session::{Session, Setup, Turn};
 const WELL: i32 = 200;
 const END: i32 = 400;
 const FAILED: i32 = 500;
+
+/// The largest library of assets that is read, in bytes, as for the command.
+const MAX_LIBRARY_BYTES: u64 = 1 << 30;
 
 /// How long a client has to hear why we end.
 const FAREWELL: Duration = Duration::from_millis(500);
@@ -74,7 +77,7 @@ fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World,
         Err(error) => error,
     };
     // Only ours has a version; where neither form reads, the complaints of ours are the stricter ones.
-    let is_ours = serde_json::from_str::<Value>(&text).is_ok_and(|json| json.get("version").is_some());
+    let is_ours = serde_json::from_str::<Ours>(&text).is_ok_and(|ours| ours.version.is_some());
     match World::from_l2explorer_with(&name, &text, maps) {
         Ok((world, warnings)) if !is_ours => {
             journal.note(&format!("{name}: read as a reset file of L2Explorer"));
@@ -85,6 +88,12 @@ fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World,
         }
         _ => Err(error.into()),
     }
+}
+
+/// What only our form has; everything else is passed over, however much it is.
+#[derive(Deserialize)]
+struct Ours {
+    version: Option<IgnoredAny>,
 }
 
 fn maps(path: &Path) -> Result<MapLibrary, UnityError> {
@@ -98,7 +107,12 @@ fn maps(path: &Path) -> Result<MapLibrary, UnityError> {
 fn catalogue(paths: &[PathBuf]) -> Result<Catalogue, UnityError> {
     let mut catalogue = Catalogue::default();
     for path in paths {
-        let library = Library::from_bytes(&bytes("--assets", path)?).map_err(|source| UnityError::Library {
+        let bytes = driftworld_files::read(path, MAX_LIBRARY_BYTES);
+        let bytes = bytes.map_err(|source| UnityError::Reading {
+            option: "--assets",
+            source,
+        })?;
+        let library = Library::from_bytes(&bytes).map_err(|source| UnityError::Library {
             path: path.clone(),
             source,
         })?;
@@ -107,27 +121,8 @@ fn catalogue(paths: &[PathBuf]) -> Result<Catalogue, UnityError> {
     Ok(catalogue)
 }
 
-/// The bytes of a plain file: a device or a pipe has no end.
-fn bytes(option: &'static str, path: &Path) -> Result<Vec<u8>, UnityError> {
-    let failed = |source| UnityError::File {
-        option,
-        path: path.to_owned(),
-        purpose: "read",
-        source,
-    };
-    if !std::fs::metadata(path).map_err(failed)?.is_file() {
-        return Err(failed(ErrorKind::InvalidInput.into()));
-    }
-    std::fs::read(path).map_err(failed)
-}
-
 fn read(option: &'static str, path: &Path) -> Result<String, UnityError> {
-    std::fs::read_to_string(path).map_err(|source| UnityError::File {
-        option,
-        path: path.to_owned(),
-        purpose: "read",
-        source,
-    })
+    driftworld_files::text(path, MAX_BYTES as u64).map_err(|source| UnityError::Reading { option, source })
 }
 
 async fn serve(mut session: Session, options: &Options, journal: &mut Journal) -> Result<(), UnityError> {

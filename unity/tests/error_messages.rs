@@ -14,10 +14,16 @@ fn errors() -> Vec<UnityError> {
     let document = World::from_json("world.json", "{ \"max_steps\": -3 }");
     vec![
         arguments.expect_err("soon is no number"),
-        UnityError::File {
+        UnityError::Reading {
             option: "--world",
-            path: "world.json".into(),
-            purpose: "read",
+            source: driftworld_files::FileError::Unreadable {
+                path: "world.json".into(),
+                source: io::Error::new(io::ErrorKind::PermissionDenied, "permission denied"),
+            },
+        },
+        UnityError::Writing {
+            option: "-logFile",
+            path: "log.txt".into(),
             source: io::Error::new(io::ErrorKind::PermissionDenied, "permission denied"),
         },
         UnityError::Network {

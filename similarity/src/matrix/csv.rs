@@ -1,10 +1,13 @@
 //! Distance matrices as CSV: a line of labels behind an empty cell, then a line for each item, its label first. Files are the
 //! callers'.
 
+use std::iter::Peekable;
+use std::str::Chars;
+
 use driftworld_text::{Cells, unguarded};
 use ndarray::Array2;
 
-use super::DistanceMatrix;
+use super::{DistanceMatrix, MAX_ITEMS};
 use crate::SimilarityError;
 
 impl DistanceMatrix {
@@ -46,8 +49,8 @@ impl DistanceMatrix {
     /// # Ok::<(), driftworld_similarity::SimilarityError>(())
     /// ```
     pub fn from_csv(text: &str) -> Result<Self, SimilarityError> {
-        let rows = cells(text)?;
-        let Some((heading, rows)) = rows.split_first() else {
+        let mut rows = Rows::of(text);
+        let Some(heading) = rows.next().transpose()? else {
             return Err(bad(1, "no lines", "a line of labels behind an empty cell"));
         };
         if heading.cells.len() < 2 || !heading.cells[0].is_empty() {
@@ -59,26 +62,32 @@ impl DistanceMatrix {
             .map(|label| unguarded(label).to_owned())
             .collect();
         let n = Self::bounded(labels.len())?;
-        if rows.len() != n {
-            let line = rows.last().map_or(heading.line, |row| row.line);
-            let found = format!("{} lines below the labels", rows.len());
-            return Err(bad(line, found, format!("{n}, one for each label")));
-        }
-        let mut values = Array2::zeros((n, n));
-        for (a, row) in rows.iter().enumerate() {
+        // Line by line: a table takes less memory than its text.
+        let mut values: Vec<f64> = Vec::new();
+        let (mut read, mut last) = (0, heading.line);
+        for row in rows {
+            let row = row?;
+            last = row.line;
+            read += 1;
+            let Some(label) = labels.get(read - 1) else { continue };
             if row.cells.len() != n + 1 {
                 let found = format!("{} cells", row.cells.len());
                 return Err(bad(row.line, found, format!("{}: a label and {n} numbers", n + 1)));
             }
-            if unguarded(&row.cells[0]) != labels[a] {
-                let expected = format!("{:?}, as in the first line", labels[a]);
+            if unguarded(&row.cells[0]) != label {
+                let expected = format!("{label:?}, as in the first line");
                 return Err(bad(row.line, format!("the label {:?}", row.cells[0]), expected));
             }
-            for (b, cell) in row.cells[1..].iter().enumerate() {
+            for cell in &row.cells[1..] {
                 let number = cell.trim().parse::<f64>();
-                values[[a, b]] = number.map_err(|_| bad(row.line, format!("{cell:?}"), "a number"))?;
+                values.push(number.map_err(|_| bad(row.line, format!("{cell:?}"), "a number"))?);
             }
         }
+        if read != n {
+            let found = format!("{read} lines below the labels");
+            return Err(bad(last, found, format!("{n}, one for each label")));
+        }
+        let values = Array2::from_shape_vec((n, n), values).expect("there are n rows of n numbers");
         Self::from_values(labels, values)
     }
 }
@@ -97,40 +106,65 @@ struct Row {
     cells: Vec<String>,
 }
 
-/// The cells of every line; a cell in quotes may hold commas and line ends, and a doubled quote is one.
-fn cells(text: &str) -> Result<Vec<Row>, SimilarityError> {
-    let mut rows: Vec<Row> = Vec::new();
-    let (mut cells, mut cell) = (Vec::new(), String::new());
-    let (mut quoted, mut line, mut begun) = (false, 1, 1);
-    let mut letters = text.strip_prefix('\u{feff}').unwrap_or(text).chars().peekable();
-    while let Some(letter) = letters.next() {
-        line += usize::from(letter == '\n');
-        match letter {
-            '"' if quoted && letters.next_if_eq(&'"').is_some() => cell.push('"'),
-            '"' if quoted || cell.is_empty() => quoted = !quoted,
-            ',' if !quoted => cells.push(std::mem::take(&mut cell)),
-            '\r' if !quoted && letters.peek() == Some(&'\n') => {}
-            '\n' if !quoted => {
-                cells.push(std::mem::take(&mut cell));
-                rows.push(Row {
-                    line: begun,
-                    cells: std::mem::take(&mut cells),
-                });
-                begun = line;
-            }
-            other => cell.push(other),
+/// The lines of a table, one after the other; a cell in quotes may hold commas and line ends, and a doubled quote is one. Empty
+/// lines, as some editors leave at the end, say nothing and are left out.
+struct Rows<'t> {
+    letters: Peekable<Chars<'t>>,
+    line: usize,
+}
+
+impl<'t> Rows<'t> {
+    fn of(text: &'t str) -> Self {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        Self {
+            letters: text.chars().peekable(),
+            line: 1,
         }
     }
-    if quoted {
-        return Err(bad(begun, "quotes that do not end", "a second quote"));
+
+    /// The next line, empty ones included.
+    fn line(&mut self) -> Option<Result<Row, SimilarityError>> {
+        self.letters.peek()?;
+        let (mut cells, mut cell) = (Vec::new(), String::new());
+        let (mut quoted, begun) = (false, self.line);
+        while let Some(letter) = self.letters.next() {
+            self.line += usize::from(letter == '\n');
+            match letter {
+                '"' if quoted && self.letters.next_if_eq(&'"').is_some() => cell.push('"'),
+                '"' if quoted || cell.is_empty() => quoted = !quoted,
+                ',' if !quoted => keep(&mut cells, &mut cell),
+                '\r' if !quoted && self.letters.peek() == Some(&'\n') => {}
+                '\n' if !quoted => break,
+                other => cell.push(other),
+            }
+        }
+        if quoted {
+            return Some(Err(bad(begun, "quotes that do not end", "a second quote")));
+        }
+        keep(&mut cells, &mut cell);
+        Some(Ok(Row { line: begun, cells }))
     }
-    if !cell.is_empty() || !cells.is_empty() {
+}
+
+/// Puts a cell to its line; of a line with more cells than any matrix has, however many more they are, one more.
+fn keep(cells: &mut Vec<String>, cell: &mut String) {
+    let cell = std::mem::take(cell);
+    if cells.len() < MAX_ITEMS + 2 {
         cells.push(cell);
-        rows.push(Row { line: begun, cells });
     }
-    // Empty lines, as some editors leave at the end, say nothing.
-    rows.retain(|row| row.cells.len() > 1 || !row.cells[0].is_empty());
-    Ok(rows)
+}
+
+impl Iterator for Rows<'_> {
+    type Item = Result<Row, SimilarityError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            match self.line()? {
+                Ok(row) if row.cells.len() == 1 && row.cells[0].is_empty() => {}
+                found => return Some(found),
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -184,6 +218,15 @@ mod tests {
     fn other_programs_line_ends_and_marks_are_understood() {
         let matrix = DistanceMatrix::from_csv("\u{feff},a,b\r\na,0, 1e-1\r\nb,0.1,0\r\n\r\n").unwrap();
         assert_eq!((matrix.labels().join(" "), matrix.get(1, 0)), ("a b".to_owned(), 0.1));
+    }
+
+    #[test]
+    fn more_lines_and_cells_than_any_matrix_has_are_told() {
+        let message = |text: &str| DistanceMatrix::from_csv(text).unwrap_err().to_string();
+        let few = message(&format!(",a\na,0\n{}", "a,0\n".repeat(70_000)));
+        assert!(few.contains("found 70001 lines below the labels, expected 1"), "{few}");
+        let wide = message(&",".repeat(1_000_000));
+        assert!(wide.contains("20001"), "{wide}");
     }
 
     #[test]

@@ -10,7 +10,7 @@ use serde_json::{Map, Value as Json, json};
 use super::lenient::{drop_decimal_point, stimulus, word};
 use super::mend::{self, Entry};
 use super::{AGENT, ASSUMED_SPEED, ENVIRONMENT, IMAGE, Keys, OBJECT, RULES, WORLD, Warning, black_is_chosen};
-use crate::document::{Document, describe, escape};
+use crate::document::{Document, MAX_VALUES, MAX_WORLD_VALUES, describe, escape};
 use crate::error::{Problem, SpecError};
 use crate::maps::MapLibrary;
 use crate::schema;
@@ -40,7 +40,7 @@ impl World {
     /// # Errors
     /// Those of [`World::from_l2explorer`].
     pub fn from_l2explorer_with(name: &str, text: &str, maps: &MapLibrary) -> Result<(Self, Vec<Warning>), SpecError> {
-        let (mut document, repeated) = Document::parse_leniently(name, text)?;
+        let (mut document, repeated) = Document::parse_leniently(name, text, MAX_WORLD_VALUES)?;
         let mut reader = Reader::default();
         for pointer in repeated {
             reader.warn(pointer, "the key stands twice; the last one counts");
@@ -89,7 +89,7 @@ impl Object {
     /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
     pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
-        let mut document = Document::parse(name, text)?;
+        let mut document = Document::parse(name, text, MAX_VALUES)?;
         let mut reader = Reader::default();
         if let Some(map) = document.value.as_object().cloned() {
             document.value = Json::Object(reader.object("", &map));

@@ -11,7 +11,7 @@ use driftworld_text::check_name;
 use serde_json::{Map, Value as Json, json};
 
 use super::Warning;
-use crate::document::{Document, describe, escape};
+use crate::document::{Document, MAX_VALUES, describe, escape};
 use crate::error::{Problem, SpecError};
 use crate::scenario::{Block, BlockKind, MAX_EXPERIENCES, Phase, Regime, Scenario, ScenarioForm, TaskLabel};
 
@@ -38,7 +38,7 @@ impl Scenario {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
-        let document = Document::parse(name, text)?;
+        let document = Document::parse(name, text, MAX_VALUES)?;
         let mut reader = Reader::default();
         let scenario = reader.scenario(&document.value);
         document.fail_on(reader.problems)?;
@@ -55,7 +55,11 @@ impl Scenario {
         if !writer.problems.is_empty() {
             let name = self.name.clone();
             let problems = writer.problems;
-            return Err(SpecError::Document { name, problems });
+            return Err(SpecError::Document {
+                name,
+                problems,
+                more: false,
+            });
         }
         let mut text = serde_json::to_string_pretty(&json).expect("texts and whole numbers serialise");
         text.push('\n');

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::name;
-use crate::document::Document;
+use crate::document::{Document, MAX_VALUES};
 use crate::error::{Problem, SpecError};
 use crate::schema;
 use crate::world::{Region, World};
@@ -89,7 +89,7 @@ impl MapLibrary {
     /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
-        let document = Document::parse(name, text)?;
+        let document = Document::parse(name, text, MAX_VALUES)?;
         document.check_schema(schema::maps())?;
         let file: MapsDocument = document.deserialize()?;
         document.fail_on(problems(&file.maps))?;

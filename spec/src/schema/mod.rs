@@ -2,13 +2,15 @@
 
 mod advice;
 mod color;
+mod counted;
 mod examples;
 mod explain;
 mod forms;
 mod wording;
 
 use std::collections::BTreeSet;
-use std::sync::LazyLock;
+use std::sync::atomic::AtomicUsize;
+use std::sync::{LazyLock, OnceLock};
 
 use jsonschema::Validator;
 use schemars::generate::SchemaSettings;
@@ -20,17 +22,24 @@ use crate::maps::MapsDocument;
 use crate::scenario::Scenario;
 use crate::task::TaskDocument;
 use crate::world::{Object, World};
+use counted::{Counted, Counting};
 
 /// One document type's schema, ready to check values.
 pub struct DocumentSchema {
     json: Value,
     validator: Validator,
+    /// The same for values that count their errors: only for documents that have some.
+    listing: OnceLock<Validator<Counting>>,
 }
 
 impl DocumentSchema {
     pub(crate) fn new(json: Value) -> Self {
         let validator = jsonschema::validator_for(&json).expect("the schema is made from our own types and is tested");
-        Self { json, validator }
+        Self {
+            json,
+            validator,
+            listing: OnceLock::new(),
+        }
     }
 
     /// The schema as JSON.
@@ -38,13 +47,23 @@ impl DocumentSchema {
         &self.json
     }
 
-    /// Everything in a value that the schema does not allow.
+    /// What in a value the schema does not allow; of any one list or object about [`MAX_PROBLEMS`](crate::MAX_PROBLEMS) of it.
     pub(crate) fn problems(&self, value: &Value) -> Vec<Problem> {
         // Nearly every document is sound, and the short answer is much faster than the list.
         if self.validator.is_valid(value) {
             return Vec::new();
         }
-        explain::problems(&self.json, value, self.validator.iter_errors(value))
+        let listing = self.listing.get_or_init(|| {
+            jsonschema::options_for::<Counting>()
+                .build(&self.json)
+                .expect("the other validator was built of it")
+        });
+        let errors = AtomicUsize::new(0);
+        let counted = Counted {
+            value,
+            errors: Some(&errors),
+        };
+        explain::problems(&self.json, value, listing.iter_errors(counted))
     }
 }
 

@@ -31,7 +31,7 @@ pub use variant::{DEFAULT_VARIANT, Resolved, Variant, VariantSpec};
 
 use crate::classes::Classes;
 use crate::distribution::Number;
-use crate::document::Document;
+use crate::document::{Document, MAX_VALUES};
 use crate::error::{Problem, SpecError};
 use crate::world::{Object, World};
 use crate::{schema, version};
@@ -166,7 +166,7 @@ impl TaskSpec {
     /// # Errors
     /// As [`TaskSpec::from_json`].
     pub fn from_json_with(name: &str, text: &str, classes: Option<&Classes>) -> Result<Arc<Self>, SpecError> {
-        let mut document = Document::parse(name, text)?;
+        let mut document = Document::parse(name, text, MAX_VALUES)?;
         document.upgrade(&version::TASK)?;
         let refused = schema::task().problems(&document.value);
         if !refused.is_empty() {

@@ -1,7 +1,7 @@
 //! One object without a world: read from a text, or built in code and checked by the same rules. Reading worlds is in `mod.rs`.
 
 use super::Object;
-use crate::document::Document;
+use crate::document::{Document, MAX_VALUES};
 use crate::error::SpecError;
 use crate::schema;
 
@@ -11,7 +11,7 @@ impl Object {
     /// # Errors
     /// [`SpecError`] with every problem of the text at once, sorted by place.
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
-        let document = Document::parse(name, text)?;
+        let document = Document::parse(name, text, MAX_VALUES)?;
         document.check_schema(schema::object())?;
         document.deserialize()
     }
@@ -32,7 +32,7 @@ impl Object {
     /// ```
     pub fn check(&self) -> Result<(), SpecError> {
         let text = serde_json::to_string(self).expect("an object has string keys only, which always serialise");
-        Document::parse("object", &text)?.check_schema(schema::object())
+        Document::parse("object", &text, MAX_VALUES)?.check_schema(schema::object())
     }
 }
 

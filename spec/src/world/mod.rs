@@ -24,7 +24,7 @@ pub use progress::{LastEvent, ObjectProgress, Origin, Progress, RailsProgress};
 pub use rules::{EndCondition, Rules, Shaping};
 
 use crate::classes::Classes;
-use crate::document::Document;
+use crate::document::{Document, MAX_WORLD_VALUES};
 use crate::error::{Problem, SpecError};
 use crate::version::WORLD_VERSION;
 use crate::{schema, version};
@@ -161,7 +161,7 @@ impl World {
     /// # Errors
     /// As [`World::from_json`].
     pub fn from_json_with(name: &str, text: &str, classes: Option<&Classes>) -> Result<Self, SpecError> {
-        let mut document = Document::parse(name, text)?;
+        let mut document = Document::parse(name, text, MAX_WORLD_VALUES)?;
         document.upgrade(&version::WORLD)?;
         document.check_schema(schema::world())?;
         let world: Self = document.deserialize()?;

@@ -2,7 +2,7 @@
 //! one is said by the schema and in `mod.rs`.
 
 use super::{MotionModel, Object, World};
-use crate::document::Document;
+use crate::document::{Document, MAX_WORLD_VALUES};
 use crate::error::SpecError;
 use crate::l2explorer::Warning;
 
@@ -33,7 +33,7 @@ impl World {
     /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
     pub fn remarks(&self, name: &str, text: &str) -> Result<Vec<Warning>, SpecError> {
-        let document = Document::parse(name, text)?;
+        let document = Document::parse(name, text, MAX_WORLD_VALUES)?;
         let mut remarks = Vec::new();
         for (index, object) in self.objects.iter().enumerate() {
             if let Some(place) = self.out_of_reach(object) {

@@ -8,7 +8,6 @@ use crate::env::{Library, MAX_IMPORT_BYTES};
 use driftworld_text::ShownPath;
 
 use super::super::Failure;
-use super::source::{bytes, unreadable};
 
 /// Refuses to write a library in place of a file that is something else, such as a model.
 pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
@@ -17,8 +16,11 @@ pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let mut start = Vec::new();
-    let read = fs::File::open(path).and_then(|file| file.take(16).read_to_end(&mut start));
-    read.map_err(|error| unreadable(path, &error.to_string()))?;
+    let read = driftworld_files::open(path, u64::MAX)?
+        .file
+        .take(16)
+        .read_to_end(&mut start);
+    read.map_err(|error| Failure::input(format!("{}: cannot be read: {error}", path.display())))?;
     if Library::is_meant(&start) {
         return Ok(());
     }
@@ -28,7 +30,7 @@ pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
 
 /// The bytes of a glTF file.
 pub(super) fn model(path: &Path) -> Result<Vec<u8>, Failure> {
-    bytes(path, MAX_IMPORT_BYTES).map_err(|reason| unreadable(path, &reason))
+    Ok(driftworld_files::read(path, MAX_IMPORT_BYTES as u64)?)
 }
 
 /// Reads the files beside a glTF file, as far as they lie in its folder when all links are followed.
@@ -45,6 +47,8 @@ pub(super) fn beside(path: &Path) -> impl FnMut(&str) -> Result<Vec<u8>, String>
         if !file.starts_with(&folder) {
             return Err("it leads out of the model's folder".to_owned());
         }
-        bytes(&file, MAX_IMPORT_BYTES)
+        let bytes = driftworld_files::read(&file, MAX_IMPORT_BYTES as u64);
+        // The model says which file it names.
+        bytes.map_err(|error| error.without_path())
     }
 }

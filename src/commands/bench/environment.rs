@@ -132,6 +132,7 @@ fn kilobytes_per_environment(world: &World) -> Result<Option<u64>, Failure> {
 
 /// Kilobytes of this process in memory, on Linux.
 fn resident() -> Option<u64> {
+    // The system's own, not by driftworld-files: no user names it.
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
     line.split_whitespace().nth(1)?.parse().ok()

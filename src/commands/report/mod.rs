@@ -21,11 +21,12 @@ use neighbours::Neighbours;
 /// have intervals; with --against, two agents are compared.
 ///
 /// The timeline says how far apart neighbouring learning blocks are: by the matrix that --distances names, or else, for logs of
-/// `driftworld run`, as measured now from the scenario in the log.
+/// `driftworld run`, as measured now from the scenario in the log: between variants of built-in tasks, and of those that --task names.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld report demo-out/log -o report.html
   driftworld report LOG --ste EXPERT_LOGS --perf-measure performance --plots figures
+  driftworld report logs --task tasks/mine.json -o report.html
   driftworld report runs/mine --against runs/theirs --distances distances.csv")]
 pub(crate) struct Report {
     /// Folders of logs in l2logger's format, or folders of such folders.
@@ -46,6 +47,10 @@ pub(crate) struct Report {
     /// A distance matrix, as `driftworld order --matrix` writes it: .csv, .json or .npy.
     #[arg(long, value_name = "FILE")]
     distances: Option<PathBuf>,
+    /// A task spec that the logs name, for the distances between their blocks; may be given several times. Logs may name any file, so
+    /// that only built-in tasks and these are looked at.
+    #[arg(long = "task", value_name = "FILE")]
+    tasks: Vec<PathBuf>,
     /// Write the figures into this folder too: `NAME_raw.png`, `NAME_raw.svg` and so on; NAME is the log's.
     #[arg(long, value_name = "DIR")]
     plots: Option<PathBuf>,
@@ -70,7 +75,7 @@ impl Report {
             experts,
             others,
         } = Yardstick::new(&logs, &self.against, &self.scoring, &self.intervals)?;
-        let mut neighbours = Neighbours::new(self.distances.as_deref(), options.variant_mode)?;
+        let mut neighbours = Neighbours::new(self.distances.as_deref(), &self.tasks, options.variant_mode)?;
         let mut files = self.plots.as_deref().map(Files::new);
         let mut failures: Vec<String> = Vec::new();
         let mut chapters = Vec::new();
@@ -164,7 +169,7 @@ fn options_of(
 
 /// The page of one lifetime, with all figures.
 pub(crate) fn page_of(title: &str, lived: &Lived, options: &Options) -> Result<String, Failure> {
-    let mut neighbours = Neighbours::new(None, options.variant_mode)?;
+    let mut neighbours = Neighbours::new(None, &[], options.variant_mode)?;
     let chapter = options_of(lived, &mut neighbours, &FigureOptions::default(), &Figure::ALL, options);
     let report = crate::report::Report {
         title: Some(title.to_owned()),

@@ -1,14 +1,15 @@
 //! How far apart neighbouring learning blocks are: by a matrix that was handed in, or as measured from the scenario in the log.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::curriculum::{log_name, log_name_of_label};
 use crate::distances::variant_matrix;
 use crate::metrics::{Lifetime, Log, VariantMode};
 use crate::report::neighbours;
 use crate::similarity::DistanceMatrix;
-use crate::spec::{BlockKind, Scenario, Variant};
+use crate::spec::{BlockKind, Scenario, TaskSpec, Variant};
 use crate::tasks;
 
 use crate::commands::{Failure, matrix_file};
@@ -19,6 +20,7 @@ const MOST_MEASURED: usize = 32;
 /// Where distances come from.
 pub(super) struct Neighbours {
     given: Option<Named>,
+    tasks: Tasks,
     mode: VariantMode,
     /// By the scenario's text: repeats live the same one.
     measured: BTreeMap<String, Result<Named, String>>,
@@ -44,7 +46,8 @@ type Told = (Option<Vec<Option<f64>>>, String);
 
 impl Neighbours {
     /// Of the matrix in a file, or else to be measured.
-    pub(super) fn new(file: Option<&Path>, mode: VariantMode) -> Result<Self, Failure> {
+    /// Tasks that are not built in are those of these files.
+    pub(super) fn new(file: Option<&Path>, tasks: &[PathBuf], mode: VariantMode) -> Result<Self, Failure> {
         let read = |path: &Path| {
             let matrix = matrix_file::read("--distances", path)?;
             let origin = format!("from {}", path.file_name().unwrap_or_default().to_string_lossy());
@@ -58,6 +61,7 @@ impl Neighbours {
         };
         Ok(Self {
             given: file.map(read).transpose()?,
+            tasks: Tasks::read(tasks)?,
             mode,
             measured: BTreeMap::new(),
         })
@@ -80,7 +84,7 @@ impl Neighbours {
         let measured = self
             .measured
             .entry(scenario)
-            .or_insert_with_key(|scenario| measure(scenario));
+            .or_insert_with_key(|scenario| measure(scenario, &self.tasks));
         match measured {
             Ok(named) => named.told(lifetime),
             Err(why) => (None, format!("No distances between blocks: {why}.")),
@@ -127,9 +131,43 @@ impl Named {
     }
 }
 
+/// The tasks that a log may name: the built-in ones, and those of files that the user named.
+struct Tasks {
+    named: Vec<(PathBuf, Arc<TaskSpec>)>,
+}
+
+impl Tasks {
+    fn read(paths: &[PathBuf]) -> Result<Self, Failure> {
+        let read = |path: &PathBuf| {
+            let name = path.to_str().ok_or_else(|| {
+                Failure::usage(format!(
+                    "--task: found {}, expected a name that is UTF-8",
+                    path.display()
+                ))
+            })?;
+            Ok::<_, Failure>((path.clone(), tasks::task(name)?))
+        };
+        Ok(Self {
+            named: paths.iter().map(read).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// The task of a name in a log: a file by its path, or else by its name alone, for the log may come from another folder.
+    fn task(&self, called: &str) -> Option<Arc<TaskSpec>> {
+        if tasks::built_in_names().contains(&called) {
+            return tasks::task(called).ok();
+        }
+        let called = Path::new(called);
+        let alike = |path: &&(PathBuf, _)| path.0.file_name().is_some() && path.0.file_name() == called.file_name();
+        let same = self.named.iter().find(|(path, _)| path == called);
+        let found = same.or_else(|| self.named.iter().find(alike))?;
+        Some(Arc::clone(&found.1))
+    }
+}
+
 /// Measures the variants that a scenario learns, or says why that cannot be done.
-fn measure(scenario: &str) -> Result<Named, String> {
-    let scenario = Scenario::from_json_with("scenario_info.json", scenario, |task| tasks::task(task).ok())
+fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
+    let scenario = Scenario::from_json_with("scenario_info.json", scenario, |task| tasks.task(task))
         .map_err(|_| "the scenario in the log is not one of this version's".to_owned())?;
     let mut variants: Vec<(String, Variant)> = Vec::new();
     let mut place = |variant: Variant| {
@@ -146,7 +184,12 @@ fn measure(scenario: &str) -> Result<Named, String> {
         .flat_map(|block| &block.regimes)
         .filter(|regime| regime.world.is_none())
     {
-        let task = tasks::task(&regime.task).map_err(|_| format!("the task {} is not found from here", regime.task))?;
+        let task = tasks.task(&regime.task).ok_or_else(|| {
+            format!(
+                "the log names the task {:?}, which is not built in, and files that a log names are not opened; name it with --task FILE",
+                regime.task
+            )
+        })?;
         let lost = |name: &str| format!("the task {} has no variant {name} as it was lived", regime.task);
         let begins = regime.resolve(&task).map_err(|_| lost(regime.variant_name()))?;
         let ends = regime.resolve_end(&task).map_err(|_| lost("its drift leads to"))?;

@@ -7,6 +7,7 @@ mod marks;
 mod names;
 mod opening;
 mod paths;
+mod reading;
 mod sizes;
 mod tree;
 
@@ -31,6 +32,7 @@ fn check(tree: &Tree, members: &[(String, String)]) -> Vec<Finding> {
     findings.extend(marks::check(tree));
     findings.extend(links::check(tree));
     findings.extend(paths::check(tree));
+    findings.extend(reading::check(tree));
     findings.extend(architecture::check(tree, members));
     findings.extend(sizes::check(tree));
     findings

@@ -1,21 +1,29 @@
-//! A JSON text with a memory of where each value stands. What is wrong with a value is said by `schema.rs` and the types.
+//! A JSON text with a memory of where each value stands. What is wrong with a value is said by `schema.rs` and the types; how the
+//! value is built within limits by `value.rs`, where things stand in the text by `places.rs`.
 
-use std::collections::HashMap;
-use std::fmt;
-use std::ops::Range;
+mod places;
+mod value;
 
-use jsonc_parser::ast;
-use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
-use serde::de::{DeserializeOwned, Error, MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, Deserializer};
-use serde_json::{Map, Value};
+use serde::de::DeserializeOwned;
+use serde_json::Value;
 
-use crate::error::{Problem, SpecError};
+use crate::error::{MAX_PROBLEMS, Problem, SpecError};
 use crate::schema::DocumentSchema;
 use crate::version::Format;
+use places::Wanted;
+use value::{Repeats, Stop};
 
 /// The longest text that is read, in bytes.
 pub const MAX_BYTES: usize = 64 << 20;
+
+/// The most values of a world, ours or the original's: numbers, texts, lists, objects and the like.
+pub const MAX_WORLD_VALUES: usize = 4_000_000;
+
+/// The most values of a task spec, a scenario, a maps file or an object alone.
+pub const MAX_VALUES: usize = 1_000_000;
+
+/// The longest key, in bytes. Longer ones would stand in every pointer to what is below them.
+pub const MAX_KEY_BYTES: usize = 400;
 
 /// A parsed JSON text.
 pub(crate) struct Document<'a> {
@@ -25,22 +33,30 @@ pub(crate) struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Parses a text: refuses what is not JSON, and keys that stand twice in one object.
-    pub(crate) fn parse(name: &'a str, text: &'a str) -> Result<Self, SpecError> {
-        let (document, repeated) = Self::parse_with_repeats(name, text)?;
-        document.fail_on(repeated)?;
+    /// Parses a text of at most `most` values: refuses what is not JSON, and keys that stand twice in one object.
+    pub(crate) fn parse(name: &'a str, text: &'a str, most: usize) -> Result<Self, SpecError> {
+        let (document, repeated) = Self::parse_with_repeats(name, text, most)?;
+        let twice = |pointer: String| {
+            let key = pointer.rsplit('/').next().unwrap_or_default();
+            let found = format!("the key {:?} twice", key.replace("~1", "/").replace("~0", "~"));
+            Problem::new(
+                "spec/duplicate-key",
+                pointer,
+                found,
+                "each key once; remove one of the two",
+            )
+        };
+        document.fail_on(repeated.into_iter().map(twice).collect())?;
         Ok(document)
     }
 
     /// Parses a text as most programs do: of keys that stand twice in one object the last counts. Hands back the pointers of
-    /// those that do.
-    pub(crate) fn parse_leniently(name: &'a str, text: &'a str) -> Result<(Self, Vec<String>), SpecError> {
-        let (document, repeated) = Self::parse_with_repeats(name, text)?;
-        let pointers = repeated.into_iter().map(|problem| problem.pointer);
-        Ok((document, pointers.collect()))
+    /// those that do, the first of them.
+    pub(crate) fn parse_leniently(name: &'a str, text: &'a str, most: usize) -> Result<(Self, Vec<String>), SpecError> {
+        Self::parse_with_repeats(name, text, most)
     }
 
-    fn parse_with_repeats(name: &'a str, text: &'a str) -> Result<(Self, Vec<Problem>), SpecError> {
+    fn parse_with_repeats(name: &'a str, text: &'a str, most: usize) -> Result<(Self, Vec<String>), SpecError> {
         // A byte order mark, which some editors put in front, is no part of the document.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         if text.len() > MAX_BYTES {
@@ -50,19 +66,29 @@ impl<'a> Document<'a> {
                 limit: MAX_BYTES,
             });
         }
+        let refused = |(error, stop): (serde_json::Error, Option<Stop>)| match stop {
+            Some(Stop::TooMany) => SpecError::TooManyValues {
+                name: name.to_owned(),
+                limit: most,
+            },
+            Some(Stop::LongKey) => SpecError::LongKey {
+                name: name.to_owned(),
+                line: error.line().max(1),
+                column: error.column().max(1),
+                limit: MAX_KEY_BYTES,
+            },
+            Some(Stop::Repeated) | None => syntax_error(name, text, &error),
+        };
         // One pass builds the value and finds out whether a key stands twice; only then are the places looked for.
-        let parsed: Result<Unrepeated, _> = serde_json::from_str(text);
-        if let Ok(Unrepeated(value)) = parsed {
-            return Ok((Self { name, text, value }, Vec::new()));
-        }
-        let value = serde_json::from_str(text).map_err(|error| syntax_error(name, text, &error))?;
-        let document = Self { name, text, value };
-        let repeated = document.with_ast(|root| {
-            let mut problems = Vec::new();
-            duplicate_keys(root, &mut String::new(), &mut problems);
-            problems
-        });
-        Ok((document, repeated))
+        let (value, repeated) = match value::parse(text, most, Repeats::Stop) {
+            Ok(value) => (value, Vec::new()),
+            Err((_, Some(Stop::Repeated))) => {
+                let value = value::parse(text, most, Repeats::LastCounts).map_err(refused)?;
+                (value, places::repeated(text, MAX_PROBLEMS + 1))
+            }
+            Err(found) => return Err(refused(found)),
+        };
+        Ok((Self { name, text, value }, repeated))
     }
 
     /// Brings the document to the current version of its form; fails if it is of a newer one.
@@ -107,107 +133,35 @@ impl<'a> Document<'a> {
     }
 
     fn error(&self, mut problems: Vec<Problem>) -> SpecError {
-        let offsets = self.with_ast(|root| {
-            let at_key = |problem: &Problem| matches!(problem.code, "spec/unknown-key" | "spec/name");
-            let mut offsets = Offsets::new(root);
-            let offset = |problem: &Problem| offsets.of(&problem.pointer, at_key(problem));
-            problems.iter().map(offset).collect::<Vec<usize>>()
+        let many = problems.len() > MAX_PROBLEMS;
+        // The first ones of a text are found among some more: of a hundred thousand not each is looked up.
+        problems.truncate(8 * MAX_PROBLEMS);
+        let wanted = problems.iter().map(|problem| Wanted {
+            pointer: &problem.pointer,
+            at_key: matches!(problem.code, "spec/unknown-key" | "spec/name"),
         });
-        for (problem, place) in problems.iter_mut().zip(lines_and_columns(self.text, &offsets)) {
+        let places = self.found(&wanted.collect::<Vec<_>>());
+        for (problem, place) in problems.iter_mut().zip(places) {
             (problem.line, problem.column) = place;
         }
         problems.sort_by(|a, b| (a.line, a.column, &a.pointer).cmp(&(b.line, b.column, &b.pointer)));
         problems.dedup();
+        problems.truncate(MAX_PROBLEMS);
         SpecError::Document {
             name: self.name.to_owned(),
             problems,
+            more: many,
         }
     }
 
     /// Lines and columns of the values of pointers, or of their nearest parents that are there.
     pub(crate) fn places(&self, pointers: &[&str]) -> Vec<(usize, usize)> {
-        let mut offsets = self.with_ast(|root| {
-            let mut offsets = Offsets::new(root);
-            let offset = |pointer: &&str| offsets.of(pointer, false);
-            pointers.iter().map(offset).collect::<Vec<usize>>()
-        });
-        offsets.resize(pointers.len(), 0);
-        lines_and_columns(self.text, &offsets)
+        let wanted = pointers.iter().map(|pointer| Wanted { pointer, at_key: false });
+        self.found(&wanted.collect::<Vec<_>>())
     }
 
-    /// Hands over the syntax tree with ranges. The text has been parsed before, so there is one.
-    fn with_ast<T: Default>(&self, job: impl FnOnce(&ast::Value) -> T) -> T {
-        let parsed = parse_to_ast(self.text, &CollectOptions::default(), &ParseOptions::default());
-        parsed
-            .ok()
-            .and_then(|result| result.value.map(|root| job(&root)))
-            .unwrap_or_default()
-    }
-}
-
-/// A JSON value in which no object has a key twice.
-struct Unrepeated(Value);
-
-impl<'de> Deserialize<'de> for Unrepeated {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(UnrepeatedVisitor).map(Self)
-    }
-}
-
-struct UnrepeatedVisitor;
-
-impl<'de> Visitor<'de> for UnrepeatedVisitor {
-    type Value = Value;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("any JSON value")
-    }
-
-    fn visit_bool<E>(self, truth: bool) -> Result<Value, E> {
-        Ok(Value::Bool(truth))
-    }
-
-    fn visit_i64<E>(self, number: i64) -> Result<Value, E> {
-        Ok(number.into())
-    }
-
-    fn visit_u64<E>(self, number: u64) -> Result<Value, E> {
-        Ok(number.into())
-    }
-
-    fn visit_f64<E>(self, number: f64) -> Result<Value, E> {
-        Ok(number.into())
-    }
-
-    fn visit_str<E>(self, text: &str) -> Result<Value, E> {
-        Ok(text.into())
-    }
-
-    fn visit_string<E>(self, text: String) -> Result<Value, E> {
-        Ok(text.into())
-    }
-
-    fn visit_unit<E>(self) -> Result<Value, E> {
-        Ok(Value::Null)
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Value, A::Error> {
-        let mut list = Vec::new();
-        while let Some(Unrepeated(item)) = items.next_element()? {
-            list.push(item);
-        }
-        Ok(list.into())
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Value, A::Error> {
-        // Objects of worlds have a dozen keys: room for them at once is a third faster than growing.
-        let mut map = Map::with_capacity(14);
-        while let Some((key, Unrepeated(value))) = entries.next_entry::<String, _>()? {
-            if map.insert(key, value).is_some() {
-                return Err(A::Error::custom("a key stands twice"));
-            }
-        }
-        Ok(map.into())
+    fn found(&self, wanted: &[Wanted]) -> Vec<(usize, usize)> {
+        lines_and_columns(self.text, &places::offsets(self.text, wanted))
     }
 }
 
@@ -267,108 +221,6 @@ fn syntax_error(name: &str, text: &str, error: &serde_json::Error) -> SpecError 
     }
 }
 
-fn duplicate_keys(value: &ast::Value, pointer: &mut String, problems: &mut Vec<Problem>) {
-    let length = pointer.len();
-    match value {
-        ast::Value::Object(object) => {
-            let mut seen = std::collections::BTreeSet::new();
-            for property in &object.properties {
-                let key = property.name.as_str();
-                *pointer += "/";
-                *pointer += &escape(key);
-                if !seen.insert(key) {
-                    problems.push(Problem::new(
-                        "spec/duplicate-key",
-                        pointer.clone(),
-                        format!("the key {key:?} twice"),
-                        "each key once; remove one of the two",
-                    ));
-                }
-                duplicate_keys(&property.value, pointer, problems);
-                pointer.truncate(length);
-            }
-        }
-        ast::Value::Array(array) => {
-            for (index, element) in array.elements.iter().enumerate() {
-                *pointer += "/";
-                *pointer += &index.to_string();
-                duplicate_keys(element, pointer, problems);
-                pointer.truncate(length);
-            }
-        }
-        _ => {}
-    }
-}
-
-/// The most keys of an object that are looked through one by one; those of a wider one are listed once.
-const WIDE: usize = 32;
-
-/// Where the values of pointers begin.
-struct Offsets<'r, 't> {
-    root: &'r ast::Value<'t>,
-    /// The properties of wide objects by their keys: of two of one key the last.
-    wide: HashMap<*const ast::Object<'t>, HashMap<&'r str, &'r ast::ObjectProp<'t>>>,
-}
-
-impl<'r, 't> Offsets<'r, 't> {
-    fn new(root: &'r ast::Value<'t>) -> Self {
-        let wide = HashMap::new();
-        Self { root, wide }
-    }
-
-    /// Of the value of a pointer, or of its nearest parent that is there; of the key before it if wished.
-    fn of(&mut self, pointer: &str, at_key: bool) -> usize {
-        let mut value = self.root;
-        let mut offset = range_of(value).start;
-        for token in pointer.split('/').skip(1) {
-            let token = token.replace("~1", "/").replace("~0", "~");
-            let next = match value {
-                ast::Value::Object(object) => self.property(object, &token).map(|property| {
-                    let start = if at_key {
-                        property.range.start
-                    } else {
-                        range_of(&property.value).start
-                    };
-                    (start, &property.value)
-                }),
-                ast::Value::Array(array) => token
-                    .parse::<usize>()
-                    .ok()
-                    .and_then(|index| array.elements.get(index))
-                    .map(|element| (range_of(element).start, element)),
-                _ => None,
-            };
-            let Some(next) = next else { break };
-            (offset, value) = next;
-        }
-        offset
-    }
-
-    fn property(&mut self, object: &'r ast::Object<'t>, key: &str) -> Option<&'r ast::ObjectProp<'t>> {
-        let properties = &object.properties;
-        if properties.len() <= WIDE {
-            return properties.iter().rev().find(|property| property.name.as_str() == key);
-        }
-        let listed = || {
-            properties
-                .iter()
-                .map(|property| (property.name.as_str(), property))
-                .collect()
-        };
-        self.wide
-            .entry(std::ptr::from_ref(object))
-            .or_insert_with(listed)
-            .get(key)
-            .copied()
-    }
-}
-
-fn range_of(value: &ast::Value) -> Range<usize> {
-    use jsonc_parser::common::Ranged;
-    let range = value.range();
-    range.start..range.end
-}
-
 /// Lines and columns of offsets, in one walk through the text however many they are.
 fn lines_and_columns(text: &str, offsets: &[usize]) -> Vec<(usize, usize)> {
     let mut order: Vec<usize> = (0..offsets.len()).collect();
@@ -405,16 +257,16 @@ mod tests {
     use super::*;
 
     fn check(text: &str, expected: &str) {
-        let error = Document::parse("d.json", text).err().map(|error| error.to_string());
+        let error = Document::parse("d.json", text, 999).err().map(|error| error.to_string());
         assert_eq!(error.as_deref(), Some(expected), "{text}");
     }
 
     #[test]
     fn keys_of_wide_objects_are_found_as_those_of_narrow_ones_are() {
-        for width in [1, WIDE, WIDE + 1, 1000] {
+        for width in [1, 32, 1000, 10_000] {
             let keys: Vec<String> = (0..width).map(|key| format!("\"k{key}\": 1")).collect();
             let text = format!("{{\n{}\n}}", keys.join(",\n"));
-            let document = Document::parse("wide.json", &text).expect("it is JSON");
+            let document = Document::parse("wide.json", &text, MAX_VALUES).expect("it is JSON");
             let last = format!("/k{}", width - 1);
             let column = format!("\"k{}\": ", width - 1).len() + 1;
             assert_eq!(

@@ -1,0 +1,291 @@
+//! Where things stand in a JSON text, found in one walk along its words: nothing of it is taken into memory, so that a large document
+//! with problems costs no more than one without. What is wrong is said elsewhere.
+
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
+use std::fmt::Write;
+
+use jsonc_parser::tokens::Token;
+use jsonc_parser::{Scanner, ScannerOptions};
+
+use super::escape;
+
+/// A pointer whose place is wanted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wanted<'p> {
+    pub(super) pointer: &'p str,
+    /// Wanted is the key in front of the value.
+    pub(super) at_key: bool,
+}
+
+/// Where the values of pointers begin, or those of their nearest parents that are there.
+pub(super) fn offsets(text: &str, wanted: &[Wanted]) -> Vec<usize> {
+    let mut tree = Tree::default();
+    let ways: Vec<Vec<usize>> = wanted.iter().map(|wanted| tree.way(wanted.pointer)).collect();
+    walk(text, |event| {
+        tree.see(event);
+        true
+    });
+    let offset = |(wanted, way): (&Wanted, &Vec<usize>)| {
+        let there = way.iter().map_while(|node| tree.nodes[*node].place).last();
+        there.map_or(0, |place| if wanted.at_key { place.key } else { place.value })
+    };
+    wanted.iter().zip(&ways).map(offset).collect()
+}
+
+/// The pointers of keys that stand twice in one object, the first `most` of them, in the order of the text.
+pub(super) fn repeated(text: &str, most: usize) -> Vec<String> {
+    let mut open: Vec<Level> = Vec::new();
+    let mut found = Vec::new();
+    walk(text, |event| {
+        match event {
+            Event::Key(key, _) => {
+                if let Some(Level::Object(keys, last)) = open.last_mut() {
+                    let is_new = keys.insert(key.clone());
+                    *last = key;
+                    if !is_new {
+                        found.push(pointer(&open));
+                    }
+                }
+            }
+            Event::Value(_, kind) => {
+                if let Some(Level::List(items)) = open.last_mut() {
+                    *items += 1;
+                }
+                open.extend(kind.map(|kind| match kind {
+                    Kind::Object => Level::Object(HashSet::new(), Cow::Borrowed("")),
+                    Kind::List => Level::List(0),
+                }));
+            }
+            Event::Close => {
+                open.pop();
+            }
+        }
+        found.len() < most
+    });
+    found
+}
+
+/// An open object with its keys so far and the last of them, or an open list with the number of its items so far.
+enum Level<'t> {
+    Object(HashSet<Cow<'t, str>>, Cow<'t, str>),
+    List(usize),
+}
+
+fn pointer(open: &[Level]) -> String {
+    open.iter().fold(String::new(), |mut pointer, level| {
+        match level {
+            Level::Object(_, key) => pointer.extend(["/", &escape(key)]),
+            // The item that is being read counts already.
+            Level::List(items) => write!(pointer, "/{}", items.saturating_sub(1)).expect("a String takes any text"),
+        }
+        pointer
+    })
+}
+
+/// What a walk comes by.
+enum Event<'t> {
+    /// A key, and where it begins.
+    Key(Cow<'t, str>, usize),
+    /// A value begins here; an object or a list goes on until it is closed.
+    Value(usize, Option<Kind>),
+    /// The innermost open value ends.
+    Close,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Object,
+    List,
+}
+
+/// Walks along a text that is known to be JSON, as long as whoever is told wishes.
+fn walk<'t>(text: &'t str, mut tell: impl FnMut(Event<'t>) -> bool) {
+    let mut scanner = Scanner::new(text, &ScannerOptions::default());
+    let mut open: Vec<Kind> = Vec::new();
+    let mut key_is_next = false;
+    while let Ok(Some(token)) = scanner.scan() {
+        let start = scanner.token_start();
+        let goes_on = match token {
+            Token::String(key) if key_is_next => {
+                key_is_next = false;
+                tell(Event::Key(key, start))
+            }
+            Token::Colon => true,
+            Token::Comma => {
+                key_is_next = open.last() == Some(&Kind::Object);
+                true
+            }
+            Token::CloseBrace | Token::CloseBracket => {
+                open.pop();
+                key_is_next = false;
+                tell(Event::Close)
+            }
+            Token::OpenBrace => {
+                open.push(Kind::Object);
+                key_is_next = true;
+                tell(Event::Value(start, Some(Kind::Object)))
+            }
+            Token::OpenBracket => {
+                open.push(Kind::List);
+                tell(Event::Value(start, Some(Kind::List)))
+            }
+            _ => tell(Event::Value(start, None)),
+        };
+        if !goes_on {
+            return;
+        }
+    }
+}
+
+/// Where a value and the key in front of it begin; of an item of a list both are the same.
+#[derive(Clone, Copy)]
+struct Place {
+    key: usize,
+    value: usize,
+}
+
+/// The pointers that are wanted, as a tree of their steps; and how far the walk is in it.
+struct Tree {
+    nodes: Vec<Node>,
+    open: Vec<Branch>,
+    /// Of the value that comes next in an object: its node, if it is on the way to anything, and where its key begins.
+    keyed: (Option<usize>, usize),
+}
+
+#[derive(Default)]
+struct Node {
+    keys: HashMap<String, usize>,
+    /// The same by numbers, for items of lists.
+    items: HashMap<usize, usize>,
+    place: Option<Place>,
+}
+
+/// An open value.
+struct Branch {
+    /// Its node, if it is on the way to anything.
+    node: Option<usize>,
+    /// Of a list the number of the next item.
+    item: Option<usize>,
+}
+
+impl Default for Tree {
+    fn default() -> Self {
+        Self {
+            nodes: vec![Node::default()],
+            open: Vec::new(),
+            keyed: (None, 0),
+        }
+    }
+}
+
+impl Tree {
+    /// The nodes on the way to a pointer, made if need be.
+    fn way(&mut self, pointer: &str) -> Vec<usize> {
+        let mut way = vec![0];
+        let mut node = 0;
+        for step in pointer.split('/').skip(1) {
+            let step = step.replace("~1", "/").replace("~0", "~");
+            node = if let Some(child) = self.nodes[node].keys.get(&step) {
+                *child
+            } else {
+                let child = self.nodes.len();
+                self.nodes.push(Node::default());
+                if let Ok(index) = step.parse() {
+                    self.nodes[node].items.insert(index, child);
+                }
+                self.nodes[node].keys.insert(step, child);
+                child
+            };
+            way.push(node);
+        }
+        way
+    }
+
+    /// Takes what the walk comes by.
+    fn see(&mut self, event: Event) {
+        match event {
+            Event::Key(key, start) => {
+                let parent = self.open.last().and_then(|branch| branch.node);
+                let child = parent.and_then(|node| self.nodes[node].keys.get(&*key).copied());
+                if let Some(child) = child {
+                    self.forget(child);
+                }
+                self.keyed = (child, start);
+            }
+            Event::Value(start, kind) => {
+                let (node, key) = match self.open.last_mut() {
+                    None => (Some(0), start),
+                    Some(Branch { item: None, .. }) => self.keyed,
+                    Some(Branch { item: Some(item), node }) => {
+                        let child = node.and_then(|node| self.nodes[node].items.get(item).copied());
+                        *item += 1;
+                        (child, start)
+                    }
+                };
+                if let Some(node) = node {
+                    self.nodes[node].place = Some(Place { key, value: start });
+                }
+                self.open.extend(kind.map(|kind| Branch {
+                    node,
+                    item: (kind == Kind::List).then_some(0),
+                }));
+            }
+            Event::Close => {
+                self.open.pop();
+            }
+        }
+    }
+
+    /// Of two values of one key the last counts, also for what stands in them.
+    fn forget(&mut self, node: usize) {
+        if self.nodes[node].place.take().is_some() {
+            let below: Vec<usize> = self.nodes[node].keys.values().copied().collect();
+            below.into_iter().for_each(|child| self.forget(child));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(text: &str, pointer: &str, at_key: bool) -> usize {
+        offsets(text, &[Wanted { pointer, at_key }])[0]
+    }
+
+    #[test]
+    fn values_and_keys_are_found_by_their_pointers() {
+        let text = r#" {"a": [10, {"b/c": true, "d": []}], "e": "}", "f~": 1}"#;
+        let check = |pointer: &str, at_key: bool, rest: &str| {
+            assert!(text[at(text, pointer, at_key)..].starts_with(rest), "{pointer}");
+        };
+        check("", false, "{\"a\"");
+        check("/a", true, "\"a\": [");
+        check("/a", false, "[10");
+        check("/a/0", true, "10,");
+        check("/a/1/b~1c", false, "true");
+        check("/a/1/d", true, "\"d\"");
+        check("/e", false, "\"}\"");
+        check("/f~0", false, "1}");
+        // What is not there is at its nearest parent.
+        check("/a/1/d/7", false, "[]}");
+        check("/a/x", false, "[10");
+        check("/nothing", false, "{\"a\"");
+    }
+
+    #[test]
+    fn of_two_values_of_one_key_the_last_counts() {
+        let text = r#"{"a": {"b": 1}, "a": [2]}"#;
+        assert_eq!(at(text, "/a", false), text.find("[2]").unwrap());
+        assert_eq!(at(text, "/a/b", false), text.find("[2]").unwrap());
+    }
+
+    #[test]
+    fn keys_that_stand_twice_are_named_in_the_order_of_the_text() {
+        let text = r#"{"a": {"b": [0, {"c": 1, "c": 2}], "b": 3}, "x": {"c": 1}, "a": 4, "a": 5}"#;
+        assert_eq!(repeated(text, 9), ["/a/b/1/c", "/a/b", "/a", "/a"]);
+        assert_eq!(repeated(text, 2), ["/a/b/1/c", "/a/b"]);
+        assert!(repeated(r#"[{"a": 1}, {"a": 1}, "a", "a"]"#, 9).is_empty());
+    }
+}

@@ -1,0 +1,190 @@
+//! JSON values that count the errors found in them, so that a schema stops listing after a few hundred in any one list or object: its
+//! errors take a kilobyte each, and a wrong list may have millions of items. What the errors mean is `explain.rs`'s.
+
+use std::borrow::Cow;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
+use jsonschema::json::{Array, Json, Node, NodeIdentity, Object};
+use jsonschema::JsonType;
+use serde_json::{Map, Number, Value};
+
+use crate::error::MAX_PROBLEMS;
+
+/// The representation, for validators.
+pub(super) struct Counting;
+
+/// A value, and how many errors have been found so far; a text that stands in no document counts none.
+#[derive(Clone, Copy)]
+pub(super) struct Counted<'a> {
+    pub(super) value: &'a Value,
+    pub(super) errors: Option<&'a AtomicUsize>,
+}
+
+impl Counted<'_> {
+    fn errors(&self) -> usize {
+        self.errors.map_or(0, |errors| errors.load(Relaxed))
+    }
+}
+
+impl Json for Counting {
+    type Node<'a> = Counted<'a>;
+    type PreparedKey = String;
+    type StringBuffer = Value;
+
+    fn prepare_key(key: &str) -> String {
+        key.to_owned()
+    }
+
+    fn with_string_node<T>(buffer: &mut Value, string: &str, f: impl FnOnce(Counted<'_>) -> T) -> T {
+        *buffer = string.into();
+        f(Counted {
+            value: buffer,
+            errors: None,
+        })
+    }
+}
+
+impl<'a> Node<'a, Counting> for Counted<'a> {
+    type Object = Counted<'a>;
+    type Array = Counted<'a>;
+    type Number = &'a Number;
+
+    fn as_object(&self) -> Option<Self> {
+        self.value.is_object().then_some(*self)
+    }
+
+    fn as_array(&self) -> Option<Self> {
+        self.value.is_array().then_some(*self)
+    }
+
+    fn as_string(&self) -> Option<Cow<'a, str>> {
+        self.value.as_str().map(Cow::Borrowed)
+    }
+
+    fn as_number(&self) -> Option<&'a Number> {
+        self.value.as_number()
+    }
+
+    fn as_boolean(&self) -> Option<bool> {
+        self.value.as_bool()
+    }
+
+    fn is_null(&self) -> bool {
+        self.value.is_null()
+    }
+
+    fn json_type(&self) -> JsonType {
+        match self.value {
+            Value::Null => JsonType::Null,
+            Value::Bool(_) => JsonType::Boolean,
+            Value::Number(_) => JsonType::Number,
+            Value::String(_) => JsonType::String,
+            Value::Array(_) => JsonType::Array,
+            Value::Object(_) => JsonType::Object,
+        }
+    }
+
+    fn equals_value(&self, expected: &Value) -> bool {
+        jsonschema::json::cmp::equal(self.value, expected)
+    }
+
+    /// Every error asks for the value that it is about: so they are counted.
+    fn to_value(&self) -> Cow<'a, Value> {
+        if let Some(errors) = self.errors {
+            errors.fetch_add(1, Relaxed);
+        }
+        Cow::Borrowed(self.value)
+    }
+
+    fn identity(&self) -> Option<NodeIdentity> {
+        Some(NodeIdentity::new(std::ptr::from_ref(self.value) as usize))
+    }
+}
+
+/// Items or members up to a few hundred errors in them.
+pub(super) struct UntilFull<'a, I> {
+    inner: I,
+    holder: Counted<'a>,
+    before: usize,
+}
+
+impl<'a, I> UntilFull<'a, I> {
+    fn new(holder: Counted<'a>, inner: I) -> Self {
+        Self {
+            inner,
+            holder,
+            before: holder.errors(),
+        }
+    }
+
+    fn is_full(&self) -> bool {
+        self.holder.errors() > self.before + MAX_PROBLEMS
+    }
+
+    fn counted(&self, value: &'a Value) -> Counted<'a> {
+        Counted { value, ..self.holder }
+    }
+}
+
+impl<'a> Iterator for UntilFull<'a, std::slice::Iter<'a, Value>> {
+    type Item = Counted<'a>;
+
+    fn next(&mut self) -> Option<Counted<'a>> {
+        if self.is_full() {
+            return None;
+        }
+        let value = self.inner.next()?;
+        Some(self.counted(value))
+    }
+}
+
+impl<'a> Iterator for UntilFull<'a, serde_json::map::Iter<'a>> {
+    type Item = (&'a str, Counted<'a>);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.is_full() {
+            return None;
+        }
+        let (key, value) = self.inner.next()?;
+        Some((key, self.counted(value)))
+    }
+}
+
+impl<'a> Counted<'a> {
+    fn map(&self) -> Option<&'a Map<String, Value>> {
+        self.value.as_object()
+    }
+}
+
+impl<'a> Object<'a, Counting> for Counted<'a> {
+    type Node = Self;
+    type MemberName = &'a str;
+    type MembersIter = UntilFull<'a, serde_json::map::Iter<'a>>;
+
+    fn len(&self) -> usize {
+        self.map().map_or(0, Map::len)
+    }
+
+    fn get(&self, key: &String) -> Option<Self> {
+        let value = self.map()?.get(key)?;
+        Some(Self { value, ..*self })
+    }
+
+    fn members(&self) -> Self::MembersIter {
+        static NONE: std::sync::LazyLock<Map<String, Value>> = std::sync::LazyLock::new(Map::new);
+        UntilFull::new(*self, self.map().unwrap_or(&NONE).iter())
+    }
+}
+
+impl<'a> Array<'a, Counting> for Counted<'a> {
+    type Node = Self;
+    type ElementsIter = UntilFull<'a, std::slice::Iter<'a, Value>>;
+
+    fn len(&self) -> usize {
+        self.value.as_array().map_or(0, Vec::len)
+    }
+
+    fn elements(&self) -> Self::ElementsIter {
+        UntilFull::new(*self, self.value.as_array().map_or(&[][..], Vec::as_slice).iter())
+    }
+}

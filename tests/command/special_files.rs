@@ -1,0 +1,283 @@
+//! What is no file in place of each file that a command line can name: a device without an end, a link to it, a pipe that nobody
+//! writes to, a socket, a folder. Each ends at once, and says what it found.
+
+#![cfg(unix)]
+
+use std::fs::{self, File};
+use std::os::unix::fs::symlink;
+use std::os::unix::net::UnixListener;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use super::terminal::{output, root, scratch, succeed_in, text};
+
+/// Where the special file stands in a command line.
+const FILE: &str = "SPECIAL";
+
+/// Every place of a command line that names a file or folder to read.
+fn command_lines() -> Vec<Vec<&'static str>> {
+    let lines = [
+        "tasks show SPECIAL",
+        "validate SPECIAL",
+        "validate --l2explorer SPECIAL",
+        "validate SPECIAL.json task.json",
+        "validate task.json --assets SPECIAL",
+        "validate names_task.json --worlds 1",
+        "sample SPECIAL",
+        "sample SPECIAL#day",
+        "sample find_objects#red --maps SPECIAL",
+        "vary SPECIAL#day --distance 0.1 --element observation",
+        "convert SPECIAL",
+        "convert find_objects#red --maps SPECIAL",
+        "render SPECIAL -o out.png",
+        "render find_objects#red --maps SPECIAL -o out.png",
+        "render find_objects#red --assets SPECIAL -o out.png",
+        "sheet SPECIAL -o out.png",
+        "sheet --scenario SPECIAL -o out.png",
+        "assets list SPECIAL",
+        "assets show tree --assets SPECIAL -o out.png",
+        "console SPECIAL",
+        "console find_objects#red --maps SPECIAL",
+        "console find_objects#red --script SPECIAL",
+        "console find_objects#red --script sends.txt",
+        "photograph SPECIAL -o out",
+        "distance SPECIAL find_objects#red",
+        "distance find_objects#red SPECIAL",
+        "order SPECIAL",
+        "order --from-matrix SPECIAL.csv",
+        "order --from-matrix SPECIAL.json",
+        "order --from-matrix SPECIAL.npy",
+        "order --from-matrix labelled.npy",
+        "curriculum SPECIAL -o out.json",
+        "curriculum find_objects --assets SPECIAL -o out.json",
+        "run SPECIAL --agent random --logs out",
+        "run scenario.json --agent scripted:SPECIAL --logs out",
+        "run scenario.json --agent random --assets SPECIAL --logs out",
+        "run names_task.json --agent random --logs out",
+        "run names_world.json --agent random --logs out",
+        "logs validate SPECIAL",
+        "logs validate SPECIAL --recursive",
+        "logs validate info_log",
+        "logs validate rows_log",
+        "logs aggregate SPECIAL -o out.csv",
+        "logs aggregate rows_log -o out.csv",
+        "metrics SPECIAL",
+        "metrics log --against SPECIAL",
+        "metrics log --ste SPECIAL",
+        "metrics log -c SPECIAL",
+        "metrics log -d SPECIAL",
+        "metrics rows_log",
+        "report SPECIAL",
+        "report log --against SPECIAL",
+        "report log --distances SPECIAL.csv",
+        "report log --task SPECIAL",
+        "report log -c SPECIAL",
+        "report log -d SPECIAL",
+        "report info_log",
+        "transfer-report SPECIAL --distances matrix.csv",
+        "transfer-report log --distances SPECIAL.csv",
+        "schema --check schemas",
+        "unity install out --executable SPECIAL",
+    ];
+    #[cfg(feature = "gltf")]
+    let lines = lines.into_iter().chain([
+        "assets pack SPECIAL -o out.assets",
+        "assets pack lamp.gltf -o out.assets",
+    ]);
+    lines.into_iter().map(|line| line.split(' ').collect()).collect()
+}
+
+/// The subcommands that read no file that an argument names.
+const WITHOUT_FILES: [&str; 4] = ["demo", "bench", "doctor", "help"];
+
+#[test]
+fn every_subcommand_that_reads_files_is_asked() {
+    let help = succeed_in(root(), &["--help"]);
+    let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let commands: Vec<&str> = listed
+        .take_while(|line| !line.is_empty())
+        .filter_map(|line| line.strip_prefix("  ")?.split(' ').next())
+        .filter(|name| !name.is_empty())
+        .collect();
+    assert!(commands.len() > 20, "{help}");
+    let asked = command_lines();
+    for command in commands {
+        let is_asked = asked.iter().any(|line| line[0] == command);
+        assert_eq!(is_asked, !WITHOUT_FILES.contains(&command), "{command}");
+    }
+}
+
+#[test]
+fn a_device_without_an_end_is_not_read() {
+    everywhere("a device", |path| {
+        symlink("/dev/zero", path).expect("a link can be made")
+    });
+}
+
+#[test]
+fn a_pipe_that_nobody_writes_to_is_not_waited_for() {
+    everywhere("a named pipe", |path| {
+        let made = Command::new("mkfifo").arg(path).status();
+        assert!(made.expect("every unix has mkfifo").success());
+    });
+}
+
+#[test]
+fn a_socket_is_not_read() {
+    everywhere("a socket", |path| {
+        // It stays when nobody listens any more.
+        drop(UnixListener::bind(path).expect("a socket can be bound"));
+    });
+}
+
+#[test]
+fn a_folder_is_not_read_as_a_file() {
+    everywhere("folder", |path| fs::create_dir(path).expect("a folder can be made"));
+}
+
+/// Runs every command line with such a thing in place of its file.
+fn everywhere(found: &str, make: impl Fn(&Path)) {
+    let scratch = scratch();
+    let folder = scratch.path();
+    prepare(folder);
+    for name in [
+        "SPECIAL",
+        "SPECIAL.csv",
+        "SPECIAL.json",
+        "SPECIAL.npy",
+        "labelled.labels.json",
+        "info_log/scenario_info.json",
+        "rows_log/w/0-train/data-log.tsv",
+        "schemas/world.schema.json",
+        "lamp.bin",
+    ] {
+        make(&folder.join(name));
+    }
+    for line in command_lines() {
+        let (code, error) = ended(folder, &line);
+        assert_eq!(code, Some(1), "{line:?}: {error}");
+        assert!(error.contains("error: "), "{line:?}: {error}");
+        let names_it = line.iter().any(|argument| argument.contains(FILE));
+        // Of the folders of logs and of maps it is said what is missing from them.
+        let is_folder_in_place = found == "folder" && !error.contains(found);
+        if names_it && !is_folder_in_place {
+            assert!(error.contains(FILE), "{line:?}: {error}");
+            assert!(error.contains(found) || error.contains("found no"), "{line:?}: {error}");
+        }
+    }
+}
+
+/// What is valid beside the special files.
+fn prepare(folder: &Path) {
+    let write = |name: &str, text: &str| {
+        let path = folder.join(name);
+        fs::create_dir_all(path.parent().expect("it lies in a folder")).expect("the folder is ours");
+        fs::write(path, text).expect("the folder is ours");
+    };
+    let scenario = |regime: &str| {
+        format!(
+            r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{{ {regime}, "count": 1, "max_steps": 3 }}] }}] }}"#
+        )
+    };
+    write("task.json", &read_task());
+    write(
+        "scenario.json",
+        &scenario(r#""task": "find_objects", "variant": "red""#),
+    );
+    write("names_task.json", &scenario(r#""task": "SPECIAL", "variant": "red""#));
+    write(
+        "names_world.json",
+        &scenario(r#""task": "t", "variant": "v", "world": "SPECIAL""#),
+    );
+    write("sends.txt", "send_message SPECIAL\n");
+    write("matrix.csv", ",a,b\na,0,1\nb,1,0\n");
+    fs::copy(folder.join("matrix.csv"), folder.join("labelled.csv")).expect("the folder is ours");
+    succeed_in(
+        folder,
+        &["order", "--from-matrix", "matrix.csv", "--matrix", "labelled.npy"],
+    );
+    fs::remove_file(folder.join("labelled.labels.json")).expect("it was written beside");
+    succeed_in(folder, &["run", "scenario.json", "--agent", "random", "--logs", "log"]);
+    write("info_log/logger_info.json", r#"{"metrics_columns": ["reward"]}"#);
+    write("rows_log/logger_info.json", r#"{"metrics_columns": ["reward"]}"#);
+    fs::create_dir_all(folder.join("rows_log/w/0-train")).expect("the folder is ours");
+    succeed_in(folder, &["schema", "-o", "schemas"]);
+    fs::remove_file(folder.join("schemas/world.schema.json")).expect("it was written");
+    write(
+        "lamp.gltf",
+        r#"{ "asset": { "version": "2.0" }, "buffers": [{ "uri": "lamp.bin", "byteLength": 12 }] }"#,
+    );
+}
+
+fn read_task() -> String {
+    super::terminal::read(root().join("examples/tasks/find_objects.json"))
+}
+
+/// The exit code of a command line, and what it said. It may take ten seconds and four gigabytes, then it is a failure of the test.
+fn ended(folder: &Path, line: &[&str]) -> (Option<i32>, String) {
+    let said = folder.join("said.txt");
+    let mut child = Command::new("sh")
+        .args([
+            "-c",
+            "ulimit -v 4000000; exec \"$0\" \"$@\"",
+            env!("CARGO_BIN_EXE_driftworld"),
+        ])
+        .args(line)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(File::create(&said).expect("the folder is ours"))
+        .spawn()
+        .expect("every unix has sh");
+    let begun = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait().expect("the process is ours") {
+            break status;
+        }
+        if begun.elapsed() > Duration::from_secs(10) {
+            child.kill().expect("the process is ours");
+            panic!("{line:?} did not end");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    };
+    (status.code(), super::terminal::read(said))
+}
+
+#[test]
+fn a_file_that_stands_for_nothing_leaves_the_others_their_verdicts() {
+    let scratch = scratch();
+    let folder = scratch.path();
+    let all = folder.join("all");
+    fs::create_dir(&all).expect("the folder is ours");
+    fs::write(all.join("d_task.json"), read_task()).expect("the folder is ours");
+    symlink("/dev/zero", all.join("a.json")).expect("a link can be made");
+    symlink("nowhere", all.join("b.json")).expect("a link can be made");
+    fs::write(all.join("c.json"), b"{\"name\": \"\xff\"}").expect("the folder is ours");
+    fs::create_dir(all.join("e.json")).expect("the folder is ours");
+    let made = Command::new("mkfifo").arg(all.join("f.json")).status();
+    assert!(made.expect("every unix has mkfifo").success());
+    let (code, _) = ended(folder, &["validate", "all"]);
+    assert_eq!(code, Some(1));
+    let judged = output(&mut super::terminal::driftworld(&["validate", "--json", text(&all)]));
+    assert_eq!(judged.status.code(), Some(1));
+    let verdicts: serde_json::Value = serde_json::from_slice(&judged.stdout).expect("it is JSON");
+    let verdicts: Vec<(bool, String)> = verdicts
+        .as_array()
+        .into_iter()
+        .flatten()
+        .map(|verdict| (verdict["valid"] == true, verdict["problems"][0]["message"].to_string()))
+        .collect();
+    let valid: Vec<bool> = verdicts.iter().map(|(valid, _)| *valid).collect();
+    assert_eq!(valid, [false, false, false, true, false, false]);
+    for ((_, said), found) in verdicts.iter().zip([
+        "a device",
+        "a link that leads nowhere",
+        "byte 10 (line 1)",
+        "null",
+        "a folder",
+        "a named pipe",
+    ]) {
+        assert!(said.contains(found), "{said}");
+    }
+}
