@@ -3,6 +3,7 @@
 use std::fmt;
 
 use driftworld_text::one_line;
+use crate::document::MAX_KEY_BYTES;
 
 /// The most problems of a document that are listed; beyond them is only said that there are more.
 pub const MAX_PROBLEMS: usize = 300;
@@ -221,9 +222,19 @@ fn did_you_mean(word: &str, known: &[String]) -> String {
 
 /// The known word that a misspelt one most likely stands for.
 pub fn nearest<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> Option<String> {
+    // No name is so long, and comparing takes room for both words multiplied.
+    if word.len() > MAX_KEY_BYTES {
+        return None;
+    }
     let lower = word.to_lowercase();
+    let letters = lower.chars().count();
     known
         .into_iter()
+        // One that is much longer or shorter is far.
+        .filter(|candidate| {
+            let length = candidate.as_ref().chars().count();
+            candidate.as_ref().len() <= MAX_KEY_BYTES && length.abs_diff(letters) <= 2 + length / 4
+        })
         .map(|candidate| {
             (
                 strsim::damerau_levenshtein(&lower, &candidate.as_ref().to_lowercase()),

@@ -173,15 +173,35 @@ pub(crate) fn describe(value: &Value) -> String {
         }
         Value::Array(items) if items.len() > 4 => format!("a list of {} values", items.len()),
         Value::Object(map) if map.len() > 2 => format!("an object with {} keys", map.len()),
-        other => {
-            let text = other.to_string();
-            match other {
-                Value::Object(_) if text.chars().count() > 60 => "an object".to_owned(),
-                Value::Array(_) if text.chars().count() > 60 => "a list".to_owned(),
-                _ => text,
-            }
-        }
+        Value::Object(_) if !fits(value, &mut 60) => "an object".to_owned(),
+        Value::Array(_) if !fits(value, &mut 60) => "a list".to_owned(),
+        other => other.to_string(),
     }
+}
+
+/// Whether a value takes at most so many characters; whatever it holds beyond them is not looked at.
+fn fits(value: &Value, room: &mut usize) -> bool {
+    let mut take = |characters: usize| {
+        let fits = characters <= *room;
+        *room = room.saturating_sub(characters);
+        fits
+    };
+    match value {
+        Value::Array(items) => take(2 + items.len().saturating_sub(1)) && items.iter().all(|item| fits(item, room)),
+        Value::Object(map) => {
+            let commas = map.len().saturating_sub(1);
+            take(2 + commas + map.len()) && map.iter().all(|(key, value)| fits_text(key, room) && fits(value, room))
+        }
+        Value::String(text) => fits_text(text, room),
+        other => take(other.to_string().len()),
+    }
+}
+
+fn fits_text(text: &str, room: &mut usize) -> bool {
+    // Escapes make it longer than it is.
+    let fits = text.len() <= 4 * *room && Value::from(text).to_string().chars().count() <= *room;
+    *room = room.saturating_sub(text.chars().count() + 2);
+    fits
 }
 
 /// A number as people read it: very large and very small ones with an exponent.
@@ -257,7 +277,9 @@ mod tests {
     use super::*;
 
     fn check(text: &str, expected: &str) {
-        let error = Document::parse("d.json", text, 999).err().map(|error| error.to_string());
+        let error = Document::parse("d.json", text, 999)
+            .err()
+            .map(|error| error.to_string());
         assert_eq!(error.as_deref(), Some(expected), "{text}");
     }
 

@@ -4,8 +4,8 @@
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-use jsonschema::json::{Array, Json, Node, NodeIdentity, Object};
 use jsonschema::JsonType;
+use jsonschema::json::{Array, Json, Node, NodeIdentity, Object};
 use serde_json::{Map, Number, Value};
 
 use crate::error::MAX_PROBLEMS;
@@ -84,16 +84,24 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
         }
     }
 
+    fn string_length(&self) -> Option<u64> {
+        Some(self.value.as_str()?.chars().count() as u64)
+    }
+
     fn equals_value(&self, expected: &Value) -> bool {
         jsonschema::json::cmp::equal(self.value, expected)
     }
 
-    /// Every error asks for the value that it is about: so they are counted.
+    /// Every error asks for the value that it is about: so they are counted. It gets none, for some errors keep a copy of their own:
+    /// `explain.rs` looks the value up by its place. Names are no part of the document, and are handed out.
     fn to_value(&self) -> Cow<'a, Value> {
-        if let Some(errors) = self.errors {
-            errors.fetch_add(1, Relaxed);
+        match self.errors {
+            Some(errors) => {
+                errors.fetch_add(1, Relaxed);
+                Cow::Owned(Value::Null)
+            }
+            None => Cow::Borrowed(self.value),
         }
-        Cow::Borrowed(self.value)
     }
 
     fn identity(&self) -> Option<NodeIdentity> {

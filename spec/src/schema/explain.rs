@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::advice;
 use super::wording::{code_of, either, expected};
 use crate::document::{describe, escape};
-use crate::error::Problem;
+use crate::error::{MAX_PROBLEMS, Problem};
 
 /// A problem, and how sure it is that nothing narrower can be said.
 pub(super) struct Finding {
@@ -85,6 +85,7 @@ impl Explainer<'_> {
                 let known = self.known_keys(error);
                 unexpected
                     .iter()
+                    .take(MAX_PROBLEMS + 1)
                     .map(|key| unknown_key(pointer, key, &known).into())
                     .collect()
             }
@@ -98,12 +99,18 @@ impl Explainer<'_> {
             ValidationErrorKind::PropertyNames { error: name } => vec![self.name(pointer, name).into()],
             // Where a text must have characters, an empty one has been told so.
             ValidationErrorKind::Pattern { .. }
-                if error.instance().as_str() == Some("") && self.parent(error).get("minLength").is_some() =>
+                if self.instance(error).as_str() == Some("") && self.parent(error).get("minLength").is_some() =>
             {
                 Vec::new()
             }
             _ => vec![self.plain(error)],
         }
+    }
+
+    /// The value that an error is about, which the error itself does not know.
+    pub(super) fn instance(&self, error: &ValidationError) -> &Value {
+        let place = error.instance_path();
+        self.document.pointer(place.as_str()).unwrap_or(&Value::Null)
     }
 
     /// The part of the schema that holds the keyword at fault.
@@ -115,7 +122,7 @@ impl Explainer<'_> {
 
     /// The problem of an error about the value alone.
     fn plain(&self, error: &ValidationError) -> Finding {
-        let value = error.instance();
+        let value = self.instance(error);
         let problem = Problem::new(
             code_of(error.kind()),
             error.instance_path().as_str(),
@@ -127,7 +134,7 @@ impl Explainer<'_> {
                 TypeKind::Single(kind) => kind.to_string() == name,
                 TypeKind::Multiple(kinds) => kinds.iter().any(|kind| kind.to_string() == name),
             }),
-            ValidationErrorKind::Pattern { .. } => renamed(error),
+            ValidationErrorKind::Pattern { .. } => renamed(value),
             _ => None,
         };
         Finding {
@@ -154,7 +161,7 @@ impl Explainer<'_> {
         let name = error.instance().as_str().unwrap_or_default();
         let place = format!("{pointer}/{}", escape(name));
         let problem = Problem::new("spec/name", place, format!("the name {name:?}"), self.expected(error));
-        match renamed(error) {
+        match renamed(error.instance()) {
             Some(advice) => problem.advise(advice),
             None => problem,
         }
@@ -256,7 +263,7 @@ fn unknown_key(pointer: &str, key: &str, known: &[String]) -> Problem {
 }
 
 /// What a name may have been meant to be, where its pattern wants another.
-fn renamed(error: &ValidationError) -> Option<String> {
-    let near = advice::snake_case(error.instance().as_str()?)?;
+fn renamed(value: &Value) -> Option<String> {
+    let near = advice::snake_case(value.as_str()?)?;
     Some(format!("did you mean {near:?}?"))
 }

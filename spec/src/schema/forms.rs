@@ -131,7 +131,7 @@ impl Explainer<'_> {
         let own = error.instance_path().as_str();
         let mut forms = Vec::new();
         self.unfold(own, branches, context, name, &mut forms);
-        let value = error.instance();
+        let value = self.instance(error);
         let of_its_type: Vec<&Form> = forms.iter().filter(|form| !form.is_of_another_type(own)).collect();
         if !of_its_type.is_empty()
             && of_its_type.iter().any(|form| form.is("Color"))
@@ -140,7 +140,7 @@ impl Explainer<'_> {
         {
             return vec![Finding { problem, forms: 1 }];
         }
-        let meant = match &**value {
+        let meant = match value {
             Value::Object(map) => match meant_object(own, map, &forms) {
                 Ok(meant) => meant,
                 Err(problem) => return vec![problem.into()],
@@ -165,7 +165,7 @@ impl Explainer<'_> {
             branch.get("type").is_none().then_some(key)
         };
         let keys: Vec<String> = branches.iter().map(key).collect::<Option<_>>()?;
-        let (pointer, object) = (error.instance_path().as_str(), error.instance().as_object()?);
+        let (pointer, object) = (error.instance_path().as_str(), self.instance(error).as_object()?);
         let mut present = keys.iter().enumerate().filter(|(_, key)| object.contains_key(*key));
         let problem = match (present.next(), present.next()) {
             (None, _) if keys.len() == 1 => missing_key(pointer, &format!("{:?}", keys[0])),
