@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use driftworld_text::ShownPath;
 use crate::top_level::TopLevel;
+use driftworld_text::ShownPath;
 
 /// What a file or folder holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

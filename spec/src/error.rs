@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use driftworld_text::one_line;
 use crate::document::MAX_KEY_BYTES;
+use driftworld_text::one_line;
 
 /// The most problems of a document that are listed; beyond them is only said that there are more.
 pub const MAX_PROBLEMS: usize = 300;

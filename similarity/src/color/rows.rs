@@ -54,7 +54,10 @@ mod tests {
                 200.0 * share(0.303) - 100.0,
             ])
         };
-        let colors: Vec<Lab> = (0..if cfg!(miri) { 14 } else { 203 }).map(color).chain([Lab([50.0, 0.0, 0.0]); 2]).collect();
+        let colors: Vec<Lab> = (0..if cfg!(miri) { 14 } else { 203 })
+            .map(color)
+            .chain([Lab([50.0, 0.0, 0.0]); 2])
+            .collect();
         let table: LabTable = colors.iter().copied().collect();
         let mut found = vec![0.0; colors.len()];
         for from in &colors {

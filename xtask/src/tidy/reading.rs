@@ -18,7 +18,9 @@ pub(super) fn check(tree: &Tree) -> Vec<Finding> {
 /// Whether a source is a part of what users run.
 fn is_ours(path: &str) -> bool {
     let in_sources = path.starts_with("src/") || path.contains("/src/");
-    let is_tool = ["xtask/", "files/", "examples/"].iter().any(|folder| path.starts_with(folder));
+    let is_tool = ["xtask/", "files/", "examples/"]
+        .iter()
+        .any(|folder| path.starts_with(folder));
     let is_test = path.ends_with("/tests.rs") || path.contains("/tests/");
     in_sources && !is_tool && !is_test
 }
