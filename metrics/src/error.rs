@@ -49,7 +49,7 @@ pub enum MetricsError {
     /// The directory of a log went away while it was written.
     #[error(
         "{}: found {found}, expected the directory that this log has been written to: it was removed, renamed or replaced meanwhile; \
-         with it went {rows} rows in {bytes} bytes; put that directory back and continue the log, or begin a new one", path.display()
+         with it went {} in {bytes} bytes; put that directory back and continue the log, or begin a new one", path.display(), counted(*rows)
     )]
     FolderLost {
         /// The directory.
@@ -64,9 +64,9 @@ pub enum MetricsError {
 
     /// A data file of a log was cut, removed or replaced while the log was written.
     #[error(
-        "{}: found {found}, expected the {rows} rows in {bytes} bytes that were written: it was cut, removed or replaced meanwhile; \
+        "{}: found {found}, expected the {} in {bytes} bytes that were written: it was cut, removed or replaced meanwhile; \
          put it back and continue the log, or begin a new one; a log that only its last rows are missing from can be continued as it is",
-        path.display()
+        path.display(), counted(*rows)
     )]
     FileLost {
         /// The data file.
@@ -558,6 +558,10 @@ pub enum MetricsError {
         /// What is allowed.
         expected: String,
     },
+}
+
+fn counted(rows: u64) -> String {
+    format!("{rows} {}", if rows == 1 { "row" } else { "rows" })
 }
 
 impl MetricsError {

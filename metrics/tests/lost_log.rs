@@ -168,7 +168,7 @@ proptest! {
         // Rows may have gone into files that stand as they were, but nothing into what was hit, and no folder was made in its place.
         if mishap.is_of_the_folder() {
             prop_assert_eq!(listed(base.path()), left);
-            prop_assert!(message.contains(&format!("with it went {written} rows")), "{}", message);
+            prop_assert!(message.contains(&format!("with it went {written} row")), "{}", message);
         } else {
             let of_the_file = |found: &[(PathBuf, Option<Vec<u8>>)]| {
                 found.iter().find(|(path, _)| *path == file).cloned()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import os
 import pickle
 import shutil
 import subprocess
@@ -320,6 +321,53 @@ def test_an_interrupt_leaves_a_log_that_goes_on(tmp_path: Path) -> None:
     assert len(read_log(tmp_path / "log")) == 5
     assert curriculum.run(Circler(), tmp_path / "log", **SMALL).finished
     assert len(read_log(tmp_path / "log")) == 19
+
+
+@pytest.mark.skipif(os.name != "posix", reason="directories are held open on POSIX systems")
+@pytest.mark.parametrize("what", ["folder-lost", "file-lost"])
+def test_a_log_that_goes_away_is_an_error(tmp_path: Path, what: str) -> None:
+    log = tmp_path / "log"
+
+    class Careless(Circler):
+        def act(self, observation: Any, info: dict[str, Any]) -> Any:
+            if len(self.begun) == 6 and log.exists():
+                lost = [log] if what == "folder-lost" else list(log.glob("*/*/data-log.tsv"))
+                for path in lost:
+                    path.rename(tmp_path / "away")
+            return super().act(observation, info)
+
+    with pytest.raises(driftworld.MetricsError, match="found no (directory|file), expected") as refused:
+        small().run(Careless(), log, **SMALL)
+    assert refused.value.code == f"metrics/{what}"
+    assert log.exists() == (what == "file-lost")
+
+
+def test_a_clock_that_stands_still_stamps_every_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DRIFTWORLD_CLOCK", "2026-01-31T12:00:00Z")
+    for name in ["a", "b"]:
+        small().run(Circler(), tmp_path / name, **SMALL)
+    tables = [sorted((tmp_path / name).glob("*/*/data-log.tsv")) for name in ["a", "b"]]
+    texts = [[table.read_text() for table in found] for found in tables]
+    assert texts[0] == texts[1] and "\t20260131T120000.000000\t" in texts[0][0]
+    monkeypatch.setenv("DRIFTWORLD_CLOCK", "noon")
+    with pytest.raises(ValueError, match="DRIFTWORLD_CLOCK: found \"noon\""):
+        small().run(Circler(), tmp_path / "c", **SMALL)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="modes are POSIX's")
+def test_files_are_as_the_umask_has_them(tmp_path: Path) -> None:
+    file = tmp_path / "scenario.json"
+    before = os.umask(0o027)
+    try:
+        small().save(file)
+        assert file.stat().st_mode & 0o777 == 0o640
+        file.chmod(0o604)
+        small().save(file)
+        assert file.stat().st_mode & 0o777 == 0o604
+    finally:
+        os.umask(before)
+    with pytest.raises(IsADirectoryError, match="tmp|pytest"):
+        small().save(tmp_path)
 
 
 def test_a_log_is_taken_up_only_by_what_it_was_begun_with(tmp_path: Path) -> None:

@@ -35,3 +35,28 @@ def test_ctrl_c_ends_a_long_call(call: str) -> None:
     program = PROGRAM.format(call=CALLS[call])
     said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False)
     assert (said.stdout, said.returncode) == ("interrupted\n", 0), said.stderr
+
+
+ASKED = """
+import os, pathlib, signal
+import driftworld
+
+def caught():
+    status = pathlib.Path("/proc/self/status").read_text()
+    return [line for line in status.splitlines() if line.startswith(("SigCgt:", "SigIgn:"))]
+
+before = caught()
+driftworld.Curriculum.design("find_objects#blue", learn=1, eval_episodes=1)
+assert caught() == before, (before, caught())
+for _ in range(2):
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+    except KeyboardInterrupt:
+        print("interrupted")
+"""
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="signals are seen in /proc")
+def test_signals_stay_pythons() -> None:
+    said = subprocess.run([sys.executable, "-c", ASKED], capture_output=True, text=True, timeout=120, check=False)
+    assert (said.stdout, said.returncode) == ("interrupted\ninterrupted\n", 0), said.stderr

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import math
+import os
 import pickle
 import shutil
 from pathlib import Path
@@ -128,6 +129,19 @@ def test_one_column_may_be_a_name_alone(tmp_path: Path) -> None:
             log.write(**row, reward=1.0)
         log.write(**row, performance=1.0)
     assert read_log(tmp_path / "log").logger_info["metrics_columns"] == ["performance"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="directories are held open on POSIX systems")
+def test_a_log_that_goes_away_is_an_error(tmp_path: Path) -> None:
+    log = LogWriter(tmp_path / "log", ["reward"])
+    row = {"block_num": 0, "block_type": "train", "task_name": "find_red"}
+    log.write(exp_num=0, **row, reward=1.0)
+    (tmp_path / "log").rename(tmp_path / "away")
+    for end in [lambda: log.write(exp_num=1, **row, reward=1.0), log.close]:
+        with pytest.raises(MetricsError, match="found no directory.* with it went 1 row") as refused:
+            end()
+        assert refused.value.code == "metrics/folder-lost"
+    assert not (tmp_path / "log").exists()
 
 
 def test_a_closed_log_takes_no_rows(tmp_path: Path) -> None:
