@@ -54,7 +54,7 @@ impl AtomicFile {
     /// # Errors
     /// As [`create`](Self::create).
     pub fn create_executable(path: &Path) -> io::Result<Self> {
-        Self::beside(path.to_owned(), 0o777)
+        Self::beside(path.to_owned(), permissions::PROGRAM)
     }
 
     /// The same for a name that is no other's: a link of that name is replaced, and what it leads to stays as it is.

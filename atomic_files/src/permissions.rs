@@ -8,6 +8,9 @@ use tempfile::Builder;
 /// The mode of a file that is new, before the umask takes from it.
 pub(crate) const PLAIN: u32 = 0o666;
 
+/// That of a program.
+pub(crate) const PROGRAM: u32 = 0o777;
+
 /// Lets a temporary file begin with no more than it will end with; the umask takes from that.
 #[cfg(unix)]
 pub(crate) fn begin(builder: &mut Builder<'_, '_>, mode: u32, before: Option<&Metadata>) {

@@ -5,9 +5,8 @@ import random
 import sys
 from pathlib import Path
 
-import numpy as np
-
 import driftworld
+import numpy as np
 
 
 class Learner:
