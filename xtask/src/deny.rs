@@ -17,6 +17,10 @@ const REQUIRE: &str = "DRIFTWORLD_REQUIRE_DENY";
 /// Names a git clone of the advisory database, in place of the one at GitHub.
 const DATABASE: &str = "DRIFTWORLD_ADVISORY_DB";
 
+/// An advisory about no crate: a database without any is refused.
+const NO_ADVISORY: &str = "```toml\n[advisory]\nid = \"RUSTSEC-2000-0001\"\npackage = \"none\"\ndate = \"2000-01-01\"\n\n\
+                           [versions]\npatched = []\n```\n\n# No advisory\n\nThere is no such crate.\n";
+
 /// Where cargo-deny has the database from.
 const ADDRESS: &str = "https://github.com/RustSec/advisory-db";
 
@@ -76,7 +80,7 @@ impl Database {
         Self::from(workspace, &folder, std::env::var_os(DATABASE).map(PathBuf::from))
     }
 
-    /// One without an advisory: with it, cargo-deny still asks the index of crates.io which versions were yanked.
+    /// One without an advisory of any crate: with it, cargo-deny still asks the index of crates.io which versions were yanked.
     fn empty(workspace: &Workspace) -> Result<Self, XtaskError> {
         let folder = workspace.target.join("deny").join("none");
         let origin = folder.join("origin");
@@ -86,7 +90,7 @@ impl Database {
             path: keep.clone(),
             source,
         })?;
-        write(&keep.join(".keep"), "")?;
+        write(&keep.join("RUSTSEC-2000-0001.md"), NO_ADVISORY)?;
         let git = |arguments: &[&str]| {
             let mut git = bare("git");
             git.arg("-C").arg(&origin).args(arguments);

@@ -1,12 +1,14 @@
-//! `cargo xtask dist`: what is handed out to people without a compiler. The command with every feature in, its checksum, and a wheel, both
-//! for Linux on x86-64 with glibc from 2.28 on (Debian 10, RHEL 8, Ubuntu 20.04), linked by zig, which knows old versions of glibc.
+//! `cargo xtask dist`: what is handed out to people without a compiler. The command with every feature in and a wheel, each with its checksum and
+//! its bill of materials, for Linux on x86-64 with glibc from 2.28 on (Debian 10, RHEL 8, Ubuntu 20.04), linked by zig, which knows old versions
+//! of glibc.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::error::XtaskError;
 use crate::process::{cargo, output, quiet_output, run};
 use crate::python::NO_INTERPRETER;
+use crate::sbom::{self, Product};
 use crate::virtual_environment::{VirtualEnvironment, interpreter};
 use crate::workspace::Workspace;
 
@@ -71,7 +73,12 @@ pub(crate) fn make(workspace: &Workspace) -> Result<(), XtaskError> {
         let name = format!("{program}-{version}-x86_64-linux");
         let to = folder.join(&name);
         fs::copy(&built, &to).map_err(failed(&built))?;
-        checksum(&tools, &to)?;
+        let product = Product {
+            package,
+            features,
+            target: TARGET,
+        };
+        with_bill(workspace, &tools, product, &to)?;
     }
 
     let mut wheel = tools.python(&[
@@ -101,26 +108,51 @@ pub(crate) fn make(workspace: &Workspace) -> Result<(), XtaskError> {
     for entry in fs::read_dir(&folder).map_err(failed(&folder))? {
         let path = entry.map_err(failed(&folder))?.path();
         if path.extension().is_some_and(|ending| ending == "whl") {
-            checksum(&tools, &path)?;
+            let product = Product {
+                package: "driftworld-python",
+                features: &["--features", "full"],
+                target: TARGET,
+            };
+            with_bill(workspace, &tools, product, &path)?;
         }
     }
     println!("wrote {}", folder.display());
     Ok(())
 }
 
-/// Writes `FILE.sha256` beside a file, as `sha256sum --check` reads it.
-fn checksum(tools: &VirtualEnvironment, path: &PathBuf) -> Result<(), XtaskError> {
+/// Writes `FILE.cdx.json` beside a file, what is in it, judged by CycloneDX's schema; and the checksums of both.
+fn with_bill(
+    workspace: &Workspace,
+    tools: &VirtualEnvironment,
+    product: Product<'_>,
+    path: &Path,
+) -> Result<(), XtaskError> {
+    let digest = checksum(tools, path)?;
+    let bill = product.bill(workspace, &digest)?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let to = path.with_file_name(format!("{name}.cdx.json"));
+    fs::write(&to, format!("{bill:#}\n")).map_err(|source| XtaskError::File {
+        path: to.clone(),
+        source,
+    })?;
+    sbom::judge(tools, &to)?;
+    checksum(tools, &to).map(drop)
+}
+
+/// Writes `FILE.sha256` beside a file, as `sha256sum --check` reads it; hands back the checksum.
+fn checksum(tools: &VirtualEnvironment, path: &Path) -> Result<String, XtaskError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut digest = tools.python(&[
         "-c",
         "import hashlib, sys; print(hashlib.sha256(open(sys.argv[1], 'rb').read()).hexdigest())",
     ]);
     digest.arg(path);
-    let line = format!("{}  {name}\n", quiet_output(digest)?.trim());
+    let digest = quiet_output(digest)?.trim().to_owned();
+    let line = format!("{digest}  {name}\n");
     let to = path.with_file_name(format!("{name}.sha256"));
     fs::write(&to, &line).map_err(|source| XtaskError::File { path: to, source })?;
     print!("{line}");
-    Ok(())
+    Ok(digest)
 }
 
 /// The version that all crates share.

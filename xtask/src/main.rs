@@ -26,6 +26,7 @@ mod protocol;
 mod python;
 mod rebuilds;
 mod runner;
+mod sbom;
 mod schemas;
 mod side_by_side;
 mod stage;
@@ -52,13 +53,14 @@ Usage:
   cargo xtask schemas               rewrite schemas/*.json from the Rust types
   cargo xtask protocol              rewrite unity/src/protocol.rs from unity/proto/*.proto
   cargo xtask advisories            check advisories, and write xtask/advisories-checked.txt
-  cargo xtask dist                  what is handed out: the command with everything in, its checksum, a wheel; into target/dist-files
   cargo xtask fuzz SECONDS [TARGET]...
                                     look for input that breaks a law, so many seconds for each target; wants nightly Rust
   cargo xtask chaos [--quick] [--kills N] [--seed S] [--only KIND]
                                     the command under faults, for minutes (--quick: one): killed 1,000 times or N, system calls that
                                     fail, full disks, a clock that jumps, logs that go away, signals; KIND is kills, python,
                                     syscalls, disk, clock, folders or signals (may be given several times)
+  cargo xtask dist                  what is handed out: the command with everything in, a wheel, of each a bill of materials (CycloneDX) and
+                                    checksums; into target/dist-files
   cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, similarity,
                                     env, metrics, unity)
   cargo xtask bench peers PYTHON SCRIPTS
