@@ -11,6 +11,9 @@ pub const MAX_PROBLEMS: usize = 300;
 /// The most problems that one message shows.
 const SHOWN: usize = 20;
 
+/// The most characters of a value that a message shows.
+const SHOWN_CHARACTERS: usize = 100;
+
 /// One thing wrong in a document: where, what was found, what was expected, what to do.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
@@ -209,10 +212,20 @@ fn list(name: &str, problems: &[Problem], more: bool) -> String {
     lines.join("\n")
 }
 
-fn first_of(known: &[String]) -> String {
-    match known.get(..SHOWN) {
-        Some(first) if known.len() > SHOWN => format!("{} and {} more", first.join(", "), known.len() - SHOWN),
-        _ => known.join(", "),
+/// A text as a message shows it: not longer than one can bear.
+pub(crate) fn cut(text: &str) -> String {
+    match text.char_indices().nth(SHOWN_CHARACTERS) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// Names as a message lists them: the first of them, and how many more there are.
+pub(crate) fn first_of<S: AsRef<str>>(known: &[S]) -> String {
+    let first: Vec<&str> = known.iter().take(SHOWN).map(AsRef::as_ref).collect();
+    match known.len() - first.len() {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
     }
 }
 

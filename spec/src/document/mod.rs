@@ -16,10 +16,10 @@ use value::{Repeats, Stop};
 /// The longest text that is read, in bytes.
 pub const MAX_BYTES: usize = 64 << 20;
 
-/// The most values of a world, ours or the original's: numbers, texts, lists, objects and the like.
+/// The most values of a world or a scenario, ours or the original's: numbers, texts, lists, objects and the like.
 pub const MAX_WORLD_VALUES: usize = 4_000_000;
 
-/// The most values of a task spec, a scenario, a maps file or an object alone.
+/// The most values of a task spec, a maps file or an object alone.
 pub const MAX_VALUES: usize = 1_000_000;
 
 /// The longest key, in bytes. Longer ones would stand in every pointer to what is below them.

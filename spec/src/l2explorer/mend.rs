@@ -122,8 +122,9 @@ impl Reader {
 
     /// A part of the file, if it is one; whatever else stands there is left out with a warning.
     pub(super) fn part(&mut self, map: &mut Map<String, Json>, key: &str) -> Option<Map<String, Json>> {
-        match map.get(key)? {
-            Json::Object(part) => Some(part.clone()),
+        match map.get_mut(key)? {
+            // What is made of it takes its place.
+            Json::Object(part) => Some(std::mem::take(part)),
             other => {
                 let text = format!(
                     "found {}, expected an object; its defaults are assumed",

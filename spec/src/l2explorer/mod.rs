@@ -9,7 +9,7 @@
 
 mod lenient;
 mod mend;
-mod read;
+pub(crate) mod read;
 mod scenario;
 mod write;
 

@@ -11,10 +11,10 @@ use super::lenient::{drop_decimal_point, stimulus, word};
 use super::mend::{self, Entry};
 use super::{AGENT, ASSUMED_SPEED, ENVIRONMENT, IMAGE, Keys, OBJECT, RULES, WORLD, Warning, black_is_chosen};
 use crate::document::{Document, MAX_VALUES, MAX_WORLD_VALUES, describe, escape};
-use crate::error::{Problem, SpecError};
+use crate::error::{MAX_PROBLEMS, Problem, SpecError};
 use crate::maps::MapLibrary;
 use crate::schema;
-use crate::world::{AgentParams, EnvironmentParams, ImageParams, Object, World};
+use crate::world::{AgentParams, EnvironmentParams, ImageParams, MAX_OBJECTS, Object, World};
 
 impl World {
     /// Reads a reset file of the original: words in any case, numbers as strings, colours in 0..255, old keys.
@@ -45,8 +45,8 @@ impl World {
         for pointer in repeated {
             reader.warn(pointer, "the key stands twice; the last one counts");
         }
-        let value = reader.world(&document.value);
-        document.value = value;
+        // Part by part what was read takes the place of what stood there: a large world is not there twice.
+        document.value = reader.world(std::mem::take(&mut document.value));
         let kept = std::mem::take(&mut reader.kept);
         let spelled = reader.spelled.clone();
         let original = |mut problem: Problem| {
@@ -91,9 +91,10 @@ impl Object {
     pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
         let mut document = Document::parse(name, text, MAX_VALUES)?;
         let mut reader = Reader::default();
-        if let Some(map) = document.value.as_object().cloned() {
-            document.value = Json::Object(reader.object("", &map));
-        }
+        document.value = match std::mem::take(&mut document.value) {
+            Json::Object(map) => Json::Object(reader.object("", map)),
+            other => other,
+        };
         document.check_schema(schema::object())?;
         let object = document.deserialize()?;
         Ok((object, document.warnings(reader.warnings)))
@@ -102,8 +103,8 @@ impl Object {
 
 impl Document<'_> {
     /// What the reader remarked, in the order of the text.
-    pub(crate) fn warnings(&self, remarks: impl IntoIterator<Item = (String, String)>) -> Vec<Warning> {
-        let remarks: Vec<(String, String)> = remarks.into_iter().collect();
+    pub(crate) fn warnings(&self, remarks: Remarks) -> Vec<Warning> {
+        let Remarks { first: remarks, more } = remarks;
         let pointers: Vec<&str> = remarks.iter().map(|(pointer, _)| pointer.as_str()).collect();
         let places = self.places(&pointers);
         let warning = |((pointer, text), (line, column))| {
@@ -118,7 +119,32 @@ impl Document<'_> {
         };
         let mut warnings: Vec<Warning> = remarks.into_iter().zip(places).map(warning).collect();
         warnings.sort_by_key(|warning| (warning.line, warning.column));
+        warnings.extend((more > 0).then(|| Warning {
+            name: self.name.to_owned(),
+            pointer: String::new(),
+            line: 0,
+            column: 0,
+            text: format!("there are {more} more remarks like these"),
+        }));
         warnings
+    }
+}
+
+/// What is odd about a document, the first few hundred of it.
+#[derive(Debug, Default)]
+pub(crate) struct Remarks {
+    /// Each with the pointer to what it is about.
+    first: Vec<(String, String)>,
+    more: usize,
+}
+
+impl Remarks {
+    pub(crate) fn push(&mut self, pointer: String, text: String) {
+        if self.first.len() < MAX_PROBLEMS {
+            self.first.push((pointer, text));
+        } else {
+            self.more += 1;
+        }
     }
 }
 
@@ -172,7 +198,7 @@ fn map_of(value: &impl Serialize) -> Map<String, Json> {
 
 #[derive(Default)]
 pub(super) struct Reader {
-    warnings: Vec<(String, String)>,
+    warnings: Remarks,
     /// For each object of the world, its index in the file.
     kept: Vec<usize>,
     /// Places of entries under our names, whose keys the file spells otherwise: the places in the file.
@@ -182,26 +208,26 @@ pub(super) struct Reader {
 impl Reader {
     pub(super) fn warn(&mut self, pointer: impl Into<String>, text: impl Into<String>) {
         self.warnings
-            .push((as_spelled(pointer.into(), &self.spelled), text.into()));
+            .push(as_spelled(pointer.into(), &self.spelled), text.into());
     }
 
-    fn world(&mut self, json: &Json) -> Json {
-        let Some(map) = json.as_object() else {
-            return json.clone();
+    fn world(&mut self, json: Json) -> Json {
+        let Json::Object(map) = json else {
+            return json;
         };
         let mut world = self.keys("", map, &WORLD);
         word(&mut world, "game_mode");
         self.whole("", &mut world, "max_steps");
         self.mend("", &mut world, &mend::WORLD, &DEFAULTS.world);
         if let Some(map) = self.part(&mut world, "environment_params") {
-            world.insert("environment_params".into(), Json::Object(self.environment(&map)));
+            world.insert("environment_params".into(), Json::Object(self.environment(map)));
         }
         if let Some(map) = self.part(&mut world, "agent_params") {
-            world.insert("agent_params".into(), Json::Object(self.agent(&map)));
+            world.insert("agent_params".into(), Json::Object(self.agent(map)));
         }
         if let Some(map) = self.part(&mut world, "image_params") {
             let at = "/image_params";
-            let mut image = self.keys(at, &map, &IMAGE);
+            let mut image = self.keys(at, map, &IMAGE);
             self.number(at, &mut image, "zoom");
             self.whole(at, &mut image, "yaw_subdivisions");
             self.whole(at, &mut image, "vertical_subdivisions");
@@ -209,14 +235,15 @@ impl Reader {
             world.insert("image_params".into(), Json::Object(image));
         }
         if let Some(Json::Object(map)) = world.get("rules").cloned() {
-            let mut rules = self.keys("/rules", &map, &RULES);
+            let mut rules = self.keys("/rules", map, &RULES);
             word(&mut rules, "success");
             word(&mut rules, "failure");
             world.insert("rules".into(), Json::Object(rules));
         }
-        match world.get("objects").cloned() {
+        let objects = world.get_mut("objects").map(std::mem::take);
+        match objects {
             Some(Json::Array(objects)) => {
-                world.insert("objects".into(), Json::Array(self.objects(&objects)));
+                world.insert("objects".into(), Json::Array(self.objects(objects)));
             }
             Some(other) => {
                 let text = format!(
@@ -232,29 +259,29 @@ impl Reader {
     }
 
     /// The entries with their keys as we write them; keys that are not known are left out with a warning.
-    fn keys(&mut self, pointer: &str, map: &Map<String, Json>, known: &Keys) -> Map<String, Json> {
+    fn keys(&mut self, pointer: &str, map: Map<String, Json>, known: &Keys) -> Map<String, Json> {
         let plain = |key: &str| key.replace('_', "").to_lowercase();
         let mut renamed = Map::new();
         let mut seen = BTreeSet::new();
         for (key, value) in map {
-            let old = match (pointer, plain(key).as_str()) {
+            let old = match (pointer, plain(&key).as_str()) {
                 ("/agent_params", "initialcoordinates") => Some("coordinates"),
                 ("", "$schema") => continue,
                 _ => None,
             };
-            let place = format!("{pointer}/{}", escape(key));
-            let Some(name) = old.or_else(|| known.all().find(|name| plain(name) == plain(key))) else {
+            let place = format!("{pointer}/{}", escape(&key));
+            let Some(name) = old.or_else(|| known.all().find(|name| plain(name) == plain(&key))) else {
                 self.warn(place, format!("the key {key:?} has no meaning here and is left out"));
                 continue;
             };
-            if key != name {
+            if key.as_str() != name {
                 self.warn(place.clone(), format!("the key {key:?} is read as {name:?}"));
             }
             if seen.insert(name) {
-                if key != name {
+                if key.as_str() != name {
                     self.spelled.insert(format!("{pointer}/{name}"), place);
                 }
-                renamed.insert(name.to_owned(), value.clone());
+                renamed.insert(name.to_owned(), value);
             } else {
                 self.warn(place, format!("{name:?} is given already; the first one counts"));
             }
@@ -262,7 +289,7 @@ impl Reader {
         renamed
     }
 
-    fn environment(&mut self, map: &Map<String, Json>) -> Map<String, Json> {
+    fn environment(&mut self, map: Map<String, Json>) -> Map<String, Json> {
         let at = "/environment_params";
         let mut environment = self.keys(at, map, &ENVIRONMENT);
         for key in ["light_intensity", "map_size", "wall_height"] {
@@ -274,7 +301,7 @@ impl Reader {
         environment
     }
 
-    fn agent(&mut self, map: &Map<String, Json>) -> Map<String, Json> {
+    fn agent(&mut self, map: Map<String, Json>) -> Map<String, Json> {
         let at = "/agent_params";
         let mut agent = self.keys(at, map, &AGENT);
         for key in ["action_model", "modalities", "actions"] {
@@ -303,17 +330,21 @@ impl Reader {
         agent
     }
 
-    fn objects(&mut self, objects: &[Json]) -> Vec<Json> {
+    fn objects(&mut self, objects: Vec<Json>) -> Vec<Json> {
+        // So many are refused by the schema; before, each is made whole.
+        if objects.len() > MAX_OBJECTS {
+            return objects;
+        }
         let mut read = Vec::new();
         let mut names = BTreeSet::new();
-        for (index, json) in objects.iter().enumerate() {
+        for (index, json) in objects.into_iter().enumerate() {
             let at = format!("/objects/{index}");
-            let Some(map) = json.as_object() else {
+            let Json::Object(map) = json else {
                 self.warn(
                     at,
                     format!(
                         "found {}, expected an object with a class; it is skipped",
-                        describe(json)
+                        describe(&json)
                     ),
                 );
                 continue;
@@ -338,7 +369,7 @@ impl Reader {
         read
     }
 
-    fn object(&mut self, at: &str, map: &Map<String, Json>) -> Map<String, Json> {
+    fn object(&mut self, at: &str, map: Map<String, Json>) -> Map<String, Json> {
         let mut object = self.keys(at, map, &OBJECT);
         word(&mut object, "class");
         drop_decimal_point(&mut object, "model");
@@ -413,7 +444,7 @@ impl Reader {
             if let Some(collectible) = collectible {
                 self.warn(
                     format!("{at}/collectible"),
-                    format!("collectible {collectible} without reward_on is left out"),
+                    format!("collectible {} without reward_on is left out", describe(&collectible)),
                 );
             }
             return;

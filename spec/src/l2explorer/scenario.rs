@@ -11,8 +11,9 @@ use driftworld_text::check_name;
 use serde_json::{Map, Value as Json, json};
 
 use super::Warning;
-use crate::document::{Document, MAX_VALUES, describe, escape};
-use crate::error::{Problem, SpecError};
+use super::read::Remarks;
+use crate::document::{Document, MAX_WORLD_VALUES, describe, escape};
+use crate::error::{MAX_PROBLEMS, Problem, SpecError, cut};
 use crate::scenario::{Block, BlockKind, MAX_EXPERIENCES, Phase, Regime, Scenario, ScenarioForm, TaskLabel};
 
 /// The most steps that a regime may allow, as our own documents have it.
@@ -38,7 +39,7 @@ impl Scenario {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
-        let document = Document::parse(name, text, MAX_VALUES)?;
+        let document = Document::parse(name, text, MAX_WORLD_VALUES)?;
         let mut reader = Reader::default();
         let scenario = reader.scenario(&document.value);
         document.fail_on(reader.problems)?;
@@ -74,7 +75,7 @@ impl Scenario {
 
 #[derive(Default)]
 struct Reader {
-    warnings: Vec<(String, String)>,
+    warnings: Remarks,
     problems: Vec<Problem>,
     /// The variant that each map of a task has become, and by task the plain names that are taken.
     variants: BTreeMap<(String, String), String>,
@@ -120,7 +121,10 @@ impl Reader {
             name = format!("{}_", name.replace('.', "_"));
         }
         if name != text {
-            self.warn("/logging_base_dir", format!("{text:?} is read as the name {name:?}"));
+            self.warn(
+                "/logging_base_dir",
+                format!("{} is read as the name {name:?}", cut(&format!("{text:?}"))),
+            );
         }
         name
     }
@@ -193,12 +197,12 @@ impl Reader {
         name
     }
 
-    fn list(&mut self, at: &str, map: &Map<String, Json>, key: &str, item: &str) -> Vec<Json> {
+    fn list<'m>(&mut self, at: &str, map: &'m Map<String, Json>, key: &str, item: &str) -> &'m [Json] {
         match map.get(key).and_then(Json::as_array) {
-            Some(items) if (1..=100_000).contains(&items.len()) => items.clone(),
+            Some(items) if (1..=100_000).contains(&items.len()) => items,
             _ => {
                 self.wrong(at, map, key, &format!("a list of 1 to 100000 {item}s"));
-                Vec::new()
+                &[]
             }
         }
     }
@@ -224,6 +228,10 @@ impl Reader {
 
     /// A key that is missing, or whose value will not do.
     fn wrong(&mut self, at: &str, map: &Map<String, Json>, key: &str, expected: &str) {
+        // More are not listed.
+        if self.problems.len() > MAX_PROBLEMS {
+            return;
+        }
         let problem = match map.get(key) {
             Some(value) => Problem::new("spec/value", format!("{at}/{key}"), describe(value), expected),
             None => Problem::new(
@@ -244,7 +252,7 @@ impl Reader {
     }
 
     fn warn(&mut self, pointer: impl Into<String>, text: impl Into<String>) {
-        self.warnings.push((pointer.into(), text.into()));
+        self.warnings.push(pointer.into(), text.into());
     }
 }
 

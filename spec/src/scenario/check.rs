@@ -6,7 +6,7 @@ use std::sync::Arc;
 use indexmap::IndexMap;
 
 use super::{Phase, Regime, Scenario};
-use crate::error::{Problem, SpecError, nearest};
+use crate::error::{MAX_PROBLEMS, Problem, SpecError, first_of, nearest};
 use crate::names;
 use crate::task::{TaskSpec, Value};
 
@@ -157,6 +157,10 @@ pub(super) fn against_tasks(scenario: &Scenario, mut find: impl FnMut(&str) -> O
     for (pointer, regime) in regimes(scenario).filter(|(_, regime)| regime.world.is_none()) {
         let task = tasks.entry(&regime.task).or_insert_with(|| find(&regime.task));
         let Some(task) = task else { continue };
+        // Each takes time: variants are looked up, and near names looked for.
+        if problems.len() > MAX_PROBLEMS {
+            break;
+        }
         if let Err(error) = regime.resolve(task) {
             problems.extend(placed(error, &pointer, "variant"));
         }
@@ -171,12 +175,7 @@ pub(super) fn against_tasks(scenario: &Scenario, mut find: impl FnMut(&str) -> O
 fn placed(error: SpecError, pointer: &str, key: &str) -> Vec<Problem> {
     match error {
         SpecError::UnknownVariant { task, found, known } => {
-            let shown = if known.len() > 20 {
-                format!("{} and {} more", known[..20].join(", "), known.len() - 20)
-            } else {
-                known.join(", ")
-            };
-            let expected = format!("a variant of {task}: {shown}");
+            let expected = format!("a variant of {task}: {}", first_of(&known));
             let problem = Problem::new(
                 "spec/unknown-variant",
                 format!("{pointer}/{key}"),

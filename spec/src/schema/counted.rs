@@ -13,16 +13,41 @@ use crate::error::MAX_PROBLEMS;
 /// The representation, for validators.
 pub(super) struct Counting;
 
-/// A value, and how many errors have been found so far; a text that stands in no document counts none.
-#[derive(Clone, Copy)]
-pub(super) struct Counted<'a> {
-    pub(super) value: &'a Value,
-    pub(super) errors: Option<&'a AtomicUsize>,
+/// What has been counted so far.
+#[derive(Default)]
+pub(super) struct Tally {
+    errors: AtomicUsize,
+    /// How often anything was asked of a value.
+    looks: AtomicUsize,
 }
 
-impl Counted<'_> {
+/// A value of a document; a text that stands in none counts nothing.
+#[derive(Clone, Copy)]
+pub(super) struct Counted<'a> {
+    value: &'a Value,
+    tally: Option<&'a Tally>,
+}
+
+impl<'a> Counted<'a> {
+    pub(super) fn new(value: &'a Value, tally: &'a Tally) -> Self {
+        let tally = Some(tally);
+        Self { value, tally }
+    }
+
     fn errors(&self) -> usize {
-        self.errors.map_or(0, |errors| errors.load(Relaxed))
+        self.tally.map_or(0, |tally| tally.errors.load(Relaxed))
+    }
+
+    fn looks(&self) -> usize {
+        self.tally.map_or(0, |tally| tally.looks.load(Relaxed))
+    }
+
+    /// The value, of which something is asked.
+    fn looked_at(&self) -> &'a Value {
+        if let Some(tally) = self.tally {
+            tally.looks.fetch_add(1, Relaxed);
+        }
+        self.value
     }
 }
 
@@ -39,7 +64,7 @@ impl Json for Counting {
         *buffer = string.into();
         f(Counted {
             value: buffer,
-            errors: None,
+            tally: None,
         })
     }
 }
@@ -50,31 +75,31 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
     type Number = &'a Number;
 
     fn as_object(&self) -> Option<Self> {
-        self.value.is_object().then_some(*self)
+        self.looked_at().is_object().then_some(*self)
     }
 
     fn as_array(&self) -> Option<Self> {
-        self.value.is_array().then_some(*self)
+        self.looked_at().is_array().then_some(*self)
     }
 
     fn as_string(&self) -> Option<Cow<'a, str>> {
-        self.value.as_str().map(Cow::Borrowed)
+        self.looked_at().as_str().map(Cow::Borrowed)
     }
 
     fn as_number(&self) -> Option<&'a Number> {
-        self.value.as_number()
+        self.looked_at().as_number()
     }
 
     fn as_boolean(&self) -> Option<bool> {
-        self.value.as_bool()
+        self.looked_at().as_bool()
     }
 
     fn is_null(&self) -> bool {
-        self.value.is_null()
+        self.looked_at().is_null()
     }
 
     fn json_type(&self) -> JsonType {
-        match self.value {
+        match self.looked_at() {
             Value::Null => JsonType::Null,
             Value::Bool(_) => JsonType::Boolean,
             Value::Number(_) => JsonType::Number,
@@ -85,19 +110,19 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
     }
 
     fn string_length(&self) -> Option<u64> {
-        Some(self.value.as_str()?.chars().count() as u64)
+        Some(self.looked_at().as_str()?.chars().count() as u64)
     }
 
     fn equals_value(&self, expected: &Value) -> bool {
-        jsonschema::json::cmp::equal(self.value, expected)
+        jsonschema::json::cmp::equal(self.looked_at(), expected)
     }
 
     /// Every error asks for the value that it is about: so they are counted. It gets none, for some errors keep a copy of their own:
     /// `explain.rs` looks the value up by its place. Names are no part of the document, and are handed out.
     fn to_value(&self) -> Cow<'a, Value> {
-        match self.errors {
-            Some(errors) => {
-                errors.fetch_add(1, Relaxed);
+        match self.tally {
+            Some(tally) => {
+                tally.errors.fetch_add(1, Relaxed);
                 Cow::Owned(Value::Null)
             }
             None => Cow::Borrowed(self.value),
@@ -109,11 +134,15 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
     }
 }
 
-/// Items or members up to a few hundred errors in them.
+/// Items or members up to a few hundred errors in them, or a few hundred members of which nothing was asked: those are keys that may
+/// not be there, which are listed by their names.
 pub(super) struct UntilFull<'a, I> {
     inner: I,
     holder: Counted<'a>,
     before: usize,
+    /// What was asked when the last member was handed out, and how many before it were of no interest.
+    looks: usize,
+    unseen: usize,
 }
 
 impl<'a, I> UntilFull<'a, I> {
@@ -122,6 +151,8 @@ impl<'a, I> UntilFull<'a, I> {
             inner,
             holder,
             before: holder.errors(),
+            looks: usize::MAX,
+            unseen: 0,
         }
     }
 
@@ -150,7 +181,10 @@ impl<'a> Iterator for UntilFull<'a, serde_json::map::Iter<'a>> {
     type Item = (&'a str, Counted<'a>);
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.is_full() {
+        let looks = self.holder.looks();
+        self.unseen = if looks == self.looks { self.unseen + 1 } else { 0 };
+        self.looks = looks;
+        if self.is_full() || (self.holder.tally.is_some() && self.unseen > MAX_PROBLEMS) {
             return None;
         }
         let (key, value) = self.inner.next()?;

@@ -9,7 +9,6 @@ mod forms;
 mod wording;
 
 use std::collections::BTreeSet;
-use std::sync::atomic::AtomicUsize;
 use std::sync::{LazyLock, OnceLock};
 
 use jsonschema::Validator;
@@ -22,7 +21,7 @@ use crate::maps::MapsDocument;
 use crate::scenario::Scenario;
 use crate::task::TaskDocument;
 use crate::world::{Object, World};
-use counted::{Counted, Counting};
+use counted::{Counted, Counting, Tally};
 
 /// One document type's schema, ready to check values.
 pub struct DocumentSchema {
@@ -58,12 +57,8 @@ impl DocumentSchema {
                 .build(&self.json)
                 .expect("the other validator was built of it")
         });
-        let errors = AtomicUsize::new(0);
-        let counted = Counted {
-            value,
-            errors: Some(&errors),
-        };
-        explain::problems(&self.json, value, listing.iter_errors(counted))
+        let tally = Tally::default();
+        explain::problems(&self.json, value, listing.iter_errors(Counted::new(value, &tally)))
     }
 }
 

@@ -4,6 +4,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::TaskDocument;
 use super::parameter::{Parameter, Role};
 use super::value::{ParameterType, Value};
 use super::variant::VariantSpec;
@@ -13,6 +14,9 @@ use crate::names;
 
 /// The most variants that one task may declare, families unfolded.
 const MAX_VARIANTS: usize = 10_000;
+
+/// The most values that all variants of a task have together: variants times parameters.
+const MAX_VARIANT_VALUES: usize = 400_000;
 
 /// The longest name of a variant in characters, as scenarios have room for.
 const MAX_NAME: usize = 100;
@@ -81,6 +85,24 @@ pub(crate) type Variants = IndexMap<String, Declared>;
 /// One axis of a family: a parameter and the values that it takes in turn.
 type Axis<'a> = (&'a String, Vec<Value>);
 
+/// Whether a document has no more variants, and no more values of them, than can be looked through.
+pub(crate) fn fits(document: &TaskDocument) -> Result<(), Vec<Problem>> {
+    let (variants, parameters) = (document.variants.len(), document.parameters.len());
+    let refused = |found: String, expected: String| {
+        Err(vec![
+            Problem::new("spec/length", "/variants", found, expected).advise("split the task"),
+        ])
+    };
+    if variants > MAX_VARIANTS {
+        return refused(format!("{variants} variants"), format!("at most {MAX_VARIANTS} in all"));
+    }
+    if variants.saturating_mul(parameters) > MAX_VARIANT_VALUES {
+        let found = format!("{variants} variants of {parameters} parameters");
+        return refused(found, format!("at most {MAX_VARIANT_VALUES} values in all"));
+    }
+    Ok(())
+}
+
 /// Unfolds the families of a document.
 pub(crate) fn unfold(
     parameters: &IndexMap<String, Parameter>,
@@ -100,14 +122,17 @@ pub(crate) fn unfold(
         let size = axes
             .iter()
             .fold(1_usize, |size, axis| size.saturating_mul(axis.1.len()));
-        if variants.len().saturating_add(size) > MAX_VARIANTS {
-            let found = format!("{} variants", variants.len().saturating_add(size));
-            problems.push(Problem::new(
-                "spec/length",
-                pointer,
-                found,
-                format!("at most {MAX_VARIANTS} in all"),
-            ));
+        let all = variants.len().saturating_add(size);
+        let (found, expected) = if all > MAX_VARIANTS {
+            (format!("{all} variants"), format!("at most {MAX_VARIANTS} in all"))
+        } else if all * parameters.len() > MAX_VARIANT_VALUES {
+            let found = format!("{all} variants of {} parameters", parameters.len());
+            (found, format!("at most {MAX_VARIANT_VALUES} values in all"))
+        } else {
+            (String::new(), String::new())
+        };
+        if !found.is_empty() {
+            problems.push(Problem::new("spec/length", pointer, found, expected));
             continue;
         }
         for member in 0..size {

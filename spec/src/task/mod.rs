@@ -152,6 +152,9 @@ pub enum Count {
     Drawn(Source),
 }
 
+/// The longest document, in bytes, in which more is looked for than what the schema refuses.
+const MOST_COPIED: usize = 1 << 17;
+
 impl TaskSpec {
     /// Reads and checks a task spec. `name` is what messages call the document, usually its path.
     ///
@@ -170,7 +173,12 @@ impl TaskSpec {
         document.upgrade(&version::TASK)?;
         let refused = schema::task().problems(&document.value);
         if !refused.is_empty() {
-            document.fail_on(check::partial::problems(&document.value, refused, classes))?;
+            // What else is wrong is looked for in a copy, of which a large document takes too much.
+            document.fail_on(if text.len() <= MOST_COPIED {
+                check::partial::problems(&document.value, refused, classes)
+            } else {
+                refused
+            })?;
         }
         let spec: TaskDocument = document.deserialize()?;
         match check::compile(spec, classes, check::Unsound::default()) {

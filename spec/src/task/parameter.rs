@@ -8,7 +8,7 @@ use super::compare::Compare;
 use super::template::Source;
 use super::value::{ParameterType, Value};
 use crate::document::escape;
-use crate::error::Problem;
+use crate::error::{Problem, cut};
 
 /// An element of the decision process that a parameter touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
@@ -192,8 +192,12 @@ impl Parameter {
         let typed = self.accept_between(value)?;
         match self.domain() {
             Some(Domain::Choices(choices)) if !choices.contains(&typed) => {
-                let names: Vec<String> = choices.iter().map(ToString::to_string).collect();
-                Err(format!("one of {}", names.join(", ")))
+                let shown: Vec<String> = choices.iter().take(20).map(|choice| cut(&choice.to_string())).collect();
+                let more = match choices.len() - shown.len() {
+                    0 => String::new(),
+                    more => format!(" and {more} more"),
+                };
+                Err(format!("one of {}{more}", shown.join(", ")))
             }
             _ => Ok(typed),
         }

@@ -18,7 +18,7 @@ use super::template::Source;
 use super::value::Value;
 use crate::distribution::{Distribution, Number, ParamRef};
 use crate::document::escape;
-use crate::error::{Problem, SpecError, nearest};
+use crate::error::{MAX_PROBLEMS, Problem, SpecError, first_of, nearest};
 
 /// The name of the variant in which every parameter has its default, unless the task declares one of this name.
 pub const DEFAULT_VARIANT: &str = "default";
@@ -185,8 +185,7 @@ fn accepted(parameters: &IndexMap<String, Parameter>, name: &str, value: &Value)
         .get(name)
         .filter(|parameter| parameter.role == Role::Variant)
         .ok_or_else(|| {
-            let names: Vec<&str> = known.iter().map(|name| name.as_str()).collect();
-            let expected = format!("a variant parameter, one of {}", names.join(", "));
+            let expected = format!("a variant parameter, one of {}", first_of(&known));
             Problem::new(
                 "spec/unknown-parameter",
                 format!("/{name}"),
@@ -284,6 +283,9 @@ pub(crate) fn broken<'a>(
     Some((broken, broken.describe(value_of)))
 }
 
+/// The most variants that extend each other in a row.
+const MAX_EXTENDED: usize = 100;
+
 /// The values of a variant: its own over those that it extends over the defaults.
 ///
 /// `Err` where the chain of `extends` breaks or bites its own tail; wrong values are [`problems`]' to find.
@@ -300,6 +302,15 @@ pub(crate) fn values_of(
             return Err(cycle(chain[0], name, variants));
         }
         chain.push(name);
+        if chain.len() > MAX_EXTENDED {
+            return Err(Problem::new(
+                "spec/length",
+                format!("/variants/{}/extends", escape(&variants[chain[0]].origin)),
+                format!("a chain of more than {MAX_EXTENDED} variants that extend each other"),
+                format!("at most {MAX_EXTENDED}"),
+            )
+            .advise("extend a variant further up"));
+        }
         next = match &variant.extends {
             None => None,
             Some(parent) if parent == DEFAULT_VARIANT && !variants.contains_key(parent) => None,
@@ -343,11 +354,7 @@ fn cycle(start: &str, again: &str, variants: &Variants) -> Problem {
 
 fn unknown_parent(origin: &str, parent: &str, variants: &Variants) -> Problem {
     let known: Vec<&str> = variants.keys().map(String::as_str).chain([DEFAULT_VARIANT]).collect();
-    let shown = if known.len() > 20 {
-        format!("{} and {} more", known[..20].join(", "), known.len() - 20)
-    } else {
-        known.join(", ")
-    };
+    let shown = first_of(&known);
     Problem::new(
         "spec/unknown-variant",
         format!("/variants/{}/extends", escape(origin)),
@@ -367,6 +374,7 @@ pub(crate) fn problems(
     let mut problems: Vec<Problem> = variants
         .keys()
         .filter_map(|name| values_of(parameters, variants, name).err())
+        .take(MAX_PROBLEMS + 1)
         .collect();
     problems.dedup();
     let check = |pointer: &str, parameter: &str, value: &Value| {
@@ -377,6 +385,9 @@ pub(crate) fn problems(
     };
     for (name, variant) in document {
         for (parameter, value) in &variant.values {
+            if problems.len() > MAX_PROBLEMS {
+                return problems;
+            }
             problems.extend(check(
                 &format!("/variants/{}/{}", escape(name), escape(parameter)),
                 parameter,
@@ -395,8 +406,7 @@ fn problem_of(parameters: &IndexMap<String, Parameter>, pointer: &str, name: &st
             .filter(|(_, p)| p.role == Role::Variant)
             .map(|(name, _)| name)
             .collect();
-        let names: Vec<&str> = known.iter().map(|name| name.as_str()).collect();
-        let expected = format!("a variant parameter, one of {}", names.join(", "));
+        let expected = format!("a variant parameter, one of {}", first_of(&known));
         let found = format!("the unknown parameter {name:?}");
         let near = nearest(name, &known).or_else(|| nearest(name, RESERVED));
         let problem = Problem::new("spec/unknown-key", pointer, found, expected);

@@ -5,6 +5,7 @@ use super::{MotionModel, Object, World};
 use crate::document::{Document, MAX_WORLD_VALUES};
 use crate::error::SpecError;
 use crate::l2explorer::Warning;
+use crate::l2explorer::read::Remarks;
 
 impl Object {
     /// Whether the object means to move by itself, and cannot: it has no speed, or its patrol no waypoints.
@@ -34,10 +35,10 @@ impl World {
     /// ```
     pub fn remarks(&self, name: &str, text: &str) -> Result<Vec<Warning>, SpecError> {
         let document = Document::parse(name, text, MAX_WORLD_VALUES)?;
-        let mut remarks = Vec::new();
+        let mut remarks = Remarks::default();
         for (index, object) in self.objects.iter().enumerate() {
             if let Some(place) = self.out_of_reach(object) {
-                remarks.push((format!("/objects/{index}/coordinates"), place));
+                remarks.push(format!("/objects/{index}/coordinates"), place);
             }
             if object.stands_still() {
                 let model = serde_json::to_value(object.motion_model).unwrap_or_default();
@@ -48,7 +49,7 @@ impl World {
                 };
                 let (class, model) = (&object.class, model.as_str().unwrap_or_default());
                 let text = format!("the {class} is to move as {model} and stands still: {lack}");
-                remarks.push((format!("/objects/{index}/motion_model"), text));
+                remarks.push(format!("/objects/{index}/motion_model"), text);
             }
         }
         Ok(document.warnings(remarks))

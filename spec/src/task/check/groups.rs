@@ -11,7 +11,7 @@ use super::Check;
 use crate::MAX_OBJECTS;
 use crate::distribution::{Distribution, Number};
 use crate::document::{describe, escape, plain_number};
-use crate::error::{Problem, nearest};
+use crate::error::{Problem, first_of, nearest};
 
 /// The most placements of a group that are looked at for room: families have thousands of variants.
 const MOST_CASES: usize = 64;
@@ -174,7 +174,7 @@ impl Check<'_> {
             let expected = if names.is_empty() {
                 "a group before this one; there is none".to_owned()
             } else {
-                format!("a group before this one: {}", names.join(", "))
+                format!("a group before this one: {}", first_of(&names))
             };
             let problem = Problem::new("spec/unknown-group", pointer, format!("the group {name:?}"), expected);
             self.report(match nearest(name, names) {

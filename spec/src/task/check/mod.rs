@@ -30,6 +30,7 @@ pub(super) fn compile(
     classes: Option<&Classes>,
     mut unsound: Unsound,
 ) -> Result<TaskSpec, Vec<Problem>> {
+    family::fits(&document)?;
     let mut problems: Vec<Problem> = reserved_names(&document.parameters).collect();
     problems.extend(names(&document));
     for (name, parameter) in &document.parameters {
@@ -46,18 +47,15 @@ pub(super) fn compile(
     let told: BTreeSet<String> = problems.iter().map(|problem| problem.pointer.clone()).collect();
     let more = variant::problems(&document.parameters, &document.variants, &variants, is_unsound);
     problems.extend(more.into_iter().filter(|problem| !told.contains(&problem.pointer)));
-    for name in document.variants.keys() {
-        let (own, inside) = (
-            format!("/variants/{}", escape(name)),
-            format!("/variants/{}/", escape(name)),
-        );
-        if problems
-            .iter()
-            .any(|problem| problem.pointer == own || problem.pointer.starts_with(&inside))
-        {
-            unsound.variants.insert(name.clone());
-        }
-    }
+    let of_variants: BTreeSet<&str> = problems
+        .iter()
+        .filter_map(|problem| problem.pointer.strip_prefix("/variants/")?.split('/').next())
+        .collect();
+    let wrong = document
+        .variants
+        .keys()
+        .filter(|name| of_variants.contains(escape(name).as_str()));
+    unsound.variants.extend(wrong.cloned());
 
     let mut check = Check::new(&document, &variants, classes, unsound);
     check.parameters();

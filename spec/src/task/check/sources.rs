@@ -7,7 +7,7 @@ use super::super::variant;
 use super::Check;
 use crate::distribution::{Distribution, Number, ParamRef};
 use crate::document::plain_number;
-use crate::error::{Problem, nearest};
+use crate::error::{Problem, first_of, nearest};
 
 impl Check<'_> {
     /// Whether a distribution's references name numbers, and whether every variant can draw from it.
@@ -127,7 +127,7 @@ impl Check<'_> {
         let expected = if known.is_empty() {
             "a declared parameter; there is none".into()
         } else {
-            format!("one of {}", known.join(", "))
+            format!("one of {}", first_of(&known))
         };
         let problem = Problem::new(
             "spec/unknown-parameter",
