@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::terminal::{driftworld_in, fail_in, scratch, succeed_in};
+use crate::terminal::{driftworld_in, fail_in, scratch, signals, succeed_in};
 
 /// More worlds than can be drawn before the signal comes.
 const MANY: [&str; 4] = ["find_objects", "--count", "100000000", "--jsonl"];
@@ -45,7 +45,7 @@ fn signal(child: &Child, signal: &str) {
 
 #[test]
 fn a_stopped_sample_leaves_nothing() {
-    for name in ["-INT", "-TERM", "-HUP"] {
+    for (name, _) in signals() {
         let folder = scratch();
         let child = begun(folder.path());
         signal(&child, name);

@@ -8,9 +8,7 @@ use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
 use crate::lived::write;
-use crate::terminal::{driftworld_in, scratch};
-
-const SIGNALS: [(&str, i32); 3] = [("-HUP", 1), ("-INT", 2), ("-TERM", 15)];
+use crate::terminal::{driftworld_in, scratch, signals};
 
 fn start(folder: &Path, arguments: &[&str]) -> Child {
     let mut command = driftworld_in(folder, arguments);
@@ -56,7 +54,7 @@ fn what_waits_for_a_reader_ends_by_the_signal() {
     let folder = scratch();
     let made = Command::new("mkfifo").arg(folder.path().join("pipe")).status();
     assert!(made.is_ok_and(|made| made.success()));
-    for (name, number) in SIGNALS {
+    for (name, number) in signals() {
         let mut child = start(
             folder.path(),
             &["sample", "find_objects", "--count", "3", "--jsonl", "-o", "pipe"],
@@ -71,7 +69,7 @@ fn what_waits_for_a_reader_ends_by_the_signal() {
 #[test]
 fn what_nobody_reads_ends_with_words() {
     let folder = scratch();
-    for (name, _) in SIGNALS {
+    for (name, _) in signals() {
         // The pipe fills, and the command waits in the middle of a line.
         let mut child = start(
             folder.path(),
@@ -96,7 +94,7 @@ fn an_experience_of_a_million_steps_is_not_waited_for() {
         &path.join("scenario.json"),
         &format!(r#"{{ "name": "s", "blocks": [{{ "type": "learning", "regimes": [{regime}] }}] }}"#),
     );
-    for (name, _) in SIGNALS {
+    for (name, _) in signals() {
         let log = format!("log{name}");
         let mut child = start(path, &["run", "scenario.json", "--agent", "random", "--logs", &log]);
         wait_until(&mut child, |_| path.join(&log).join("logger_info.json").exists());

@@ -56,6 +56,18 @@ pub(crate) fn fail_in(folder: &Path, code: i32, arguments: &[&str]) -> String {
     error
 }
 
+/// The signals that stop a command, as `kill` takes them and by their numbers. Without hanging up where the tests were started under
+/// `nohup`: then the command passes it over, as it should.
+#[cfg(unix)]
+pub(crate) fn signals() -> impl Iterator<Item = (&'static str, i32)> {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    let hangs_up = ignored.is_some_and(|mask| mask & 1 == 0);
+    let all = [("-HUP", 1), ("-INT", 2), ("-TERM", 15)];
+    all.into_iter().skip(usize::from(!hangs_up))
+}
+
 /// A folder for files that nobody needs afterwards.
 pub(crate) fn scratch() -> tempfile::TempDir {
     tempfile::tempdir().expect("the machine has a folder for temporary files")

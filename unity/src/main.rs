@@ -47,7 +47,7 @@ fn follow_signals() {
     let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else {
         return;
     };
-    for signal in signals.forever() {
+    if let Some(signal) = signals.forever().next() {
         remove_unfinished();
         let _ = low_level::emulate_default_handler(signal);
         low_level::exit(128 + signal);

@@ -3,12 +3,14 @@
 
 use std::fs::{self, OpenOptions};
 use std::path::{Path, PathBuf};
+use std::process::Child;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use super::Options;
 use super::figures::Figures;
 use super::rng::Rng;
+use super::signals::send;
 use super::subject::{Subject, all_files, difference, end, file_error, num_bytes, start, to_its_end};
 use crate::error::XtaskError;
 
@@ -74,14 +76,17 @@ pub(super) fn figures(subject: &Subject, options: &Options, rng: &mut Rng) -> Re
                 subject.fresh("lost.away")?;
                 let began = Instant::now();
                 let mut child = start(&mut subject.run(&subject.scenario, "random", jobs, &log))?;
-                // Early enough that there are rows to come.
                 let moment = rng.below(total * 7 / 10);
                 let Some(file) = grown(&mut child, &log, moment) else {
                     end(child, began);
                     continue;
                 };
-                let happened = mishap.happen(&log, &file);
+                // It stands still meanwhile, and there are rows to come: so it has to notice.
+                send("-STOP", child.id());
+                let is_due = is_stopped(&child) && num_bytes(&all_files(&log)) < total;
+                let happened = is_due && mishap.happen(&log, &file);
                 let left = all_files(&log);
+                send("-CONT", child.id());
                 let ended = end(child, began);
                 if !happened {
                     continue;
@@ -121,8 +126,22 @@ pub(super) fn figures(subject: &Subject, options: &Options, rng: &mut Rng) -> Re
     Ok(figures)
 }
 
+/// Waits until a process that was told to stand still does; false if it ended before.
+fn is_stopped(child: &Child) -> bool {
+    let path = format!("/proc/{}/stat", child.id());
+    (0..10_000).any(|_| {
+        let stat = fs::read_to_string(&path).unwrap_or_default();
+        // Behind the name in brackets.
+        let state = stat.rsplit(") ").next().and_then(|rest| rest.chars().next());
+        if state != Some('T') {
+            thread::sleep(Duration::from_micros(100));
+        }
+        state == Some('T')
+    })
+}
+
 /// Waits until a log has so many bytes; the data file that was written last, or nothing if the run ended before.
-fn grown(child: &mut std::process::Child, log: &Path, bytes: u64) -> Option<PathBuf> {
+fn grown(child: &mut Child, log: &Path, bytes: u64) -> Option<PathBuf> {
     loop {
         let files = all_files(log);
         let tables = files.keys().filter(|name| name.ends_with("data-log.tsv"));

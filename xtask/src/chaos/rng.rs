@@ -1,4 +1,4 @@
-//! [`Rng`]: chance that repeats under a seed, by SplitMix64. Moments in time are drawn; when they come is the machine's.
+//! [`Rng`]: chance that repeats under a seed, by `SplitMix64`. Moments in time are drawn; when they come is the machine's.
 
 /// A stream of numbers.
 #[derive(Debug, Clone)]
@@ -24,7 +24,7 @@ impl Rng {
 
     /// In `0..below`; 0 for 0.
     pub(super) fn below(&mut self, below: u64) -> u64 {
-        (u128::from(self.next()) * u128::from(below) >> 64) as u64
+        ((u128::from(self.next()) * u128::from(below)) >> 64) as u64
     }
 
     /// In `0.0..1.0`.

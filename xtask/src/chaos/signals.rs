@@ -90,8 +90,15 @@ pub(super) fn figures(workspace: &Workspace, subject: &Subject, options: &Option
     let mut figures = Figures::default();
     prepare(subject)?;
     let mut longest = Duration::ZERO;
+    // Under nohup the command passes hanging up over, as it should.
+    let signals = if passes_hanging_up_over() {
+        figures.notes.push("started under nohup, without SIGHUP".to_owned());
+        &["-INT", "-TERM"][..]
+    } else {
+        &["-INT", "-TERM", "-HUP"]
+    };
     for case in &CASES {
-        for signal in ["-INT", "-TERM", "-HUP"] {
+        for signal in signals {
             for _ in 0..options.scaled(5) {
                 longest = longest.max(case.figures(subject, signal, &mut figures)?);
             }
@@ -166,7 +173,15 @@ fn stopped_stand_in(stand_in: &Path, subject: &Subject, figures: &mut Figures) -
     Ok(longest)
 }
 
-fn send(signal: &str, process: u32) {
+/// Whether hanging up is passed over here, and so by what is started from here.
+fn passes_hanging_up_over() -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    ignored.is_some_and(|mask| mask & 1 != 0)
+}
+
+pub(super) fn send(signal: &str, process: u32) {
     let mut kill = Command::new("kill");
     kill.args([signal, &process.to_string()]);
     works(kill);

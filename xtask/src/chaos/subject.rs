@@ -16,7 +16,7 @@ use crate::workspace::Workspace;
 const CLOCK: (&str, &str) = ("DRIFTWORLD_CLOCK", "2026-01-01T00:00:00Z");
 
 /// Longer than anything here takes on a slow machine: what takes longer hangs.
-const LIMIT: Duration = Duration::from_secs(60);
+const LIMIT: Duration = Duration::from_mins(1);
 
 /// All files below a folder by their paths, with their bytes.
 pub(super) type Files = BTreeMap<String, Vec<u8>>;
