@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn a_clock_that_is_far_off_has_a_stamp_all_the_same() {
         let stamp = |now| Timestamp::from_unix_micros(micros(now)).map(|stamp| stamp.to_string());
-        let year = Duration::from_secs(31_557_600);
+        let year = Duration::from_hours(8766);
         assert!(stamp(UNIX_EPOCH - year).is_ok_and(|stamp| stamp == "19681231T180000.000000"));
         assert!(stamp(UNIX_EPOCH + 20_000 * year).is_ok_and(|stamp| stamp.starts_with("99991231")));
         assert!(stamp(UNIX_EPOCH - 20_000 * year).is_ok_and(|stamp| stamp.starts_with("00010101")));

@@ -111,24 +111,24 @@ fn follow(mut signals: Signals) {
                 let _ = low_level::emulate_default_handler(signal);
                 low_level::exit(128 + signal);
             }
-            Some(words) if ASKED.swap(true, Ordering::SeqCst) => end(words),
+            Some(words) if ASKED.swap(true, Ordering::SeqCst) => end(&words),
             Some(_) => {
                 let waits = thread::Builder::new().spawn(|| {
                     thread::sleep(GRACE);
                     // By then the command may be over, in a program that goes on.
                     if let Some(words) = parting().clone() {
-                        end(words);
+                        end(&words);
                     }
                 });
                 if waits.is_err() {
-                    end(parting().clone().unwrap_or_default());
+                    end(&parting().clone().unwrap_or_default());
                 }
             }
         }
     }
 }
 
-fn end(words: String) -> ! {
+fn end(words: &str) -> ! {
     leave(Some(format!("error: {words}")));
     low_level::exit(1)
 }
