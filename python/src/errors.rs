@@ -9,6 +9,7 @@ use driftworld_generator::GeneratorError;
 use driftworld_metrics::MetricsError;
 use driftworld_similarity::SimilarityError;
 use driftworld_spec::{Problem, SpecError};
+use driftworld_text::printable_lines;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -75,7 +76,7 @@ impl From<DistancesError> for Error {
             DistancesError::Generator(source) => Self::Generator(source),
             DistancesError::Similarity(source) => Self::Similarity(source),
             // The enum may grow; its message says all there is to say.
-            source => Self::Python(PyValueError::new_err(source.to_string())),
+            source => Self::Python(PyValueError::new_err(printable_lines(&source.to_string()).into_owned())),
         }
     }
 }
@@ -103,6 +104,8 @@ impl Error {
         };
         let class = py.import("driftworld.errors")?.getattr(class)?;
         let details = self.details(py)?;
+        // Python prints it as it is.
+        let text = printable_lines(&text);
         Ok(PyErr::from_value(class.call((text,), Some(&details))?))
     }
 

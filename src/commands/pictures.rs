@@ -5,7 +5,7 @@ mod scatter;
 use std::path::Path;
 use std::sync::Once;
 
-use driftworld_text::ShownPath;
+use driftworld_text::{ShownPath, printable};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, register_font};
@@ -143,7 +143,7 @@ impl Picture {
                     .into_font()
                     .color(&label.color)
                     .pos(label.anchor);
-                area.draw_text(label.text, &style, label.at)?;
+                area.draw_text(&printable(label.text), &style, label.at)?;
             }
             Ok(())
         })

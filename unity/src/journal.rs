@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 
+use driftworld_text::printable_lines;
+
 use crate::error::UnityError;
 
 /// Where remarks go.
@@ -30,8 +32,9 @@ impl Journal {
         })
     }
 
-    /// Notes one remark. A file that cannot be written any more is left for the terminal.
+    /// Notes one remark, in which characters that a terminal would obey or hide are shown. A file that cannot be written any more is left for the terminal.
     pub fn note(&mut self, remark: &str) {
+        let remark = printable_lines(remark);
         let written = self
             .file
             .as_mut()

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use std::thread;
 
 use driftworld_atomic_files::remove_unfinished;
+use driftworld_text::printable_lines;
 use driftworld_unity::{HELP, Journal, MARK, Request, UnityError, run};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
@@ -56,7 +57,7 @@ fn follow_signals() {
 
 /// A terminal that is gone, or a full disk behind it, does not change how we end.
 fn say(mut terminal: impl Write, words: impl Display) {
-    let _ = writeln!(terminal, "{words}");
+    let _ = writeln!(terminal, "{}", printable_lines(&words.to_string()));
 }
 
 fn failed(error: &UnityError) -> ExitCode {

@@ -6,6 +6,7 @@ use std::time::Duration;
 use driftworld_env::{Catalogue, Library};
 use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{MAX_BYTES, World};
+use driftworld_text::{ShownPath, printable};
 use prost::Message;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -80,7 +81,7 @@ fn world(path: &Path, maps: &MapLibrary, journal: &mut Journal) -> Result<World,
     let is_ours = serde_json::from_str::<Ours>(&text).is_ok_and(|ours| ours.version.is_some());
     match World::from_l2explorer_with(&name, &text, maps) {
         Ok((world, warnings)) if !is_ours => {
-            journal.note(&format!("{name}: read as a reset file of L2Explorer"));
+            journal.note(&format!("{}: read as a reset file of L2Explorer", path.shown()));
             for warning in warnings {
                 journal.note(&warning.to_string());
             }
@@ -169,7 +170,7 @@ async fn serve(mut session: Session, options: &Options, journal: &mut Journal) -
             Err(error) => Err(error),
         };
         for remark in session.take_remarks() {
-            journal.note(&remark);
+            journal.note(&printable(&remark));
         }
         next = match turn {
             Ok(Turn::Output(output)) => Ok(*output),
@@ -184,7 +185,7 @@ fn input(reply: Reply, journal: &mut Journal) -> Result<Option<UnityInputProto>,
     let message = match reply {
         Reply::Message(message) => message,
         Reply::Gone(reason) => {
-            journal.note(&format!("the client is gone ({reason})"));
+            journal.note(&format!("the client is gone ({})", printable(&reason.to_string())));
             return Ok(None);
         }
     };

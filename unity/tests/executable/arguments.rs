@@ -203,6 +203,45 @@ fn a_key_that_only_the_original_lets_pass_is_remarked() {
 }
 
 #[test]
+fn what_others_wrote_does_not_work_the_terminal() {
+    const HOSTILE: &str = "\u{1b}]0;owned\u{7}\u{202e}\u{9b}2J\r\ndriftworld-unity: FAKE\u{200b}";
+    let folder = folder();
+    let json = serde_json::json!({ "max_steps": HOSTILE, HOSTILE: 1, "objects": [{ HOSTILE: HOSTILE }] }).to_string();
+    fs::write(folder.path().join("broken.json"), &json).expect("the folder can be written");
+    let lenient = serde_json::json!({ HOSTILE: 1, "max_steps": 3 }).to_string();
+    fs::write(folder.path().join("lenient.json"), &lenient).expect("the folder can be written");
+    let mut said = vec![look(&["--world", "lenient.json"], folder.path()).0];
+    // Windows has no such names.
+    if cfg!(unix) {
+        fs::write(folder.path().join(HOSTILE), json).expect("the folder can be written");
+        said.push(look(&["--world", HOSTILE], folder.path()).0);
+    }
+    for arguments in [
+        ["--world", "broken.json"],
+        ["--maps", "broken.json"],
+        ["--world", &format!("{HOSTILE}-none")],
+        ["--assets", HOSTILE],
+        ["--wait", HOSTILE],
+        ["--mlagents-port", HOSTILE],
+        [HOSTILE, HOSTILE],
+    ] {
+        said.push(Executable::start(&[&["--wait", "1"], &arguments[..]].concat(), folder.path()).ended());
+    }
+    for ended in said {
+        let hostile = |letter: char| driftworld_text::is_unprintable(letter) && letter != '\n';
+        assert!(!ended.stderr.contains(hostile), "{ended:?}");
+        assert!(ended.stderr.contains("owned"), "{ended:?}");
+        assert!(
+            !ended
+                .stderr
+                .lines()
+                .any(|line| line.starts_with("driftworld-unity: FAKE")),
+            "{ended:?}"
+        );
+    }
+}
+
+#[test]
 fn a_maps_file_takes_the_place_of_the_built_in_layouts() {
     let folder = folder();
     let mut world = World::default();
