@@ -218,3 +218,31 @@ def test_a_broken_task_of_a_scenario_is_told_with_its_place(tmp_path: Path) -> N
     error = refused.value
     assert (error.code, error.pointer, error.line) == ("curriculum/unknown", "/paramters", 3)
     assert len(error.problems) == 1 and "block 0, regime 0" in str(error)
+
+
+def test_what_others_wrote_does_not_work_the_terminal(tmp_path: Path) -> None:
+    hostile = "\x1b]0;owned\x07\u202e\x9b2J\r\nValueError: FAKE\u200b\ufeff"
+    file = tmp_path / "hostile.json"
+    documents = [{"name": "t", hostile: 1}, {"name": hostile, "variants": {hostile: {}}}, {"blocks": [{"type": hostile}]}]
+    said = []
+    for document in documents:
+        file.write_text(json.dumps(document), encoding="utf-8")
+        for attempt in (
+            lambda: TaskSpec.load(file),
+            lambda: TaskSpec.from_json(hostile, file.read_text(encoding="utf-8")),
+            lambda: Curriculum.load(file),
+            lambda: TaskSpec.load(hostile),
+            lambda: driftworld.validate(file),
+            lambda: driftworld.validate(hostile),
+            lambda: driftworld.make(world=file),
+            lambda: driftworld.make(hostile),
+        ):
+            try:
+                attempt()
+            except Exception as error:  # whatever it is, it is printed
+                said.append(str(error))
+    assert len(said) > 10
+    for text in said:
+        shown = text.replace("\n", "")
+        assert shown.isprintable(), repr(text)
+        assert not any(line.startswith("ValueError: FAKE") for line in text.splitlines()), text

@@ -4,6 +4,7 @@
 use std::path::Path;
 use std::path::PathBuf;
 
+#[cfg(feature = "gltf")]
 use crate::env::{ColliderKind, ImportOptions, ImportSize, Library, LibraryModel};
 use clap::{Args, ValueEnum};
 #[cfg(feature = "gltf")]

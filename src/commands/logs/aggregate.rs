@@ -3,11 +3,11 @@
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "parquet")]
 use crate::columns;
 use crate::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
 use clap::{Args, ValueEnum};
 use driftworld_atomic_files::AtomicFile;
-#[cfg(feature = "parquet")]
 use driftworld_text::{Cells, ShownPath};
 
 use super::super::table::cells;
