@@ -44,6 +44,31 @@ impl Disc {
         grid.within(low, high).filter(move |cell| self.covers(*cell, grid))
     }
 
+    /// About how many cells it covers, and no fewer.
+    pub(super) fn num_cells(self, grid: Grid) -> usize {
+        let across = (2.0 * self.radius / grid.side()) as usize + 2;
+        across.saturating_mul(across).min(grid.num_cells())
+    }
+
+    /// The first and the last cell that it covers of each row.
+    fn rows(self, grid: Grid) -> impl Iterator<Item = (usize, usize)> {
+        let [x, y] = self.centre;
+        let column = |x: f32| grid.within([x, y - self.radius], [x, y + self.radius]);
+        column(x).filter_map(move |middle| {
+            let dy = grid.centre(middle)[1] - y;
+            let half = (self.radius * self.radius - dy * dy).max(0.0).sqrt();
+            // A cell more on each side than rounding could take away.
+            let end = |sign: f32| {
+                let [x, y] = [x + sign * (half + 2.0 * grid.side()), grid.centre(middle)[1]];
+                grid.cell_at([x, y])
+            };
+            let mut cells = end(-1.0)..=end(1.0);
+            let covered = |cell: &usize| self.covers(*cell, grid);
+            let first = cells.find(covered)?;
+            Some((first, cells.rfind(covered).unwrap_or(first)))
+        })
+    }
+
     /// Whether it covers the middle of a cell.
     pub(super) fn covers(self, cell: usize, grid: Grid) -> bool {
         let at = grid.centre(cell);
@@ -90,6 +115,7 @@ impl Ground {
             .collect();
         discs.sort_by_key(|disc| disc.object);
         // Both lists rise: what is in one of them only is taken anew, or left.
+        let mut changed: Vec<(Disc, bool)> = Vec::new();
         let (mut old, mut new) = (self.discs.iter().peekable(), discs.iter().peekable());
         loop {
             match (old.peek(), new.peek()) {
@@ -98,17 +124,46 @@ impl Ground {
                     new.next();
                 }
                 (Some(left), right) if right.is_none_or(|right| left.object <= right.object) => {
-                    left.cells(self.grid).for_each(|cell| self.taken[cell] -= 1);
+                    changed.push((**left, false));
                     old.next();
                 }
                 (_, Some(right)) => {
-                    right.cells(self.grid).for_each(|cell| self.taken[cell] += 1);
+                    changed.push((**right, true));
                     new.next();
                 }
                 (_, None) => break,
             }
         }
+        self.take(&changed);
         self.discs = discs;
+    }
+
+    /// Takes the cells of discs, or leaves them.
+    fn take(&mut self, changed: &[(Disc, bool)]) {
+        let grid = self.grid;
+        let num_cells: usize = changed.iter().map(|(disc, _)| disc.num_cells(grid)).sum();
+        if num_cells <= 4 * grid.num_cells() {
+            for (disc, is_taken) in changed {
+                for cell in disc.cells(grid) {
+                    self.taken[cell] = self.taken[cell].wrapping_add_signed(if *is_taken { 1 } else { -1 });
+                }
+            }
+            return;
+        }
+        // Many large discs: by how much each cell differs from the one before it. Behind each row is a cell of the rim.
+        let mut steps = vec![0_i32; grid.num_cells()];
+        for (disc, is_taken) in changed {
+            let by = if *is_taken { 1 } else { -1 };
+            for (first, last) in disc.rows(grid) {
+                steps[first] += by;
+                steps[last + 1] -= by;
+            }
+        }
+        let mut by = 0;
+        for (taken, step) in self.taken.iter_mut().zip(steps) {
+            by += step;
+            *taken = taken.wrapping_add_signed(by);
+        }
     }
 
     fn block_walls(&mut self, world: &World, scene: &Scene) {
@@ -181,4 +236,48 @@ fn near_or_inside(corners: &[[f64; 2]], [x, y]: [f32; 2], margin: f32) -> bool {
         }
     }
     near || inside
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn the_rows_of_a_disc_are_its_cells(
+            size in [1.0..400.0_f32, 1.0..400.0_f32],
+            place in [-1.2..1.2_f32, -1.2..1.2_f32],
+            radius in prop_oneof![0.0..3.0_f32, 0.0..300.0_f32],
+        ) {
+            let grid = Grid::over(size);
+            let centre = [place[0] * size[0] / 2.0, place[1] * size[1] / 2.0];
+            let disc = Disc { object: 0, centre, radius };
+            let rows = disc.rows(grid).flat_map(|(first, last)| first..=last);
+            let cells: Vec<usize> = disc.cells(grid).collect();
+            prop_assert!(rows.eq(cells.iter().copied()));
+            prop_assert!(cells.len() <= disc.num_cells(grid));
+        }
+
+        #[test]
+        fn many_discs_at_once_take_what_each_alone_takes(
+            discs in prop::collection::vec(([-30.0..30.0_f32, -30.0..30.0_f32], 0.0..60.0_f32, any::<bool>()), 1..40),
+        ) {
+            let grid = Grid::over([50.0, 40.0]);
+            let ground = Ground { grid, taken: vec![100; grid.num_cells()], ..Ground::default() };
+            let discs: Vec<(Disc, bool)> = discs
+                .into_iter()
+                .map(|(centre, radius, is_taken)| (Disc { object: 0, centre, radius }, is_taken))
+                .collect();
+            let (mut together, mut alone) = (ground.clone(), ground);
+            together.take(&discs);
+            for disc in &discs {
+                for cell in disc.0.cells(grid) {
+                    alone.taken[cell] = alone.taken[cell].wrapping_add_signed(if disc.1 { 1 } else { -1 });
+                }
+            }
+            prop_assert!(together.taken == alone.taken);
+        }
+    }
 }

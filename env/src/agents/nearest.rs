@@ -11,6 +11,12 @@ use super::grid::Grid;
 use super::route::Route;
 use crate::scene::Scene;
 
+/// The most cells that belong to goals in one choice. Of more, only the goals that are nearest as the crow flies are looked at.
+const MOST_MARKS: usize = 2_000_000;
+
+/// The most cells that are gone over around goals in one choice; then ways are as long as they are known to be.
+const MOST_LOOKS: usize = 4_000_000;
+
 /// A place that may be walked to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Goal {
@@ -34,6 +40,8 @@ pub(super) struct Marks {
     back: Vec<u32>,
     touched: Vec<usize>,
     open: BinaryHeap<Reverse<(u32, usize)>>,
+    /// How many more cells may be gone over around goals.
+    looks: usize,
 }
 
 impl Marks {
@@ -45,6 +53,7 @@ impl Marks {
             }
         }
         self.links.clear();
+        self.looks = MOST_LOOKS;
         self.first.resize(grid.num_cells(), 0);
         self.back.resize(grid.num_cells(), u32::MAX);
     }
@@ -79,7 +88,9 @@ impl Route {
         self.ground.block(world, scene, avoided);
         let grid = self.ground.grid();
         self.marks.begin(grid);
-        for (number, goal) in goals.iter().enumerate() {
+        let looked_at = self.looked_at(from, goals);
+        for number in looked_at.iter().copied() {
+            let goal = &goals[number];
             self.marks.add(grid.cell_at(goal.place), number);
             for cell in self
                 .ground
@@ -94,7 +105,7 @@ impl Route {
         // For each goal, how far it is at least: to the first cell that is open on the way to it alone.
         let mut least: Vec<Option<u32>> = vec![None; goals.len()];
         let likeliest = goals.iter().map(|goal| goal.chance).fold(0.0, f32::max);
-        let (mut best, mut farthest, mut num_unseen) = (f32::INFINITY, 0, goals.len());
+        let (mut best, mut farthest, mut num_unseen) = (f32::INFINITY, 0, looked_at.len());
         let mut seen = Vec::new();
         loop {
             let marks = &self.marks;
@@ -130,6 +141,33 @@ impl Route {
         nearest.map(|(number, _)| number)
     }
 
+    /// The numbers of the goals that are looked at, rising: all, if they do not have too many cells.
+    fn looked_at(&self, from: [f32; 2], goals: &[Goal]) -> Vec<usize> {
+        let grid = self.ground.grid();
+        let num_cells = |goal: &Goal| 1 + self.ground.disc(goal.object).map_or(0, |disc| disc.num_cells(grid));
+        let all: usize = goals.iter().map(num_cells).sum();
+        let mut numbers: Vec<usize> = (0..goals.len()).collect();
+        if all <= MOST_MARKS {
+            return numbers;
+        }
+        let cost = |number: &usize| {
+            let Goal { place, chance, .. } = goals[*number];
+            let [x, y] = [place[0] - from[0], place[1] - from[1]];
+            (x * x + y * y).sqrt() / chance
+        };
+        numbers.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+        let mut left = MOST_MARKS;
+        let mut fits = |number: &usize| {
+            let rest = left.checked_sub(num_cells(&goals[*number]));
+            left = rest.unwrap_or(0);
+            rest.is_some()
+        };
+        let count = numbers.iter().take_while(|number| fits(number)).count().max(1);
+        numbers.truncate(count);
+        numbers.sort_unstable();
+        numbers
+    }
+
     /// Length of the way to a goal whose own ground is open, by what the flood knows so far; the flood came to that ground, or to
     /// the goal, at the distance `least`.
     ///
@@ -142,7 +180,11 @@ impl Route {
             return flood.distance(start);
         };
         let Marks {
-            back, touched, open, ..
+            back,
+            touched,
+            open,
+            looks,
+            ..
         } = &mut self.marks;
         let mut best = flood.distance(start);
         open.clear();
@@ -157,6 +199,8 @@ impl Route {
             if distance > back[cell] {
                 continue;
             }
+            let Some(rest) = looks.checked_sub(1) else { break };
+            *looks = rest;
             for (step, is_slanting) in grid.around() {
                 let other = cell.wrapping_add_signed(step);
                 if grid.is_rim(other) {

@@ -76,10 +76,18 @@ impl OnRailsAgent {
     fn choose(&mut self, environment: &Environment) {
         let here = environment.agent().position;
         let mut wanted = wanted(environment);
-        if wanted.iter().all(|index| self.given_up.contains(index)) {
-            self.given_up.clear();
+        let mut given_up = vec![false; environment.objects().len()];
+        // What was written down may name objects that the world does not have.
+        for index in &self.given_up {
+            if let Some(given_up) = given_up.get_mut(*index) {
+                *given_up = true;
+            }
         }
-        wanted.retain(|index| !self.given_up.contains(index));
+        if wanted.iter().all(|index| given_up[*index]) {
+            self.given_up.clear();
+            given_up.fill(false);
+        }
+        wanted.retain(|index| !given_up[*index]);
         let (world, scene) = (environment.world(), environment.scene());
         let goals: Vec<Goal> = wanted
             .into_iter()
