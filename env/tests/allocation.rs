@@ -1,16 +1,25 @@
-//! Stepping a batch takes no memory from the heap. A test of its own, because it counts for the whole process.
+//! Stepping a batch takes no memory from the heap, and heaps of bodies take no more than in proportion. A test of its own, because
+//! it counts for the whole process.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use driftworld_env::{Action, Autoreset, Batch, BatchOptions};
+use driftworld_env::{Action, Autoreset, Batch, BatchOptions, Environment};
 use driftworld_spec::{Modality, MotionModel, Object, Pushable, Stimulus, World};
 
 /// The system's allocator, counting how often it is asked for memory.
 struct Counting;
 
 static TAKEN: AtomicU64 = AtomicU64::new(0);
+/// Bytes that are in use, and the most that have been.
+static LIVE: AtomicU64 = AtomicU64::new(0);
+static PEAK: AtomicU64 = AtomicU64::new(0);
+
+fn grows_by(bytes: usize) {
+    let live = LIVE.fetch_add(bytes as u64, Ordering::Relaxed) + bytes as u64;
+    PEAK.fetch_max(live, Ordering::Relaxed);
+}
 
 #[expect(
     unsafe_code,
@@ -20,17 +29,21 @@ static TAKEN: AtomicU64 = AtomicU64::new(0);
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         TAKEN.fetch_add(1, Ordering::Relaxed);
+        grows_by(layout.size());
         // SAFETY: the caller's promise is the system's.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        LIVE.fetch_sub(layout.size() as u64, Ordering::Relaxed);
         // SAFETY: as above.
         unsafe { System.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         TAKEN.fetch_add(1, Ordering::Relaxed);
+        LIVE.fetch_sub(layout.size() as u64, Ordering::Relaxed);
+        grows_by(size);
         // SAFETY: as above.
         unsafe { System.realloc(pointer, layout, size) }
     }
@@ -113,4 +126,34 @@ fn steps_take_no_memory() {
     // Handing work to other threads takes a block of the pool's queue for every 63 times, whatever the number of environments.
     let (taken_by_two, _) = taken(world(), 2, 300);
     assert!(taken_by_two <= 10, "on two threads: {taken_by_two} in 300 steps");
+    heaps_take_memory_in_proportion();
+}
+
+/// A thousand cubes at one place took two gigabytes: contacts of each with all others.
+fn heaps_take_memory_in_proportion() {
+    for count in [250, 1000, 4000] {
+        let body = |_| {
+            let mut body = Object::new("cube", [0.0, 0.9]);
+            body.pushable = Some(Pushable {
+                mass: 5.0,
+                friction: 0.5,
+            });
+            body
+        };
+        let world = World {
+            objects: (0..count).map(body).collect(),
+            ..World::default()
+        };
+        let mut environment = Environment::new(world).expect("every checked world starts");
+        let before = LIVE.load(Ordering::Relaxed);
+        PEAK.store(before, Ordering::Relaxed);
+        for _ in 0..3 {
+            environment
+                .step(Action::Continuous([2.0, 10.0, 0.0]))
+                .expect("the episode goes on");
+        }
+        let taken = PEAK.load(Ordering::Relaxed) - before;
+        // The contacts that a time step may have, and the lists of bodies.
+        assert!(taken < (48 << 20) + 2000 * count, "{count} cubes: {taken} bytes");
+    }
 }

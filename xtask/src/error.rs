@@ -45,6 +45,9 @@ pub(crate) enum XtaskError {
     /// An example went on past its limit.
     #[error("example `{name}` still ran after {limit_secs} s and was ended; an example ends by itself, and soon")]
     ExampleTooSlow { name: String, limit_secs: u64 },
+    /// A program went on past its limit.
+    #[error("`{command}` still ran after {limit_secs} s and was ended")]
+    TooSlow { command: String, limit_secs: u64 },
     /// A stage lacks what it needs, on a machine that promised to have it.
     #[error("{reason}; {variable} is set, so that this is not skipped")]
     Required { variable: &'static str, reason: String },

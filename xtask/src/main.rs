@@ -29,6 +29,7 @@ mod runner;
 mod sbom;
 mod schemas;
 mod side_by_side;
+mod soundness;
 mod stage;
 mod tidy;
 mod unity;
@@ -40,6 +41,7 @@ use std::process::ExitCode;
 
 use bench::Suite;
 use fuzz::Fuzz;
+use soundness::Tool;
 use stage::Stage;
 use workspace::Workspace;
 
@@ -61,6 +63,8 @@ Usage:
                                     syscalls, disk, clock, folders or signals (may be given several times)
   cargo xtask dist                  what is handed out: the command with everything in, a wheel, of each a bill of materials (CycloneDX) and
                                     checksums; into target/dist-files
+  cargo xtask soundness [TOOL]      tests under Miri, AddressSanitizer and ThreadSanitizer, which need a nightly Rust; half an hour.
+                                    TOOL: miri, address, threads
   cargo xtask bench [NAME]          measure, optimised: all benches, or those of NAME (generator, similarity,
                                     env, metrics, unity)
   cargo xtask bench peers PYTHON SCRIPTS
@@ -78,6 +82,7 @@ enum Request {
     Dist,
     Fuzz(Fuzz),
     Chaos(chaos::Options),
+    Soundness(Vec<Tool>),
     Bench(Vec<Suite>),
     Peers { python: String, scripts: PathBuf },
 }
@@ -105,6 +110,14 @@ fn parse(arguments: &[String]) -> Result<Request, String> {
         ["dist"] => Ok(Request::Dist),
         ["fuzz", rest @ ..] => Fuzz::parse(rest).map(Request::Fuzz),
         ["chaos", rest @ ..] => chaos::Options::parse(rest).map(Request::Chaos),
+        ["soundness"] => Ok(Request::Soundness(Tool::ALL.to_vec())),
+        ["soundness", name] => match Tool::from_name(name) {
+            Some(tool) => Ok(Request::Soundness(vec![tool])),
+            None => Err(format!(
+                "found unknown tool `{name}`, expected one of {}",
+                Tool::ALL.map(Tool::name).join(", ")
+            )),
+        },
         ["bench"] => Ok(Request::Bench(Suite::ALL.to_vec())),
         ["bench", "peers", python, scripts] => Ok(Request::Peers {
             python: (*python).to_owned(),
@@ -171,6 +184,7 @@ fn execute(request: Request) -> ExitCode {
         Request::Advisories => Workspace::load().and_then(|workspace| deny::write_down(&workspace)),
         Request::Dist => Workspace::load().and_then(|workspace| dist::make(&workspace)),
         Request::Fuzz(wanted) => Workspace::load().and_then(|workspace| fuzz::search(&workspace, &wanted)),
+        Request::Soundness(tools) => Workspace::load().and_then(|workspace| soundness::check(&workspace, &tools)),
         Request::Peers { python, scripts } => {
             Workspace::load().and_then(|workspace| peers::measure(&workspace, &python, &scripts))
         }
@@ -220,6 +234,8 @@ mod tests {
         check("--help", &Ok(Request::Help));
         check("bench generator", &Ok(Request::Bench(vec![Suite::Generator])));
         check("bench", &Ok(Request::Bench(Suite::ALL.to_vec())));
+        check("soundness miri", &Ok(Request::Soundness(vec![Tool::Miri])));
+        check("soundness", &Ok(Request::Soundness(Tool::ALL.to_vec())));
     }
 
     #[test]
@@ -231,6 +247,7 @@ mod tests {
         check("test --every", &Err("unknown argument `--every`"));
         check("test --only", &Err("without the name"));
         check("test --only bake", &Err("unknown stage `bake`"));
+        check("soundness sleep", &Err("unknown tool `sleep`, expected one of miri"));
         check("bench cakes", &Err("unknown bench `cakes`, expected one of generator"));
         check("test --list --only fmt", &Err("unknown argument `--list`"));
     }

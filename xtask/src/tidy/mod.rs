@@ -10,6 +10,7 @@ mod paths;
 mod reading;
 mod sizes;
 mod tree;
+mod unsafety;
 
 use crate::error::XtaskError;
 use crate::finding::{self, Finding};
@@ -34,6 +35,7 @@ fn check(tree: &Tree, members: &[(String, String)]) -> Vec<Finding> {
     findings.extend(paths::check(tree));
     findings.extend(reading::check(tree));
     findings.extend(architecture::check(tree, members));
+    findings.extend(unsafety::check(tree));
     findings.extend(sizes::check(tree));
     findings
 }

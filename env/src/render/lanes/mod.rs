@@ -96,3 +96,106 @@ pub(super) trait Lanes: Copy {
         self.store_words(self.select_words(mask, value, kept), to);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// What every operation makes of these numbers, one vector after another: the same for all sets.
+    fn all_operations<L: Lanes>(lanes: L, a: &[f32], b: &[f32], words: &[u32]) -> Vec<Vec<u32>> {
+        let mut made: Vec<Vec<u32>> = Vec::new();
+        for first in (0..MOST_LANES).step_by(L::N) {
+            let mut results = Vec::new();
+            let (a, b) = (lanes.load(&a[first..]), lanes.load(&b[first..]));
+            let word = lanes.load_words(&words[first..]);
+            let mut floats = |value: L::Float| {
+                let mut kept = [7.0; MOST_LANES];
+                lanes.store(value, &mut kept);
+                assert!(
+                    kept[L::N..].iter().all(|kept| *kept == 7.0),
+                    "no more is written than a vector holds"
+                );
+                results.push(kept[..L::N].iter().map(|value| value.to_bits()).collect::<Vec<u32>>());
+            };
+            let (above, at_least) = (lanes.above(a, b), lanes.at_least(a, b));
+            let small = lanes.min(lanes.max(a, lanes.splat(-1e6)), lanes.splat(1e6));
+            for value in [
+                lanes.add(lanes.count_up(), lanes.splat(first as f32)),
+                lanes.add(a, b),
+                lanes.sub(a, b),
+                lanes.mul(a, b),
+                lanes.div(a, b),
+                lanes.min(a, b),
+                lanes.max(a, b),
+                lanes.root(lanes.max(a, lanes.splat(0.0))),
+                lanes.mul_add(a, b, a),
+                lanes.select(above, a, b),
+                lanes.select(lanes.both(above, at_least), b, a),
+                lanes.float(lanes.truncate(small)),
+                lanes.float(word),
+            ] {
+                floats(value);
+            }
+            let mut kept = [7.0; MOST_LANES];
+            lanes.store_where(above, a, &mut kept);
+            results.push(kept[..L::N].iter().map(|value| value.to_bits()).collect());
+            let mut words = |value: L::Word| {
+                let mut kept = [7; MOST_LANES];
+                lanes.store_words(value, &mut kept);
+                assert!(
+                    kept[L::N..].iter().all(|kept| *kept == 7),
+                    "no more is written than a vector holds"
+                );
+                results.push(kept[..L::N].to_vec());
+            };
+            for value in [
+                lanes.or(word, lanes.splat_word(0x0F0F_00FF)),
+                lanes.xor(word, lanes.truncate(small)),
+                lanes.shift_byte(word),
+                lanes.select_words(lanes.has_bit(word, 3), word, lanes.splat_word(1)),
+            ] {
+                words(value);
+            }
+            let mut kept = [7; MOST_LANES];
+            lanes.store_words_where(at_least, word, &mut kept);
+            results.push(kept[..L::N].to_vec());
+            let bits = lanes.bits(above);
+            results.push((0..L::N).map(|lane| bits >> lane & 1).collect());
+            let mut bytes = [7_u8; 3 * MOST_LANES];
+            lanes.store_rgb(word, &mut bytes);
+            assert!(
+                bytes[3 * L::N..].iter().all(|kept| *kept == 7),
+                "three bytes a lane, and no more"
+            );
+            results.push(bytes[..3 * L::N].iter().map(|byte| u32::from(*byte)).collect());
+            made.resize(results.len(), Vec::new());
+            for (made, result) in made.iter_mut().zip(results) {
+                made.extend(result);
+            }
+        }
+        made
+    }
+
+    proptest! {
+        #[test]
+        fn every_operation_of_every_set_makes_the_same(
+            a in prop::collection::vec(prop_oneof![-1e3..1e3_f32, Just(0.0), Just(-0.0)], MOST_LANES),
+            b in prop::collection::vec(prop_oneof![0.1..1e3_f32, -1e3..-0.1_f32], MOST_LANES),
+            words in prop::collection::vec(0..1_u32 << 30, MOST_LANES),
+        ) {
+            let expected = all_operations(Portable, &a, &b, &words);
+            #[cfg(target_arch = "x86_64")]
+            {
+                if let Some(lanes) = Avx2::detect() {
+                    prop_assert_eq!(all_operations(lanes, &a, &b, &words), expected.clone(), "AVX2");
+                }
+                if let Some(lanes) = Avx512::detect() {
+                    prop_assert_eq!(all_operations(lanes, &a, &b, &words), expected.clone(), "AVX-512");
+                }
+            }
+            prop_assert_eq!(expected[0][MOST_LANES - 1], ((MOST_LANES - 1) as f32).to_bits());
+        }
+    }
+}
