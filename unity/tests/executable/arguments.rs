@@ -182,6 +182,30 @@ fn files_that_cannot_be_used_are_named_with_the_place_and_no_client_is_looked_fo
     }
 }
 
+/// Neither a device without an end nor a pipe that nobody uses holds the executable up.
+#[cfg(unix)]
+#[test]
+fn what_is_no_regular_file_is_named_and_not_waited_for() {
+    let folder = folder();
+    std::os::unix::fs::symlink("/dev/zero", folder.path().join("zeros")).expect("the folder can be written");
+    let made = std::process::Command::new("mkfifo")
+        .arg(folder.path().join("pipe"))
+        .status();
+    assert!(made.expect("every unix has mkfifo").success());
+    for option in ["--world", "--maps", "--assets"] {
+        for (file, found) in [("zeros", "a device"), ("pipe", "a named pipe")] {
+            let ended = Executable::start(&[option, file], folder.path()).ended();
+            assert_eq!(ended.code, Some(1), "{ended:?}");
+            let expected = format!("driftworld-unity: {option} {file}: found {found}, expected a regular file");
+            assert!(ended.stderr.starts_with(&expected), "{ended:?}");
+        }
+    }
+    let ended = Executable::start(&["-logFile", "pipe"], folder.path()).ended();
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    let expected = "driftworld-unity: -logFile pipe: cannot be written: ";
+    assert!(ended.stderr.starts_with(expected), "{ended:?}");
+}
+
 #[test]
 fn a_key_that_only_the_original_lets_pass_is_remarked() {
     let folder = folder();
