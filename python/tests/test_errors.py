@@ -234,8 +234,8 @@ def test_what_others_wrote_does_not_work_the_terminal(tmp_path: Path) -> None:
             lambda: TaskSpec.load(hostile),
             lambda: driftworld.validate(file),
             lambda: driftworld.validate(hostile),
-            lambda: driftworld.make(world=file),
-            lambda: driftworld.make(hostile),
+            lambda: driftworld.DriftworldEnv(world=file),
+            lambda: driftworld.metrics(tmp_path / hostile),
         ):
             try:
                 attempt()

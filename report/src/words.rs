@@ -5,8 +5,8 @@ use driftworld_text::printable;
 /// Letters of a name that are shown.
 const LONGEST: usize = 48;
 
-/// A name as it is shown: in one line, cut to a readable length, with characters escaped that break a page, hide in it or turn its direction
-/// around.
+/// A name as it is shown: in one line, cut to a readable length, with characters escaped that break a page, hide in it
+/// or turn its direction around.
 pub(crate) fn shown(name: &str) -> String {
     // What XML has no character for.
     let calm = |letter: char| match letter {

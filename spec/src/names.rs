@@ -1,4 +1,5 @@
-//! What is wrong with a name, as a problem of its document. The grammar itself is `driftworld-text`'s, which the schemas repeat as far as they can.
+//! What is wrong with a name, as a problem of its document. The grammar itself is `driftworld-text`'s, which the
+//! schemas repeat as far as they can.
 
 use driftworld_text::{check_name, quoted};
 

@@ -1,4 +1,5 @@
-//! Names of variants, groups, regimes and scenarios: a document with one is read exactly when the grammar has it, whatever the name says.
+//! Names of variants, groups, regimes and scenarios: a document with one is read exactly when the grammar has it,
+//! whatever the name says.
 
 use std::sync::Arc;
 

@@ -18,8 +18,9 @@ const MOST_LOGS: usize = 10_000;
 /// The most folders that are looked into for logs.
 const MOST_FOLDERS: usize = 200_000;
 
-/// What a search for logs has looked into and found. A link below the folder that it begins at is taken if it leads to a log, and is not looked
-/// into: one to `/` would have it read the machine, one to a folder above would have it go round.
+/// What a search for logs has looked into and found. A link below the folder that it begins at is taken if it leads to
+/// a log, and is not looked into: one to `/` would have it read the machine, one to a folder above would have it go
+/// round.
 #[derive(Default)]
 struct Search {
     found: Vec<PathBuf>,

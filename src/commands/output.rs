@@ -1,5 +1,5 @@
-//! Where results go: standard output, or files that appear whole or not at all. What they say is the commands' own; what a terminal would
-//! obey or hide in it is shown here, so that no command can forget it.
+//! Where results go: standard output, or files that appear whole or not at all. What they say is the commands' own;
+//! what a terminal would obey or hide in it is shown here, so that no command can forget it.
 
 use std::io::{IsTerminal, Write};
 use std::path::Path;
@@ -99,7 +99,8 @@ pub(crate) fn note(text: impl AsRef<str>) {
     to_standard_error(text.as_ref());
 }
 
-/// A line on standard error, in which unprintable characters are shown. Where its reader has gone, there is nobody to tell, and the work goes on.
+/// A line on standard error, in which unprintable characters are shown. Where its reader has gone, there is nobody to
+/// tell, and the work goes on.
 pub(super) fn to_standard_error(text: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{}", printable_lines(text));
 }

@@ -1,5 +1,5 @@
-//! Documents, logs, settings and names of files that try to work the terminal: escape sequences, line ends that fake a line, text whose
-//! direction is turned. Whatever a subcommand says of them, none of it reaches the terminal as it was.
+//! Documents, logs, settings and names of files that try to work the terminal: escape sequences, line ends that fake a
+//! line, text whose direction is turned. Whatever a subcommand says of them, none of it reaches the terminal as it was.
 //!
 //! Not here: which characters those are, which is `driftworld-text`'s.
 
@@ -47,8 +47,8 @@ impl Stage {
         name.to_owned()
     }
 
-    /// Runs the command. Neither of its outputs may hold what a terminal obeys or hides, nor a line that we did not begin: what does is
-    /// noted.
+    /// Runs the command. Neither of its outputs may hold what a terminal obeys or hides, nor a line that we did not
+    /// begin: what does is noted.
     #[track_caller]
     fn run(&mut self, arguments: &[&str]) -> Output {
         self.tried.insert(arguments[0].to_owned());

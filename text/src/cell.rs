@@ -1,4 +1,5 @@
-//! Cells of tables for spreadsheets, which take what begins in certain ways for a formula and run it. Commas and quotes are the writer's.
+//! Cells of tables for spreadsheets, which take what begins in certain ways for a formula and run it. Commas and quotes
+//! are the writer's.
 
 use std::borrow::Cow;
 
@@ -24,9 +25,9 @@ impl Cells {
 
 /// A cell that no spreadsheet takes for a formula.
 ///
-/// A text that begins with `=`, `+`, `-`, `@`, a tab or a line end and is no number has an apostrophe before it, as OWASP advises against CSV
-/// injection; so has one that begins with an apostrophe before one of these. [`unguarded`] gives back the text, [`Cells::Raw`] is the way
-/// around it.
+/// A text that begins with `=`, `+`, `-`, `@`, a tab or a line end and is no number has an apostrophe before it, as
+/// OWASP advises against CSV injection; so has one that begins with an apostrophe before one of these. [`unguarded`]
+/// gives back the text, [`Cells::Raw`] is the way around it.
 ///
 /// # Example
 /// ```

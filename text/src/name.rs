@@ -1,5 +1,5 @@
-//! What variants, tasks, groups and scenarios may be called: one grammar, whose names are safe as names of files and of logs everywhere. Which
-//! names are taken already is the documents' to know.
+//! What variants, tasks, groups and scenarios may be called: one grammar, whose names are safe as names of files and of
+//! logs everywhere. Which names are taken already is the documents' to know.
 
 use std::fmt;
 
@@ -14,9 +14,11 @@ pub const MAX_NAME_CHARACTERS: usize = 100;
 /// The longest name in bytes of UTF-8: file systems take 255, and endings and numbers follow.
 pub const MAX_NAME_BYTES: usize = 200;
 
-/// A name as far as a pattern of JSON Schema can say it. The rest is [`check_name`]'s: its length in bytes, normalisation, names of devices.
+/// A name as far as a pattern of JSON Schema can say it. The rest is [`check_name`]'s: its length in bytes,
+/// normalisation, names of devices.
 ///
-/// Beyond ASCII it leaves out white space, general punctuation and unprintable characters, and so takes a few symbols that are refused later.
+/// Beyond ASCII it leaves out white space, general punctuation and unprintable characters, and so takes a few symbols
+/// that are refused later.
 pub const NAME_PATTERN: &str = concat!(
     r"^[^\x00-\x2f\x3a-\x40\x5b-\x5e\x60\x7b-\xa9\u2000-\u206f\u3000-\u3003\ufeff]",
     r"(?:[^\x00-\x2a\x2c\x2f\x3a-\x40\x5b-\x5e\x60\x7b-\xa9\u2000-\u206f\u3000-\u3003\ufeff]*",
@@ -48,7 +50,8 @@ pub enum NameFault {
     Start(char),
     /// It ends with a dot, which Windows drops.
     EndsWithDot,
-    /// Composed characters are written as several, or in an order that is not the usual one: two names could look like one.
+    /// Composed characters are written as several, or in an order that is not the usual one: two names could look like
+    /// one.
     NotNormalised,
     /// Windows keeps it for a device.
     Device,
@@ -84,9 +87,9 @@ impl NameFault {
 
 /// Checks a name of a variant, a group or a scenario.
 ///
-/// A name has 1 to 100 characters and at most 200 bytes. It begins with a letter, a digit or `_`; then come letters, digits, marks on
-/// letters, `_`, `-`, `+` and `.`; it does not end with `.`. Letters and digits are those of any script, in the form NFC. What Windows
-/// keeps for devices (`con`, `nul.txt`, `COM1`) is no name.
+/// A name has 1 to 100 characters and at most 200 bytes. It begins with a letter, a digit or `_`; then come letters,
+/// digits, marks on letters, `_`, `-`, `+` and `.`; it does not end with `.`. Letters and digits are those of any
+/// script, in the form NFC. What Windows keeps for devices (`con`, `nul.txt`, `COM1`) is no name.
 ///
 /// # Errors
 /// The first fault, from the beginning of the name.

@@ -1,14 +1,16 @@
-//! Characters that a terminal obeys or does not show, written so that they are seen. Which of them a name may have is `name.rs`'s.
+//! Characters that a terminal obeys or does not show, written so that they are seen. Which of them a name may have is
+//! `name.rs`'s.
 
 use std::borrow::Cow;
 use std::fmt::{self, Display, Write};
 use std::path::Path;
 
-/// Characters that are controls by nature, turn the direction of text, or take no place on the screen, as ranges in rising order.
+/// Characters that are controls by nature, turn the direction of text, or take no place on the screen, as ranges in
+/// rising order.
 ///
-/// C0, DEL and C1; the soft hyphen; the bidirectional marks, embeddings, overrides and isolates (Unicode Standard Annex 9); joiners, fillers and
-/// other characters of no width; line and paragraph separators; interlinear marks; tags. Variation selectors choose a picture for the
-/// character before them and are shown.
+/// C0, DEL and C1; the soft hyphen; the bidirectional marks, embeddings, overrides and isolates (Unicode Standard Annex
+/// 9); joiners, fillers and other characters of no width; line and paragraph separators; interlinear marks; tags.
+/// Variation selectors choose a picture for the character before them and are shown.
 const UNPRINTABLE: [(char, char); 18] = [
     ('\0', '\u{1f}'),
     ('\u{7f}', '\u{9f}'),
@@ -42,10 +44,11 @@ pub fn is_unprintable(letter: char) -> bool {
     }
 }
 
-/// The text in one line: every unprintable character as Rust and Swift write it, `\u{202e}`, and `\n`, `\r`, `\t` for those three.
+/// The text in one line: every unprintable character as Rust and Swift write it, `\u{202e}`, and `\n`, `\r`, `\t` for
+/// those three.
 ///
-/// For text of others inside a sentence: it cannot end the line and begin one that looks like ours. What is escaped already
-/// stays as it is.
+/// For text of others inside a sentence: it cannot end the line and begin one that looks like ours. What is escaped
+/// already stays as it is.
 ///
 /// # Example
 /// ```

@@ -32,7 +32,8 @@ impl Journal {
         })
     }
 
-    /// Notes one remark, in which characters that a terminal would obey or hide are shown. A file that cannot be written any more is left for the terminal.
+    /// Notes one remark, in which characters that a terminal would obey or hide are shown. A file that cannot be
+    /// written any more is left for the terminal.
     pub fn note(&mut self, remark: &str) {
         let remark = printable_lines(remark);
         let written = self

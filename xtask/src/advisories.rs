@@ -1,5 +1,6 @@
-//! Which crates were held against the database of advisories, and by which state of it: a file in the tree, so that a machine that cannot
-//! reach the database says what is known all the same. The check itself is cargo-deny's, see `deny.rs`.
+//! Which crates were held against the database of advisories, and by which state of it: a file in the tree, so that a
+//! machine that cannot reach the database says what is known all the same. The check itself is cargo-deny's, see
+//! `deny.rs`.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;

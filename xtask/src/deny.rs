@@ -1,5 +1,5 @@
-//! The `deny` stage: cargo-deny over every crate of the workspace. The rules stand in `deny.toml`; what is known of crates where the database of
-//! advisories cannot be had is in `advisories.rs`.
+//! The `deny` stage: cargo-deny over every crate of the workspace. The rules stand in `deny.toml`; what is known of
+//! crates where the database of advisories cannot be had is in `advisories.rs`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,8 @@ const NO_ADVISORY: &str = "```toml\n[advisory]\nid = \"RUSTSEC-2000-0001\"\npack
 /// Where cargo-deny has the database from.
 const ADDRESS: &str = "https://github.com/RustSec/advisory-db";
 
-/// Checks bans, licences and sources, then advisories as far as their database can be had; what was not checked is said.
+/// Checks bans, licences and sources, then advisories as far as their database can be had; what was not checked is
+/// said.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
     if !works(cargo(workspace, &["deny", "--version"])) {
         let reason = "cargo-deny is not installed (cargo install cargo-deny --locked)".to_owned();
@@ -50,7 +51,8 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
     )))
 }
 
-/// `cargo xtask advisories`: checks advisories and writes down for which crates that was done, by which state of the database.
+/// `cargo xtask advisories`: checks advisories and writes down for which crates that was done, by which state of the
+/// database.
 pub(crate) fn write_down(workspace: &Workspace) -> Result<(), XtaskError> {
     let Some(database) = Database::fetched(workspace)? else {
         return Err(XtaskError::Missing {
@@ -80,7 +82,8 @@ impl Database {
         Self::from(workspace, &folder, std::env::var_os(DATABASE).map(PathBuf::from))
     }
 
-    /// One without an advisory of any crate: with it, cargo-deny still asks the index of crates.io which versions were yanked.
+    /// One without an advisory of any crate: with it, cargo-deny still asks the index of crates.io which versions were
+    /// yanked.
     fn empty(workspace: &Workspace) -> Result<Self, XtaskError> {
         let folder = workspace.target.join("deny").join("none");
         let origin = folder.join("origin");

@@ -1,6 +1,6 @@
-//! `cargo xtask dist`: what is handed out to people without a compiler. The command with every feature in and a wheel, each with its checksum and
-//! its bill of materials, for Linux on x86-64 with glibc from 2.28 on (Debian 10, RHEL 8, Ubuntu 20.04), linked by zig, which knows old versions
-//! of glibc.
+//! `cargo xtask dist`: what is handed out to people without a compiler. The command with every feature in and a wheel,
+//! each with its checksum and its bill of materials, for Linux on x86-64 with glibc from 2.28 on (Debian 10, RHEL 8,
+//! Ubuntu 20.04), linked by zig, which knows old versions of glibc.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! `Cargo.lock`: which versions are built, with their checksums. Read here by its lines, which Cargo writes in one form.
+//! `Cargo.lock`: which versions are built, with their checksums. Read here by its lines, which Cargo writes in one
+//! form.
 
 use std::fs;
 

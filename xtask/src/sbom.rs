@@ -1,4 +1,5 @@
-//! What is in a program that is handed out: a bill of materials in CycloneDX 1.5. What is handed out, and where it is written, is `dist.rs`'s.
+//! What is in a program that is handed out: a bill of materials in CycloneDX 1.5. What is handed out, and where it is
+//! written, is `dist.rs`'s.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -31,8 +32,8 @@ pub(crate) struct Product<'a> {
 }
 
 impl Product<'_> {
-    /// Its bill: every crate that it is built from, with version, licence, checksum, and what each is built from. Those that only build it,
-    /// macros among them, have the scope `excluded`. `sha256` is that of the file.
+    /// Its bill: every crate that it is built from, with version, licence, checksum, and what each is built from. Those
+    /// that only build it, macros among them, have the scope `excluded`. `sha256` is that of the file.
     pub(crate) fn bill(self, workspace: &Workspace, sha256: &str) -> Result<Value, XtaskError> {
         let features = ["--all-features", "--locked", "--filter-platform", self.target];
         let metadata = Metadata::read(&features)?;

@@ -174,8 +174,8 @@ impl LogTable {
         run_ids.into_iter().chain(standard).chain(own).collect()
     }
 
-    /// Writes the table as text with a header line; lines end with `\n`, cells are quoted where they must be, and texts are guarded against
-    /// being taken for formulas unless they are wanted as they are.
+    /// Writes the table as text with a header line; lines end with `\n`, cells are quoted where they must be, and texts
+    /// are guarded against being taken for formulas unless they are wanted as they are.
     ///
     /// # Errors
     /// Those of the writer.

@@ -11,8 +11,8 @@ use super::{DistanceMatrix, MAX_ITEMS};
 use crate::SimilarityError;
 
 impl DistanceMatrix {
-    /// The matrix as CSV (RFC 4180 with bare line feeds). Every number reads back as the same one. Labels that a spreadsheet would take for
-    /// formulas are guarded by an apostrophe, which is taken away when they are read.
+    /// The matrix as CSV (RFC 4180 with bare line feeds). Every number reads back as the same one. Labels that a
+    /// spreadsheet would take for formulas are guarded by an apostrophe, which is taken away when they are read.
     pub fn to_csv(&self) -> String {
         self.to_csv_with(Cells::Guarded)
     }

@@ -110,7 +110,8 @@ impl Reader {
             .take(100)
             .map(|letter| if fits(letter) { letter } else { '_' })
             .collect();
-        // What no file can be called: a dot or a hyphen at the beginning, a dot at the end, a word that Windows keeps for a device.
+        // What no file can be called: a dot or a hyphen at the beginning, a dot at the end, a word that Windows keeps
+        // for a device.
         if name.starts_with(['.', '-']) {
             name.replace_range(..1, "_");
         }

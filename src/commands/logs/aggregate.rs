@@ -47,8 +47,8 @@ pub(crate) struct Aggregate {
     /// Keep rows that do not complete an experience.
     #[arg(long)]
     incomplete: bool,
-    /// Write texts as they are into TSV and CSV, also what a spreadsheet would take for a formula; by default an apostrophe guards what
-    /// begins with =, +, -, @, a tab or a line end and is no number.
+    /// Write texts as they are into TSV and CSV, also what a spreadsheet would take for a formula; by default an
+    /// apostrophe guards what begins with =, +, -, @, a tab or a line end and is no number.
     #[arg(long)]
     raw_cells: bool,
 }

@@ -49,7 +49,8 @@ pub(crate) struct Order {
     /// Write the distance matrix into this file: .csv, .json, or .npy with the labels in a .labels.json beside it.
     #[arg(long, value_name = "FILE")]
     matrix: Option<PathBuf>,
-    /// Write labels into CSV as they are, also what a spreadsheet would take for a formula; by default an apostrophe guards it.
+    /// Write labels into CSV as they are, also what a spreadsheet would take for a formula; by default an apostrophe
+    /// guards it.
     #[arg(long, requires = "matrix")]
     raw_cells: bool,
     /// Draw the path over a map of the distances into this PNG file.
