@@ -35,7 +35,10 @@ fn rows(page: &str) -> Vec<Row> {
             name: name.to_owned(),
         })
     };
-    page.lines().filter(|line| line.starts_with('|')).filter_map(row).collect()
+    page.lines()
+        .filter(|line| line.starts_with('|'))
+        .filter_map(row)
+        .collect()
 }
 
 /// `64 MiB`, `4,000,000`, `400 bytes`, `4096 × 4096 pixels`.
@@ -45,7 +48,10 @@ fn number(said: &str) -> f64 {
         "KiB" => product * 1024.0,
         "MiB" => product * 1_048_576.0,
         "GiB" => product * 1_073_741_824.0,
-        word => word.replace(',', "").parse().map_or(product, |number: f64| product * number),
+        word => word
+            .replace(',', "")
+            .parse()
+            .map_or(product, |number: f64| product * number),
     })
 }
 
@@ -97,7 +103,9 @@ fn limits_of_what_is_read_are_on_the_page() {
     ] {
         let text = read(file);
         for line in text.lines() {
-            let Some((_, rest)) = line.split_once("const MAX_") else { continue };
+            let Some((_, rest)) = line.split_once("const MAX_") else {
+                continue;
+            };
             let name = format!("`MAX_{}`", rest.split(':').next().unwrap_or_default());
             assert!(page.contains(&format!("`{file}` {name}")), "{file}: {name}");
         }
@@ -109,6 +117,9 @@ fn numbers_are_read_as_people_write_them() {
     assert_eq!(number("64 MiB"), 67_108_864.0);
     assert_eq!(number("4,000,000 values"), 4e6);
     assert_eq!(number("4096 × 4096 × 2 pixels"), 33_554_432.0);
-    assert_eq!(constant("pub const A: usize = 2 * 4096 * 4096;", "A"), Some(33_554_432.0));
+    assert_eq!(
+        constant("pub const A: usize = 2 * 4096 * 4096;", "A"),
+        Some(33_554_432.0)
+    );
     assert_eq!(constant("const A: u64 = (1 << 53) - 1;", "A"), None);
 }

@@ -3,12 +3,14 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use driftworld_text::ShownPath;
+
 /// Why a file cannot be had. Each says the path, what was found, what was expected, and what to do.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileError {
     /// There is nothing, or the system does not let it be read.
-    #[error("{}: cannot be read: {source}", path.display())]
+    #[error("{}: cannot be read: {source}", path.shown())]
     Unreadable {
         /// Its path.
         path: PathBuf,
@@ -16,7 +18,7 @@ pub enum FileError {
         source: std::io::Error,
     },
     /// There is something else.
-    #[error("{}: found {found}, expected a regular file; {}", path.display(), advice(found))]
+    #[error("{}: found {found}, expected a regular file; {}", path.shown(), advice(found))]
     NotAFile {
         /// Its path.
         path: PathBuf,
@@ -24,7 +26,7 @@ pub enum FileError {
         found: &'static str,
     },
     /// The file is too large.
-    #[error("{}: found {found} bytes or more, expected at most {limit}; name a smaller file, or split it", path.display())]
+    #[error("{}: found {found} bytes or more, expected at most {limit}; name a smaller file, or split it", path.shown())]
     TooLarge {
         /// Its path.
         path: PathBuf,
@@ -34,7 +36,7 @@ pub enum FileError {
         limit: u64,
     },
     /// The file is no text.
-    #[error("{}: byte {at} (line {line}) is not UTF-8, expected UTF-8 text; save it as such", path.display())]
+    #[error("{}: byte {at} (line {line}) is not UTF-8, expected UTF-8 text; save it as such", path.shown())]
     NotText {
         /// Its path.
         path: PathBuf,
@@ -60,7 +62,7 @@ impl FileError {
             Self::Unreadable { path, .. }
             | Self::NotAFile { path, .. }
             | Self::TooLarge { path, .. }
-            | Self::NotText { path, .. } => path.display(),
+            | Self::NotText { path, .. } => path.shown(),
         };
         let message = self.to_string();
         let alone = message.strip_prefix(&format!("{path}: ")).unwrap_or(&message);

@@ -49,7 +49,7 @@ pub enum MetricsError {
     /// The directory of a log went away while it was written.
     #[error(
         "{}: found {found}, expected the directory that this log has been written to: it was removed, renamed or replaced meanwhile; \
-         with it went {} in {bytes} bytes; put that directory back and continue the log, or begin a new one", path.display(), counted(*rows)
+         with it went {} in {bytes} bytes; put that directory back and continue the log, or begin a new one", path.shown(), counted(*rows)
     )]
     FolderLost {
         /// The directory.
@@ -66,7 +66,7 @@ pub enum MetricsError {
     #[error(
         "{}: found {found}, expected the {} in {bytes} bytes that were written: it was cut, removed or replaced meanwhile; \
          put it back and continue the log, or begin a new one; a log that only its last rows are missing from can be continued as it is",
-        path.display(), counted(*rows)
+        path.shown(), counted(*rows)
     )]
     FileLost {
         /// The data file.
@@ -175,7 +175,7 @@ pub enum MetricsError {
     /// A data file begins with a row in place of its header.
     #[error(
         "{}:1: found {found:?}, which has none of the standard columns, expected a header line that begins with block_num",
-        path.display()
+        path.shown()
     )]
     NoHeader {
         /// The data file.

@@ -205,7 +205,7 @@ impl Life<'_> {
         // Before there is a log, so that whoever sees one may ask for its end.
         let interrupt = Interrupt::listen(format!(
             "interrupted in the middle of a step\n{}: each experience in it is whole; go on with the same command and --resume",
-            self.logs.display()
+            self.logs.shown()
         ));
         let clock = Clock::from_environment()?;
         let mut journal = self.journal()?;

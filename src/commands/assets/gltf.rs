@@ -20,7 +20,7 @@ pub(super) fn check_output(path: &Path) -> Result<(), Failure> {
         .file
         .take(16)
         .read_to_end(&mut start);
-    read.map_err(|error| Failure::input(format!("{}: cannot be read: {error}", path.display())))?;
+    read.map_err(|error| Failure::input(format!("{}: cannot be read: {error}", path.shown())))?;
     if Library::is_meant(&start) {
         return Ok(());
     }

@@ -11,6 +11,7 @@ use crate::report::neighbours;
 use crate::similarity::DistanceMatrix;
 use crate::spec::{BlockKind, Scenario, TaskSpec, Variant};
 use crate::tasks;
+use driftworld_text::ShownPath;
 
 use crate::commands::{Failure, matrix_file};
 
@@ -140,10 +141,7 @@ impl Tasks {
     fn read(paths: &[PathBuf]) -> Result<Self, Failure> {
         let read = |path: &PathBuf| {
             let name = path.to_str().ok_or_else(|| {
-                Failure::usage(format!(
-                    "--task: found {}, expected a name that is UTF-8",
-                    path.display()
-                ))
+                Failure::usage(format!("--task: found {}, expected a name that is UTF-8", path.shown()))
             })?;
             Ok::<_, Failure>((path.clone(), tasks::task(name)?))
         };

@@ -61,7 +61,7 @@ pub(super) const ROOMS: &[Room] = &[
     Room {
         package: FILES,
         floor: 1,
-        may_import: &[],
+        may_import: &[TEXT],
     },
     Room {
         package: SPEC,
