@@ -9,7 +9,7 @@ use driftworld_spec::{ActionModel, Modality, MotionModel, Object, Pushable, Resp
 /// What is done in one step of a case.
 type Case = (&'static str, usize, fn(usize) -> World);
 
-const CASES: [Case; 13] = [
+const CASES: [Case; 14] = [
     ("pushable-heap", 100_000, pushable_heap),
     ("pushable-field", 2_000, pushable_field),
     ("pushable-ice", 100_000, pushable_ice),
@@ -23,6 +23,7 @@ const CASES: [Case; 13] = [
     ("returning", 100_000, returning),
     ("sequence", 100_000, sequence),
     ("rails", 100_000, rails),
+    ("rails-large", 10_000, rails_large),
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -241,5 +242,14 @@ fn rails(count: usize) -> World {
             .collect(),
     );
     world.agent_params.action_model = ActionModel::OnRails;
+    world
+}
+
+/// Targets that each take all of the ground.
+fn rails_large(count: usize) -> World {
+    let mut world = rails(count);
+    for object in &mut world.objects {
+        object.scale = 100.0;
+    }
     world
 }

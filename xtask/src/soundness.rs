@@ -13,9 +13,9 @@ use crate::workspace::Workspace;
 pub(crate) enum Tool {
     /// Miri: an interpreter that knows Rust's rules for memory.
     Miri,
-    /// AddressSanitizer: reads and writes outside of what was allocated, in C++, too.
+    /// `AddressSanitizer`: reads and writes outside of what was allocated, in C++, too.
     Address,
-    /// ThreadSanitizer: two threads at one place without an order between them.
+    /// `ThreadSanitizer`: two threads at one place without an order between them.
     Threads,
 }
 

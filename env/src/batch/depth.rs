@@ -102,7 +102,8 @@ mod tests {
 
     #[test]
     fn forms_round_as_a_cast_does() {
-        let depth: Vec<f32> = (0..60_000_u16).map(|step| f32::from(step) * 0.001_713).collect();
+        let steps = (0..60_000_u16).step_by(if cfg!(miri) { 599 } else { 1 });
+        let depth: Vec<f32> = steps.map(|step| f32::from(step) * 0.001_713).collect();
         let (mut small, mut large) = (vec![0; depth.len()], vec![0; depth.len()]);
         gray(&depth, &mut small);
         millimetres(&depth, &mut large);
@@ -114,7 +115,8 @@ mod tests {
 
     #[test]
     fn every_instruction_set_gives_the_same_numbers() {
-        let depth: Vec<f32> = (0..10_007_u16).map(|step| f32::from(step) * 0.011_3).collect();
+        let steps = (0..10_007_u16).step_by(if cfg!(miri) { 59 } else { 1 });
+        let depth: Vec<f32> = steps.map(|step| f32::from(step) * 0.011_3).collect();
         let (mut fast, mut plain) = (vec![0_u8; depth.len()], vec![0_u8; depth.len()]);
         gray(&depth, &mut fast);
         scaled_here(&depth, GRAY_PER_METRE, 255.0, &mut plain);

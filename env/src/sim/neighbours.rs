@@ -71,7 +71,9 @@ impl Environment {
         let mut overlap = Looks::new(FEWEST_OVERLAPS.max(OVERLAP / parts));
         let most = (MOVE / parts) as usize;
         let mut seen = vec![false; pushed.len()];
-        first.iter().for_each(|index| seen[*index] = true);
+        for index in &first {
+            seen[*index] = true;
+        }
         let (mut waiting, mut next) = (first, 0);
         let mut indices = Vec::new();
         while let Some(&index) = waiting.get(next) {

@@ -115,8 +115,8 @@ fn evenly(count: usize) -> impl Iterator<Item = usize> {
         a == 1
     };
     // Near to the golden section of the count, without a common divisor.
-    let first = (count as f64 * 0.618_034) as usize;
-    let step = (first.max(1)..).find(shares_none).unwrap_or(1);
+    let first = ((count as f64 * 0.618_034) as usize).max(1);
+    let step = (first..=first + count).find(shares_none).unwrap_or(1);
     (0..count).map(move |number| (number as u64 * step as u64 % count as u64) as usize)
 }
 
