@@ -85,7 +85,7 @@ impl AtomicFile {
             tries += 1;
             if file.path().exists() || tries == TRIES {
                 if let Some(before) = &before {
-                    permissions::keep(file.as_file(), mode, before)?;
+                    permissions::keep(file.as_file(), mode, before);
                 }
                 return Ok(Self(Kind::Beside {
                     file,

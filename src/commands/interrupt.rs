@@ -4,28 +4,20 @@
 //! Only in a program of its own ([`watch`]): where the command is asked by another program, signals are that one's.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError, mpsc};
-use std::thread;
-use std::time::Duration;
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, OnceLock, PoisonError};
 
-use driftworld_atomic_files::remove_unfinished;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-use signal_hook::iterator::Signals;
-use signal_hook::low_level;
-
-use super::{Failure, output};
-
-/// How long work has to end by itself.
-const GRACE: Duration = Duration::from_millis(1500);
-
-/// How long it may take to remove what is half written and to say so: a disk or a terminal may be what all waits for.
-const LAST: Duration = Duration::from_millis(300);
+use super::Failure;
+use system::follow_signals;
 
 /// Set by the first signal while somebody listens.
-static ASKED: AtomicBool = AtomicBool::new(false);
+static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
 /// What to say if whoever listens does not end by itself; nothing while nobody does.
 static PARTING: Mutex<Option<String>> = Mutex::new(None);
+
+/// Whether nobody listens.
+#[cfg(not(unix))]
+static IDLE: LazyLock<Arc<AtomicBool>> = LazyLock::new(|| Arc::new(AtomicBool::new(true)));
 
 fn parting() -> MutexGuard<'static, Option<String>> {
     PARTING.lock().unwrap_or_else(PoisonError::into_inner)
@@ -39,6 +31,8 @@ impl Interrupt {
     /// when the next signal comes, is ended with exit code 1 and these words.
     pub(crate) fn listen(words: impl Into<String>) -> Self {
         *parting() = Some(words.into());
+        #[cfg(not(unix))]
+        IDLE.store(false, Ordering::SeqCst);
         Self(())
     }
 
@@ -57,9 +51,16 @@ impl Drop for Interrupt {
     fn drop(&mut self) {
         // Who was told to stop keeps its words until it has.
         if !self.is_asked() {
-            parting().take();
+            silence();
         }
     }
+}
+
+/// From now on nobody listens.
+fn silence() {
+    parting().take();
+    #[cfg(not(unix))]
+    IDLE.store(true, Ordering::SeqCst);
 }
 
 /// A command that runs as a program. Dropped, it is over, and nobody ends the process any more.
@@ -68,14 +69,7 @@ pub(super) struct Watch(());
 /// Looks for signals from now on.
 pub(super) fn watch() -> Result<Watch, Failure> {
     static WATCHED: OnceLock<Result<(), String>> = OnceLock::new();
-    let watched = WATCHED.get_or_init(|| {
-        let signals = Signals::new(signals()).map_err(|error| error.to_string())?;
-        let thread = thread::Builder::new().name("signals".to_owned());
-        thread
-            .spawn(move || follow(signals))
-            .map(drop)
-            .map_err(|error| error.to_string())
-    });
+    let watched = WATCHED.get_or_init(|| follow_signals().map_err(|error| error.to_string()));
     match watched {
         Ok(()) => Ok(Watch(())),
         Err(error) => Err(Failure::input(format!("signals cannot be looked for: {error}"))),
@@ -84,66 +78,118 @@ pub(super) fn watch() -> Result<Watch, Failure> {
 
 impl Drop for Watch {
     fn drop(&mut self) {
-        parting().take();
+        silence();
         ASKED.store(false, Ordering::SeqCst);
     }
 }
 
-/// Hanging up is passed over where whoever started the command had it so, as `nohup` does.
-fn signals() -> Vec<i32> {
-    let mut signals = vec![SIGINT, SIGTERM];
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
-    if ignored.is_some_and(|mask| mask & (1 << (SIGHUP - 1)) == 0) {
-        signals.push(SIGHUP);
-    }
-    signals
-}
+/// A thread that waits for signals.
+#[cfg(unix)]
+mod system {
+    use std::io;
+    use std::sync::atomic::Ordering;
+    use std::sync::mpsc;
+    use std::thread;
+    use std::time::Duration;
 
-fn follow(mut signals: Signals) {
-    for signal in signals.forever() {
-        let words = parting().clone();
-        match words {
-            // Nobody can end by itself: the process ends as if it had not looked for signals.
-            None => {
-                leave(None);
-                let _ = low_level::emulate_default_handler(signal);
-                low_level::exit(128 + signal);
-            }
-            Some(words) if ASKED.swap(true, Ordering::SeqCst) => end(&words),
-            Some(_) => {
-                let waits = thread::Builder::new().spawn(|| {
-                    thread::sleep(GRACE);
-                    // By then the command may be over, in a program that goes on.
-                    if let Some(words) = parting().clone() {
-                        end(&words);
+    use driftworld_atomic_files::remove_unfinished;
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::iterator::Signals;
+    use signal_hook::low_level;
+
+    use super::super::output;
+    use super::{ASKED, parting};
+
+    /// How long work has to end by itself.
+    const GRACE: Duration = Duration::from_millis(1500);
+
+    /// How long it may take to remove what is half written and to say so: a disk or a terminal may be what all waits for.
+    const LAST: Duration = Duration::from_millis(300);
+
+    pub(super) fn follow_signals() -> io::Result<()> {
+        let signals = Signals::new(signals())?;
+        let thread = thread::Builder::new().name("signals".to_owned());
+        thread.spawn(move || follow(signals)).map(drop)
+    }
+
+    /// Hanging up is passed over where whoever started the command had it so, as `nohup` does.
+    fn signals() -> Vec<i32> {
+        let mut signals = vec![SIGINT, SIGTERM];
+        let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+        let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+        if ignored.is_some_and(|mask| mask & (1 << (SIGHUP - 1)) == 0) {
+            signals.push(SIGHUP);
+        }
+        signals
+    }
+
+    fn follow(mut signals: Signals) {
+        for signal in signals.forever() {
+            let words = parting().clone();
+            match words {
+                // Nobody can end by itself: the process ends as if it had not looked for signals.
+                None => {
+                    leave(None);
+                    let _ = low_level::emulate_default_handler(signal);
+                    low_level::exit(128 + signal);
+                }
+                Some(words) if ASKED.swap(true, Ordering::SeqCst) => end(&words),
+                Some(_) => {
+                    let waits = thread::Builder::new().spawn(|| {
+                        thread::sleep(GRACE);
+                        // By then the command may be over, in a program that goes on.
+                        if let Some(words) = parting().clone() {
+                            end(&words);
+                        }
+                    });
+                    if waits.is_err() {
+                        end(&parting().clone().unwrap_or_default());
                     }
-                });
-                if waits.is_err() {
-                    end(&parting().clone().unwrap_or_default());
                 }
             }
         }
     }
-}
 
-fn end(words: &str) -> ! {
-    leave(Some(format!("error: {words}")));
-    low_level::exit(1)
-}
+    fn end(words: &str) -> ! {
+        leave(Some(format!("error: {words}")));
+        low_level::exit(1)
+    }
 
-/// Removes what is half written, and says the words, as far as there is time.
-fn leave(words: Option<String>) {
-    let (done, wait) = mpsc::channel();
-    let leaving = thread::Builder::new().spawn(move || {
-        remove_unfinished();
-        if let Some(words) = words {
-            output::to_standard_error(&words);
+    /// Removes what is half written, and says the words, as far as there is time.
+    fn leave(words: Option<String>) {
+        let (done, wait) = mpsc::channel();
+        let leaving = thread::Builder::new().spawn(move || {
+            remove_unfinished();
+            if let Some(words) = words {
+                output::to_standard_error(&words);
+            }
+            let _ = done.send(());
+        });
+        if leaving.is_ok() {
+            let _ = wait.recv_timeout(LAST);
         }
-        let _ = done.send(());
-    });
-    if leaving.is_ok() {
-        let _ = wait.recv_timeout(LAST);
+    }
+}
+
+/// Where signals reach no thread, whoever listens is asked, and who is asked twice ends at once.
+#[cfg(not(unix))]
+mod system {
+    use std::io;
+    use std::sync::Arc;
+
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::flag::{register, register_conditional_default, register_conditional_shutdown};
+
+    use super::{ASKED, IDLE};
+
+    pub(super) fn follow_signals() -> io::Result<()> {
+        for signal in [SIGINT, SIGTERM] {
+            // In this order: what ends the process looks before the first signal has been taken down.
+            register_conditional_shutdown(signal, 1, Arc::clone(&ASKED))?;
+            register_conditional_default(signal, Arc::clone(&IDLE))?;
+            register(signal, Arc::clone(&ASKED))?;
+        }
+        Ok(())
     }
 }

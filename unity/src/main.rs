@@ -3,18 +3,16 @@
 use std::fmt::Display;
 use std::io::{Write, stderr, stdout};
 use std::process::ExitCode;
-use std::thread;
 
-use driftworld_atomic_files::remove_unfinished;
 use driftworld_text::printable_lines;
 use driftworld_unity::{HELP, Journal, MARK, Request, UnityError, run};
-use signal_hook::consts::{SIGINT, SIGTERM};
-use signal_hook::iterator::Signals;
-use signal_hook::low_level;
 
 fn main() -> ExitCode {
     // Without a thread signals do what they always do.
-    let _ = thread::Builder::new().name("signals".to_owned()).spawn(follow_signals);
+    #[cfg(unix)]
+    let _ = std::thread::Builder::new()
+        .name("signals".to_owned())
+        .spawn(follow_signals);
     let arguments: Vec<String> = std::env::args_os()
         .skip(1)
         .map(|argument| argument.to_string_lossy().into_owned())
@@ -44,7 +42,13 @@ fn main() -> ExitCode {
 }
 
 /// Ends the process at the first signal, as if nobody looked for it, but with nothing half written left.
+#[cfg(unix)]
 fn follow_signals() {
+    use driftworld_atomic_files::remove_unfinished;
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::iterator::Signals;
+    use signal_hook::low_level;
+
     let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) else {
         return;
     };

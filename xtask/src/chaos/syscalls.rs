@@ -63,7 +63,8 @@ pub(super) fn figures(subject: &Subject, options: &Options, rng: &mut Rng) -> Re
     }
     let mut figures = Figures::default();
     let (expected, _) = subject.undisturbed(&subject.short, "random", 1)?;
-    for jobs in [1, 2] {
+    let jobs: &[u64] = if options.is_quick { &[1] } else { &[1, 2] };
+    for &jobs in jobs {
         for begun in [false, true] {
             let place = Place {
                 subject,
