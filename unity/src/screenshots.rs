@@ -167,6 +167,21 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
+    fn a_picture_that_is_replaced_keeps_its_mode() {
+        use std::os::unix::fs::PermissionsExt;
+        let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
+        let screenshots = Screenshots::new(root.path());
+        let mode = |path: &Path| fs::metadata(path).expect("it is there").permissions().mode() & 0o777;
+        let path = screenshots.write("a", &SIGNATURE).expect("the name is one");
+        fs::write(root.path().join("plain"), "").expect("the folder can be written");
+        assert_eq!(mode(&path), mode(&root.path().join("plain")), "as the umask has it");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).expect("it is ours");
+        screenshots.write("a", &SIGNATURE).expect("pictures are replaced");
+        assert_eq!(mode(&path), 0o600);
+    }
+
+    #[cfg(unix)]
+    #[test]
     fn links_lead_nowhere() {
         let root = tempfile::tempdir().expect("the machine has a folder for temporary files");
         let out = root.path().join("out");
