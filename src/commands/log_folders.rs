@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Component, Path, PathBuf, absolute};
 
+use driftworld_files::FileError;
+
 use super::Failure;
 use crate::contents::{Contents, OtherContents};
 use crate::documents;
@@ -122,7 +124,10 @@ fn is_folder(argument: &Path) -> Result<(), Failure> {
             if let Some(other) = OtherContents::check(argument, shown, &[Contents::Log]) {
                 return Err(other.into());
             }
-            "a file".to_owned()
+            match driftworld_files::check(argument) {
+                Err(FileError::NotAFile { found, .. }) => found.to_owned(),
+                _ => "a file".to_owned(),
+            }
         }
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => "nothing".to_owned(),
         Err(error) => error.to_string(),
