@@ -111,11 +111,11 @@ pub fn read(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
 pub fn text(path: &Path, limit: u64) -> Result<String, FileError> {
     let mut text = String::from_utf8(read(path, limit)?).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        let before = &error.as_bytes()[..at];
+        let before = String::from_utf8_lossy(&error.as_bytes()[..at]);
         FileError::NotText {
             path: path.to_owned(),
             at,
-            line: 1 + before.iter().filter(|byte| **byte == b'\n').count(),
+            line: 1 + before.matches('\n').count(),
         }
     })?;
     if text.starts_with('\u{feff}') {

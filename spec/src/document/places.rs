@@ -241,7 +241,9 @@ impl Tree {
     fn forget(&mut self, node: usize) {
         if self.nodes[node].place.take().is_some() {
             let below: Vec<usize> = self.nodes[node].keys.values().copied().collect();
-            below.into_iter().for_each(|child| self.forget(child));
+            for child in below {
+                self.forget(child);
+            }
         }
     }
 }
