@@ -175,7 +175,7 @@ fn a_requirement_that_names_no_parameter_and_never_holds_is_said_as_it_stands() 
         let error = TaskSpec::from_json("t.json", &text).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "t.json:1:44 (/require/0): found \"1 > 2\", which names no parameter and never holds, expected a condition that some values of \
+            "t.json:1:42 (/require/0): found \"1 > 2\", which names no parameter and never holds, expected a condition that some values of \
              the parameters meet"
         );
     }

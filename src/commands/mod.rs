@@ -61,7 +61,7 @@ pub use ask::{Answer, Refusal, ask};
 /// begun again, else by the signal.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     let _one_at_a_time = ask::alone();
-    quiet_on_closed_pipe();
+    translate_panics();
     match parse(args) {
         Ok(command) => {
             let done = interrupt::watch().and_then(|_watch| command.run());
@@ -201,8 +201,9 @@ impl<E: Error + Send + Sync + 'static> From<E> for Failure {
     }
 }
 
-/// Ends the command without a word when the reader of its output goes away, as with `| head`.
-fn quiet_on_closed_pipe() {
+/// Ends the command without a word when the reader of its output goes away, as with `| head`, and with an error where the system has no
+/// threads to give: both reach us as panics of others.
+fn translate_panics() {
     let default = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {
         let text = info.payload_as_str().unwrap_or_default();
@@ -212,6 +213,14 @@ fn quiet_on_closed_pipe() {
                 reason = "the reader of our output has gone: there is nobody left to tell"
             )]
             std::process::exit(0);
+        }
+        if text.starts_with("The global thread pool has not been initialized") {
+            driftworld_atomic_files::remove_unfinished();
+            output::to_standard_error(
+                "error: threads: found none to be had, expected one for each processor; end other programs, or allow more (`ulimit -u`)",
+            );
+            #[expect(clippy::exit, reason = "the work cannot go on, and was not begun")]
+            std::process::exit(1);
         }
         default(info);
     }));

@@ -75,7 +75,8 @@ impl Refusal {
             })
             .collect();
         if problems.len() > MOST_TEXTS {
-            texts.push(format!("payload: and {} more", problems.len() - MOST_TEXTS));
+            let at_least = if error.has_more() { "at least " } else { "" };
+            texts.push(format!("payload: and {at_least}{} more", problems.len() - MOST_TEXTS));
         }
         Self(texts)
     }
