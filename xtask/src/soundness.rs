@@ -64,7 +64,7 @@ impl Tool {
                 run(
                     "driftworld-env",
                     &["--lib"],
-                    &["sim::looks", "sim::slide", "sim::sequence", "sim::footprint"],
+                    &["agents::grid", "agents::script::", "assets::blocks"],
                     20,
                 ),
                 run("driftworld-similarity", &["--lib"], &["color::rows"], 10),
@@ -88,6 +88,7 @@ impl Tool {
         match self {
             Self::Miri => &[
                 "AVX-512: Miri does not know its instructions; address runs them where the processor has them",
+                "laws of geometry, of libraries' bytes and of documents: safe code, and hours in an interpreter",
                 "whole pictures, worlds and batches: an interpreter takes minutes for one; address and threads run them",
                 "models from glTF files: Miri does not run meshopt's C++; address does",
                 "the Python face: Miri does not run Python; its one view is read-only, which its tests check",
