@@ -26,7 +26,7 @@ pub enum FileError {
         found: &'static str,
     },
     /// The file is too large.
-    #[error("{}: found {found} bytes or more, expected at most {limit}; name a smaller file, or split it", path.shown())]
+    #[error("{}: found {found} bytes, expected at most {limit}; name a smaller file, or split it", path.shown())]
     TooLarge {
         /// Its path.
         path: PathBuf,
@@ -133,7 +133,7 @@ mod tests {
                 limit: 64,
             },
             "files/too-large",
-            "a.json: found 70 bytes or more, expected at most 64; name a smaller file, or split it",
+            "a.json: found 70 bytes, expected at most 64; name a smaller file, or split it",
         );
         check(
             FileError::NotText {

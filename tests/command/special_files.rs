@@ -111,7 +111,7 @@ fn every_subcommand_that_reads_files_is_asked() {
 #[test]
 fn a_device_without_an_end_is_not_read() {
     everywhere("a device", |path| {
-        symlink("/dev/zero", path).expect("a link can be made")
+        symlink("/dev/zero", path).expect("a link can be made");
     });
 }
 
@@ -133,7 +133,9 @@ fn a_socket_is_not_read() {
 
 #[test]
 fn a_folder_is_not_read_as_a_file() {
-    everywhere("folder", |path| fs::create_dir(path).expect("a folder can be made"));
+    everywhere("folder", |path| {
+        fs::create_dir(path).expect("a folder can be made");
+    });
 }
 
 /// Runs every command line with such a thing in place of its file.

@@ -16,8 +16,11 @@ use value::{Repeats, Stop};
 /// The longest text that is read, in bytes.
 pub const MAX_BYTES: usize = 64 << 20;
 
-/// The most values of a world or a scenario, ours or the original's: numbers, texts, lists, objects and the like.
+/// The most values of a world, ours or the original's: numbers, texts, lists, objects and the like.
 pub const MAX_WORLD_VALUES: usize = 4_000_000;
+
+/// The most values of a scenario, ours or the original's: what 100,000 blocks of four regimes have.
+pub const MAX_SCENARIO_VALUES: usize = 2_000_000;
 
 /// The most values of a task spec, a maps file or an object alone.
 pub const MAX_VALUES: usize = 1_000_000;

@@ -12,7 +12,7 @@ use serde_json::{Map, Value as Json, json};
 
 use super::Warning;
 use super::read::Remarks;
-use crate::document::{Document, MAX_WORLD_VALUES, describe, escape};
+use crate::document::{Document, MAX_SCENARIO_VALUES, describe, escape};
 use crate::error::{MAX_PROBLEMS, Problem, SpecError, cut};
 use crate::scenario::{Block, BlockKind, MAX_EXPERIENCES, Phase, Regime, Scenario, ScenarioForm, TaskLabel};
 
@@ -39,7 +39,7 @@ impl Scenario {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn from_l2explorer(name: &str, text: &str) -> Result<(Self, Vec<Warning>), SpecError> {
-        let document = Document::parse(name, text, MAX_WORLD_VALUES)?;
+        let document = Document::parse(name, text, MAX_SCENARIO_VALUES)?;
         let mut reader = Reader::default();
         let scenario = reader.scenario(&document.value);
         document.fail_on(reader.problems)?;

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub use drift::{DriftSchedule, DriftSwitch, RegimeDrift};
 pub use regime::Regime;
 
-use crate::document::{Document, MAX_WORLD_VALUES};
+use crate::document::{Document, MAX_SCENARIO_VALUES};
 use crate::error::SpecError;
 use crate::task::TaskSpec;
 use crate::version::SCENARIO_VERSION;
@@ -231,7 +231,7 @@ impl Scenario {
         text: &str,
         task: impl FnMut(&str) -> Option<Arc<TaskSpec>>,
     ) -> Result<Self, SpecError> {
-        let mut document = Document::parse(name, text, MAX_WORLD_VALUES)?;
+        let mut document = Document::parse(name, text, MAX_SCENARIO_VALUES)?;
         document.upgrade(&version::SCENARIO)?;
         document.check_schema(schema::scenario())?;
         let scenario: Self = document.deserialize()?;

@@ -284,7 +284,7 @@ pub(crate) fn broken<'a>(
 }
 
 /// The most variants that extend each other in a row.
-const MAX_EXTENDED: usize = 100;
+pub(crate) const MAX_EXTENDED: usize = 100;
 
 /// The values of a variant: its own over those that it extends over the defaults.
 ///

@@ -123,8 +123,8 @@ fn reserved_names(parameters: &IndexMap<String, Parameter>) -> impl Iterator<Ite
 /// Whether a variant, or one that it extends, is among these.
 fn is_built_on(variants: &Variants, name: &str, unsound: &BTreeSet<String>) -> bool {
     let mut next = Some(name);
-    // A chain that bites its own tail is longer than there are variants.
-    for _ in 0..=variants.len() {
+    // One that bites its own tail, too, is longer than a chain may be.
+    for _ in 0..=variant::MAX_EXTENDED {
         let Some(name) = next else { return false };
         let declared = variants.get(name);
         if unsound.contains(name) || declared.is_some_and(|declared| unsound.contains(&declared.origin)) {
