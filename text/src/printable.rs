@@ -35,13 +35,11 @@ const UNPRINTABLE: [(char, char); 18] = [
 /// Whether a character is one that a terminal obeys or does not show. Line feed and tab are among them.
 pub fn is_unprintable(letter: char) -> bool {
     // Almost all text is ASCII.
-    match letter {
-        ' '..='~' => false,
-        _ => {
-            let behind = UNPRINTABLE.partition_point(|(first, _)| *first <= letter);
-            behind > 0 && letter <= UNPRINTABLE[behind - 1].1
-        }
+    if matches!(letter, ' '..='~') {
+        return false;
     }
+    let behind = UNPRINTABLE.partition_point(|(first, _)| *first <= letter);
+    behind > 0 && letter <= UNPRINTABLE[behind - 1].1
 }
 
 /// The text in one line: every unprintable character as Rust and Swift write it, `\u{202e}`, and `\n`, `\r`, `\t` for
