@@ -185,7 +185,7 @@ fn input(reply: Reply, journal: &mut Journal) -> Result<Option<UnityInputProto>,
     let message = match reply {
         Reply::Message(message) => message,
         Reply::Gone(reason) => {
-            journal.note(&format!("the client is gone ({})", printable(&reason.to_string())));
+            journal.note(&format!("the client is gone ({})", printable(&reason)));
             return Ok(None);
         }
     };

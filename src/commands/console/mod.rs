@@ -126,16 +126,18 @@ fn converse(session: &mut Session) -> Result<(), Failure> {
 }
 
 fn say(reply: &Reply) -> Result<(), Failure> {
-    let (text, print): (_, fn(&str) -> Result<(), Failure>) = match reply {
-        Reply::Said(text) => (text, output::print),
-        Reply::Json(text) => (text, output::print_json),
-        Reply::Picture(text) => (text, output::print_as_is),
-        Reply::Quit => return Ok(()),
+    let (Reply::Said(text) | Reply::Json(text) | Reply::Picture(text)) = reply else {
+        return Ok(());
     };
     if text.is_empty() {
         return Ok(());
     }
-    print(&format!("{}\n", text.trim_end_matches('\n')))
+    let text = format!("{}\n", text.trim_end_matches('\n'));
+    match reply {
+        Reply::Json(_) => output::print_json(&text),
+        Reply::Picture(_) => output::print_as_is(&text),
+        Reply::Said(_) | Reply::Quit => output::print(&text),
+    }
 }
 
 /// The lines of standard input, each as soon as it is there.
