@@ -165,7 +165,8 @@ impl UnityError {
     pub fn code(&self) -> &'static str {
         match self {
             Self::Arguments { .. } => "unity/arguments",
-            Self::Reading { .. } | Self::Writing { .. } => "unity/file",
+            Self::Reading { .. } => "unity/file",
+            Self::Writing { .. } => "unity/unwritable",
             Self::Network { .. } => "unity/network",
             Self::Document(_) => "unity/document",
             Self::NoClient { .. } => "unity/no-client",
