@@ -220,7 +220,7 @@ fn texts_full_of_mistakes_are_looked_at_once() {
         "{{\"action\":\"reset_environment\",\"payload\":{{\"objects\":[{objects}1]}}}}"
     )));
     assert!(
-        sent.contains("payload: and 280 more"),
+        sent.contains("payload: and at least 280 more"),
         "the first 300 are listed: {sent}"
     );
 }

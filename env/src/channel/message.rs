@@ -76,7 +76,8 @@ impl Refusal {
             .collect();
         if problems.len() > MOST_TEXTS {
             let at_least = if error.has_more() { "at least " } else { "" };
-            texts.push(format!("payload: and {at_least}{} more", problems.len() - MOST_TEXTS));
+            let more = problems.len() - MOST_TEXTS;
+            texts.push(format!("payload: and {at_least}{more} more"));
         }
         Self(texts)
     }
