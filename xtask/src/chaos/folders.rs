@@ -48,6 +48,8 @@ impl Mishap {
             }
             Self::FolderRenamed => fs::rename(log, &away),
             Self::FolderSwapped => fs::rename(log, &away).and_then(|()| fs::create_dir(log)),
+            // A file that was just made has nothing to lose.
+            Self::FileTruncated if fs::metadata(file).is_ok_and(|found| found.len() == 0) => return false,
             Self::FileTruncated => OpenOptions::new()
                 .write(true)
                 .open(file)
