@@ -60,9 +60,7 @@ pub(crate) fn remove_in(folder: &Path, is_ours: impl Fn(&str) -> bool, remove: i
 
 /// Opened for writing where possible: some file systems lock nothing else.
 fn opened(path: &Path) -> io::Result<File> {
-    OpenOptions::new()
-        .read(true)
-        .write(true)
-        .open(path)
-        .or_else(|_| File::open(path))
+    let written = OpenOptions::new().read(true).write(true).open(path);
+    // To be locked and not read, not by driftworld-files: it is ours by its name.
+    written.or_else(|_| File::open(path))
 }

@@ -26,7 +26,8 @@ impl ScratchFolder {
     pub fn new(prefix: &str, parent: &Path) -> io::Result<Self> {
         remove_in(parent, |name| name.starts_with(prefix), |path| fs::remove_dir_all(path));
         let (folder, unfinished) = Unfinished::make(|| TempDir::with_prefix_in(prefix, parent), TempDir::path)?;
-        // Some file systems have no locks: then another may take it for a leftover.
+        // Some file systems have no locks: then another may take it for a leftover. A folder, not by driftworld-files: that opens regular
+        // files only.
         let lock = fs::File::open(folder.path())
             .ok()
             .filter(|file| file.try_lock().is_ok());

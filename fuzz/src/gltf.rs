@@ -82,10 +82,7 @@ pub(crate) fn check(bytes: &[u8]) {
         Ok(imported) => imported,
         Err(error) => return refusal::message(&error.to_string()),
     };
-    imported
-        .warnings
-        .iter()
-        .for_each(|warning| refusal::message(&warning.to_string()));
+    refusal::messages(imported.warnings);
     let mut library = Library::default();
     library.insert(imported.model).expect("one model fits");
     let again = Library::from_bytes(&library.to_bytes()).expect("what we wrote is sound");

@@ -43,10 +43,7 @@ pub(crate) fn check(bytes: &[u8]) {
     };
     let (mut session, _folder) = session();
     answer(&mut session, &input);
-    session
-        .take_remarks()
-        .iter()
-        .for_each(|remark| refusal::message(remark));
+    refusal::messages(session.take_remarks());
     let reset = UnityRlInputProto {
         command: CommandProto::Reset.into(),
         ..UnityRlInputProto::default()

@@ -24,3 +24,10 @@ pub(crate) fn message(text: &str) {
     let raw = |letter: &char| *letter != '\n' && is_unprintable(*letter);
     assert!(!text.chars().any(|letter| raw(&letter)), "{text:?}");
 }
+
+/// The law of several messages.
+pub(crate) fn messages<T: std::fmt::Display>(shown: impl IntoIterator<Item = T>) {
+    for one in shown {
+        message(&one.to_string());
+    }
+}

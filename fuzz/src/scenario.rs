@@ -54,9 +54,7 @@ pub(crate) fn check(bytes: &[u8]) {
     }
     match Scenario::from_l2explorer("s.json", &text) {
         Ok((scenario, warnings)) => {
-            warnings
-                .iter()
-                .for_each(|warning| refusal::message(&warning.to_string()));
+            refusal::messages(warnings);
             written_and_read(&scenario);
         }
         Err(error) => refusal::check(&error, &text),

@@ -39,9 +39,7 @@ pub(crate) fn check(bytes: &[u8]) {
     }
     match World::from_l2explorer("w.json", &text) {
         Ok((world, warnings)) => {
-            warnings
-                .iter()
-                .for_each(|warning| refusal::message(&warning.to_string()));
+            refusal::messages(warnings);
             written_and_read(&world);
         }
         Err(error) => refusal::check(&error, &text),

@@ -115,6 +115,7 @@ mod system {
     /// Hanging up is passed over where whoever started the command had it so, as `nohup` does.
     fn signals() -> Vec<i32> {
         let mut signals = vec![SIGINT, SIGTERM];
+        // A file of the system's, not by driftworld-files: nobody names it.
         let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
         let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
         let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());

@@ -193,6 +193,7 @@ impl Digest {
 
     /// That of a file; `None` if it cannot be read.
     fn of(path: &Path) -> Option<Self> {
+        // What was just written, not by driftworld-files: it is ours.
         let (mut file, mut piece, mut digest) = (File::open(path).ok()?, vec![0; 1 << 16], Self::NEW);
         loop {
             match file.read(&mut piece).ok()? {
