@@ -95,7 +95,9 @@ fn check(name: &str, cases: u32) {
         .expect("the target is one of ours");
     let seeds = seeds(target);
     assert!(seeds.len() >= 2, "{} seeds", seeds.len());
-    seeds.iter().for_each(|seed| (target.law)(seed));
+    for seed in &seeds {
+        (target.law)(seed);
+    }
     let config = Config {
         cases,
         failure_persistence: None,
