@@ -152,6 +152,8 @@ impl LogWriter {
             return open.written.check(&self.folder, &inside);
         }
         self.put_away()?;
+        // Once more: the disk may have taken its time, and nothing may be made in a directory that came in between.
+        self.check_folder()?;
         let before = self.files.get(&inside).copied();
         let header = columns::line(columns::header(columns));
         let opened = BlockFile::open(&self.folder, inside.clone(), before, &header)?;
