@@ -76,7 +76,7 @@ impl Mishap {
                 .open(file)
                 .unwrap()
                 .set_len(length)
-                .unwrap()
+                .unwrap();
         };
         match self {
             M::FolderDeleted => fs::remove_dir_all(dir).unwrap(),
