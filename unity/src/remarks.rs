@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use driftworld_text::printable_lines;
+
 /// What a remark is about. Each kind has room of its own, so that none crowds out another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum About {
@@ -38,7 +40,8 @@ impl Remarks {
         }
         self.made.insert(key);
         self.waiting.push(if count < MOST {
-            remark
+            // What a client sent may stand in it.
+            printable_lines(&remark).into_owned()
         } else {
             match about {
                 About::Settings => "further remarks on settings are left out",
