@@ -1,8 +1,8 @@
 //! Text that others wrote, on its way to a terminal, a table or a file name: documents, logs, settings and names of
 //! files may say anything.
 //!
-//! Three ideas, a file each: [`printable`] shows characters that a terminal obeys or hides, [`cell`] guards what a
-//! spreadsheet would take for a formula, [`name`] says what variants, tasks and groups may be called. Reading and
+//! Three ideas, a file each: `printable.rs` shows characters that a terminal obeys or hides, `cell.rs` guards what a
+//! spreadsheet would take for a formula, `name.rs` says what variants, tasks and groups may be called. Reading and
 //! printing are not here.
 
 mod cell;
