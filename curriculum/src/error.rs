@@ -179,7 +179,7 @@ pub enum CurriculumError {
     Generator(#[from] GeneratorError),
     /// Two variants would have the same name in the log.
     #[error(
-        "found {a} and {b}, which are both {name:?} in a log, expected names that differ in letters and digits; rename one",
+        "found {a} and {b}, which are both {name:?} in a log, expected names that differ in the letters a to z and digits, which are all that logs keep; rename one",
         a = one_line(a),
         b = one_line(b)
     )]

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use driftworld_metrics::{Log, Options, read_log, score};
-use driftworld_text::printable_lines;
+use driftworld_text::printable;
 use serde_json::Value;
 
 use crate::edited::Known;
@@ -40,7 +40,7 @@ pub(crate) fn check(bytes: &[u8]) {
     let options: Options = match serde_json::from_str(&text) {
         Ok(options) => options,
         // What serde says quotes the text as it is: who prints it escapes it.
-        Err(error) => return refusal::message(&printable_lines(&error.to_string())),
+        Err(error) => return refusal::message(&printable(&error.to_string())),
     };
     let written = serde_json::to_value(&options).expect("options serialise");
     let again: Options = serde_json::from_value(written.clone()).expect("what we wrote is sound");

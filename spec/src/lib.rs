@@ -24,7 +24,7 @@ pub use distribution::{
     Channel, ChannelChance, ChannelSpread, Channels, ColorMoments, Distribution, Number, Order, ParamRef,
     PlanarMoments, Spread, Turns,
 };
-pub use document::{MAX_BYTES, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_VALUES, MAX_WORLD_VALUES};
+pub use document::{MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_VALUES, MAX_WORLD_VALUES};
 pub use error::{MAX_PROBLEMS, Problem, SpecError, nearest};
 pub use l2explorer::Warning;
 pub use names::sound_name;

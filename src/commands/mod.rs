@@ -33,6 +33,7 @@ mod sample;
 mod schema;
 mod scoring;
 mod sheet;
+mod spared;
 mod table;
 mod tasks;
 mod transfer_report;

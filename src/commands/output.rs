@@ -10,7 +10,7 @@ use driftworld_text::{ShownPath, printable_json, printable_lines};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use super::{Answer, Failure};
+use super::{Answer, Failure, spared};
 
 /// What is said while somebody wants it handed back. Not a thing of one thread: subcommands work with many.
 static KEPT: Mutex<Option<Answer>> = Mutex::new(None);
@@ -112,6 +112,7 @@ pub(crate) fn warning(text: impl AsRef<str>) {
 
 /// Writes a file that is there whole or not at all; a device or a pipe is written straight.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    spared::of_logs(path)?;
     driftworld_atomic_files::write(path, bytes).map_err(|error| unwritable(path, &error))
 }
 

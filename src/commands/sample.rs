@@ -16,7 +16,7 @@ use driftworld_text::ShownPath;
 use rayon::prelude::*;
 
 use super::interrupt::Interrupt;
-use super::{Failure, input, output};
+use super::{Failure, input, output, spared};
 
 /// The most worlds that are drawn at once while streaming.
 const CHUNK: u64 = 1024;
@@ -175,6 +175,8 @@ impl Sample {
                 self.index
             )));
         }
+        spared::of_logs(&self.output)?;
+        spared::inputs(&self.output, [self.task.as_str()])?;
         let variant = tasks::variant(&self.task)?;
         let source = self.source(&variant, count)?;
         let range = self

@@ -19,6 +19,7 @@ mod pipes;
 mod report;
 mod run;
 mod signals;
+mod spared;
 mod special_files;
 mod terminal;
 mod transfer_report;

@@ -28,11 +28,11 @@ pub(crate) struct Remarks {
 impl Remarks {
     /// Makes a remark, unless the same was made before.
     pub(crate) fn make(&mut self, about: About, remark: String) {
-        self.make_once(about, &remark.clone(), remark);
+        self.make_once(about, &remark, &remark);
     }
 
     /// Makes a remark, unless one on the same thing was made before.
-    pub(crate) fn make_once(&mut self, about: About, thing: &str, remark: String) {
+    pub(crate) fn make_once(&mut self, about: About, thing: &str, remark: &str) {
         let key = (about, thing.to_owned());
         let count = self.made.iter().filter(|(kind, _)| *kind == about).count();
         if count > MOST || self.made.contains(&key) {
@@ -41,7 +41,7 @@ impl Remarks {
         self.made.insert(key);
         self.waiting.push(if count < MOST {
             // What a client sent may stand in it.
-            printable_lines(&remark).into_owned()
+            printable_lines(remark).into_owned()
         } else {
             match about {
                 About::Settings => "further remarks on settings are left out",
@@ -67,7 +67,7 @@ mod tests {
         let mut remarks = Remarks::default();
         remarks.make(About::Worlds, "a".to_owned());
         remarks.make(About::Worlds, "a".to_owned());
-        remarks.make_once(About::Worlds, "a", "b".to_owned());
+        remarks.make_once(About::Worlds, "a", "b");
         assert_eq!(remarks.take(), ["a"]);
         for number in 0..1000 {
             remarks.make(About::Worlds, number.to_string());

@@ -28,6 +28,9 @@ pub const MAX_VALUES: usize = 1_000_000;
 /// The longest key, in bytes. Longer ones would stand in every pointer to what is below them.
 pub const MAX_KEY_BYTES: usize = 400;
 
+/// How deep lists and objects may stand in each other: `serde_json`'s limit, which keeps a hostile text from taking the whole stack.
+pub const MAX_DEPTH: usize = 127;
+
 /// A parsed JSON text.
 pub(crate) struct Document<'a> {
     pub(crate) name: &'a str,
@@ -233,6 +236,10 @@ fn syntax_error(name: &str, text: &str, error: &serde_json::Error) -> SpecError 
         reason.push_str("; remove the comma before the closing bracket");
     } else if rest.starts_with("//") || rest.starts_with("/*") || rest.starts_with('#') {
         reason.push_str("; JSON has no comments, write a \"description\" instead");
+    } else if reason == "recursion limit exceeded" {
+        reason = format!("lists and objects stand in each other more than {MAX_DEPTH} deep; is a bracket missing?");
+    } else if text.trim().is_empty() {
+        "the document is empty".clone_into(&mut reason);
     } else if reason.starts_with("EOF") {
         reason.push_str("; the document ends too early, is it cut off?");
     }
@@ -315,14 +322,11 @@ mod tests {
             "{\"a\": [1, 2",
             "d.json:1:11: not valid JSON: EOF while parsing a list; the document ends too early, is it cut off?",
         );
-        check(
-            "",
-            "d.json:1:1: not valid JSON: EOF while parsing a value; the document ends too early, is it cut off?",
-        );
+        check("", "d.json:1:1: not valid JSON: the document is empty");
         check("{\"a\": 1e999}", "d.json:1:11: not valid JSON: number out of range");
         check(
             &"[".repeat(1000),
-            "d.json:1:128: not valid JSON: recursion limit exceeded",
+            "d.json:1:128: not valid JSON: lists and objects stand in each other more than 127 deep; is a bracket missing?",
         );
     }
 

@@ -18,7 +18,7 @@ use driftworld_text::ShownPath;
 
 use super::assets::LibraryChoice;
 use super::order::OrderArgs;
-use super::{Failure, output};
+use super::{Failure, output, spared};
 use proof::Proof;
 pub(crate) use tables::{blocks, choices};
 
@@ -206,6 +206,10 @@ impl Curriculum {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let several = self.form == Some(Form::Expert) || self.lifetimes.is_some();
         self.check_arguments(several)?;
+        let targets = [Some(&self.output), self.plot.as_ref()];
+        for target in targets.into_iter().flatten() {
+            spared::inputs(target, self.tasks.iter().map(String::as_str))?;
+        }
         let chosen = self.choose()?;
         let mut proof = Proof::new(self.worlds, &self.libraries)?;
         // What is printed beside a scenario on standard output would spoil it.

@@ -85,7 +85,7 @@ impl Session {
         match engine_setting(payload) {
             Ok(setting) => self
                 .remarks
-                .make_once(About::Settings, setting.name(), setting.remark()),
+                .make_once(About::Settings, setting.name(), &setting.remark()),
             Err(reason) => {
                 let remark = format!("engine configuration: {reason}; it is ignored");
                 self.remarks.make(About::Settings, remark);
@@ -104,7 +104,7 @@ impl Session {
                     } else {
                         format!("{what} {}", setting.key)
                     };
-                    self.remarks.make_once(About::Settings, &thing, remark);
+                    self.remarks.make_once(About::Settings, &thing, &remark);
                 }
             }
             Err(reason) => self.remarks.make(About::Settings, format!("{what}: {reason}")),

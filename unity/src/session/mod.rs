@@ -348,7 +348,7 @@ impl Session {
         let left_out = self.outbox.take_left_out();
         if left_out > 0 {
             let remark = format!("{left_out} messages were left out: they do not fit beside the observations");
-            self.remarks.make_once(About::Refusals, "left out", remark);
+            self.remarks.make_once(About::Refusals, "left out", &remark);
         }
         UnityOutputProto {
             rl_output: Some(rl_output),
