@@ -1,6 +1,7 @@
 //! Scenario files, ours and the original's, and the tasks and world files that they name. What a scenario means is `spec`'s, living it
 //! `curriculum`'s.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,6 +15,9 @@ use crate::contents::Contents;
 use crate::documents::{self, DocumentError};
 use crate::tasks::{self, TaskError};
 use crate::top_level::TopLevel;
+
+/// The most files that are read to find a world with a name near to a missing one's.
+const MOST_READ: usize = 8;
 
 /// Told of what is odd.
 pub type Warn<'a> = &'a mut dyn FnMut(String);
@@ -175,14 +179,20 @@ impl ScenarioFile {
     fn nearest(&self, wanted: &[&PathBuf]) -> Option<PathBuf> {
         wanted.iter().find_map(|wanted| {
             let name = wanted.file_name()?.to_string_lossy().into_owned();
-            let files = json_files(wanted.parent()?);
-            let worlds: Vec<&PathBuf> = files.iter().filter(|file| self.read_world(file).is_ok()).collect();
-            let names: Vec<String> = worlds
-                .iter()
-                .map(|file| file.file_name().unwrap_or_default().to_string_lossy().into_owned())
-                .collect();
-            let near = nearest(&name, &names)?;
-            Some(worlds[names.iter().position(|name| *name == near)?].clone())
+            let mut files = json_files(wanted.parent()?);
+            // Only what is near by its name is read: a folder may hold anything.
+            for _ in 0..MOST_READ {
+                let names = files
+                    .iter()
+                    .map(|file| file.file_name().unwrap_or_default().to_string_lossy());
+                let names: Vec<String> = names.map(Cow::into_owned).collect();
+                let near = nearest(&name, &names)?;
+                let file = files.remove(names.iter().position(|name| *name == near)?);
+                if self.read_world(&file).is_ok() {
+                    return Some(file);
+                }
+            }
+            None
         })
     }
 

@@ -79,6 +79,21 @@ pub enum MetricsError {
         bytes: u64,
     },
 
+    /// An info file of a log was written over while the log was written.
+    #[error(
+        "{}: found {found} bytes, expected the {expected} bytes that this log was begun with; put the file back, for without it the rows cannot \
+         be read",
+        path.shown()
+    )]
+    InfoFileChanged {
+        /// The info file.
+        path: PathBuf,
+        /// Bytes that are there.
+        found: u64,
+        /// Bytes that were written.
+        expected: u64,
+    },
+
     /// There is no such log directory.
     #[error(
         "{}: found {found}, expected the directory of a log, which holds logger_info.json",
@@ -592,6 +607,7 @@ impl MetricsError {
             Self::InUse { .. } => "metrics/in-use",
             Self::FolderLost { .. } => "metrics/folder-lost",
             Self::FileLost { .. } => "metrics/file-lost",
+            Self::InfoFileChanged { .. } => "metrics/info-file-changed",
             Self::NotADirectory { .. } => "metrics/not-a-directory",
             Self::NoDataFiles { .. } => "metrics/no-data-files",
             Self::MissingFile { .. } => "metrics/missing-file",

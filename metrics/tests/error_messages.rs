@@ -63,6 +63,16 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
              rows are missing from can be continued as it is",
         ),
         (
+            E::InfoFileChanged {
+                path: path(),
+                found: 3,
+                expected: 210,
+            },
+            "metrics/info-file-changed",
+            "run/w/0-train/data-log.tsv: found 3 bytes, expected the 210 bytes that this log was begun with; put the file back, for \
+             without it the rows cannot be read",
+        ),
+        (
             E::NotADirectory {
                 path: "run".into(),
                 found: "nothing",

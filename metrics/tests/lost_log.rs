@@ -285,3 +285,28 @@ fn a_process_that_turns_to_another_directory_writes_where_it_began() {
     assert_eq!(read_log(base.path().join("log")).unwrap().rows.len(), 6);
     assert_eq!(fs::read_dir(".").unwrap().count(), 0);
 }
+
+#[test]
+fn an_info_file_that_is_cut_or_gone_ends_the_log_with_an_error() {
+    for name in ["logger_info.json", "scenario_info.json"] {
+        for cut in [true, false] {
+            let base = tempfile::tempdir().unwrap();
+            let dir = base.path().join("log");
+            let mut writer = create(&dir);
+            writer.write(&record(0, 1)).unwrap();
+            if cut {
+                fs::write(dir.join(name), "{}").unwrap();
+            } else {
+                fs::remove_file(dir.join(name)).unwrap();
+            }
+            let error = writer.finish().unwrap_err();
+            let code = if cut {
+                "metrics/info-file-changed"
+            } else {
+                "metrics/missing-file"
+            };
+            assert_eq!(error.code(), code, "{error}");
+            assert!(error.to_string().contains(name), "{error}");
+        }
+    }
+}

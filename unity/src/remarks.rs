@@ -27,8 +27,8 @@ pub(crate) struct Remarks {
 
 impl Remarks {
     /// Makes a remark, unless the same was made before.
-    pub(crate) fn make(&mut self, about: About, remark: String) {
-        self.make_once(about, &remark, &remark);
+    pub(crate) fn make(&mut self, about: About, remark: &str) {
+        self.make_once(about, remark, remark);
     }
 
     /// Makes a remark, unless one on the same thing was made before.
@@ -65,12 +65,12 @@ mod tests {
     #[test]
     fn each_remark_is_made_once_and_each_kind_has_an_end() {
         let mut remarks = Remarks::default();
-        remarks.make(About::Worlds, "a".to_owned());
-        remarks.make(About::Worlds, "a".to_owned());
+        remarks.make(About::Worlds, "a");
+        remarks.make(About::Worlds, "a");
         remarks.make_once(About::Worlds, "a", "b");
         assert_eq!(remarks.take(), ["a"]);
         for number in 0..1000 {
-            remarks.make(About::Worlds, number.to_string());
+            remarks.make(About::Worlds, &number.to_string());
         }
         let taken = remarks.take();
         assert_eq!(taken.len(), MOST);
@@ -78,8 +78,8 @@ mod tests {
             taken.last().map(String::as_str),
             Some("further remarks on worlds are left out")
         );
-        remarks.make(About::Worlds, "c".to_owned());
-        remarks.make(About::Refusals, "c".to_owned());
+        remarks.make(About::Worlds, "c");
+        remarks.make(About::Refusals, "c");
         assert_eq!(remarks.take(), ["c"], "refusals have room of their own");
     }
 }

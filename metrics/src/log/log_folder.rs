@@ -21,8 +21,8 @@ pub(super) struct LogFolder {
     place: PathBuf,
     /// `None` where directories cannot be opened.
     held: Option<File>,
-    /// The info files that it holds.
-    info: Vec<&'static str>,
+    /// The info files that it holds, with their lengths in bytes.
+    info: Vec<(&'static str, u64)>,
 }
 
 impl LogFolder {
@@ -41,7 +41,7 @@ impl LogFolder {
         let names = [logger_info::FILE_NAME, scenario_info::FILE_NAME];
         self.info = names
             .into_iter()
-            .filter(|name| self.place.join(name).is_file())
+            .filter_map(|name| Some((name, self.length_of(name)?)))
             .collect();
     }
 
@@ -80,16 +80,34 @@ impl LogFolder {
         })
     }
 
-    /// Refuses when an info file is gone that was there at the beginning.
+    /// Refuses when an info file is gone that was there at the beginning, or has another length.
     pub(super) fn check_info_files(&self) -> Result<(), MetricsError> {
-        let gone = |name: &&&str| !self.place.join(name).is_file();
-        match self.info.iter().find(gone) {
-            None => Ok(()),
-            Some(name) => Err(MetricsError::MissingFile {
-                path: self.shown.join(name),
-                expected: "the info file that this log was begun with; put it back",
-            }),
+        for (name, length) in &self.info {
+            let path = || self.shown.join(name);
+            match self.length_of(name) {
+                Some(found) if found == *length => {}
+                Some(found) => {
+                    return Err(MetricsError::InfoFileChanged {
+                        path: path(),
+                        found,
+                        expected: *length,
+                    });
+                }
+                None => {
+                    return Err(MetricsError::MissingFile {
+                        path: path(),
+                        expected: "the info file that this log was begun with; put it back",
+                    });
+                }
+            }
         }
+        Ok(())
+    }
+
+    /// The length of a file of it in bytes; `None` where there is no file.
+    fn length_of(&self, name: &str) -> Option<u64> {
+        let found = fs::metadata(self.place.join(name)).ok()?;
+        found.is_file().then(|| found.len())
     }
 
     /// Makes directories inside, one in the other, where they are missing; never the log's directory itself.

@@ -39,7 +39,7 @@ impl Session {
         for (number, record) in records(bytes).enumerate() {
             if number == MOST_MESSAGES {
                 let remark = format!("messages: found more than {MOST_MESSAGES} in one go; the others are refused");
-                self.remarks.make(About::Refusals, remark);
+                self.remarks.make(About::Refusals, &remark);
             }
             if number == MOST_LOOKED_AT {
                 break;
@@ -48,7 +48,7 @@ impl Session {
                 Ok(record) => record,
                 Err(reason) => {
                     let remark = format!("messages: {reason}; it is ignored, and so is what follows");
-                    self.remarks.make(About::Refusals, remark);
+                    self.remarks.make(About::Refusals, &remark);
                     break;
                 }
             };
@@ -74,7 +74,7 @@ impl Session {
                 Some(SideChannel::Analytics) => {}
                 None => {
                     let remark = format!("messages on the unknown channel {} are ignored", record.id);
-                    self.remarks.make(About::Settings, remark);
+                    self.remarks.make(About::Settings, &remark);
                 }
             }
         }
@@ -88,7 +88,7 @@ impl Session {
                 .make_once(About::Settings, setting.name(), &setting.remark()),
             Err(reason) => {
                 let remark = format!("engine configuration: {reason}; it is ignored");
-                self.remarks.make(About::Settings, remark);
+                self.remarks.make(About::Settings, &remark);
             }
         }
     }
@@ -107,7 +107,7 @@ impl Session {
                     self.remarks.make_once(About::Settings, &thing, &remark);
                 }
             }
-            Err(reason) => self.remarks.make(About::Settings, format!("{what}: {reason}")),
+            Err(reason) => self.remarks.make(About::Settings, &format!("{what}: {reason}")),
         }
     }
 
@@ -126,7 +126,7 @@ impl Session {
             };
             for remark in &received.remarks {
                 self.remarks
-                    .make(About::Worlds, format!("{} channel: {remark}", channel.name()));
+                    .make(About::Worlds, &format!("{} channel: {remark}", channel.name()));
             }
             if received.reset {
                 self.renew()?;
@@ -143,7 +143,7 @@ impl Session {
                     Err("found more pictures than are drawn in one go, expected the others with later steps".to_owned())
                 };
                 if let Ok(path) = &written {
-                    self.remarks.make(About::Settings, format!("screenshot: {path}"));
+                    self.remarks.make(About::Settings, &format!("screenshot: {path}"));
                 }
                 let answer = self.channels.answer_screenshot(&screenshot, written.map(drop), &time);
                 self.send(&answer);
@@ -191,7 +191,7 @@ impl Session {
                 .collect();
             let (channel, texts) = (message.channel.name(), texts.join("; "));
             let remark = format!("{channel} channel: a message was refused: {texts}");
-            self.remarks.make(About::Refusals, remark);
+            self.remarks.make(About::Refusals, &remark);
         }
         let text = ascii(&message.to_json());
         self.outbox.push(id_of(message.channel), text_payload(&text));

@@ -143,7 +143,7 @@ impl Session {
         // Of worlds that messages reset to, the channels have remarks of their own.
         for warning in session.environment.warnings() {
             if warning != Warning::ForPhotographs {
-                session.remarks.make(About::Worlds, format!("world: {warning}"));
+                session.remarks.make(About::Worlds, &format!("world: {warning}"));
             }
         }
         session.open_album();
@@ -179,7 +179,7 @@ impl Session {
                 "seed {}: not used, the chance of a world is its own: the same world and actions give the same episode",
                 said.seed
             );
-            self.remarks.make(About::Settings, remark);
+            self.remarks.make(About::Settings, &remark);
         }
         Ok(())
     }
@@ -234,7 +234,7 @@ impl Session {
                 Err(problem) => {
                     let remark =
                         format!("environment parameters: left out for a world that they do not suit: {problem}");
-                    self.remarks.make(About::Worlds, remark);
+                    self.remarks.make(About::Worlds, &remark);
                 }
             }
         }
@@ -254,7 +254,7 @@ impl Session {
             Ok(album) => self.album = Some(album),
             Err(reason) => {
                 let remark = format!("collect_images: {reason}; the world runs as learn");
-                self.remarks.make(About::Worlds, remark);
+                self.remarks.make(About::Worlds, &remark);
             }
         }
     }

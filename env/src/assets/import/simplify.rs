@@ -19,8 +19,11 @@ const MOST_ERROR: f32 = 0.2;
 /// The most corners of the whole surface that are measured for a level: with more of them, evenly chosen ones stand for all.
 const MEASURED: usize = 20_000;
 
+/// The most pairs of triangles at one corner, over all corners: the simplifier looks at each. A corner shared by 63,000 triangles has as many.
+const MOST_PAIRS: u64 = 4_000_000_000;
+
 /// Up to three coarser levels of a surface, triangles in groups of one colour; each level with at most two thirds of the triangles
-/// of the one before. Groups share no corners.
+/// of the one before. Groups share no corners. None where so many triangles meet in one corner that simplifying would take minutes.
 pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Detail> {
     let mut group_of = vec![0_usize; corners.len()];
     for (group, triangles) in groups.iter().enumerate() {
@@ -30,6 +33,9 @@ pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Deta
             .for_each(|corner| group_of[*corner as usize] = group);
     }
     let whole: Vec<u32> = groups.iter().flatten().flatten().copied().collect();
+    if pairs(&whole, corners.len()) > MOST_PAIRS {
+        return Vec::new();
+    }
     let most_error = MOST_ERROR * size(|| corners.iter());
     let mut levels: Vec<Detail> = Vec::new();
     let mut before = whole.len() / 3;
@@ -57,6 +63,15 @@ pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Deta
         });
     }
     levels
+}
+
+/// How many pairs of triangles meet in a corner, over all corners, each triangle with itself, too.
+fn pairs(whole: &[u32], corners: usize) -> u64 {
+    let mut around = vec![0_u64; corners];
+    for corner in whole {
+        around[*corner as usize] += 1;
+    }
+    around.iter().map(|triangles| triangles * triangles).sum()
 }
 
 fn simplified(whole: &[u32], corners: &[[f32; 3]], wanted: usize, most_error: f32) -> Vec<u32> {
@@ -118,6 +133,21 @@ pub(super) fn point(corners: &[[f32; 3]], corner: u32) -> Vector {
 mod tests {
     use super::*;
     use crate::assets::Mesh;
+
+    #[test]
+    fn a_fan_around_one_corner_is_simplified_up_to_a_limit() {
+        let fan = |count: u32| {
+            let mut corners = vec![[0.0, 0.0, 1.0]];
+            corners.extend((0..count).map(|k| {
+                let (sin, cos) = (k as f32 / count as f32 * std::f32::consts::TAU).sin_cos();
+                [sin, cos, 0.0]
+            }));
+            let triangles: Vec<[u32; 3]> = (0..count).map(|k| [0, 1 + k, 1 + (k + 1) % count]).collect();
+            levels(&corners, &[triangles])
+        };
+        assert!(!fan(1_000).is_empty());
+        assert!(fan(200_000).is_empty(), "it would take a quarter of a minute");
+    }
 
     #[test]
     fn a_ball_gets_coarser_level_by_level_and_says_by_how_much() {
