@@ -107,7 +107,7 @@ impl LogFolder {
     /// The length of a file of it in bytes; `None` where there is no file.
     fn length_of(&self, name: &str) -> Option<u64> {
         let found = fs::metadata(self.place.join(name)).ok()?;
-        found.is_file().then(|| found.len())
+        found.is_file().then_some(found.len())
     }
 
     /// Makes directories inside, one in the other, where they are missing; never the log's directory itself.
