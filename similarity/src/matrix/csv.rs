@@ -83,6 +83,10 @@ impl DistanceMatrix {
                 values.push(number.map_err(|_| bad(row.line, format!("{cell:?}"), "a number"))?);
             }
         }
+        // A matrix of nothing is written as a line of two empty cells.
+        if read == 0 && labels == [""] {
+            return Self::from_values(Vec::new(), Array2::zeros((0, 0)));
+        }
         if read != n {
             let found = format!("{read} lines below the labels");
             return Err(bad(last, found, format!("{n}, one for each label")));

@@ -275,6 +275,13 @@ impl TaskSpec {
             // Where a task says nothing of its world, nothing stands there: `null` would be refused.
             map.retain(|key, value| key != "world" || !value.is_null());
         }
+        let parameters = json.get_mut("parameters").and_then(Json::as_object_mut);
+        for parameter in parameters.into_iter().flat_map(|map| map.values_mut()) {
+            // A parameter that changes has to say what it touches, nothing too.
+            if let Some(parameter) = parameter.as_object_mut().filter(|map| map["role"] != "fixed") {
+                parameter.entry("affects").or_insert_with(|| Json::Array(Vec::new()));
+            }
+        }
         json.to_string()
     }
 
