@@ -9,15 +9,12 @@ use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
 use crate::destination::Destination;
-use crate::leftovers::{ENDING, remove_leftovers_once};
+use crate::leftovers::{ENDING, TRIES, remove_leftovers_once};
 use crate::permissions;
 use crate::unfinished::Unfinished;
 
 /// Most characters of a file's name that its temporary one begins with.
 const MOST_CHARACTERS: usize = 60;
-
-/// How often a file is made anew that another process took for a leftover before it was locked.
-const TRIES: u32 = 8;
 
 /// A file that is being written. Dropped before [`commit`](Self::commit), it is gone, and what was there before stays.
 #[derive(Debug)]
@@ -37,8 +34,9 @@ enum Kind {
 impl AtomicFile {
     /// Begins a file; its folder is made where it is missing. Links are followed, and stay.
     ///
-    /// A new file gets the mode 0666 less the umask. One that takes another's place keeps its mode, and its owner where that is
-    /// allowed. Devices, pipes and descriptors (`/dev/null`, `/dev/stdout`, `/dev/fd/3`) are opened, and written straight.
+    /// A new file gets the mode 0666 less the umask. One that takes another's place keeps its mode, and its owner where
+    /// that is allowed. Devices, pipes and descriptors (`/dev/null`, `/dev/stdout`, `/dev/fd/3`) are opened, and
+    /// written straight.
     ///
     /// # Errors
     /// Those of the system; [`io::ErrorKind::IsADirectory`] for a folder.
@@ -49,7 +47,8 @@ impl AtomicFile {
         }
     }
 
-    /// The same for a program: whoever may read it may run it. A link of that name is replaced, and what it leads to stays as it is.
+    /// The same for a program: whoever may read it may run it. A link of that name is replaced, and what it leads to
+    /// stays as it is.
     ///
     /// # Errors
     /// As [`create`](Self::create).
@@ -96,7 +95,8 @@ impl AtomicFile {
         }
     }
 
-    /// Whether what is written goes straight into a device, a pipe or what a process has open: somebody may be reading it now.
+    /// Whether what is written goes straight into a device, a pipe or what a process has open: somebody may be reading
+    /// it now.
     pub fn is_straight(&self) -> bool {
         matches!(self.0, Kind::Straight(_))
     }

@@ -11,6 +11,9 @@ use std::sync::{Mutex, PoisonError};
 /// How the name of every file ends that is not finished.
 pub(crate) const ENDING: &str = ".driftworld-part";
 
+/// How often something is made anew that another process took for a leftover before it was locked.
+pub(crate) const TRIES: u32 = 8;
+
 /// Most folders that are remembered as looked through.
 const MOST_FOLDERS: usize = 4096;
 
@@ -19,8 +22,8 @@ pub fn is_unfinished(name: &str) -> bool {
     name.starts_with('.') && name.ends_with(ENDING)
 }
 
-/// Removes from a folder the files that processes left which were killed while they wrote. What cannot be looked at or removed
-/// stays: it harms nobody.
+/// Removes from a folder the files that processes left which were killed while they wrote. What cannot be looked at or
+/// removed stays: it harms nobody.
 pub fn remove_leftovers(folder: &Path) {
     remove_in(folder, is_unfinished, |path| fs::remove_file(path));
 }

@@ -234,3 +234,22 @@ mod unix {
         assert!(!driftworld_atomic_files::is_own_stdout(&path));
     }
 }
+
+/// A folder that was just made is nobody's leftover, however many are made beside it at the same moment.
+#[test]
+fn folders_that_are_made_at_once_do_not_take_each_other_for_leftovers() {
+    let base = tempfile::tempdir().expect("a folder can be made");
+    std::thread::scope(|threads| {
+        for _ in 0..8 {
+            threads.spawn(|| {
+                for _ in 0..200 {
+                    let folder = ScratchFolder::new(".scratch-", base.path()).expect("there is room");
+                    assert!(folder.path().is_dir(), "it was removed by another");
+                    fs::write(folder.path().join("file"), "text").expect("it is there");
+                }
+            });
+        }
+    });
+    let left = fs::read_dir(base.path()).expect("the folder is there").count();
+    assert_eq!(left, 0);
+}
