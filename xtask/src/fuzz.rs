@@ -1,13 +1,15 @@
-//! `cargo xtask fuzz`: lets libFuzzer look for bytes that break the laws in `fuzz/src/`, which the tests check on the seeds, too.
+//! `cargo xtask fuzz`: lets libFuzzer look for bytes that break the laws in `fuzz/src/`, which the tests check on the
+//! seeds, too.
 //!
-//! Inputs that took a new way stay in `fuzz/corpus/`, with which the next call begins; those that broke a law, in `fuzz/artifacts/`.
+//! Inputs that took a new way stay in `fuzz/corpus/`, with which the next call begins; those that broke a law, in
+//! `fuzz/artifacts/`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use crate::error::XtaskError;
-use crate::process::{not_started, run, shown};
+use crate::process::{nightly_cargo, not_started, run, shown};
 use crate::workspace::Workspace;
 
 /// The machine that is fuzzed on: coverage is counted only where it is named.
@@ -92,24 +94,12 @@ pub(crate) fn search(workspace: &Workspace, request: &Fuzz) -> Result<(), XtaskE
 /// The fuzzer, by the nightly compiler.
 fn build(workspace: &Workspace, folder: &Path) -> Result<PathBuf, XtaskError> {
     let target_folder = workspace.root.join("target/fuzz");
-    let mut command = Command::new("rustup");
+    let mut command = nightly_cargo();
     command
-        .args([
-            "run",
-            "nightly",
-            "cargo",
-            "build",
-            "--release",
-            "--target",
-            MACHINE,
-            "--target-dir",
-        ])
+        .args(["build", "--release", "--target", MACHINE, "--target-dir"])
         .arg(&target_folder)
         .current_dir(folder.join("targets"))
-        .env("RUSTFLAGS", COVERAGE)
-        // Cargo hands these on to what it runs; they name the stable compiler.
-        .env_remove("RUSTC")
-        .env_remove("CARGO");
+        .env("RUSTFLAGS", COVERAGE);
     run(command)?;
     Ok(target_folder.join(MACHINE).join("release/fuzz"))
 }
