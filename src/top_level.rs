@@ -1,5 +1,5 @@
-//! [`TopLevel`]: which of the keys that tell documents apart a JSON text has, found out without taking it into memory. What they tell
-//! is `contents`' and `documents`'.
+//! [`TopLevel`]: which of the keys that tell documents apart a JSON text has, found out without taking it into memory.
+//! What they tell is `contents`' and `documents`'.
 
 use std::fmt;
 

@@ -9,7 +9,7 @@ use driftworld_text::ShownPath;
 
 use super::draw_maps::draw_maps;
 use super::input::WorldChoice;
-use super::{Failure, output, spared};
+use super::{Failure, output, overwrite};
 use crate::scenarios::{Missing, ScenarioFile};
 
 /// Write a world or a scenario in L2Explorer's form, or one of L2Explorer's in ours.
@@ -46,7 +46,7 @@ enum Form {
 impl Convert {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let path = Path::new(self.choice.name());
-        spared::inputs(&self.output, [self.choice.name()])?;
+        overwrite::refuse_inputs(&self.output, [self.choice.name()])?;
         if ScenarioFile::is_one(path) {
             return self.scenario(&ScenarioFile::read(path, &mut output::warning)?);
         }

@@ -1,5 +1,5 @@
-//! Being told to stop: what the signals of a terminal and of a job scheduler do to a command. Long work asks whether it was told so
-//! and ends by itself; what cannot ask, or does not come to it in time, is ended. Either way nothing half written stays.
+//! Signals: what the signals of a terminal and of a job scheduler do to a command. Long work asks whether one came and
+//! ends by itself; what cannot ask, or does not come to it in time, is ended. Either way nothing half written stays.
 //!
 //! Only in a program of its own ([`watch`]): where the command is asked by another program, signals are that one's.
 
@@ -23,12 +23,12 @@ fn parting() -> MutexGuard<'static, Option<String>> {
     PARTING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Whether the process was told to stop, for work that ends by itself then. Dropped, it listens no more.
+/// Whether a signal came, for work that then ends by itself. Dropped, it listens no more.
 pub(crate) struct Interrupt(());
 
 impl Interrupt {
-    /// From now on the first interrupt, termination or hang-up is a question. Whoever has not ended by itself 1.5 seconds later, or
-    /// when the next signal comes, is ended with exit code 1 and these words.
+    /// From now on the first interrupt, termination or hang-up is a question. Whoever has not ended by itself 1.5
+    /// seconds later, or when the next signal comes, is ended with exit code 1 and these words.
     pub(crate) fn listen(words: impl Into<String>) -> Self {
         *parting() = Some(words.into());
         #[cfg(not(unix))]
@@ -41,7 +41,7 @@ impl Interrupt {
     }
 
     /// The answer to the same question, for other threads.
-    #[expect(clippy::unused_self, reason = "only who listens is told")]
+    #[expect(clippy::unused_self, reason = "only who listens may ask")]
     pub(crate) fn flag(&self) -> &'static AtomicBool {
         &ASKED
     }
@@ -49,7 +49,7 @@ impl Interrupt {
 
 impl Drop for Interrupt {
     fn drop(&mut self) {
-        // Who was told to stop keeps its words until it has.
+        // After a signal the words stay until the work has ended.
         if !self.is_asked() {
             silence();
         }
@@ -103,7 +103,8 @@ mod system {
     /// How long work has to end by itself.
     const GRACE: Duration = Duration::from_millis(1500);
 
-    /// How long it may take to remove what is half written and to say so: a disk or a terminal may be what all waits for.
+    /// How long it may take to remove what is half written and to say so: a disk or a terminal may be what all waits
+    /// for.
     const LAST: Duration = Duration::from_millis(300);
 
     pub(super) fn follow_signals() -> io::Result<()> {

@@ -243,7 +243,7 @@ fn entries(folder: &Path) -> std::io::Result<Vec<Entry>> {
 
 /// The folders in a folder, links to folders not among them.
 fn listed(folder: &Path) -> Vec<PathBuf> {
-    // What cannot be listed here is told when it is looked into.
+    // What cannot be listed here is reported when it is searched.
     let entries = entries(folder).unwrap_or_default().into_iter();
     let folders = entries.filter_map(|entry| match entry {
         Entry::Folder(path) => Some(path),

@@ -8,7 +8,8 @@ use driftworld_text::{Cells, ShownPath};
 
 use super::{Failure, input, output};
 
-/// The largest file of a matrix that is read, in bytes: 7,240 items in numpy's format. It and the matrix are in memory together.
+/// The largest file of a matrix that is read, in bytes: 7,240 items in numpy's format. It and the matrix are in memory
+/// together.
 pub(crate) const MAX_MATRIX_BYTES: u64 = 400 << 20;
 
 /// What a file's name says it holds.

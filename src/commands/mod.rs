@@ -24,6 +24,7 @@ mod modality;
 mod optional;
 mod order;
 mod output;
+mod overwrite;
 mod photograph;
 mod pictures;
 mod render;
@@ -33,7 +34,6 @@ mod sample;
 mod schema;
 mod scoring;
 mod sheet;
-mod spared;
 mod table;
 mod tasks;
 mod transfer_report;
@@ -56,10 +56,10 @@ pub use ask::{Answer, Refusal, ask};
 
 /// Runs the command as a program of its own does, and prints what it has to say; `args` begins with the program's name.
 ///
-/// Returns the exit code: 0 when all went well, 1 when the input or the place for the output is wrong, 2 when the arguments are.
-/// When the reader of the output goes away, as with `| head`, the process ends; so it does within two seconds of an interrupt, a
-/// termination or a hang-up, with nothing half written left: with exit code 1 where something was going on that can be gone on with or
-/// begun again, else by the signal.
+/// Returns the exit code: 0 when all went well, 1 when the input or the place for the output is wrong, 2 when the
+/// arguments are. When the reader of the output goes away, as with `| head`, the process ends; so it does within two
+/// seconds of an interrupt, a termination or a hang-up, with nothing half written left: with exit code 1 where
+/// something was going on that can be gone on with or begun again, else by the signal.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
     let _one_at_a_time = ask::alone();
     translate_panics();
@@ -202,8 +202,8 @@ impl<E: Error + Send + Sync + 'static> From<E> for Failure {
     }
 }
 
-/// Ends the command without a word when the reader of its output goes away, as with `| head`, and with an error where the system has no
-/// threads to give: both reach us as panics of others.
+/// Ends the command without a word when the reader of its output goes away, as with `| head`, and with an error where
+/// the system has no threads to give: both reach us as panics of others.
 fn translate_panics() {
     let default = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |info| {

@@ -6,11 +6,12 @@ use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use driftworld_atomic_files::AtomicFile;
 use driftworld_text::{ShownPath, printable_json, printable_lines};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use super::{Answer, Failure, spared};
+use super::{Answer, Failure, overwrite};
 
 /// What is said while somebody wants it handed back. Not a thing of one thread: subcommands work with many.
 static KEPT: Mutex<Option<Answer>> = Mutex::new(None);
@@ -110,10 +111,18 @@ pub(crate) fn warning(text: impl AsRef<str>) {
     note(format!("warning: {}", text.as_ref()));
 }
 
-/// Writes a file that is there whole or not at all; a device or a pipe is written straight.
+/// Begins a file that is there whole or not at all; a device or a pipe is written straight. None that a log is made of
+/// is written over.
+pub(crate) fn create(path: &Path) -> Result<AtomicFile, Failure> {
+    overwrite::refuse_log_files(path)?;
+    AtomicFile::create(path).map_err(|error| unwritable(path, &error))
+}
+
+/// Writes a file as [`create`] begins it.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    spared::of_logs(path)?;
-    driftworld_atomic_files::write(path, bytes).map_err(|error| unwritable(path, &error))
+    let mut file = create(path)?;
+    let written = file.write_all(bytes).and_then(|()| file.commit());
+    written.map_err(|error| unwritable(path, &error))
 }
 
 /// Why a file cannot be written.

@@ -25,13 +25,14 @@ const MAX_JOBS: usize = 256;
 
 /// Live a curriculum with an agent and log every experience.
 ///
-/// The scenario is a file of ours, or one of L2Explorer's. Tasks and worlds that it names by their paths are looked for from its
-/// own folder first. A run that was interrupted, in whatever way, goes on with --resume
-/// at the first experience that is not in the log, and writes what it would have written undisturbed, to the byte but for the time stamps,
-/// which say when each experience ended: DRIFTWORLD_CLOCK=2026-01-31T12:00:00Z in the environment makes them all that time.
+/// The scenario is a file of ours, or one of L2Explorer's. Tasks and worlds that it names by their paths are looked for
+/// from its own folder first. A run that was interrupted, in whatever way, goes on with --resume at the first
+/// experience that is not in the log, and writes what it would have written undisturbed, to the byte but for the time
+/// stamps, which say when each experience ended: DRIFTWORLD_CLOCK=2026-01-31T12:00:00Z in the environment makes them
+/// all that time.
 ///
-/// Told to stop (Ctrl-C, SIGTERM, SIGHUP) it ends at the next step with exit code 1. It also does when the log is removed, renamed, replaced
-/// or cut meanwhile, and says what is lost.
+/// Told to stop (Ctrl-C, SIGTERM, SIGHUP) it ends at the next step with exit code 1. It also does when the log is
+/// removed, renamed, replaced or cut meanwhile, and says what is lost.
 #[derive(Args)]
 #[command(after_help = "Example:
   driftworld run scenario.json --agent onrails --logs logs/first
@@ -281,7 +282,10 @@ fn is_loss(error: &CurriculumError) -> bool {
     matches!(
         error,
         CurriculumError::Log(
-            MetricsError::FolderLost { .. } | MetricsError::FileLost { .. } | MetricsError::MissingFile { .. }
+            MetricsError::FolderLost { .. }
+                | MetricsError::FileLost { .. }
+                | MetricsError::InfoFileChanged { .. }
+                | MetricsError::MissingFile { .. }
         )
     )
 }

@@ -16,7 +16,7 @@ use driftworld_text::ShownPath;
 use rayon::prelude::*;
 
 use super::interrupt::Interrupt;
-use super::{Failure, input, output, spared};
+use super::{Failure, input, output, overwrite};
 
 /// The most worlds that are drawn at once while streaming.
 const CHUNK: u64 = 1024;
@@ -175,8 +175,7 @@ impl Sample {
                 self.index
             )));
         }
-        spared::of_logs(&self.output)?;
-        spared::inputs(&self.output, [self.task.as_str()])?;
+        overwrite::refuse_inputs(&self.output, [self.task.as_str()])?;
         let variant = tasks::variant(&self.task)?;
         let source = self.source(&variant, count)?;
         let range = self
@@ -247,11 +246,6 @@ impl Sample {
         })
     }
 
-    /// A file that appears when it is whole; a device or a pipe is written straight.
-    fn begin(&self) -> Result<AtomicFile, Failure> {
-        AtomicFile::create(&self.output).map_err(|error| self.failed(&error))
-    }
-
     fn failed(&self, error: &dyn std::fmt::Display) -> Failure {
         output::unwritable(&self.output, error)
     }
@@ -267,7 +261,7 @@ impl Sample {
                 output::print_json(&(world.to_json() + "\n"))
             });
         }
-        let file = self.begin()?;
+        let file = output::create(&self.output)?;
         let is_read_now = file.is_straight();
         let mut file = BufWriter::new(file);
         each(source, range, |(_, _, world)| {
@@ -297,7 +291,8 @@ impl Sample {
         range: std::ops::Range<u64>,
         format: Format,
     ) -> Result<(), Failure> {
-        let mut table = WorldTable::new(BufWriter::new(self.begin()?), format).map_err(|error| self.failed(&error))?;
+        let mut table = WorldTable::new(BufWriter::new(output::create(&self.output)?), format)
+            .map_err(|error| self.failed(&error))?;
         let (task, seed, count) = (variant.task().name(), self.seed, range.end - range.start);
         each(source, range, |(index, variant, world)| {
             let row = Row {

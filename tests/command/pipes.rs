@@ -1,4 +1,5 @@
-//! Devices and pipes in place of a file: they are written straight and as the work goes on, and no folder for temporary files is needed.
+//! Devices and pipes in place of a file: they are written straight and as the work goes on, and no folder for temporary
+//! files is needed.
 #![cfg(unix)]
 
 use std::fs;

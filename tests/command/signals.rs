@@ -1,5 +1,5 @@
-//! A command that is told to stop ends wherever it is, also where it waits for somebody who never comes. How soon, `cargo xtask chaos`
-//! measures; here a command that does not end lets the test run into its limit.
+//! A signal ends a command wherever it is, also where it waits for somebody who never comes. How soon,
+//! `cargo xtask chaos` measures; here a command that does not end lets the test run into its limit.
 #![cfg(unix)]
 
 use std::fs;

@@ -1,5 +1,5 @@
-//! What is no file in place of each file that a command line can name: a device without an end, a link to it, a pipe that nobody
-//! writes to, a socket, a folder. Each ends at once, and says what it found.
+//! What is no file in place of each file that a command line can name: a device without an end, a link to it, a pipe
+//! that nobody writes to, a socket, a folder. Each ends at once, and says what it found.
 
 #![cfg(unix)]
 
@@ -216,7 +216,8 @@ fn read_task() -> String {
     super::terminal::read(root().join("examples/tasks/find_objects.json"))
 }
 
-/// The exit code of a command line, and what it said. It may take ten seconds and four gigabytes, then it is a failure of the test.
+/// The exit code of a command line, and what it said. It may take ten seconds and four gigabytes, then it is a failure
+/// of the test.
 fn ended(folder: &Path, line: &[&str]) -> (Option<i32>, String) {
     let said = folder.join("said.txt");
     let mut child = Command::new("sh")

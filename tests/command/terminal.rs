@@ -56,8 +56,8 @@ pub(crate) fn fail_in(folder: &Path, code: i32, arguments: &[&str]) -> String {
     error
 }
 
-/// The signals that stop a command, as `kill` takes them and by their numbers. Without hanging up where the tests were started under
-/// `nohup`: then the command passes it over, as it should.
+/// The signals that stop a command, as `kill` takes them and by their numbers. Without hanging up where the tests were
+/// started under `nohup`: then the command passes it over, as it should.
 #[cfg(unix)]
 pub(crate) fn signals() -> impl Iterator<Item = (&'static str, i32)> {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

@@ -43,8 +43,8 @@ impl Written {
 
     /// Refuses when the file at this path is not there, is another, or has not the length that it was given.
     ///
-    /// Some file systems number their files anew when nobody has them open: under another number it is the same file if its bytes are
-    /// the same.
+    /// Some file systems number their files anew when nobody has them open: under another number it is the same file if
+    /// its bytes are the same.
     pub(super) fn check(&self, folder: &LogFolder, inside: &Path) -> Result<(), MetricsError> {
         let path = folder.place(inside);
         let found = match fs::metadata(&path) {
@@ -101,7 +101,8 @@ pub(super) struct BlockFile {
 }
 
 impl BlockFile {
-    /// Opens a data file for appending, with its header where it is new. `before` is what this log's writers put there already.
+    /// Opens a data file for appending, with its header where it is new. `before` is what this log's writers put there
+    /// already.
     pub(super) fn open(
         folder: &LogFolder,
         inside: PathBuf,
@@ -135,8 +136,8 @@ impl BlockFile {
         Ok(opened)
     }
 
-    /// Whether the file that was opened is still what its path leads to, and as long as it was left: one question to the system, which
-    /// answers for the log's directory, too. [`Written::check`] says what is wrong.
+    /// Whether the file that was opened is still what its path leads to, and as long as it was left: one question to
+    /// the system, which answers for the log's directory, too. [`Written::check`] says what is wrong.
     pub(super) fn is_as_it_was_left(&self) -> bool {
         fs::metadata(&self.place).is_ok_and(|found| {
             found.is_file() && found.len() == self.written.bytes && self.written.identity == Some(Identity::of(&found))

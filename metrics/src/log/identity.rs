@@ -4,7 +4,8 @@
 
 use std::fs::Metadata;
 
-/// Which file or directory it is, whatever its name: its device and its number there. Equal for all where the system has no such numbers.
+/// Which file or directory it is, whatever its name: its device and its number there. Equal for all where the system
+/// has no such numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Identity(u64, u64);
 

@@ -13,13 +13,15 @@ use crate::MetricsError;
 /// Largest side file that is read, in bytes.
 pub const MAX_JSON_BYTES: u64 = 16 << 20;
 
-/// Most values in a side file: numbers, texts, lists, objects and the like. Each takes a hundred bytes or more when read.
+/// Most values in a side file: numbers, texts, lists, objects and the like. Each takes a hundred bytes or more when
+/// read.
 pub const MAX_JSON_VALUES: u64 = 1_000_000;
 
 /// Reads a file that holds one JSON object.
 ///
 /// # Errors
-/// [`MetricsError::MissingFile`], [`MetricsError::NotAFile`], [`MetricsError::TooLarge`] over 16 MiB and over a million values, [`MetricsError::Json`] with line and column.
+/// [`MetricsError::MissingFile`], [`MetricsError::NotAFile`], [`MetricsError::TooLarge`] over 16 MiB and over a million
+/// values, [`MetricsError::Json`] with line and column.
 pub(super) fn read_object(path: &Path, expected: &'static str) -> Result<Map<String, Value>, MetricsError> {
     let bytes = regular_file::read(path, MAX_JSON_BYTES)?.ok_or_else(|| MetricsError::MissingFile {
         path: path.to_owned(),

@@ -1,5 +1,5 @@
-//! [`LogFolder`]: the directory of a log while it is written. It is locked against a second writer, and asked whether it still is
-//! what lies at its path.
+//! [`LogFolder`]: the directory of a log while it is written. It is locked against a second writer, and asked whether
+//! it still is what lies at its path.
 //!
 //! Not here: the files in it, see `block_file`.
 
@@ -12,15 +12,17 @@ use super::identity::Identity;
 use super::{logger_info, scenario_info};
 use crate::MetricsError;
 
-/// A directory that is held open: the system lets go of its lock when the writer ends, however it ends.
+/// A directory that is held open, so that its lock ends when the writer does, however it ends.
 #[derive(Debug)]
 pub(super) struct LogFolder {
     /// As the user gave it, for messages.
     shown: PathBuf,
     /// The same from the root: the process may turn to another directory.
     place: PathBuf,
-    /// `None` where directories cannot be opened.
-    held: Option<File>,
+    /// Held, not used: the system lets go of its lock when it is closed. `None` where directories cannot be opened.
+    _held: Option<File>,
+    /// Of the directory that is held.
+    identity: Option<Identity>,
     /// The info files that it holds, with their lengths in bytes.
     info: Vec<(&'static str, u64)>,
 }
@@ -28,10 +30,15 @@ pub(super) struct LogFolder {
 impl LogFolder {
     /// Opens and locks a directory that is there.
     pub(super) fn lock(dir: &Path) -> Result<Self, MetricsError> {
+        let place = std::path::absolute(dir).map_err(MetricsError::io(dir, "find this directory"))?;
+        let held = lock(dir)?;
+        let found = held.as_ref().map(File::metadata).transpose();
+        let found = found.map_err(MetricsError::io(dir, "look at this directory"))?;
         Ok(Self {
             shown: dir.to_owned(),
-            place: std::path::absolute(dir).map_err(MetricsError::io(dir, "find this directory"))?,
-            held: lock(dir)?,
+            place,
+            identity: found.as_ref().map(Identity::of),
+            _held: held,
             info: Vec::new(),
         })
     }
@@ -64,10 +71,8 @@ impl LogFolder {
     pub(super) fn check<'a>(&self, written: impl Iterator<Item = &'a Written>) -> Result<(), MetricsError> {
         let found = match fs::metadata(&self.place) {
             Ok(found) if !found.is_dir() => "a file",
-            Ok(found) => match self.identity()? {
-                Some(held) if held != Identity::of(&found) => "another directory",
-                _ => return Ok(()),
-            },
+            Ok(found) if self.identity.is_some_and(|held| held != Identity::of(&found)) => "another directory",
+            Ok(_) => return Ok(()),
             Err(error) if error.kind() == ErrorKind::NotFound => "no directory",
             Err(error) => return Err(MetricsError::io(&self.shown, "find this directory")(error)),
         };
@@ -125,19 +130,13 @@ impl LogFolder {
         }
         Ok(())
     }
-
-    fn identity(&self) -> Result<Option<Identity>, MetricsError> {
-        let held = self.held.as_ref().map(File::metadata).transpose();
-        let held = held.map_err(MetricsError::io(&self.shown, "look at this directory"))?;
-        Ok(held.as_ref().map(Identity::of))
-    }
 }
 
-/// Keeps a second writer away from a directory, as long as the file that comes back is open. Where the system has no such locks, there
-/// is none.
+/// Keeps a second writer away from a directory, as long as the file that comes back is open. Where the system has no
+/// such locks, there is none.
 ///
-/// It is the directory that is locked: it is there before any file of the log, and no file is put in its place. Only where locks
-/// are advice: elsewhere they would keep readers away, too.
+/// It is the directory that is locked: it is there before any file of the log, and no file is put in its place. Only
+/// where locks are advice: elsewhere they would keep readers away, too.
 fn lock(dir: &Path) -> Result<Option<File>, MetricsError> {
     lock_by(dir, File::try_lock)
 }

@@ -1,5 +1,5 @@
-//! What is to be read must be a regular file: a pipe would be waited for without an end, a device may never end. How files are
-//! opened is `driftworld-files`'; here its errors become those of logs.
+//! What is to be read must be a regular file: a pipe would be waited for without an end, a device may never end. How
+//! files are opened is `driftworld-files`'; here its errors become those of logs.
 //!
 //! Not here: reading what is in them.
 

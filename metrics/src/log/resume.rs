@@ -96,7 +96,8 @@ fn check_header(path: &Path, header: &[String], metrics: &[String]) -> Result<()
     })
 }
 
-/// Cuts a file after its last whole row. Returns how many bytes are left; a file without a row, not even a header, is removed.
+/// Cuts a file after its last whole row. Returns how many bytes are left; a file without a row, not even a header, is
+/// removed.
 ///
 /// What is cut off is a part of one row: where a quote was left open and swallowed other rows, or lines end otherwise than ours,
 /// nothing is touched.

@@ -194,8 +194,8 @@ fn copy(log_dir: &Path, data_files: &[PathBuf], to: &Path) -> Result<(), Metrics
         let target = to.join(inside);
         let parent = target.parent().unwrap_or(to);
         fs::create_dir_all(parent).map_err(MetricsError::io(parent, "make this directory"))?;
-        // Not the system's copy: that takes the mode along, whatever the umask says. What was just written, not by driftworld-files: it is
-        // ours.
+        // Not the system's copy: that takes the mode along, whatever the umask says.
+        // What was just found, not by driftworld-files: it is a file of the log.
         let copied = fs::File::open(file).and_then(|mut from| {
             let mut to = fs::File::create(&target)?;
             std::io::copy(&mut from, &mut to)?;

@@ -20,8 +20,8 @@ use crate::log::BlockType;
 /// turns to the next: a machine that loses its power loses rows of the last block at most. Two writers on one directory
 /// would spoil it, so that the second is refused where the system can tell.
 ///
-/// Before each record, and at the end, it looks whether the directory and the files are still those that it wrote, and as long: what
-/// was removed, renamed, replaced or cut meanwhile is an error, and never made anew.
+/// Before each record, and at the end, it looks whether the directory and the files are still those that it wrote, and
+/// as long: what was removed, renamed, replaced or cut meanwhile is an error, and never made anew.
 #[derive(Debug)]
 pub struct LogWriter {
     folder: LogFolder,
@@ -102,9 +102,10 @@ impl LogWriter {
     /// Writes one record as one line and flushes it.
     ///
     /// # Errors
-    /// [`MetricsError::Record`] when it breaks a rule of the format: then nothing is written, and the log goes on as
-    /// if it had not been given. [`MetricsError::Io`] when the disk refuses: a line begun is taken back if possible.
-    /// [`MetricsError::FolderLost`] and [`MetricsError::FileLost`] when what was written so far is no longer there: then nothing is written.
+    /// [`MetricsError::Record`] when it breaks a rule of the format: then nothing is written, and the log goes on as if
+    /// it had not been given. [`MetricsError::Io`] when the disk refuses: a line begun is taken back if possible.
+    /// [`MetricsError::FolderLost`] and [`MetricsError::FileLost`] when what was written so far is no longer there:
+    /// then nothing is written.
     pub fn write(&mut self, record: &Record) -> Result<(), MetricsError> {
         check_cells(record)?;
         self.check_metrics(record)?;
@@ -124,12 +125,12 @@ impl LogWriter {
         Ok(())
     }
 
-    /// Ends the log: nothing is pending, since every record was flushed; this asks the disk to have it, too, and looks whether all
-    /// of it is there.
+    /// Ends the log: nothing is pending, since every record was flushed; this asks the disk to have it, too, and looks
+    /// whether all of it is there.
     ///
     /// # Errors
-    /// [`MetricsError::Io`]; [`MetricsError::FolderLost`], [`MetricsError::FileLost`] and [`MetricsError::MissingFile`] when not all
-    /// that was written is there.
+    /// [`MetricsError::Io`]; [`MetricsError::FolderLost`], [`MetricsError::FileLost`] and [`MetricsError::MissingFile`]
+    /// when not all that was written is there.
     pub fn finish(mut self) -> Result<(), MetricsError> {
         self.check_folder()?;
         self.put_away()?;
@@ -139,7 +140,8 @@ impl LogWriter {
             .try_for_each(|(inside, written)| written.check(&self.folder, inside))
     }
 
-    /// Opens or makes the file of a record's worker and block if it is not the one that is open, and looks whether all is as it was left.
+    /// Opens or makes the file of a record's worker and block if it is not the one that is open, and looks whether all
+    /// is as it was left.
     fn turn_to(&mut self, record: &Record, columns: &[String]) -> Result<(), MetricsError> {
         let inside = data_path(&record.worker_id, record.block_num, record.block_type);
         let is_open = |open: &&BlockFile| open.inside == inside;

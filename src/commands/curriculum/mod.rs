@@ -18,7 +18,7 @@ use driftworld_text::ShownPath;
 
 use super::assets::LibraryChoice;
 use super::order::OrderArgs;
-use super::{Failure, output, spared};
+use super::{Failure, output, overwrite};
 use proof::Proof;
 pub(crate) use tables::{blocks, choices};
 
@@ -208,7 +208,7 @@ impl Curriculum {
         self.check_arguments(several)?;
         let targets = [Some(&self.output), self.plot.as_ref()];
         for target in targets.into_iter().flatten() {
-            spared::inputs(target, self.tasks.iter().map(String::as_str))?;
+            overwrite::refuse_inputs(target, self.tasks.iter().map(String::as_str))?;
         }
         let chosen = self.choose()?;
         let mut proof = Proof::new(self.worlds, &self.libraries)?;

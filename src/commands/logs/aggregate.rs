@@ -7,15 +7,11 @@ use std::path::{Path, PathBuf};
 use crate::columns;
 use crate::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
 use clap::{Args, ValueEnum};
-use driftworld_atomic_files::AtomicFile;
 use driftworld_text::{Cells, ShownPath};
 
 use super::super::table::cells;
-use super::super::{Failure, log_folders, output};
+use super::super::{Failure, log_folders, output, overwrite};
 use super::count;
-
-/// Files of a log that a table must not take the place of, or stand beside as one more.
-const OF_LOGS: [&str; 3] = ["data-log.tsv", "logger_info.json", "scenario_info.json"];
 
 /// Write the rows of one log or several as one table.
 ///
@@ -77,7 +73,7 @@ impl Aggregate {
         } else {
             log_folders::named(&self.logs)?
         };
-        self.spare(&logs)?;
+        overwrite::refuse_log_files(&self.output)?;
         let mut table = LogTable::new(if self.incomplete {
             KeptRows::All
         } else {
@@ -127,36 +123,9 @@ impl Aggregate {
         }
     }
 
-    /// Refuses a name that is a file of one of the logs, or would be read as one.
-    fn spare(&self, logs: &[PathBuf]) -> Result<(), Failure> {
-        let name = self.output.file_name().unwrap_or_default();
-        if !OF_LOGS.iter().any(|of_logs| name == *of_logs) {
-            return Ok(());
-        }
-        let folder = self.output.parent().unwrap_or(Path::new(""));
-        let folder = if folder.as_os_str().is_empty() {
-            Path::new(".")
-        } else {
-            folder
-        };
-        let absolute = |path: &Path| path.canonicalize().ok();
-        let inside = |log: &&PathBuf| match (absolute(folder), absolute(log)) {
-            (Some(folder), Some(log)) => folder.starts_with(log),
-            _ => false,
-        };
-        match logs.iter().find(inside) {
-            None => Ok(()),
-            Some(log) => Err(Failure::input(format!(
-                "{}: found a name that is part of the log {}, expected another file; the log would be lost",
-                self.output.shown(),
-                log.shown()
-            ))),
-        }
-    }
-
     fn write(&self, table: &LogTable, format: Format) -> Result<(), Failure> {
         let failed = |error: &dyn std::fmt::Display| output::unwritable(&self.output, error);
-        let file = AtomicFile::create(&self.output).map_err(|error| failed(&error))?;
+        let file = output::create(&self.output)?;
         let file =
             written(table, format, cells(self.raw_cells), BufWriter::new(file)).map_err(|error| failed(&error))?;
         let file = file.into_inner().map_err(|error| failed(&error.into_error()))?;

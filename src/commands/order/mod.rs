@@ -17,7 +17,7 @@ use compare::Comparison;
 
 use super::table::{cells, table};
 use super::weights::WeightArgs;
-use super::{Failure, input, matrix_file, output, pictures, spared};
+use super::{Failure, input, matrix_file, output, overwrite, pictures};
 
 /// Put variants into an order by their distances.
 ///
@@ -64,7 +64,7 @@ pub(crate) struct Order {
 impl Order {
     pub(crate) fn run(self) -> Result<(), Failure> {
         for target in [&self.matrix, &self.plot].into_iter().flatten() {
-            spared::inputs(target, self.tasks.iter().map(String::as_str))?;
+            overwrite::refuse_inputs(target, self.tasks.iter().map(String::as_str))?;
         }
         let matrix = match &self.from_matrix {
             Some(path) => matrix_file::read("--from-matrix", path)?,

@@ -20,8 +20,9 @@ use neighbours::Neighbours;
 /// The page is one HTML file that loads nothing and needs no network. Of several lifetimes each has a chapter, and together they
 /// have intervals; with --against, two agents are compared.
 ///
-/// The timeline says how far apart neighbouring learning blocks are: by the matrix that --distances names, or else, for logs of
-/// `driftworld run`, as measured now from the scenario in the log: between variants of built-in tasks, and of those that --task names.
+/// The timeline says how far apart neighbouring learning blocks are: by the matrix that --distances names, or else, for
+/// logs of `driftworld run`, as measured now from the scenario in the log: between variants of built-in tasks, and of
+/// those that --task names.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld report demo-out/log -o report.html
@@ -47,8 +48,8 @@ pub(crate) struct Report {
     /// A distance matrix, as `driftworld order --matrix` writes it: .csv, .json or .npy.
     #[arg(long, value_name = "FILE")]
     distances: Option<PathBuf>,
-    /// A task spec that the logs name, for the distances between their blocks; may be given several times. Logs may name any file, so
-    /// that only built-in tasks and these are looked at.
+    /// A task spec that the logs name, for the distances between their blocks; may be given several times. Logs may
+    /// name any file, so that only built-in tasks and these are looked at.
     #[arg(long = "task", value_name = "FILE")]
     tasks: Vec<PathBuf>,
     /// Write the figures into this folder too: `NAME_raw.png`, `NAME_raw.svg` and so on; NAME is the log's.

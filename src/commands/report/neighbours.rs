@@ -150,7 +150,8 @@ impl Tasks {
         })
     }
 
-    /// The task of a name in a log: a file by its path, or else by its name alone, for the log may come from another folder.
+    /// The task of a name in a log: a file by its path, or else by its name alone, for the log may come from another
+    /// folder.
     fn task(&self, called: &str) -> Option<Arc<TaskSpec>> {
         if tasks::built_in_names().contains(&called) {
             return tasks::task(called).ok();

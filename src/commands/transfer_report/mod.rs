@@ -14,7 +14,7 @@ use driftworld_text::ShownPath;
 use super::metrics::score_logs;
 use super::pictures::scatter;
 use super::scoring::Experts;
-use super::{Failure, log_folders, matrix_file, output, spared};
+use super::{Failure, log_folders, matrix_file, output, overwrite};
 
 /// Ask whether similar variants transferred more, by logs and distances.
 ///
@@ -88,7 +88,7 @@ impl From<Measure> for TransferMethod {
 impl TransferReport {
     pub(crate) fn run(self) -> Result<(), Failure> {
         if let Some(target) = &self.output {
-            spared::inputs(target, self.distances.to_str())?;
+            overwrite::refuse_inputs(target, self.distances.to_str())?;
         }
         let distances = matrix_file::read("--distances", &self.distances)?;
         let measure = self.transfer_method.into();
