@@ -431,7 +431,7 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
 
 #[test]
 fn every_error_has_its_message_and_its_code() {
-    let source = include_str!("../src/error.rs");
+    let source = include_str!("../src/error/code.rs");
     let declared: Vec<&str> = source
         .lines()
         .filter_map(|line| line.split_once("=> \""))

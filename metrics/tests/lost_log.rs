@@ -165,7 +165,8 @@ proptest! {
         prop_assert_eq!(error.code(), expected, "{}", error);
         let message = error.to_string();
         prop_assert!(message.starts_with(dir.to_str().unwrap()), "{}", message);
-        // Rows may have gone into files that stand as they were, but nothing into what was hit, and no folder was made in its place.
+        // Rows may have gone into files that stand as they were, but nothing into what was hit, and no folder was made
+        // in its place.
         if mishap.is_of_the_folder() {
             prop_assert_eq!(listed(base.path()), left);
             prop_assert!(message.contains(&format!("with it went {written} row")), "{}", message);

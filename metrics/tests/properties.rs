@@ -1,6 +1,7 @@
 //! What must hold of every log and of every score, whatever the lifetime was.
 //!
-//! Not here: single lifetimes with their numbers, see `tiny_lifetime` and `reference`; logs that are broken, see the package `driftworld-fuzz`.
+//! Not here: single lifetimes with their numbers, see `tiny_lifetime` and `reference`; logs that are broken, see the
+//! package `driftworld-fuzz`.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 

@@ -16,6 +16,7 @@ mod scenario;
 pub mod schema;
 mod task;
 mod version;
+mod warning;
 mod world;
 
 pub use classes::Classes;
@@ -26,7 +27,6 @@ pub use distribution::{
 };
 pub use document::{MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_VALUES, MAX_WORLD_VALUES};
 pub use error::{MAX_PROBLEMS, Problem, SpecError, nearest};
-pub use l2explorer::Warning;
 pub use names::sound_name;
 pub use scenario::{
     Block, BlockKind, DriftSchedule, DriftSwitch, MAX_EXPERIENCES, Phase, Regime, RegimeDrift, Scenario,
@@ -38,6 +38,7 @@ pub use task::{
     Value, Variant, VariantSpec,
 };
 pub use version::{SCENARIO_VERSION, TASK_VERSION, WORLD_VERSION};
+pub use warning::Warning;
 pub use world::{
     ActionModel, ActionSpace, AgentParams, Enclosure, EndCondition, EnvironmentParams, GameMode, ImageParams,
     LastEvent, MAX_OBJECTS, MAX_POINTS, MAX_SEED, Modality, Model, MotionModel, Object, ObjectProgress, Origin,

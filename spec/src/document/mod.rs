@@ -1,5 +1,5 @@
-//! A JSON text with a memory of where each value stands. What is wrong with a value is said by `schema.rs` and the types; how the
-//! value is built within limits by `value.rs`, where things stand in the text by `places.rs`.
+//! A JSON text with a memory of where each value stands. What is wrong with a value is said by `schema.rs` and the
+//! types; how the value is built within limits by `value.rs`, where things stand in the text by `places.rs`.
 
 mod places;
 mod value;
@@ -28,7 +28,8 @@ pub const MAX_VALUES: usize = 1_000_000;
 /// The longest key, in bytes. Longer ones would stand in every pointer to what is below them.
 pub const MAX_KEY_BYTES: usize = 400;
 
-/// How deep lists and objects may stand in each other: `serde_json`'s limit, which keeps a hostile text from taking the whole stack.
+/// How deep lists and objects may stand in each other: `serde_json`'s limit, which keeps a hostile text from taking the
+/// whole stack.
 pub const MAX_DEPTH: usize = 127;
 
 /// A parsed JSON text.
@@ -56,8 +57,8 @@ impl<'a> Document<'a> {
         Ok(document)
     }
 
-    /// Parses a text as most programs do: of keys that stand twice in one object the last counts. Hands back the pointers of
-    /// those that do, the first of them.
+    /// Parses a text as most programs do: of keys that stand twice in one object the last counts. Hands back the
+    /// pointers of those that do, the first of them.
     pub(crate) fn parse_leniently(name: &'a str, text: &'a str, most: usize) -> Result<(Self, Vec<String>), SpecError> {
         Self::parse_with_repeats(name, text, most)
     }

@@ -1,5 +1,5 @@
-//! Where things stand in a JSON text, found in one walk along its words: nothing of it is taken into memory, so that a large document
-//! with problems costs no more than one without. What is wrong is said elsewhere.
+//! Where things stand in a JSON text, found in one walk along its words: nothing of it is taken into memory, so that a
+//! large document with problems costs no more than one without. What is wrong is said elsewhere.
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};

@@ -1,5 +1,5 @@
-//! Builds the value of a JSON text within limits: so many values, keys so long, and no key twice in one object. What is built takes
-//! no more room than it needs: a document of lists within lists would take ten times as much otherwise.
+//! Builds the value of a JSON text within limits: so many values, keys so long, and no key twice in one object. What is
+//! built takes no more room than it needs: a document of lists within lists would take ten times as much otherwise.
 
 use std::cell::{Cell, RefCell};
 use std::fmt;
@@ -39,13 +39,12 @@ pub(super) fn parse(text: &str, most: usize, repeats: Repeats) -> Result<Value, 
     };
     let mut parser = serde_json::Deserializer::from_str(text);
     let built = (&mut parser).deserialize_any(AnyValue(&builder));
-    let built = builder.counted(built);
     let ended = built.and_then(|value| parser.end().map(|()| value));
     ended.map_err(|error| (error, builder.stop.get()))
 }
 
 struct Builder {
-    /// How many values there may be yet, the outermost not counted.
+    /// How many values there may be yet, the outermost among them.
     left: Cell<usize>,
     stop: Cell<Option<Stop>>,
     repeats: Repeats,
@@ -54,12 +53,6 @@ struct Builder {
 }
 
 impl Builder {
-    /// Counts the outermost value, too.
-    fn counted<E>(&self, built: Result<Value, E>) -> Result<Value, E> {
-        self.left.set(self.left.get().saturating_sub(1));
-        built
-    }
-
     fn stop<E: Error>(&self, stop: Stop) -> E {
         self.stop.set(Some(stop));
         E::custom("not read further")

@@ -4,45 +4,16 @@
 //! Its scenario files, which name such reset files, are in `scenario.rs`.
 //!
 //! The dialect is the smaller language: every file of it becomes a world, but a world may hold more than a file can.
-//! Both directions hand back a [`Warning`] for whatever did not pass as it stood. A number of a predefined map means the
-//! original's regions there, and our own here.
+//! Both directions hand back a [`Warning`](crate::Warning) for whatever did not pass as it stood. A number of a
+//! predefined map means the original's regions there, and our own here.
 
 mod lenient;
 mod mend;
-pub(crate) mod read;
+mod read;
 mod scenario;
 mod write;
 
-use std::fmt;
-
-use driftworld_text::one_line;
-
 use crate::world::MotionModel;
-
-/// Something that did not pass between a file of the original and a world as it stands.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Warning {
-    /// The document's name; `world` for a warning of [`World::to_l2explorer`](crate::World::to_l2explorer).
-    pub name: String,
-    /// JSON pointer to the value: into the file that was read, or into the world that was written.
-    pub pointer: String,
-    /// Line in the text, from 1; 0 for a warning about a world, which need not have a text.
-    pub line: usize,
-    /// Column in the line, from 1; 0 where `line` is 0.
-    pub column: usize,
-    /// What was found, and what was made of it.
-    pub text: String,
-}
-
-impl fmt::Display for Warning {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "{}", one_line(&self.name))?;
-        if self.line > 0 {
-            write!(f, ":{}:{}", self.line, self.column)?;
-        }
-        write!(f, " ({}): {}", one_line(&self.pointer), one_line(&self.text))
-    }
-}
 
 /// The keys of one part of a reset file, as we write them.
 struct Keys {
@@ -213,19 +184,5 @@ mod tests {
         check("ImageParams", &IMAGE);
         check("Rules", &RULES);
         check("Object", &OBJECT);
-    }
-
-    #[test]
-    fn a_warning_without_a_line_names_no_line() {
-        let mut warning = Warning {
-            name: "world".into(),
-            pointer: "/rules/step_reward".into(),
-            line: 0,
-            column: 0,
-            text: "lost".into(),
-        };
-        assert_eq!(warning.to_string(), "world (/rules/step_reward): lost");
-        (warning.line, warning.column) = (3, 7);
-        assert_eq!(warning.to_string(), "world:3:7 (/rules/step_reward): lost");
     }
 }

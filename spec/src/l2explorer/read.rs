@@ -9,11 +9,12 @@ use serde_json::{Map, Value as Json, json};
 
 use super::lenient::{drop_decimal_point, stimulus, word};
 use super::mend::{self, Entry};
-use super::{AGENT, ASSUMED_SPEED, ENVIRONMENT, IMAGE, Keys, OBJECT, RULES, WORLD, Warning, black_is_chosen};
+use super::{AGENT, ASSUMED_SPEED, ENVIRONMENT, IMAGE, Keys, OBJECT, RULES, WORLD, black_is_chosen};
 use crate::document::{Document, MAX_VALUES, MAX_WORLD_VALUES, describe, escape};
-use crate::error::{MAX_PROBLEMS, Problem, SpecError};
+use crate::error::{Problem, SpecError};
 use crate::maps::MapLibrary;
 use crate::schema;
+use crate::warning::{Remarks, Warning};
 use crate::world::{AgentParams, EnvironmentParams, ImageParams, MAX_OBJECTS, Object, World};
 
 impl World {
@@ -98,53 +99,6 @@ impl Object {
         document.check_schema(schema::object())?;
         let object = document.deserialize()?;
         Ok((object, document.warnings(reader.warnings)))
-    }
-}
-
-impl Document<'_> {
-    /// What the reader remarked, in the order of the text.
-    pub(crate) fn warnings(&self, remarks: Remarks) -> Vec<Warning> {
-        let Remarks { first: remarks, more } = remarks;
-        let pointers: Vec<&str> = remarks.iter().map(|(pointer, _)| pointer.as_str()).collect();
-        let places = self.places(&pointers);
-        let warning = |((pointer, text), (line, column))| {
-            let name = self.name.to_owned();
-            Warning {
-                name,
-                pointer,
-                line,
-                column,
-                text,
-            }
-        };
-        let mut warnings: Vec<Warning> = remarks.into_iter().zip(places).map(warning).collect();
-        warnings.sort_by_key(|warning| (warning.line, warning.column));
-        warnings.extend((more > 0).then(|| Warning {
-            name: self.name.to_owned(),
-            pointer: String::new(),
-            line: 0,
-            column: 0,
-            text: format!("there are {more} more remarks like these"),
-        }));
-        warnings
-    }
-}
-
-/// What is odd about a document, the first few hundred of it.
-#[derive(Debug, Default)]
-pub(crate) struct Remarks {
-    /// Each with the pointer to what it is about.
-    first: Vec<(String, String)>,
-    more: usize,
-}
-
-impl Remarks {
-    pub(crate) fn push(&mut self, pointer: String, text: String) {
-        if self.first.len() < MAX_PROBLEMS {
-            self.first.push((pointer, text));
-        } else {
-            self.more += 1;
-        }
     }
 }
 

@@ -10,11 +10,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use driftworld_text::check_name;
 use serde_json::{Map, Value as Json, json};
 
-use super::Warning;
-use super::read::Remarks;
 use crate::document::{Document, MAX_SCENARIO_VALUES, describe, escape};
 use crate::error::{MAX_PROBLEMS, Problem, SpecError, cut};
 use crate::scenario::{Block, BlockKind, MAX_EXPERIENCES, Phase, Regime, Scenario, ScenarioForm, TaskLabel};
+use crate::warning::{Remarks, Warning};
 
 /// The most steps that a regime may allow, as our own documents have it.
 const MAX_STEPS: u64 = 1_000_000_000;

@@ -5,8 +5,9 @@ use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
-use super::{AGENT, ASSUMED_SPEED, ENVIRONMENT, Keys, OBJECT, RULES, WORLD, Warning, black_is_chosen, moves};
+use super::{AGENT, ASSUMED_SPEED, ENVIRONMENT, Keys, OBJECT, RULES, WORLD, black_is_chosen, moves};
 use crate::document::describe;
+use crate::warning::Warning;
 use crate::world::{MotionModel, Object, World};
 
 /// How the text of a warning ends where the original has no key for a value.

@@ -1,5 +1,6 @@
-//! JSON values that count the errors found in them, so that a schema stops listing after a few hundred in any one list or object: its
-//! errors take a kilobyte each, and a wrong list may have millions of items. What the errors mean is `explain.rs`'s.
+//! JSON values that count the errors found in them, so that a schema stops listing after a few hundred in any one list
+//! or object: its errors take a kilobyte each, and a wrong list may have millions of items. What the errors mean is
+//! `explain.rs`'s.
 
 use std::borrow::Cow;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -117,8 +118,9 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
         jsonschema::json::cmp::equal(self.looked_at(), expected)
     }
 
-    /// Every error asks for the value that it is about: so they are counted. It gets none, for some errors keep a copy of their own:
-    /// `explain.rs` looks the value up by its place. Names are no part of the document, and are handed out.
+    /// Every error asks for the value that it is about: so they are counted. It gets none, for some errors keep a copy
+    /// of their own: `explain.rs` looks the value up by its place. Names are no part of the document, and are handed
+    /// out.
     fn to_value(&self) -> Cow<'a, Value> {
         match self.tally {
             Some(tally) => {
@@ -134,8 +136,8 @@ impl<'a> Node<'a, Counting> for Counted<'a> {
     }
 }
 
-/// Items or members up to a few hundred errors in them, or a few hundred members of which nothing was asked: those are keys that may
-/// not be there, which are listed by their names.
+/// Items or members up to a few hundred errors in them, or a few hundred members of which nothing was asked: those are
+/// keys that may not be there, which are listed by their names.
 pub(super) struct UntilFull<'a, I> {
     inner: I,
     holder: Counted<'a>,

@@ -46,7 +46,8 @@ impl DocumentSchema {
         &self.json
     }
 
-    /// What in a value the schema does not allow; of any one list or object about [`MAX_PROBLEMS`](crate::MAX_PROBLEMS) of it.
+    /// What in a value the schema does not allow; of any one list or object about [`MAX_PROBLEMS`](crate::MAX_PROBLEMS)
+    /// of it.
     pub(crate) fn problems(&self, value: &Value) -> Vec<Problem> {
         // Nearly every document is sound, and the short answer is much faster than the list.
         if self.validator.is_valid(value) {

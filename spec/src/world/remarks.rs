@@ -4,8 +4,7 @@
 use super::{MotionModel, Object, World};
 use crate::document::{Document, MAX_WORLD_VALUES};
 use crate::error::SpecError;
-use crate::l2explorer::Warning;
-use crate::l2explorer::read::Remarks;
+use crate::warning::{Remarks, Warning};
 
 impl Object {
     /// Whether the object means to move by itself, and cannot: it has no speed, or its patrol no waypoints.

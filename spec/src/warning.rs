@@ -1,0 +1,100 @@
+//! What is odd about a document that can be read: [`Warning`]s with their places, the first few hundred of them. What is wrong with a
+//! document is in `error.rs`.
+
+use std::fmt;
+
+use driftworld_text::one_line;
+
+use crate::document::Document;
+use crate::error::MAX_PROBLEMS;
+
+/// Something that did not pass between a file of the original and a world as it stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// The document's name; `world` for a warning of [`World::to_l2explorer`](crate::World::to_l2explorer).
+    pub name: String,
+    /// JSON pointer to the value: into the file that was read, or into the world that was written.
+    pub pointer: String,
+    /// Line in the text, from 1; 0 for a warning about a world, which need not have a text.
+    pub line: usize,
+    /// Column in the line, from 1; 0 where `line` is 0.
+    pub column: usize,
+    /// What was found, and what was made of it.
+    pub text: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{}", one_line(&self.name))?;
+        if self.line > 0 {
+            write!(f, ":{}:{}", self.line, self.column)?;
+        }
+        write!(f, " ({}): {}", one_line(&self.pointer), one_line(&self.text))
+    }
+}
+
+/// What is odd about a document, the first few hundred of it.
+#[derive(Debug, Default)]
+pub(crate) struct Remarks {
+    /// Each with the pointer to what it is about.
+    first: Vec<(String, String)>,
+    more: usize,
+}
+
+impl Remarks {
+    pub(crate) fn push(&mut self, pointer: String, text: String) {
+        if self.first.len() < MAX_PROBLEMS {
+            self.first.push((pointer, text));
+        } else {
+            self.more += 1;
+        }
+    }
+}
+
+impl Document<'_> {
+    /// What the reader remarked, in the order of the text.
+    pub(crate) fn warnings(&self, remarks: Remarks) -> Vec<Warning> {
+        let Remarks { first: remarks, more } = remarks;
+        let pointers: Vec<&str> = remarks.iter().map(|(pointer, _)| pointer.as_str()).collect();
+        let places = self.places(&pointers);
+        let warning = |((pointer, text), (line, column))| {
+            let name = self.name.to_owned();
+            Warning {
+                name,
+                pointer,
+                line,
+                column,
+                text,
+            }
+        };
+        let mut warnings: Vec<Warning> = remarks.into_iter().zip(places).map(warning).collect();
+        warnings.sort_by_key(|warning| (warning.line, warning.column));
+        warnings.extend((more > 0).then(|| Warning {
+            name: self.name.to_owned(),
+            pointer: String::new(),
+            line: 0,
+            column: 0,
+            text: format!("there are {more} more remarks like these"),
+        }));
+        warnings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_warning_without_a_line_names_no_line() {
+        let mut warning = Warning {
+            name: "world".into(),
+            pointer: "/rules/step_reward".into(),
+            line: 0,
+            column: 0,
+            text: "lost".into(),
+        };
+        assert_eq!(warning.to_string(), "world (/rules/step_reward): lost");
+        (warning.line, warning.column) = (3, 7);
+        assert_eq!(warning.to_string(), "world:3:7 (/rules/step_reward): lost");
+    }
+}
