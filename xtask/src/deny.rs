@@ -1,5 +1,5 @@
 //! The `deny` stage: cargo-deny over every crate of the workspace. The rules stand in `deny.toml`; what is known of
-//! crates where the database of advisories cannot be had is in `advisories.rs`.
+//! crates where the database of advisories cannot be reached is in `advisories.rs`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ const NO_ADVISORY: &str = "```toml\n[advisory]\nid = \"RUSTSEC-2000-0001\"\npack
 /// Where cargo-deny has the database from.
 const ADDRESS: &str = "https://github.com/RustSec/advisory-db";
 
-/// Checks bans, licences and sources, then advisories as far as their database can be had; what was not checked is
+/// Checks bans, licences and sources, then advisories as far as their database can be reached; what was not checked is
 /// said.
 pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
     if !works(cargo(workspace, &["deny", "--version"])) {
@@ -45,7 +45,7 @@ pub(crate) fn stage(workspace: &Workspace) -> Result<Outcome, XtaskError> {
     }
     run(Database::empty(workspace)?.check(workspace))?;
     Ok(Outcome::Partly(format!(
-        "bans, licences, sources and yanked versions are as they should be; advisories were not checked, for their database cannot be had \
+        "bans, licences, sources and yanked versions are as they should be; advisories were not checked, for their database cannot be reached \
          ({ADDRESS}; {DATABASE} may name a clone). {}",
         advisories::known(workspace)?
     )))
@@ -57,7 +57,7 @@ pub(crate) fn write_down(workspace: &Workspace) -> Result<(), XtaskError> {
     let Some(database) = Database::fetched(workspace)? else {
         return Err(XtaskError::Missing {
             what: "advisories",
-            reason: "the database cannot be had from GitHub; name a clone of it in DRIFTWORLD_ADVISORY_DB",
+            reason: "the database cannot be reached at GitHub; name a clone of it in DRIFTWORLD_ADVISORY_DB",
         });
     };
     run(database.check(workspace))?;
@@ -76,7 +76,7 @@ struct Database {
 }
 
 impl Database {
-    /// The one that everybody shares; none if it cannot be had.
+    /// The one that everybody shares; none if it cannot be reached.
     fn fetched(workspace: &Workspace) -> Result<Option<Self>, XtaskError> {
         let folder = workspace.target.join("deny").join("advisories");
         Self::from(workspace, &folder, std::env::var_os(DATABASE).map(PathBuf::from))

@@ -23,7 +23,8 @@ pub(crate) fn rewrite(workspace: &Workspace) -> Result<(), XtaskError> {
 }
 
 fn driftworld_schema(workspace: &Workspace, arguments: &[&str]) -> Result<(), XtaskError> {
-    // With the features of the tests, which have built it already; with the examples, for Cargo asks those of tests only then.
+    // With the features of the tests, which have built it already; with the examples, for Cargo asks those of tests
+    // only then.
     run(cargo(
         workspace,
         &[&["build", "--quiet", "--bins", "--examples"], &AS_TESTED[..]].concat(),

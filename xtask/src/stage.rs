@@ -45,7 +45,8 @@ pub(crate) enum Outcome {
 }
 
 impl Stage {
-    /// First the quick ones, of these the quickest first; then those that want a graphics driver, several Pythons or packages of gigabytes.
+    /// First the quick ones, of these the quickest first; then those that want a graphics driver, several Pythons or
+    /// packages of gigabytes.
     pub(crate) const ALL: [Self; 19] = [
         Self::Fmt,
         Self::Layers,
@@ -126,7 +127,7 @@ impl Stage {
                 "Python clients of ML-Agents, old and new, drive driftworld-unity as they drive a Unity build"
             }
             Self::Deny => {
-                "licences, advisories and sources of dependencies are as deny.toml allows; advisories as far as their database can be had"
+                "licences, advisories and sources of dependencies are as deny.toml allows; advisories as far as their database can be reached"
             }
             Self::Rebuilds => "no crate of others was built twice under one profile",
         }

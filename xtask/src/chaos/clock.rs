@@ -1,4 +1,5 @@
-//! A clock that jumps back and forth by years while a run goes on and is killed: the rows are the same, but for their stamps.
+//! A clock that jumps back and forth by years while a run goes on and is killed: the rows are the same, but for their
+//! stamps.
 
 use super::figures::Figures;
 use super::kills::Life;

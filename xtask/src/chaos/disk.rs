@@ -1,5 +1,5 @@
-//! A disk that has room for so many bytes and no more: an error says so, nothing half written stays, what was there before stays as
-//! it was, and the same command with room again gives what it would have given.
+//! A disk that has room for so many bytes and no more: an error says so, nothing half written stays, what was there
+//! before stays as it was, and the same command with room again gives what it would have given.
 
 use std::fs;
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! A log that is removed, renamed, replaced or cut while a run writes it: the run ends with an error that names what is lost, whatever
-//! the number of jobs, and makes nothing anew.
+//! A log that is removed, renamed, replaced or cut while a run writes it: the run ends with an error that names what is
+//! lost, whatever the number of jobs, and makes nothing anew.
 
 use std::fs::{self, OpenOptions};
 use std::path::{Path, PathBuf};

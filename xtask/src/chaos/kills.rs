@@ -1,4 +1,5 @@
-//! A run that is killed at random moments and gone on with, until it is done: its log is that of a run that nobody killed.
+//! A run that is killed at random moments and gone on with, until it is done: its log is that of a run that nobody
+//! killed.
 
 use std::process::Command;
 use std::thread;

@@ -1,6 +1,6 @@
-//! `cargo xtask chaos`: the command under faults, for minutes. It is killed, its system calls fail, the disk is full, the clock jumps,
-//! its folder goes away, it is told to stop. Whatever happens, an error says so, and a log that is taken up again ends with the
-//! bytes of one that nothing happened to.
+//! `cargo xtask chaos`: the command under faults, for minutes. It is killed, its system calls fail, the disk is full,
+//! the clock jumps, its folder goes away, it gets a signal. Whatever happens, an error says so, and a log that is taken
+//! up again ends with the bytes of one that nothing happened to.
 //!
 //! This file reads the options and prints the figures; each kind of fault is in the file named after it.
 

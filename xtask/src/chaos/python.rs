@@ -1,4 +1,5 @@
-//! Runs that are killed whose agents are Python's: one that learns, and is saved beside the log. The script is in `agent.py`.
+//! Runs that are killed whose agents are Python's: one that learns, and is saved beside the log. The script is in
+//! `agent.py`.
 
 use std::env;
 use std::fs;

@@ -1,4 +1,5 @@
-//! [`Rng`]: chance that repeats under a seed, by `SplitMix64`. Moments in time are drawn; when they come is the machine's.
+//! [`Rng`]: chance that repeats under a seed, by `SplitMix64`. Moments in time are drawn; when they come is the
+//! machine's.
 
 /// A stream of numbers.
 #[derive(Debug, Clone)]

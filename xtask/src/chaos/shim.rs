@@ -1,4 +1,5 @@
-//! The library in `shim.c`, built by the machine's own C compiler: a small disk and a clock that jumps, for one process.
+//! The library in `shim.c`, built by the machine's own C compiler: a small disk and a clock that jumps, for one
+//! process.
 
 use std::path::PathBuf;
 use std::process::Command;

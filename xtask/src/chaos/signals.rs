@@ -187,7 +187,8 @@ pub(super) fn send(signal: &str, process: u32) {
     works(kill);
 }
 
-/// Lifetimes of long experiences: of many steps, and of steps that take seconds, among cubes that are all pushed at once.
+/// Lifetimes of long experiences: of many steps, and of steps that take seconds, among cubes that are all pushed at
+/// once.
 fn prepare(subject: &Subject) -> Result<(), XtaskError> {
     let cube = r#"{ "class": "cube", "coordinates": [0.3, 0.8], "pushable": { "mass": 1 } }"#;
     let heap = format!(r#"{{ "max_steps": 100000, "objects": [{}] }}"#, [cube; 1000].join(", "));

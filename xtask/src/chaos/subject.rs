@@ -1,4 +1,5 @@
-//! [`Subject`]: the command that faults happen to, the lifetime that it lives, and what a log of it is when nothing happens.
+//! [`Subject`]: the command that faults happen to, the lifetime that it lives, and what a log of it is when nothing
+//! happens.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,5 +1,5 @@
-//! Each system call of a run failing in turn, by strace: the run ends with an error, or as if nothing had been, and its log can be gone
-//! on with to the same bytes.
+//! Each system call of a run failing in turn, by strace: the run ends with an error, or as if nothing had been, and its
+//! log can be gone on with to the same bytes.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -12,8 +12,8 @@ use super::{Options, subject};
 use crate::error::XtaskError;
 use crate::process::works;
 
-/// The calls that fail, and how. Those for memory and between threads are left out: without them no program goes on; and `getrandom`,
-/// which the kernel lets nobody down with.
+/// The calls that fail, and how. Those for memory and between threads are left out: without them no program goes on;
+/// and `getrandom`, which the kernel lets nobody down with.
 const CALLS: [(&str, &[&str]); 33] = [
     ("access", &["EIO"]),
     ("clone", &["EAGAIN"]),

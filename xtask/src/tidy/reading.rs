@@ -1,5 +1,5 @@
-//! Files are opened for reading by `driftworld-files` alone: another way would wait for a pipe without an end, or read a device that
-//! has none. Tests, benches and the tools of developers name their own files.
+//! Files are opened for reading by `driftworld-files` alone: another way would wait for a pipe without an end, or read
+//! a device that has none. Tests, benches and the tools of developers name their own files.
 
 use super::tree::Tree;
 use crate::finding::Finding;
@@ -11,39 +11,22 @@ const CALLS: [&str; 3] = ["fs::read(", "fs::read_to_string(", "File::open("];
 const REASON: &str = "not by driftworld-files:";
 
 pub(super) fn check(tree: &Tree) -> Vec<Finding> {
-    let sources = tree.texts(&["rs"]).filter(|(path, _)| is_ours(path));
-    sources.flat_map(|(path, text)| judge(path, text)).collect()
-}
-
-/// Whether a source is a part of what users run.
-fn is_ours(path: &str) -> bool {
-    let in_sources = path.starts_with("src/") || path.contains("/src/");
-    let is_tool = ["xtask/", "files/", "examples/"]
-        .iter()
-        .any(|folder| path.starts_with(folder));
-    let is_test = path.ends_with("/tests.rs") || path.contains("/tests/");
-    in_sources && !is_tool && !is_test
-}
-
-fn judge(path: &str, text: &str) -> Vec<Finding> {
     let mut findings = Vec::new();
-    let mut has_reason = false;
-    for (index, line) in text.lines().enumerate() {
-        // Unit tests stand at the end of a file.
-        if line.trim_start().starts_with("#[cfg(test)]") {
-            break;
+    for (path, lines) in tree.shipped_sources("files/") {
+        let mut has_reason = false;
+        for (number, line) in lines {
+            if line.trim_start().starts_with("//") {
+                has_reason |= line.contains(REASON);
+                continue;
+            }
+            let calls = CALLS.into_iter().filter(|call| calls(line, call));
+            findings.extend(calls.filter(|_| !has_reason).map(|call| {
+                let found = format!("`{call}…)`");
+                let advice = format!("call it, or say above in a comment why `{REASON}`");
+                Finding::new(path, number, found, "driftworld_files::read, text or open", advice)
+            }));
+            has_reason = false;
         }
-        if line.trim_start().starts_with("//") {
-            has_reason |= line.contains(REASON);
-            continue;
-        }
-        let calls = CALLS.into_iter().filter(|call| calls(line, call));
-        findings.extend(calls.filter(|_| !has_reason).map(|call| {
-            let found = format!("`{call}…)`");
-            let advice = format!("call it, or say above in a comment why `{REASON}`");
-            Finding::new(path, index + 1, found, "driftworld_files::read, text or open", advice)
-        }));
-        has_reason = false;
     }
     findings
 }

@@ -1,5 +1,5 @@
-//! Names of files come into messages by `driftworld_text::ShownPath` alone: `Path::display` shows them as they are, and a file may be called
-//! anything that works a terminal. Tests and the tools of developers name their own files.
+//! Names of files come into messages by `driftworld_text::ShownPath` alone: `Path::display` shows them as they are, and
+//! a name may hold anything that works a terminal. Tests and the tools of developers name their own files.
 
 use super::tree::Tree;
 use crate::finding::Finding;
@@ -8,38 +8,17 @@ use crate::finding::Finding;
 const CALL: &str = ".display()";
 
 pub(super) fn check(tree: &Tree) -> Vec<Finding> {
-    let sources = tree.texts(&["rs"]).filter(|(path, _)| is_ours(path));
-    sources.flat_map(|(path, text)| judge(path, text)).collect()
-}
-
-/// Whether a source is a part of what users run.
-fn is_ours(path: &str) -> bool {
-    let in_sources = path.starts_with("src/") || path.contains("/src/");
-    let is_tool = ["xtask/", "text/", "examples/"]
-        .iter()
-        .any(|folder| path.starts_with(folder));
-    let is_test = path.ends_with("/tests.rs") || path.contains("/tests/");
-    in_sources && !is_tool && !is_test
-}
-
-fn judge(path: &str, text: &str) -> Vec<Finding> {
-    // Unit tests stand at the end of a file.
-    let lines = text
-        .lines()
-        .take_while(|line| !line.trim_start().starts_with("#[cfg(test)]"));
     let mut findings = Vec::new();
-    for (index, line) in lines.enumerate() {
-        let is_comment = line.trim_start().starts_with("//");
-        let shows = |(at, _): (usize, &str)| !line[at + CALL.len()..].starts_with(".to_string()");
-        if !is_comment && line.match_indices(CALL).any(shows) {
-            let advice = "a name of a file may hold escape sequences and line ends";
-            findings.push(Finding::new(
-                path,
-                index + 1,
-                format!("`{CALL}`"),
-                "`.shown()` of driftworld_text::ShownPath",
-                advice,
-            ));
+    for (path, lines) in tree.shipped_sources("text/") {
+        for (number, line) in lines {
+            let is_comment = line.trim_start().starts_with("//");
+            let shows = |(at, _): (usize, &str)| !line[at + CALL.len()..].starts_with(".to_string()");
+            if !is_comment && line.match_indices(CALL).any(shows) {
+                let found = format!("`{CALL}`");
+                let advice = "a name of a file may hold escape sequences and line ends";
+                let expected = "`.shown()` of driftworld_text::ShownPath";
+                findings.push(Finding::new(path, number, found, expected, advice));
+            }
         }
     }
     findings

@@ -50,6 +50,28 @@ impl Tree {
             .filter_map(move |(path, text)| Some((path.as_str(), text.as_deref()?)).filter(|(path, _)| wanted(path)))
     }
 
+    /// The Rust sources that users run, but for those below a folder: each with its lines, numbered from 1, up to the
+    /// unit tests at its end.
+    pub(super) fn shipped_sources<'a>(
+        &'a self,
+        but: &'a str,
+    ) -> impl Iterator<Item = (&'a str, impl Iterator<Item = (usize, &'a str)>)> {
+        let is_shipped = move |path: &str| {
+            let is_source = path.starts_with("src/") || path.contains("/src/");
+            let is_apart = ["xtask/", "examples/", but]
+                .iter()
+                .any(|folder| path.starts_with(folder));
+            let is_test = path.ends_with("/tests.rs") || path.contains("/tests/");
+            is_source && !is_apart && !is_test
+        };
+        let sources = self.texts(&["rs"]).filter(move |(path, _)| is_shipped(path));
+        sources.map(|(path, text)| {
+            let is_test = |line: &str| line.trim_start().starts_with("#[cfg(test)]");
+            let lines = text.lines().take_while(move |line| !is_test(line));
+            (path, (1..).zip(lines))
+        })
+    }
+
     /// The text of one file.
     pub(super) fn text(&self, path: &str) -> Option<&str> {
         self.files.get(path)?.as_deref()
