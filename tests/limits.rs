@@ -1,5 +1,5 @@
-//! What checking a document takes of memory, whatever stands in it: at most 40 times its size and a little. A test of its own, because
-//! it counts for the whole process.
+//! What checking a document takes of memory, whatever stands in it: at most 40 times its size and a little. A test of
+//! its own, because it counts for the whole process.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Mutex;

@@ -1,4 +1,5 @@
-//! `docs/limits.md` against the code: each limit that a table names is the constant, or the key of a schema, that stands beside it.
+//! `docs/limits.md` against the code: each limit that a table names is the constant, or the key of a schema, that
+//! stands beside it.
 
 use std::fs;
 use std::path::Path;

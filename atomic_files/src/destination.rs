@@ -1,5 +1,5 @@
-//! What a path stands for: a file that can appear whole, or something that takes what it is given, such as a device, a pipe or what
-//! this process has open.
+//! What a path stands for: a file that can appear whole, or something that takes what it is given, such as a device, a
+//! pipe or what this process has open.
 
 use std::fs::{self, File, OpenOptions};
 use std::io;

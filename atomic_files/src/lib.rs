@@ -1,11 +1,11 @@
 //! Files that appear whole or not at all.
 //!
-//! [`AtomicFile`] is a file while it is written: under a temporary name beside the one that it will have, removed when the work fails.
-//! Devices and pipes keep nothing that could be half, and are written straight. [`ScratchFolder`] is a folder for what is made of
-//! several files.
+//! [`AtomicFile`] is a file while it is written: under a temporary name beside the one that it will have, removed when
+//! the work fails. Devices and pipes keep nothing that could be half, and are written straight. [`ScratchFolder`] is a
+//! folder for what is made of several files.
 //!
-//! What a stopped process leaves is removed by itself, with [`remove_unfinished`]; what a killed one leaves, by the next that writes
-//! into the same folder: whoever writes holds a lock, so what nobody has locked is left over.
+//! What a stopped process leaves is removed by itself, with [`remove_unfinished`]; what a killed one leaves, by the
+//! next that writes into the same folder: whoever writes holds a lock, so what nobody has locked is left over.
 //!
 //! Not here: what is written, and reading it.
 //!

@@ -21,8 +21,8 @@ pub(crate) fn begin(builder: &mut Builder<'_, '_>, mode: u32, before: Option<&Me
 #[cfg(not(unix))]
 pub(crate) fn begin(_: &mut Builder<'_, '_>, _: u32, _: Option<&Metadata>) {}
 
-/// Gives a file the owner and the mode of the one whose place it takes; `mode` is what a new one would have: those who may read it
-/// may run it where that one could be run.
+/// Gives a file the owner and the mode of the one whose place it takes; `mode` is what a new one would have: those who
+/// may read it may run it where that one could be run.
 ///
 /// Where it cannot have the same group, the group may do what everybody may.
 #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! The files and folders of this process that are not finished, for the case that it is told to end.
+//! The files and folders of this process that are not finished, to be removed when it is stopped.
 //!
 //! Not here: what other processes left, see `leftovers`.
 
@@ -39,8 +39,8 @@ impl Drop for Unfinished {
     }
 }
 
-/// Removes every file and folder of this process that is not finished. For a process that is about to end: whoever begins a
-/// file afterwards waits for ever.
+/// Removes every file and folder of this process that is not finished. For a process that is about to end: whoever
+/// begins a file afterwards waits for ever.
 pub fn remove_unfinished() {
     let paths = paths();
     for path in paths.iter() {

@@ -1,4 +1,5 @@
-//! A process that is told to end removes what it has not finished. In a program of its own: afterwards nothing can be begun.
+//! A process that is stopped removes what it has not finished. In a program of its own: afterwards nothing can be
+//! begun.
 
 use std::fs;
 use std::io::Write;

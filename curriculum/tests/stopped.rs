@@ -1,4 +1,4 @@
-//! A run that is told to stop ends at the next step, wherever it is: the experience under way leaves no row, and the log goes on.
+//! A run that is stopped ends at the next step: the experience under way leaves no row, and the log can be resumed.
 
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;

@@ -1,4 +1,5 @@
-//! How long a step takes in worlds at their limits, and how much memory: `limits CASE [OBJECTS]`, or all cases without one.
+//! How long a step takes in worlds at their limits, and how much memory: `limits CASE [OBJECTS]`, or all cases without
+//! one.
 
 use std::error::Error;
 use std::time::{Duration, Instant};

@@ -1,5 +1,5 @@
-//! Stepping a batch takes no memory from the heap, and heaps of bodies take no more than in proportion. A test of its own, because
-//! it counts for the whole process.
+//! Stepping a batch takes no memory from the heap, and heaps of bodies take no more than in proportion. A test of its
+//! own, because it counts for the whole process.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;

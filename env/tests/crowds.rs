@@ -1,4 +1,5 @@
-//! Heaps and crowds: that they step at all, that nothing of them depends on how the world came to be, and that a heap is pointed out.
+//! Heaps and crowds: that they step at all, that nothing of them depends on how the world came to be, and that a heap
+//! is pointed out.
 
 use driftworld_env::{Action, Environment, Warning};
 use driftworld_spec::{MotionModel, Object, Pushable, Respawn, Stimulus, World};
@@ -134,8 +135,8 @@ fn a_heap_is_pointed_out_with_its_place_and_size() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// What is over a limit is so by where things stand alone: a world that was written down in the midst of a crowd, whose trees
-    /// were built in another order, goes on to the last bit, and so does one that came back to a moment.
+    /// What is over a limit is so by where things stand alone: a world that was written down in the midst of a crowd,
+    /// whose trees were built in another order, goes on to the last bit, and so does one that came back to a moment.
     #[test]
     fn a_crowd_goes_on_from_its_state_and_from_a_snapshot(
         first in 0usize..5,

@@ -1,11 +1,11 @@
-//! Why a file cannot be had. What its reader wanted of it is said by the reader.
+//! Why a file cannot be read. What the reader wanted of it, the reader says.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use driftworld_text::ShownPath;
 
-/// Why a file cannot be had. Each says the path, what was found, what was expected, and what to do.
+/// Why a file cannot be read. Each says the path, what was found, what was expected, and what to do.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileError {

@@ -1,8 +1,9 @@
-//! Opens every file that a user or a log names: regular files only, and never more of one than a limit. What stands in a file is
-//! its reader's affair; nothing is written here, but a file is opened for additions in the same careful way.
+//! Opens every file that a user or a log names: regular files only, and never more of one than a limit. What stands in
+//! a file is its reader's affair; nothing is written here, but a file is opened for additions in the same careful way.
 //!
-//! A pipe would be waited for without an end, a device may never end, and a file may be larger than the memory. So a path is looked
-//! at before it is opened, the opened file once more, its length before it is read, and no more is read than the limit allows.
+//! A pipe would be waited for without an end, a device may never end, and a file may be larger than the memory. So a
+//! path is looked at before it is opened, the opened file once more, its length before it is read, and no more is read
+//! than the limit allows.
 
 mod error;
 mod kind;
@@ -26,8 +27,8 @@ pub struct Opened {
 /// Opens a regular file of at most `limit` bytes; links are followed.
 ///
 /// # Errors
-/// [`FileError::Unreadable`], also where there is nothing; [`FileError::NotAFile`] for a folder, a device, a named pipe, a socket and
-/// a link that leads nowhere; [`FileError::TooLarge`].
+/// [`FileError::Unreadable`], also where there is nothing; [`FileError::NotAFile`] for a folder, a device, a named
+/// pipe, a socket and a link that leads nowhere; [`FileError::TooLarge`].
 pub fn open(path: &Path, limit: u64) -> Result<Opened, FileError> {
     check(path)?;
     let unreadable = |source| FileError::Unreadable {
@@ -124,8 +125,8 @@ pub fn text(path: &Path, limit: u64) -> Result<String, FileError> {
     Ok(text)
 }
 
-/// Opens a file for additions, made if need be. A named pipe that nobody reads is refused, and one whose reader is slow is not waited
-/// for: what it does not take is an error of the writing.
+/// Opens a file for additions, made if need be. A named pipe that nobody reads is refused, and one whose reader is slow
+/// is not waited for: what it does not take is an error of the writing.
 ///
 /// # Errors
 /// What the system says.

@@ -1,5 +1,5 @@
-//! JSON texts out of bytes: the bytes as they are, or a known document with the changes that the bytes describe, since plain bytes
-//! seldom get past a parser.
+//! JSON texts out of bytes: the bytes as they are, or a known document with the changes that the bytes describe, since
+//! plain bytes seldom get past a parser.
 
 use std::collections::BTreeSet;
 

@@ -13,7 +13,8 @@ const MOST_OBJECTS: usize = 32;
 /// The most steps of an episode.
 const MOST_STEPS: usize = 16;
 
-/// The same world and actions give the same episode, whose numbers are finite; a world that is written down goes on as it would have.
+/// The same world and actions give the same episode, whose numbers are finite; a world that is written down goes on as
+/// it would have.
 pub(crate) fn check(bytes: &[u8]) {
     let (length, rest) = bytes
         .split_first()

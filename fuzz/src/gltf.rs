@@ -1,5 +1,5 @@
-//! Models as glTF files. Behind [`MARK`](crate::edited::MARK) stand a length, changes of a known file of that length, and
-//! changes of the numbers in its buffer.
+//! Models as glTF files. Behind [`MARK`](crate::edited::MARK) stand a length, changes of a known file of that length,
+//! and changes of the numbers in its buffer.
 
 use std::sync::OnceLock;
 

@@ -1,4 +1,5 @@
-//! Libraries of assets. Behind the first byte [`SEALED`] stands what comes behind the header, so that the checksum stops nobody.
+//! Libraries of assets. Behind the first byte [`SEALED`] stands what comes behind the header, so that the checksum
+//! stops nobody.
 
 use driftworld_env::Library;
 use sha2::{Digest, Sha256};

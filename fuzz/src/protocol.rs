@@ -1,5 +1,5 @@
-//! Messages of ML-Agents clients: as they travel, or behind [`MARK`](crate::edited::MARK) as a step with a world to reset to, or
-//! another text, on the channel for resets.
+//! Messages of ML-Agents clients: as they travel, or behind [`MARK`](crate::edited::MARK) as a step with a world to
+//! reset to, or another text, on the channel for resets.
 
 use arbitrary::Unstructured;
 use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
@@ -32,7 +32,7 @@ fn session() -> (Session, tempfile::TempDir) {
     (session, folder)
 }
 
-/// A session answers or refuses what it is told, within the limits of its transport, and goes on.
+/// A session answers or refuses each message, within the limits of its transport, and goes on.
 pub(crate) fn check(bytes: &[u8]) {
     let input = match bytes.split_first() {
         Some((&MARK, rest)) => made(rest),

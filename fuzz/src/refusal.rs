@@ -1,5 +1,5 @@
-//! What must hold of every error about a text: it says something, at a place that is there, does not fill the screen, and holds nothing
-//! that a terminal would obey or hide.
+//! What must hold of every error about a text: it says something, at a place that is there, does not fill the screen,
+//! and holds nothing that a terminal would obey or hide.
 
 use driftworld_spec::SpecError;
 use driftworld_text::is_unprintable;

@@ -42,7 +42,8 @@ fn task_named(name: &str) -> Option<Arc<TaskSpec>> {
     tasks().iter().find(|task| task.name() == name).cloned()
 }
 
-/// A scenario that is read can be written, and reads the same; its plan has as many experiences, and each can be asked for.
+/// A scenario that is read can be written, and reads the same; its plan has as many experiences, and each can be asked
+/// for.
 pub(crate) fn check(bytes: &[u8]) {
     let text = known().text(bytes);
     match Scenario::from_json_with("s.json", &text, task_named) {

@@ -1,4 +1,5 @@
-//! The seeds of the fuzzer, and what becomes of them by small changes, keep the laws. The fuzzer itself needs a nightly compiler.
+//! The seeds of the fuzzer, and what becomes of them by small changes, keep the laws. The fuzzer itself needs a nightly
+//! compiler.
 
 use std::fs;
 use std::path::Path;

@@ -46,8 +46,8 @@ impl Experience {
 
 /// Lives one experience in an environment that stands at its beginning.
 ///
-/// It ends as the environment says, so that the last of a block ends like any other: by what happened, or cut off by the
-/// limit of steps, never because the block does. Nothing comes back of one that was told to stop on its way.
+/// It ends as the environment says, so that the last of a block ends like any other: by what happened, or cut off by
+/// the limit of steps, never because the block does. One that was stopped on its way returns nothing.
 pub(super) fn live(
     agent: &mut dyn Agent,
     environment: &mut Environment,

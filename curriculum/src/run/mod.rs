@@ -48,7 +48,7 @@ pub struct Surroundings<'a> {
 
 /// Lives a scenario from the first experience that is not in the log to its last, and logs each as soon as it is over.
 ///
-/// A run that is told to stop ends at the next step, and its summary says that it is not finished.
+/// A run that is stopped ends at the next step, and its summary says that it is not finished.
 ///
 /// An experience whose world cannot be drawn ends the run, or is left out, as the plan says ([`Undrawable`]); a log that ended there goes
 /// on with a plan that leaves it out.
@@ -108,7 +108,7 @@ enum Outcome {
     },
     /// It was left out, since its world cannot be drawn.
     LeftOut { reason: String },
-    /// The run was told to stop meanwhile.
+    /// The run was stopped meanwhile.
     CutOff,
 }
 

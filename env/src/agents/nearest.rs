@@ -11,7 +11,8 @@ use super::grid::Grid;
 use super::route::Route;
 use crate::scene::Scene;
 
-/// The most cells that belong to goals in one choice. Of more, only the goals that are nearest as the crow flies are looked at.
+/// The most cells that belong to goals in one choice. Of more, only the goals that are nearest as the crow flies are
+/// looked at.
 const MOST_MARKS: usize = 2_000_000;
 
 /// The most cells that are gone over around goals in one choice; then ways are as long as they are known to be.

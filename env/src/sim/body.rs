@@ -340,8 +340,8 @@ impl Ground {
         })
     }
 
-    /// Notes in `scratch.numbers` the bodies of these groups, one left aside, around the places from one to another, and hands back
-    /// how many corners they have in all.
+    /// Notes in `scratch.numbers` the bodies of these groups, one left aside, around the places from one to another,
+    /// and hands back how many corners they have in all.
     ///
     /// Nothing, and the list is not whole, if there are more of them than `looks`, which each body takes one of.
     pub(super) fn gather(

@@ -124,7 +124,8 @@ fn a_crowd_of_twice_as_many_is_looked_at_twice_as_much_and_not_four_times() {
     for kind in KINDS {
         for spread in [0.0, 1.0] {
             let [some, more] = [4000, 8000].map(|count| looked(crowd(&[kind], "cube", count, spread, 0.1)));
-            // Where limits bind, what is over them does not count; below them twice as many are looked at twice as much.
+            // Where limits bind, what is over them does not count; below them twice as many are looked at twice as
+            // much.
             let fixed = looks::MOVERS + looks::RETURNS;
             assert!(
                 more <= 2 * some + fixed / 2,

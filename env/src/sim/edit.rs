@@ -103,7 +103,8 @@ impl Environment {
         Ok(())
     }
 
-    /// An object's body and look go; whether they come back, and that it is not touched any more, is for the caller to say.
+    /// An object's body and look go; whether they come back, and that it is not touched any more, is for the caller to
+    /// say.
     pub(super) fn take_body_away(&mut self, object: usize) {
         self.episode.objects[object].present = false;
         self.scene.items[object].visible = false;

@@ -84,8 +84,8 @@ pub enum Warning {
         /// Index of the object.
         object: usize,
     },
-    /// The object can be pushed, and stands in a heap: more bodies are in its place than are moved out of each other in a time
-    /// step. It stands fast until there are fewer. The first such object of a world stands for all.
+    /// The object can be pushed, and stands in a heap: more bodies are in its place than are moved out of each other in
+    /// a time step. It stands fast until there are fewer. The first such object of a world stands for all.
     Heap {
         /// Index of the object.
         object: usize,

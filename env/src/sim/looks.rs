@@ -1,20 +1,20 @@
-//! How much one time step may look at, so that no heap of bodies can freeze it. Who looks is in `slide.rs`, `moving_body.rs`,
-//! `objects.rs` and `pushing.rs`; what each does when its looks are used up is said there.
+//! How much one time step may look at, so that no heap of bodies can freeze it. Who looks is in `slide.rs`,
+//! `moving_body.rs`, `objects.rs` and `pushing.rs`; what each does when its looks are used up is said there.
 //!
-//! A look is a question about one corner of one body. Looks are counted and not timed: a world goes the same way on every
-//! machine, alone or in a batch. What is counted depends on where things stand alone, so that a world that was written down
-//! goes on to the last bit. Worlds of some thousand bodies that keep apart use a small part.
+//! A look is a question about one corner of one body. Looks are counted and not timed: a world goes the same way on
+//! every machine, alone or in a batch. What is counted depends on where things stand alone, so that a world that was
+//! written down goes on to the last bit. Worlds of some thousand bodies that keep apart use a small part.
 
 /// What the agent may look at on its way of one time step; then its way ends where it has come to.
 pub(super) const AGENTS: u64 = 4_000_000;
 
-/// What all objects that move by themselves may look at together in one time step, and on top of that for each of them. Those for
-/// which too little is left wait.
+/// What all objects that move by themselves may look at together in one time step, and on top of that for each of them.
+/// Those for which too little is left wait.
 pub(super) const MOVERS: u64 = 1_000_000;
 pub(super) const EACH_MOVER: u64 = 100;
 
-/// What all objects that come back may look at together in one time step, and on top of that for each of them. Those for which
-/// nothing is left come back in a later one.
+/// What all objects that come back may look at together in one time step, and on top of that for each of them. Those
+/// for which nothing is left come back in a later one.
 pub(super) const RETURNS: u64 = 500_000;
 pub(super) const EACH_RETURN: u64 = 20;
 
@@ -42,8 +42,8 @@ impl Looks {
     }
 }
 
-/// Looks for which many wait in a row, always in the same order. Half of them is kept for those from a place on that changes with
-/// each time step, so that nobody waits for ever behind the same crowd.
+/// Looks for which many wait in a row, always in the same order. Half of them is kept for those from a place on that
+/// changes with each time step, so that nobody waits for ever behind the same crowd.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shared {
     looks: Looks,

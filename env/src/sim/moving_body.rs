@@ -18,8 +18,8 @@ const MOST_NEAR: usize = 256;
 /// What it costs to ask whether two shapes meet.
 const LOOKS_PER_SHAPE: usize = 16;
 
-/// How often each body is asked for before one with corners moves: its corners are given to it twice at most, and room is looked
-/// for eight times.
+/// How often each body is asked for before one with corners moves: its corners are given to it twice at most, and room
+/// is looked for eight times.
 const LOOKS_TO_TURN: usize = 12;
 
 impl Ground {
@@ -52,10 +52,10 @@ impl Ground {
         self.note_place(handle, heading_deg);
     }
 
-    /// Turns an object's body from one heading in degrees to another and moves it towards where it means to go; it stops at walls,
-    /// solid objects and the agent, and slides along them. A body with corners turns only where it finds room for them; else it
-    /// slides on as it stands. Hands back where it is then and where it faces; nothing for an object that is not there, and for one
-    /// with more around it than it may look at, which waits.
+    /// Turns an object's body from one heading in degrees to another and moves it towards where it means to go; it
+    /// stops at walls, solid objects and the agent, and slides along them. A body with corners turns only where it
+    /// finds room for them; else it slides on as it stands. Hands back where it is then and where it faces; nothing for
+    /// an object that is not there, and for one with more around it than it may look at, which waits.
     pub(crate) fn push(
         &mut self,
         index: u32,
@@ -150,8 +150,8 @@ impl Ground {
         }
     }
 
-    /// Whether an object's body, taken away before, would stand free at a place. It would not where there is more around it than
-    /// may be looked at.
+    /// Whether an object's body, taken away before, would stand free at a place. It would not where there is more
+    /// around it than may be looked at.
     pub(crate) fn is_free(&self, at: [f32; 2], radius: f32, looks: &mut Looks) -> bool {
         let [x, y] = [0, 1].map(|axis| self.half[axis] - radius - SKIN as f32 - at[axis].abs());
         if x < 0.0 || y < 0.0 {

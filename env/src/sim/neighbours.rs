@@ -1,8 +1,8 @@
-//! Which of the bodies that can be pushed move in a time step: those that the agent may meet or that are moving, and what these may
-//! meet in turn. How they move is in `pushing.rs`.
+//! Which of the bodies that can be pushed move in a time step: those that the agent may meet or that are moving, and
+//! what these may meet in turn. How they move is in `pushing.rs`.
 //!
-//! Physics costs as much as bodies meet, and in a heap all meet all. So there is a limit to how many meet in a time step; what
-//! is over it stands fast for this time step, and is at rest after it.
+//! Physics costs as much as bodies meet, and in a heap all meet all. So there is a limit to how many meet in a time
+//! step; what is over it stands fast for this time step, and is at rest after it.
 
 use rapier3d::prelude::ColliderHandle;
 
@@ -31,7 +31,8 @@ const FEWEST_OVERLAPS: u64 = 1_500;
 const PAIRS: u64 = 60_000;
 const FEWEST_PAIRS: u64 = 4_000;
 
-/// How many bodies are looked at around one, how many it may meet, and overlap: what many hold at once costs more than its share.
+/// How many bodies are looked at around one, how many it may meet, and overlap: what many hold at once costs more than
+/// its share.
 const ONE_LOOKS: usize = 8192;
 const ONE_MAY_MEET: usize = 1024;
 const ONE_OVERLAPS: usize = 256;
@@ -181,7 +182,8 @@ impl Environment {
         (vx * vx + vy * vy).sqrt().max(agent_speed) * seconds
     }
 
-    /// How far from a pushed body's middle the bodies lie that stand fast and that it may meet, in metres along each axis.
+    /// How far from a pushed body's middle the bodies lie that stand fast and that it may meet, in metres along each
+    /// axis.
     pub(super) fn standing_reach(&self, index: usize, seconds: f32) -> f32 {
         let radius = self.body_radius(self.episode.pushed[index].object).max(0.05);
         radius + self.pushed_way(index, seconds) + MARGIN

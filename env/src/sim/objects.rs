@@ -90,7 +90,8 @@ impl Environment {
         regions + environment.walls.iter().map(|wall| wall.polygon.len()).sum::<usize>()
     }
 
-    /// Puts an object back at a free place; false if none is found in this step. Each place that is tried takes `per_place` looks.
+    /// Puts an object back at a free place; false if none is found in this step. Each place that is tried takes
+    /// `per_place` looks.
     fn put_back(&mut self, index: usize, per_place: usize, looks: &mut Looks) -> bool {
         /// Places tried in one step.
         const TRIES: u32 = 16;

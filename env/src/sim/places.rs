@@ -1,6 +1,7 @@
 //! Where bodies are: which of them lie around a place. What they are is in `body.rs`.
 //!
-//! Walls, what is solid and what is passed through have a tree each, so that who asks for some is not held up by the others.
+//! Walls, what is solid and what is passed through have a tree each, so that who asks for some is not held up by the
+//! others.
 
 use rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use rapier3d::prelude::*;
@@ -24,10 +25,11 @@ pub(super) struct Places {
 
 #[derive(Default)]
 struct Tree {
-    /// The engine's own broad phase, made for its step, lost bodies that were taken away and put back many times without one.
+    /// The engine's own broad phase, made for its step, lost bodies that were taken away and put back many times
+    /// without one.
     boxes: Bvh,
-    /// How often a body was put somewhere since the tree was built. The boxes around boxes only grow when one moves, so that in
-    /// the end every question would lead to every body.
+    /// How often a body was put somewhere since the tree was built. The boxes around boxes only grow when one moves, so
+    /// that in the end every question would lead to every body.
     moved: usize,
 }
 

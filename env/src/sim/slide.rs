@@ -20,7 +20,8 @@ const SAGITTA: f64 = 1e-3;
 /// Most parts of a way: each is a straight way along one thing. A way of 1 km along a thousand bodies ends early.
 const MOST_PARTS: usize = 4096;
 
-/// How often each body is asked for in a part of a way: whether it is touched, when it will be, and whether it is what is followed.
+/// How often each body is asked for in a part of a way: whether it is touched, when it will be, and whether it is what
+/// is followed.
 const LOOKS_PER_PART: usize = 4;
 
 /// What may be in the way: the footprints of these numbers.
@@ -210,8 +211,9 @@ fn allowed(by: Point, touched: &[Gap], looks: &mut Looks) -> Option<(Point, Opti
     if free(by, 0.0) {
         return Some((by, None));
     }
-    // Of the ways along one thing each, the nearest to what was meant among those that lead into no other. It is as far from what was
-    // meant as that leads into the deepest, less what the slack allows: ways that are nearer need not be looked at.
+    // Of the ways along one thing each, the nearest to what was meant among those that lead into no other. It is as far
+    // from what was meant as that leads into the deepest, less what the slack allows: ways that are nearer need not be
+    // looked at.
     let deepest = touched.iter().map(|gap| -dot(by, gap.out)).fold(0.0, f64::max);
     let mut best: Option<(f64, Point, Point)> = None;
     for gap in touched {

@@ -110,8 +110,8 @@ struct Row {
     cells: Vec<String>,
 }
 
-/// The lines of a table, one after the other; a cell in quotes may hold commas and line ends, and a doubled quote is one. Empty
-/// lines, as some editors leave at the end, say nothing and are left out.
+/// The lines of a table, one after the other; a cell in quotes may hold commas and line ends, and a doubled quote is
+/// one. Empty lines, as some editors leave at the end, say nothing and are left out.
 struct Rows<'t> {
     letters: Peekable<Chars<'t>>,
     line: usize,

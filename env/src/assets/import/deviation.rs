@@ -1,4 +1,5 @@
-//! How far points lie from a surface at most, with bounded work. Which points and surfaces these are is in `simplify.rs`.
+//! How far points lie from a surface at most, with bounded work. Which points and surfaces these are is in
+//! `simplify.rs`.
 
 use rapier3d::math::Vector;
 use rapier3d::parry::partitioning::{BvhNode, TraversalAction};
@@ -7,11 +8,13 @@ use rapier3d::parry::shape::TriMesh;
 
 use super::simplify::{point, used};
 
-/// How many triangles are looked at for one level of detail: a second's work or two. Most models need a hundredth of it; where large
-/// triangles lie through each other in thousands, boxes around them tell nothing apart, and every point would ask for all.
+/// How many triangles are looked at for one level of detail: a second's work or two. Most models need a hundredth of
+/// it; where large triangles lie through each other in thousands, boxes around them tell nothing apart, and every point
+/// would ask for all.
 const LOOKS: u64 = 30_000_000;
 
-/// A point as much nearer than the farthest so far, in squares, is passed over: more than the rounding of two ways to a distance.
+/// A point as much nearer than the farthest so far, in squares, is passed over: more than the rounding of two ways to a
+/// distance.
 const PASSED_OVER: f32 = 1.0 - 1e-4;
 
 /// Triangles that may still be looked at.
@@ -51,8 +54,8 @@ impl Deviation {
 
     /// How far the farthest of points is, or `least` if none is farther. None as soon as that is above `most`.
     ///
-    /// A point with a triangle nearer than the farthest so far need not be measured. When looks run out, those measured so far,
-    /// evenly chosen, stand for all; at least one is measured.
+    /// A point with a triangle nearer than the farthest so far need not be measured. When looks run out, those measured
+    /// so far, evenly chosen, stand for all; at least one is measured.
     pub(super) fn farthest(&self, points: &[Vector], least: f32, most: f32, looks: &mut Looks) -> Option<f32> {
         let mut farthest = least;
         for (number, index) in evenly(points.len()).enumerate() {

@@ -19,11 +19,13 @@ const MOST_ERROR: f32 = 0.2;
 /// The most corners of the whole surface that are measured for a level: with more of them, evenly chosen ones stand for all.
 const MEASURED: usize = 20_000;
 
-/// The most pairs of triangles at one corner, over all corners: the simplifier looks at each. A corner shared by 63,000 triangles has as many.
+/// The most pairs of triangles at one corner, over all corners: the simplifier looks at each. A corner shared by 63,000
+/// triangles has as many.
 const MOST_PAIRS: u64 = 4_000_000_000;
 
-/// Up to three coarser levels of a surface, triangles in groups of one colour; each level with at most two thirds of the triangles
-/// of the one before. Groups share no corners. None where so many triangles meet in one corner that simplifying would take minutes.
+/// Up to three coarser levels of a surface, triangles in groups of one colour; each level with at most two thirds of
+/// the triangles of the one before. Groups share no corners. None where so many triangles meet in one corner that
+/// simplifying would take minutes.
 pub(super) fn levels(corners: &[[f32; 3]], groups: &[Vec<[u32; 3]>]) -> Vec<Detail> {
     let mut group_of = vec![0_usize; corners.len()];
     for (group, triangles) in groups.iter().enumerate() {
