@@ -325,3 +325,26 @@ fn rows_in_the_folder_of_another_worker_or_block_are_odd() {
         ]
     );
 }
+
+#[test]
+fn numbers_without_a_row_are_warned_about_once() {
+    let all: Vec<String> = (3..20).map(|exp_num| row(0, exp_num, "complete")).collect();
+    check([HEADER, &all.concat()].concat(), &[], &[]);
+    let kept: Vec<&str> = (0..17)
+        .filter(|place| ![2, 3, 7].contains(place))
+        .map(|place| all[place].as_str())
+        .collect();
+    let warning = "LOG/w/0-train/data-log.tsv:4: found experience 7 after 4, expected 5; numbers without a row: 3";
+    check([HEADER, &kept.concat()].concat(), &[], &[warning]);
+    // Numbers count over all workers.
+    let shared = |lacking: usize| {
+        let mut texts = [HEADER.to_owned(), HEADER.to_owned()];
+        for place in (0..17).filter(|&place| place != lacking) {
+            texts[place % 2] += &all[place].replace("\tw\t", ["\tv\t", "\tw\t"][place % 2]);
+        }
+        let [v, w] = texts;
+        validate(&[("v/0-train", v), ("w/0-train", w)], "1.1").1
+    };
+    assert_eq!(shared(99), [""; 0]);
+    assert!(shared(5)[0].contains("found experience 9 after 7"), "{:?}", shared(5));
+}

@@ -198,6 +198,20 @@ impl SpecError {
     }
 }
 
+/// The problems that were found in a document.
+#[derive(Debug, Default)]
+pub(crate) struct Listed {
+    pub(crate) problems: Vec<Problem>,
+    /// Whether a list or an object was so full of them that its rest was not looked at.
+    pub(crate) more: bool,
+}
+
+impl From<Vec<Problem>> for Listed {
+    fn from(problems: Vec<Problem>) -> Self {
+        Self { problems, more: false }
+    }
+}
+
 fn list(name: &str, problems: &[Problem], more: bool) -> String {
     let name = one_line(name);
     let mut lines: Vec<String> = problems
@@ -208,6 +222,8 @@ fn list(name: &str, problems: &[Problem], more: bool) -> String {
     if problems.len() > SHOWN {
         let at_least = if more { "at least " } else { "" };
         lines.push(format!("{name}: and {at_least}{} more", problems.len() - SHOWN));
+    } else if more {
+        lines.push(format!("{name}: and perhaps more"));
     }
     lines.join("\n")
 }

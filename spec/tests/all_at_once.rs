@@ -97,3 +97,26 @@ fn the_two_mistakes_of_the_readme_are_told_together() {
         "{found:?}"
     );
 }
+
+/// A list that is left before its end may hold more problems than were counted; the message says so.
+#[test]
+fn where_problems_were_not_counted_to_the_end_there_are_at_least_so_many() {
+    let said = |num: usize| {
+        let objects = vec![json!({ "class": "cube", "coordinates": [0, "x"], "heading": "h", "reward": "r" }); num];
+        let text = json!({ "objects": objects }).to_string();
+        let error = driftworld_spec::World::from_json("w", &text).unwrap_err();
+        (
+            error.has_more(),
+            error.to_string().lines().last().unwrap_or_default().to_owned(),
+        )
+    };
+    let (more, last) = said(20);
+    assert!(
+        !more && last.starts_with("w: and ") && !last.contains("at least"),
+        "{last}"
+    );
+    for num in [101, 110, 400] {
+        let (more, last) = said(num);
+        assert!(more && last.starts_with("w: and at least "), "{num}: {last}");
+    }
+}

@@ -114,6 +114,10 @@ pub(crate) fn warning(text: impl AsRef<str>) {
 /// Begins a file that is there whole or not at all; a device or a pipe is written straight. None that a log is made of
 /// is written over.
 pub(crate) fn create(path: &Path) -> Result<AtomicFile, Failure> {
+    if path == Path::new("-") {
+        let advice = "expected the path of a file; give /dev/stdout for standard output";
+        return Err(Failure::usage(format!("found - as the file to write, {advice}")));
+    }
     overwrite::refuse_log_files(path)?;
     AtomicFile::create(path).map_err(|error| unwritable(path, &error))
 }

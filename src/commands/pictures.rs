@@ -116,9 +116,12 @@ impl Picture {
 
     /// Writes the picture as a PNG file.
     ///
-    /// A name that ends like another kind of picture is refused: it would lie.
+    /// A name that ends like another kind of file is refused: it would lie.
     pub(crate) fn write(&self, path: &Path) -> Result<(), Failure> {
-        const OTHERS: [&str; 9] = ["jpg", "jpeg", "gif", "bmp", "webp", "tif", "tiff", "svg", "pdf"];
+        const OTHERS: [&str; 16] = [
+            "jpg", "jpeg", "gif", "bmp", "webp", "tif", "tiff", "svg", "pdf", "csv", "html", "json", "jsonl", "npy",
+            "parquet", "txt",
+        ];
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
         if OTHERS.iter().any(|other| ending.eq_ignore_ascii_case(other)) {
             return Err(Failure::usage(format!(

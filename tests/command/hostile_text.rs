@@ -323,7 +323,8 @@ fn lives(stage: &mut Stage) {
     let name: String = HOSTILE.chars().take(60).collect();
     for (file, document) in [
         ("task_lived.json", scenario("task.json", "a", None)),
-        ("world_lived.json", scenario(&name, &name, Some("w.json"))),
+        ("world_lived.json", scenario("t", "a", Some("w.json"))),
+        ("hostile_world.json", scenario(&name, &name, Some("w.json"))),
         ("unknown_variant.json", scenario("task.json", &name, None)),
         ("unknown_task.json", scenario(&name, "a", None)),
         ("unknown_world.json", scenario("t", "a", Some(&name))),

@@ -10,13 +10,19 @@ use std::path::Path;
 ///
 /// C0, DEL and C1; the soft hyphen; the bidirectional marks, embeddings, overrides and isolates (Unicode Standard Annex
 /// 9); joiners, fillers and other characters of no width; line and paragraph separators; interlinear marks; tags.
-/// Variation selectors choose a picture for the character before them and are shown.
-const UNPRINTABLE: [(char, char); 18] = [
+/// Of the variation selectors those that choose between a letter and a picture (U+FE0E, U+FE0F) are shown; texts can be
+/// hidden in the others.
+const UNPRINTABLE: [(char, char); 27] = [
     ('\0', '\u{1f}'),
     ('\u{7f}', '\u{9f}'),
     ('\u{ad}', '\u{ad}'),
     ('\u{34f}', '\u{34f}'),
+    ('\u{600}', '\u{605}'),
     ('\u{61c}', '\u{61c}'),
+    ('\u{6dd}', '\u{6dd}'),
+    ('\u{70f}', '\u{70f}'),
+    ('\u{890}', '\u{891}'),
+    ('\u{8e2}', '\u{8e2}'),
     ('\u{115f}', '\u{1160}'),
     ('\u{17b4}', '\u{17b5}'),
     ('\u{180b}', '\u{180f}'),
@@ -24,12 +30,16 @@ const UNPRINTABLE: [(char, char); 18] = [
     ('\u{2028}', '\u{202e}'),
     ('\u{2060}', '\u{206f}'),
     ('\u{3164}', '\u{3164}'),
+    ('\u{fe00}', '\u{fe0d}'),
     ('\u{feff}', '\u{feff}'),
     ('\u{ffa0}', '\u{ffa0}'),
     ('\u{fff0}', '\u{fffb}'),
+    ('\u{110bd}', '\u{110bd}'),
+    ('\u{110cd}', '\u{110cd}'),
+    ('\u{13430}', '\u{1343f}'),
     ('\u{1bca0}', '\u{1bca3}'),
     ('\u{1d173}', '\u{1d17a}'),
-    ('\u{e0000}', '\u{e007f}'),
+    ('\u{e0000}', '\u{e01ef}'),
 ];
 
 /// Whether a character is one that a terminal obeys or does not show. Line feed and tab are among them.

@@ -246,6 +246,7 @@ impl Check {
     /// Exactly one complete row for each experience of a worker, the last; its very last experience may be unfinished.
     fn completions(&mut self, table: &Table<'_>, files: &[PathBuf]) {
         let rows = &table.rows;
+        self.missing(table, files);
         let key = |row: usize| (rows.workers().ids()[row], rows.exp_nums()[row]);
         let mut by_experience: Vec<u32> = (0..rows.len() as u32).collect();
         by_experience.sort_by_key(|&row| key(row as usize));
@@ -290,6 +291,30 @@ impl Check {
                     }
                 }
             }
+        }
+    }
+
+    /// Numbers of experiences go up one by one, over all workers; a log that lacks some is warned about once.
+    fn missing(&mut self, table: &Table<'_>, files: &[PathBuf]) {
+        let numbers = table.rows.exp_nums();
+        let mut rows: Vec<u32> = (0..numbers.len() as u32).collect();
+        rows.sort_by_key(|&row| numbers[row as usize]);
+        let steps = rows.windows(2).map(|pair| {
+            let [before, after] = [pair[0], pair[1]].map(|row| numbers[row as usize]);
+            (pair[1] as usize, before, after)
+        });
+        let mut gaps = steps.filter(|(_, before, after)| after - before > 1);
+        if let Some((row, before, after)) = gaps.next() {
+            let (file, line) = table.place(row);
+            let lacking = |before: u64, after: u64| after - before - 1;
+            let missing = gaps.map(|(_, before, after)| lacking(before, after)).sum::<u64>() + lacking(before, after);
+            self.warnings.add(LogWarning::Missing {
+                path: files[file].clone(),
+                line,
+                before,
+                after,
+                missing,
+            });
         }
     }
 

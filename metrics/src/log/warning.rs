@@ -63,6 +63,19 @@ pub enum LogWarning {
         /// Number of the experience.
         exp_num: u64,
     },
+    /// Experiences whose numbers no row has: rows may have been lost.
+    Missing {
+        /// The data file of the row behind the first gap.
+        path: PathBuf,
+        /// Its line, from 1.
+        line: u64,
+        /// The number before the first gap.
+        before: u64,
+        /// The number behind it.
+        after: u64,
+        /// How many numbers all gaps leave out.
+        missing: u64,
+    },
     /// A metrics column without a single number.
     NoNumbers {
         /// The column.
@@ -128,6 +141,20 @@ impl fmt::Display for LogWarning {
                     f,
                     "{path}:{line}: found experience {exp_num} without a complete row, the last of its worker; left out until \
                      it has one"
+                )
+            }
+            Self::Missing {
+                path,
+                line,
+                before,
+                after,
+                missing,
+            } => {
+                let path = path.shown();
+                write!(
+                    f,
+                    "{path}:{line}: found experience {after} after {before}, expected {}; numbers without a row: {missing}",
+                    before + 1
                 )
             }
             Self::NoNumbers { column } => {

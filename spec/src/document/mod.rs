@@ -7,7 +7,7 @@ mod value;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use crate::error::{MAX_PROBLEMS, Problem, SpecError};
+use crate::error::{Listed, MAX_PROBLEMS, Problem, SpecError};
 use crate::schema::DocumentSchema;
 use crate::version::Format;
 use places::Wanted;
@@ -53,7 +53,7 @@ impl<'a> Document<'a> {
                 "each key once; remove one of the two",
             )
         };
-        document.fail_on(repeated.into_iter().map(twice).collect())?;
+        document.fail_on(repeated.into_iter().map(twice).collect::<Vec<_>>())?;
         Ok(document)
     }
 
@@ -101,7 +101,7 @@ impl<'a> Document<'a> {
     /// Brings the document to the current version of its form; fails if it is of a newer one.
     pub(crate) fn upgrade(&mut self, format: &Format) -> Result<(), SpecError> {
         let problem = format.upgrade(&mut self.value);
-        self.fail_on(problem.into_iter().collect())
+        self.fail_on(Vec::from_iter(problem))
     }
 
     /// Fails with every violation of the schema.
@@ -126,21 +126,23 @@ impl<'a> Document<'a> {
                 text => text,
             };
             let problem = Problem::new("spec/value", pointer, found, expected);
-            self.error(vec![problem])
+            self.error(vec![problem].into())
         })
     }
 
     /// Fails if there are any problems, after finding the place of each.
-    pub(crate) fn fail_on(&self, problems: Vec<Problem>) -> Result<(), SpecError> {
-        if problems.is_empty() {
+    pub(crate) fn fail_on(&self, found: impl Into<Listed>) -> Result<(), SpecError> {
+        let found = found.into();
+        if found.problems.is_empty() {
             Ok(())
         } else {
-            Err(self.error(problems))
+            Err(self.error(found))
         }
     }
 
-    fn error(&self, mut problems: Vec<Problem>) -> SpecError {
-        let many = problems.len() > MAX_PROBLEMS;
+    fn error(&self, found: Listed) -> SpecError {
+        let Listed { mut problems, more } = found;
+        let more = more || problems.len() > MAX_PROBLEMS;
         // The first ones of a text are found among some more: of a hundred thousand not each is looked up.
         problems.truncate(8 * MAX_PROBLEMS);
         let wanted = problems.iter().map(|problem| Wanted {
@@ -157,7 +159,7 @@ impl<'a> Document<'a> {
         SpecError::Document {
             name: self.name.to_owned(),
             problems,
-            more: many,
+            more,
         }
     }
 

@@ -33,6 +33,7 @@ pub(super) enum Repeats {
 pub(super) fn parse(text: &str, most: usize, repeats: Repeats) -> Result<Value, (serde_json::Error, Option<Stop>)> {
     let builder = Builder {
         left: Cell::new(most),
+        most,
         stop: Cell::new(None),
         repeats,
         entries: RefCell::new(Vec::new()),
@@ -46,6 +47,7 @@ pub(super) fn parse(text: &str, most: usize, repeats: Repeats) -> Result<Value, 
 struct Builder {
     /// How many values there may be yet, the outermost among them.
     left: Cell<usize>,
+    most: usize,
     stop: Cell<Option<Stop>>,
     repeats: Repeats,
     /// The entries of the objects that are open: an object is made when it is known how many it has.
@@ -53,6 +55,10 @@ struct Builder {
 }
 
 impl Builder {
+    fn has_read_much(&self) -> bool {
+        self.most - self.left.get() > LONG
+    }
+
     fn stop<E: Error>(&self, stop: Stop) -> E {
         self.stop.set(Some(stop));
         E::custom("not read further")
@@ -124,7 +130,10 @@ impl<'de> Visitor<'de> for AnyValue<'_> {
             }
             list.push(item);
         }
-        list.shrink_to_fit();
+        // In a small document the room left over does not matter, and giving it back takes time.
+        if self.0.has_read_much() {
+            list.shrink_to_fit();
+        }
         Ok(list.into())
     }
 

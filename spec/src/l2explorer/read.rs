@@ -11,7 +11,7 @@ use super::lenient::{drop_decimal_point, stimulus, word};
 use super::mend::{self, Entry};
 use super::{AGENT, ASSUMED_SPEED, ENVIRONMENT, IMAGE, Keys, OBJECT, RULES, WORLD, black_is_chosen};
 use crate::document::{Document, MAX_VALUES, MAX_WORLD_VALUES, describe, escape};
-use crate::error::{Problem, SpecError};
+use crate::error::{Listed, Problem, SpecError};
 use crate::maps::MapLibrary;
 use crate::schema;
 use crate::warning::{Remarks, Warning};
@@ -54,15 +54,11 @@ impl World {
             problem.pointer = as_spelled(original_pointer(&problem.pointer, &kept), &spelled);
             problem
         };
-        document.fail_on(
-            schema::world()
-                .problems(&document.value)
-                .into_iter()
-                .map(original)
-                .collect(),
-        )?;
+        let Listed { problems, more } = schema::world().problems(&document.value);
+        let problems = problems.into_iter().map(original).collect();
+        document.fail_on(Listed { problems, more })?;
         let mut world: Self = document.deserialize()?;
-        document.fail_on(world.problems().into_iter().map(original).collect())?;
+        document.fail_on(world.problems().into_iter().map(original).collect::<Vec<_>>())?;
         maps.apply(&mut world);
         for (object, index) in world.objects.iter().zip(&kept) {
             if let Some(text) = world.out_of_reach(object) {

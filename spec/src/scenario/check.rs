@@ -92,6 +92,11 @@ pub(super) fn alone(scenario: &Scenario) -> Vec<Problem> {
     problems.extend(names::problem("/name", &scenario.name));
     let mut called: BTreeMap<(&str, &str), Made> = BTreeMap::new();
     for (pointer, regime) in regimes(scenario) {
+        // Other names are those of a task's, which has the grammar; a world file has no task.
+        if regime.world.is_some() {
+            problems.extend(names::problem(format!("{pointer}/task"), &regime.task));
+            problems.extend(names::problem(format!("{pointer}/variant"), &regime.variant));
+        }
         if regime.first_index.checked_add(u64::from(regime.count)).is_none() {
             let found = regime.first_index.to_string();
             let expected = "an index that leaves room for count more";
@@ -290,6 +295,14 @@ mod tests {
         check(
             &world.replace("\"count\"", "\"drift\": { \"to\": \"dusk\" }, \"count\""),
             "(/blocks/0/regimes/0/drift): found a world file and drift, expected one of the two; a world file is lived as it is",
+        );
+        check(
+            &world.replace("\"yard\"", "\"a/yard\""),
+            "(/blocks/0/regimes/0/variant): found the name \"a/yard\" with the character \"/\", expected letters",
+        );
+        check(
+            &world.replace("\"t\"", "\"=t\""),
+            "(/blocks/0/regimes/0/task): found the name \"=t\" with",
         );
         check(
             &format!("{world}, {}", world.replace("maps/yard", "other/yard")),

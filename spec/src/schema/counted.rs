@@ -3,7 +3,7 @@
 //! `explain.rs`'s.
 
 use std::borrow::Cow;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 
 use jsonschema::JsonType;
 use jsonschema::json::{Array, Json, Node, NodeIdentity, Object};
@@ -20,6 +20,15 @@ pub(super) struct Tally {
     errors: AtomicUsize,
     /// How often anything was asked of a value.
     looks: AtomicUsize,
+    /// Whether a list or an object was left before its end.
+    stopped: AtomicBool,
+}
+
+impl Tally {
+    /// Whether there may be more errors than were listed.
+    pub(super) fn has_stopped(&self) -> bool {
+        self.stopped.load(Relaxed)
+    }
 }
 
 /// A value of a document; a text that stands in none counts nothing.
@@ -167,12 +176,22 @@ impl<'a, I> UntilFull<'a, I> {
     }
 }
 
+impl<I: ExactSizeIterator> UntilFull<'_, I> {
+    /// Hands out no more; what is left is not looked at.
+    fn stop<T>(&self) -> Option<T> {
+        if let Some(tally) = self.holder.tally.filter(|_| self.inner.len() > 0) {
+            tally.stopped.store(true, Relaxed);
+        }
+        None
+    }
+}
+
 impl<'a> Iterator for UntilFull<'a, std::slice::Iter<'a, Value>> {
     type Item = Counted<'a>;
 
     fn next(&mut self) -> Option<Counted<'a>> {
         if self.is_full() {
-            return None;
+            return self.stop();
         }
         let value = self.inner.next()?;
         Some(self.counted(value))
@@ -187,7 +206,7 @@ impl<'a> Iterator for UntilFull<'a, serde_json::map::Iter<'a>> {
         self.unseen = if looks == self.looks { self.unseen + 1 } else { 0 };
         self.looks = looks;
         if self.is_full() || (self.holder.tally.is_some() && self.unseen > MAX_PROBLEMS) {
-            return None;
+            return self.stop();
         }
         let (key, value) = self.inner.next()?;
         Some((key, self.counted(value)))

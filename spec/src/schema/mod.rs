@@ -16,7 +16,7 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 use serde_json::{Value, json};
 
-use crate::error::Problem;
+use crate::error::Listed;
 use crate::maps::MapsDocument;
 use crate::scenario::Scenario;
 use crate::task::TaskDocument;
@@ -46,12 +46,17 @@ impl DocumentSchema {
         &self.json
     }
 
+    /// Whether the schema allows a value.
+    pub(crate) fn allows(&self, value: &Value) -> bool {
+        self.validator.is_valid(value)
+    }
+
     /// What in a value the schema does not allow; of any one list or object about [`MAX_PROBLEMS`](crate::MAX_PROBLEMS)
     /// of it.
-    pub(crate) fn problems(&self, value: &Value) -> Vec<Problem> {
+    pub(crate) fn problems(&self, value: &Value) -> Listed {
         // Nearly every document is sound, and the short answer is much faster than the list.
-        if self.validator.is_valid(value) {
-            return Vec::new();
+        if self.allows(value) {
+            return Listed::default();
         }
         let listing = self.listing.get_or_init(|| {
             jsonschema::options_for::<Counting>()
@@ -59,7 +64,11 @@ impl DocumentSchema {
                 .expect("the other validator was built of it")
         });
         let tally = Tally::default();
-        explain::problems(&self.json, value, listing.iter_errors(Counted::new(value, &tally)))
+        let problems = explain::problems(&self.json, value, listing.iter_errors(Counted::new(value, &tally)));
+        Listed {
+            problems,
+            more: tally.has_stopped(),
+        }
     }
 }
 

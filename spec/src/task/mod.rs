@@ -32,7 +32,7 @@ pub use variant::{DEFAULT_VARIANT, Resolved, Variant, VariantSpec};
 use crate::classes::Classes;
 use crate::distribution::Number;
 use crate::document::{Document, MAX_VALUES};
-use crate::error::{Problem, SpecError};
+use crate::error::{Listed, Problem, SpecError};
 use crate::world::{Object, World};
 use crate::{schema, version};
 
@@ -172,13 +172,13 @@ impl TaskSpec {
         let mut document = Document::parse(name, text, MAX_VALUES)?;
         document.upgrade(&version::TASK)?;
         let refused = schema::task().problems(&document.value);
-        if !refused.is_empty() {
+        if !refused.problems.is_empty() {
             // What else is wrong is looked for in a copy, of which a large document takes too much.
-            document.fail_on(if text.len() <= MOST_COPIED {
-                check::partial::problems(&document.value, refused, classes)
-            } else {
-                refused
-            })?;
+            let Listed { mut problems, more } = refused;
+            if text.len() <= MOST_COPIED {
+                problems = check::partial::problems(&document.value, problems, classes);
+            }
+            document.fail_on(Listed { problems, more })?;
         }
         let spec: TaskDocument = document.deserialize()?;
         match check::compile(spec, classes, check::Unsound::default()) {

@@ -29,7 +29,7 @@ pub(in crate::task) fn problems(document: &Json, refused: Vec<Problem>, classes:
         silent: Vec::new(),
     };
     let is_known = refused.iter().all(|problem| rest.leave_out(problem).is_some());
-    if !is_known || !schema::task().problems(&rest.json).is_empty() {
+    if !is_known || !schema::task().allows(&rest.json) {
         return refused;
     }
     let Ok(document) = serde_json::from_value::<TaskDocument>(rest.json) else {
