@@ -155,6 +155,18 @@ pub fn variant_matrix(
     variant_matrix_while(variants, lay_over, || true)
 }
 
+/// The same for variants with the names of their tasks, under labels such as `find_objects#red`.
+///
+/// # Errors
+/// As [`variant_matrix`].
+pub fn labelled_matrix(
+    variants: &[(String, Variant)],
+    lay_over: impl FnOnce(Weights) -> Result<Weights, SimilarityError>,
+) -> Result<DistanceMatrix, DistancesError> {
+    let label = |(task, variant): &(String, Variant)| (format!("{task}#{}", variant.name()), variant.clone());
+    variant_matrix(&variants.iter().map(label).collect::<Vec<_>>(), lay_over)
+}
+
 /// The same, and given up as soon as `go_on`, which is asked before each pair, says no.
 ///
 /// # Errors

@@ -24,12 +24,28 @@ pub mod clock;
 pub mod columns;
 pub mod commands;
 pub mod contents;
+pub mod design;
 pub mod distances;
 pub mod documents;
+mod failure;
+mod figure_files;
+mod libraries;
+pub mod lifetime_report;
+mod log_folders;
+mod matrix_file;
+pub mod ordering;
+mod output_file;
+mod overwrite;
 pub mod picture_distance;
 pub mod scenarios;
+pub mod scoring;
+mod table;
 pub mod tasks;
 mod top_level;
+mod trials;
+
+pub(crate) use failure::argument;
+pub use failure::{Cause, Failure, FailureText, Warn};
 
 /// The README's Rust example is compiled with the documentation's tests.
 #[cfg(doctest)]

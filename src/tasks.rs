@@ -130,6 +130,27 @@ pub fn variants(name: &str) -> Result<Vec<Variant>, TaskError> {
     }
 }
 
+/// The variants that a list of names stands for, in that order, each once, with the names of their tasks as they were
+/// called.
+///
+/// # Errors
+/// As [`variants`].
+pub fn variants_of(names: &[String]) -> Result<Vec<(String, Variant)>, TaskError> {
+    let mut found: Vec<(String, Variant)> = Vec::new();
+    for name in names {
+        let (task, _) = split(name);
+        for variant in variants(name)? {
+            if !found
+                .iter()
+                .any(|(known, other)| known == task && other.name() == variant.name())
+            {
+                found.push((task.to_owned(), variant));
+            }
+        }
+    }
+    Ok(found)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,6 +3,7 @@
 use driftworld::distances::DistancesError;
 use driftworld::documents::DocumentError;
 use driftworld::tasks::TaskError;
+use driftworld::{Cause, Failure};
 use driftworld_curriculum::CurriculumError;
 use driftworld_env::EnvError;
 use driftworld_generator::GeneratorError;
@@ -26,8 +27,23 @@ pub(crate) enum Error {
     Curriculum(CurriculumError),
     /// A scenario names a task whose document is wrong: what the scenario's error says, and what is wrong with the document.
     InScenario(CurriculumError, SpecError),
+    /// An operation that has no result, raised as this class.
+    Refused {
+        class: &'static str,
+        text: String,
+        cause: Option<Cause>,
+    },
     /// Already one of Python's.
     Python(PyErr),
+}
+
+/// A failure of the library as an exception of this class.
+pub(crate) fn refused(class: &'static str, failure: &Failure) -> Error {
+    Error::Refused {
+        class,
+        text: failure.to_string(),
+        cause: failure.cause(),
+    }
 }
 
 /// What a function for Python hands back.
@@ -100,6 +116,7 @@ impl Error {
             Self::Env(source) => ("EnvError", source.to_string()),
             Self::Metrics(source) => ("MetricsError", source.to_string()),
             Self::Curriculum(source) | Self::InScenario(source, _) => ("CurriculumError", source.to_string()),
+            Self::Refused { class, text, .. } => (*class, text.clone()),
             Self::Python(source) => return Ok(source.clone_ref(py)),
         };
         let class = py.import("driftworld.errors")?.getattr(class)?;
@@ -111,6 +128,9 @@ impl Error {
 
     /// What the exception knows beside its text.
     fn details<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        if let Self::Refused { cause: Some(cause), .. } = self {
+            return cause_details(py, &**cause);
+        }
         let details = PyDict::new(py);
         match self {
             Self::Spec(source) => of_spec(&details, source)?,
@@ -135,17 +155,14 @@ impl Error {
                 of_spec(&details, because)?;
                 details.set_item("code", source.code())?;
             }
-            Self::Python(_) => {}
+            Self::Refused { .. } | Self::Python(_) => {}
         }
         Ok(details)
     }
 }
 
 /// What an error that a command failed with knows beside its text.
-pub(crate) fn cause_details<'py>(
-    py: Python<'py>,
-    cause: &(dyn std::error::Error + 'static),
-) -> PyResult<Bound<'py, PyDict>> {
+fn cause_details<'py>(py: Python<'py>, cause: &(dyn std::error::Error + 'static)) -> PyResult<Bound<'py, PyDict>> {
     let details = PyDict::new(py);
     let code = if let Some(source) = cause.downcast_ref::<SpecError>() {
         return of_spec(&details, source).map(|()| details);

@@ -7,6 +7,7 @@ mod batch;
 mod classes;
 mod command;
 mod curriculum;
+mod design;
 mod distances;
 mod document;
 mod dress;
@@ -14,7 +15,9 @@ mod drift;
 mod errors;
 mod files;
 mod logs;
+mod options;
 mod patience;
+mod scores;
 mod supply;
 mod task;
 
@@ -29,9 +32,11 @@ mod native {
     #[pymodule_export]
     use super::classes::class_numbers;
     #[pymodule_export]
-    use super::command::{ask, main};
+    use super::command::main;
     #[pymodule_export]
     use super::curriculum::{PyJournal, PyPlan};
+    #[pymodule_export]
+    use super::design::design_curriculum;
     #[pymodule_export]
     use super::distances::{PyMatrix, distance, order_methods};
     #[pymodule_export]
@@ -42,6 +47,8 @@ mod native {
     use super::files::write_file;
     #[pymodule_export]
     use super::logs::{PyLogFile, read_log, validate_log};
+    #[pymodule_export]
+    use super::scores::{PyScores, report};
     #[pymodule_export]
     use super::supply::PyStream;
     #[pymodule_export]

@@ -215,18 +215,18 @@ WRONG: dict[str, tuple[Callable[[Path], Any], str]] = {
     "no log to report": (lambda log: driftworld.report([]), "logs: found none"),
     "no task": (lambda log: Curriculum.design(), "tasks: found none"),
     "form": (lambda log: Curriculum.design("find_objects#red", form="x"), "form: found 'x', expected one of cond"),  # type: ignore[arg-type]
-    "learn": (lambda log: Curriculum.design("find_objects#red", learn=-1), "learn: found '-1', expected a whole"),
+    "learn": (lambda log: Curriculum.design("find_objects#red", learn=-1), "learn: found -1, expected a whole"),
     "learn much": (lambda log: Curriculum.design("find_objects#red", learn=2**70), "expected a smaller number"),
-    "seed": (lambda log: Curriculum.design("find_objects#red", seed=-1), "seed: found '-1', expected a whole number"),
+    "seed": (lambda log: Curriculum.design("find_objects#red", seed=-1), "seed: found -1, expected a whole number"),
     "drift": (lambda log: Curriculum.design("find_objects", drift="x"), "drift: found 'x', expected linear, cosine"),
-    "steps": (lambda log: Curriculum.design("find_objects#red", steps=3), "options: found no step_distance"),
+    "steps": (lambda log: Curriculum.design("find_objects#red", steps=3), "steps: found it without step_distance"),
     "tolerance": (
         lambda log: Curriculum.design("find_objects#red", step_distance=0.1, steps=2, tolerance="a"),  # type: ignore[arg-type]
         "tolerance: found 'a', expected a number",
     ),
-    "lifetimes": (lambda log: Curriculum.lifetimes(0, "find_objects"), "lifetimes: found '0', expected a whole"),
+    "lifetimes": (lambda log: Curriculum.lifetimes(0, "find_objects"), "lifetimes: found 0, expected a whole"),
     "variant_mode": (lambda log: driftworld.metrics(log, variant_mode="x"), "expected one of aware, agnostic"),  # type: ignore[arg-type]
-    "window_length": (lambda log: driftworld.metrics(log, window_length=-3), "window_length: found '-3', expected"),
+    "window_length": (lambda log: driftworld.metrics(log, window_length=-3), "window_length: found -3, expected"),
     "noise": (lambda log: driftworld.metrics(log, noise_seed=3), "options: found no noise, expected it beside"),
     "resampling": (lambda log: driftworld.metrics(log, resampling="x"), "expected one of runs, strata"),  # type: ignore[arg-type]
     "worlds": (lambda log: driftworld.distance("find_objects#red", "find_objects#blue", worlds=2**70), "found 11805"),

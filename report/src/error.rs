@@ -19,6 +19,10 @@ pub enum ReportError {
         source: Box<dyn std::error::Error + Send + Sync>,
     },
 
+    /// A picture has no pixels, or others than its size says.
+    #[error("picture: cannot be written as PNG: {0}")]
+    Png(#[from] png::EncodingError),
+
     /// A name of a figure that is none.
     #[error("plot type: found {found:?}, expected one of all, raw, lb, eb, ste, timeline")]
     UnknownFigure {
@@ -74,6 +78,7 @@ impl ReportError {
     pub fn code(&self) -> &'static str {
         match self {
             Self::Drawing { .. } => "report/drawing",
+            Self::Png(_) => "report/png",
             Self::UnknownFigure { .. } => "report/unknown-figure",
             Self::UnknownUnit { .. } => "report/unknown-unit",
             Self::NoSteps { .. } => "report/no-steps",
@@ -95,6 +100,7 @@ mod tests {
                 figure: "raw",
                 source: "no font".into(),
             },
+            ReportError::Png(png::EncodingError::LimitsExceeded),
             ReportError::UnknownFigure {
                 found: "pie".to_owned(),
             },
@@ -114,6 +120,7 @@ mod tests {
         // Fails to compile when a variant is added: then it belongs into the list above.
         let _ = |error: &ReportError| match error {
             ReportError::Drawing { .. }
+            | ReportError::Png(_)
             | ReportError::UnknownFigure { .. }
             | ReportError::UnknownUnit { .. }
             | ReportError::NoSteps { .. }

@@ -1,4 +1,5 @@
-//! Reports of lifetimes that people want to look at: figures as SVG and PNG, and one self-contained page.
+//! Reports of lifetimes that people want to look at: figures as SVG and PNG, and one self-contained page; and pictures of
+//! worlds, distances and curricula.
 //!
 //! A [`Chapter`] draws and writes one lifetime, a [`Report`] puts chapters on a page; [`Figures`] gives each figure as a file.
 //!
@@ -29,6 +30,7 @@
 mod error;
 mod figure;
 mod page;
+pub mod picture;
 mod words;
 
 pub use error::ReportError;

@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use crate::curriculum::{Design, Summary, design};
+use crate::distances::labelled_matrix;
 use crate::env::Catalogue;
 use crate::generator::Sampler;
-use crate::metrics::{Options, Settings};
+use crate::lifetime_report::{ReportRequest, write_report};
 use crate::scenarios;
+use crate::scoring::{ScoringRequest, score};
 use crate::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
 use crate::spec::{BlockKind, Scenario, Variant, World};
 use crate::tasks;
@@ -14,17 +16,14 @@ use clap::Args;
 use driftworld_text::ShownPath;
 
 use super::curriculum::{blocks, choices};
-use super::metrics::{Lived, summary};
-use super::order::{matrix, path_table};
-use super::pictures::{SheetRow, heat_map, sheet};
+use super::metrics::summary;
+use super::order::path_table;
 use super::render::Views;
-use super::report::page_of;
 use super::run::{Life, Start, processors};
-use super::scoring::Experts;
-use super::table::wide_table;
-use super::weights::WeightArgs;
 use super::who::Who;
 use super::{Failure, output};
+use crate::report::picture::{SheetRow, heat_map, sheet};
+use crate::table::wide_table;
 
 /// The task that the demo is about.
 const TASK: &str = "find_objects";
@@ -65,14 +64,14 @@ impl Demo {
         self.pictures(&shown)?;
 
         heading("2", "How far apart the variants are, from 0 to 1")?;
-        let matrix = matrix(&variants, &WeightArgs::default())?;
+        let matrix = labelled_matrix(&variants, Ok)?;
         let ordering = order(&matrix, Method::Exact, &OrderOptions::default().with_first(0))?;
         output::write(&folder.join("distances.csv"), matrix.to_csv().as_bytes())?;
         let short: Vec<String> = variants.iter().map(|(_, variant)| variant.name().to_owned()).collect();
-        heat_map("Distances between the variants of find_objects", &short, |a, b| {
+        let picture = heat_map("Distances between the variants of find_objects", &short, |a, b| {
             matrix.get(a, b)
-        })?
-        .write(&folder.join("distances.png"))?;
+        })?;
+        output::write_picture(&folder.join("distances.png"), &picture)?;
         output::line(path_table(&matrix, &ordering))?;
 
         heading(
@@ -96,19 +95,18 @@ impl Demo {
         output::line(block_table(&lived))?;
 
         heading("5", "What the lifetime is worth, by the metrics of lifelong learning")?;
-        let options = Options::default();
-        let lived = Lived::read(&logs, None, &Experts::default(), &options)?;
-        output::write(
-            &folder.join("report.html"),
-            page_of("An agent that knows the map", &lived, &options)?.as_bytes(),
+        let warn = |text| output::warning(text);
+        let page = write_report(
+            &ReportRequest {
+                title: Some("An agent that knows the map".to_owned()),
+                ..ReportRequest::of([&logs])
+            },
+            &warn,
         )?;
-        let scores = lived.metrics;
-        let settings = Settings {
-            log_dir: logs.display().to_string(),
-            options,
-        };
-        scores.save(folder.join("scores"), "demo", &settings)?;
-        output::line(summary(&scores))?;
+        output::write(&folder.join("report.html"), page.html.as_bytes())?;
+        let scores = score(&ScoringRequest::of([&logs]), &warn)?;
+        scores.save(&folder.join("scores"), Some("demo"))?;
+        output::line(scores.lifetimes.iter().map(summary).collect::<String>())?;
         output::line(
             "\nThis agent knows the map and learns nothing: each evaluation repeats the last, so nothing is lost (maintenance 0) and\n\
              nothing helps (transfer 1). A learner of your own shows what it keeps, and what carries over.",
@@ -139,7 +137,7 @@ impl Demo {
             let views = Views::new(&shown.world, 240, 0.0);
             let map = views.top_down();
             let name = shown.variant.name();
-            map.write(&self.output.join("maps").join(format!("{name}.png")))?;
+            output::write_picture(&self.output.join("maps").join(format!("{name}.png")), &map)?;
             Ok(SheetRow {
                 title: shown.variant.id(),
                 words: shown
@@ -152,7 +150,7 @@ impl Demo {
             })
         };
         let rows = shown.iter().map(row).collect::<Result<Vec<_>, Failure>>()?;
-        sheet(&rows, 2)?.write(&self.output.join("contact-sheet.png"))
+        output::write_picture(&self.output.join("contact-sheet.png"), &sheet(&rows, 2)?)
     }
 
     fn scenario(

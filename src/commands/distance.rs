@@ -11,9 +11,9 @@ use driftworld_text::one_line;
 
 use serde_json::json;
 
-use super::table::table;
 use super::weights::WeightArgs;
 use super::{Failure, input, output};
+use crate::table::table;
 
 /// Measure how far apart two variants or two worlds are.
 ///

@@ -9,7 +9,7 @@ use crate::contents::{Contents, OtherContents};
 use crate::documents;
 use crate::generator::Sampler;
 use crate::spec::maps::MapLibrary;
-use crate::spec::{Variant, Warning, World};
+use crate::spec::{Warning, World};
 use crate::tasks;
 use crate::top_level::TopLevel;
 use clap::Args;
@@ -187,21 +187,4 @@ pub(crate) fn world(name: &str, seed: u64, index: u64, l2explorer: bool) -> Resu
         output::note(format!("warning: {warning}"));
     }
     Ok(world)
-}
-
-/// The variants that a list of arguments names, in that order, each once, with the names they were called by.
-pub(crate) fn variants(names: &[String]) -> Result<Vec<(String, Variant)>, Failure> {
-    let mut found: Vec<(String, Variant)> = Vec::new();
-    for name in names {
-        let (task, _) = tasks::split(name);
-        for variant in tasks::variants(name)? {
-            if !found
-                .iter()
-                .any(|(known, other)| known == task && other.name() == variant.name())
-            {
-                found.push((task.to_owned(), variant));
-            }
-        }
-    }
-    Ok(found)
 }

@@ -1,9 +1,7 @@
 //! The `driftworld` command: its subcommands, one file each, and how they fail. What is written and shown is in `output.rs`.
 //!
-//! [`run`] is the whole command: it prints. [`ask`] hands back what it would have printed, for programs that call it. The rest of
-//! the library never prints.
+//! [`run`] is the whole command: it prints. The rest of the library never does.
 
-mod ask;
 mod assets;
 mod bench;
 mod console;
@@ -16,17 +14,13 @@ mod draw_maps;
 mod figures;
 mod input;
 mod interrupt;
-mod log_folders;
 mod logs;
-mod matrix_file;
 mod metrics;
 mod modality;
 mod optional;
 mod order;
 mod output;
-mod overwrite;
 mod photograph;
-mod pictures;
 mod render;
 mod report;
 mod run;
@@ -34,10 +28,8 @@ mod sample;
 mod schema;
 mod scoring;
 mod sheet;
-mod table;
 mod tasks;
 mod transfer_report;
-mod trials;
 mod unity;
 mod validate;
 mod vary;
@@ -45,14 +37,14 @@ mod weights;
 mod who;
 
 use std::borrow::Cow;
-use std::error::Error;
 use std::ffi::OsString;
-use std::sync::Arc;
+use std::sync::{Mutex, PoisonError};
 
 use clap::Parser;
 use driftworld_text::printable;
 
-pub use ask::{Answer, Refusal, ask};
+pub(crate) use crate::Failure;
+use crate::{log_folders, matrix_file, overwrite, trials};
 
 /// Runs the command as a program of its own does, and prints what it has to say; `args` begins with the program's name.
 ///
@@ -61,12 +53,14 @@ pub use ask::{Answer, Refusal, ask};
 /// seconds of an interrupt, a termination or a hang-up, with nothing half written left: with exit code 1 where
 /// something was going on that can be gone on with or begun again, else by the signal.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> u8 {
-    let _one_at_a_time = ask::alone();
+    /// What signals do is the process's: one command at a time.
+    static RUNNING: Mutex<()> = Mutex::new(());
+    let _one_at_a_time = RUNNING.lock().unwrap_or_else(PoisonError::into_inner);
     translate_panics();
     match parse(args) {
         Ok(command) => {
             let done = interrupt::watch().and_then(|_watch| command.run());
-            done.map_or_else(|failure| failure.report(), |()| 0)
+            done.map_or_else(|failure| report(&failure), |()| 0)
         }
         Err(help) => {
             // Where nobody reads, there is nobody to tell of it.
@@ -149,56 +143,12 @@ impl Command {
     }
 }
 
-/// The error behind a failure, for programs that ask it more than its text.
-pub type Cause = Arc<dyn Error + Send + Sync>;
-
-/// Why a subcommand failed; decides the exit code.
-#[derive(Debug)]
-pub(crate) enum Failure {
-    /// The input, or the place for the output, is wrong: exit code 1.
-    Input(String, Option<Cause>),
-    /// The arguments contradict each other: exit code 2.
-    Usage(String),
-}
-
-impl Failure {
-    /// Says on standard error what went wrong.
-    fn report(&self) -> u8 {
-        let (text, code) = match self {
-            Self::Input(text, _) => (text, 1),
-            Self::Usage(text) => (text, 2),
-        };
-        output::to_standard_error(&format!("error: {text}"));
-        code
-    }
-
-    /// What it says.
-    pub(crate) fn text(&self) -> &str {
-        match self {
-            Self::Input(text, _) | Self::Usage(text) => text,
-        }
-    }
-
-    /// The error behind it, where there is one.
-    fn cause(&self) -> Option<Cause> {
-        match self {
-            Self::Input(_, cause) => cause.clone(),
-            Self::Usage(_) => None,
-        }
-    }
-
-    pub(crate) fn usage(text: impl Into<String>) -> Self {
-        Self::Usage(text.into())
-    }
-
-    pub(crate) fn input(text: impl Into<String>) -> Self {
-        Self::Input(text.into(), None)
-    }
-}
-
-impl<E: Error + Send + Sync + 'static> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Self::Input(error.to_string(), Some(Arc::new(error)))
+/// Says on standard error why the command failed; hands back the exit code.
+fn report(failure: &Failure) -> u8 {
+    output::to_standard_error(&format!("error: {}", failure.text().for_command()));
+    match failure {
+        Failure::Input(..) => 1,
+        Failure::Usage(_) => 2,
     }
 }
 

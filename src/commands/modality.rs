@@ -5,8 +5,8 @@ use crate::spec::Modality;
 use clap::ValueEnum;
 use serde::Serialize;
 
-use super::Failure;
-use super::pictures::{Gray, Picture};
+use crate::report::ReportError;
+use crate::report::picture::{Gray, Picture};
 
 /// The greatest number of a 16-bit image.
 const FULL: f32 = 65_535.0;
@@ -51,7 +51,7 @@ impl Kind {
 
     /// A PNG file's bytes: colours and reward categories as RGB; depths (in levels of so many metres, at most 65535 of them),
     /// classes and instances as 16-bit numbers. Numbers beyond are cut.
-    pub(crate) fn to_png(self, frame: &Frame, metres_per_level: f32) -> Result<Vec<u8>, Failure> {
+    pub(crate) fn to_png(self, frame: &Frame, metres_per_level: f32) -> Result<Vec<u8>, ReportError> {
         let (width, height) = (frame.width, frame.height);
         let picture = |rgb: Vec<u8>| Picture { width, height, rgb }.to_png();
         let gray = |levels: Vec<u16>| Gray { width, height, levels }.to_png();

@@ -3,45 +3,15 @@
 
 use std::io::{IsTerminal, Write};
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use driftworld_atomic_files::AtomicFile;
 use driftworld_text::{ShownPath, printable_json, printable_lines};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use super::{Answer, Failure, overwrite};
-
-/// What is said while somebody wants it handed back. Not a thing of one thread: subcommands work with many.
-static KEPT: Mutex<Option<Answer>> = Mutex::new(None);
-
-/// Does something, and hands back what was said meanwhile instead of showing it.
-pub(super) fn kept<T>(work: impl FnOnce() -> T) -> (T, Answer) {
-    /// Shows again what is said, also after a panic.
-    struct Showing;
-    impl Drop for Showing {
-        fn drop(&mut self) {
-            answer().take();
-        }
-    }
-    let showing = Showing;
-    *answer() = Some(Answer::default());
-    let done = work();
-    let said = answer().take().unwrap_or_default();
-    drop(showing);
-    (done, said)
-}
-
-fn answer() -> MutexGuard<'static, Option<Answer>> {
-    // Whoever panics with the lock has changed nothing by halves.
-    KEPT.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Adds to what is handed back; false if nobody wants it.
-fn keep(add: impl FnOnce(&mut Answer)) -> bool {
-    answer().as_mut().map(add).is_some()
-}
+use crate::Failure;
+pub(crate) use crate::output_file::{create, unwritable, write, write_picture};
+use crate::report::picture::Picture;
 
 /// Prints a line, or ends quietly if the reader has gone.
 pub(crate) fn line(text: impl AsRef<str>) -> Result<(), Failure> {
@@ -68,9 +38,6 @@ pub(crate) fn print_data(text: &str) -> Result<(), Failure> {
 
 /// Prints text as it is: of our own making, with colours.
 pub(crate) fn print_as_is(text: &str) -> Result<(), Failure> {
-    if keep(|answer| answer.output.push_str(text)) {
-        return Ok(());
-    }
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
@@ -94,9 +61,6 @@ pub(crate) fn json(value: &impl Serialize) -> Result<(), Failure> {
 
 /// Says something on standard error that is not a result.
 pub(crate) fn note(text: impl AsRef<str>) {
-    if keep(|answer| answer.notes.push(printable_lines(text.as_ref()).into_owned())) {
-        return;
-    }
     to_standard_error(text.as_ref());
 }
 
@@ -109,29 +73,6 @@ pub(super) fn to_standard_error(text: &str) {
 /// Says on standard error what is odd.
 pub(crate) fn warning(text: impl AsRef<str>) {
     note(format!("warning: {}", text.as_ref()));
-}
-
-/// Begins a file that is there whole or not at all; a device or a pipe is written straight. None that a log is made of
-/// is written over.
-pub(crate) fn create(path: &Path) -> Result<AtomicFile, Failure> {
-    if path == Path::new("-") {
-        let advice = "expected the path of a file; give /dev/stdout for standard output";
-        return Err(Failure::usage(format!("found - as the file to write, {advice}")));
-    }
-    overwrite::refuse_log_files(path)?;
-    AtomicFile::create(path).map_err(|error| unwritable(path, &error))
-}
-
-/// Writes a file as [`create`] begins it.
-pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
-    let mut file = create(path)?;
-    let written = file.write_all(bytes).and_then(|()| file.commit());
-    written.map_err(|error| unwritable(path, &error))
-}
-
-/// Why a file cannot be written.
-pub(crate) fn unwritable(path: &Path, error: &dyn std::fmt::Display) -> Failure {
-    Failure::input(format!("{}: cannot be written: {error}", path.shown()))
 }
 
 /// Whether a path stands for standard output: `-`, or a name that the system has for it.
@@ -148,9 +89,20 @@ pub(crate) fn write_or_print(path: &Path, json: &str) -> Result<(), Failure> {
     }
 }
 
+/// Writes a picture as a PNG file, and says so with its size.
+pub(crate) fn write_picture_and_tell(path: &Path, picture: &Picture) -> Result<(), Failure> {
+    write_picture(path, picture)?;
+    line(format!(
+        "{}: {} × {} pixels",
+        path.shown(),
+        picture.width,
+        picture.height
+    ))
+}
+
 /// A bar on a terminal, nothing elsewhere.
 pub(crate) fn progress(steps: u64, what: &'static str) -> ProgressBar {
-    if !std::io::stderr().is_terminal() || keep(|_| ()) {
+    if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("{prefix:<12} {bar:40} {pos}/{len} {eta} {msg}")

@@ -12,8 +12,8 @@ use clap::{Args, ValueEnum};
 
 use super::assets::LibraryChoice;
 use super::input::WorldChoice;
-use super::pictures::{Picture, SheetRow, sheet};
 use super::{Failure, output};
+use crate::report::picture::{Picture, SheetRow, sheet};
 
 /// Draw what an agent sees of a world, and the world from above.
 #[derive(Args)]
@@ -65,7 +65,7 @@ impl Render {
         let world = self.choice.world()?;
         let catalogue = self.libraries.catalogue()?;
         warn(&world, &catalogue)?;
-        self.picture(&world, &catalogue)?.write_and_tell(&self.output)
+        output::write_picture_and_tell(&self.output, &self.picture(&world, &catalogue)?)
     }
 
     fn picture(&self, world: &World, catalogue: &Catalogue) -> Result<Picture, Failure> {
@@ -110,7 +110,7 @@ impl Render {
         if !close_ups.is_empty() {
             rows.push(row("What stands in it", classes.join(", "), close_ups));
         }
-        sheet(&rows, 1)
+        Ok(sheet(&rows, 1)?)
     }
 }
 

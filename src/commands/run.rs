@@ -16,9 +16,9 @@ use driftworld_text::{ShownPath, printable};
 
 use super::assets::LibraryChoice;
 use super::interrupt::Interrupt;
-use super::table::table;
 use super::who::{Hired, Who};
 use super::{Failure, output};
+use crate::table::table;
 
 /// The most experiences that are lived at the same time.
 const MAX_JOBS: usize = 256;

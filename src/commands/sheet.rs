@@ -8,11 +8,11 @@ use crate::tasks;
 use clap::Args;
 use driftworld_text::ShownPath;
 
-use super::pictures::{SheetRow, sheet};
 use super::render::Views;
-use super::{Failure, input, output};
+use super::{Failure, output};
 use crate::contents::Contents;
 use crate::documents;
+use crate::report::picture::{SheetRow, sheet};
 use crate::scenarios::is_original;
 
 /// The most variants that one picture shows.
@@ -59,7 +59,7 @@ impl Sheet {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let variants = match &self.scenario {
             Some(file) => learned(file)?,
-            None => input::variants(&self.tasks)?
+            None => tasks::variants_of(&self.tasks)?
                 .into_iter()
                 .map(|(_, variant)| Shown::declared(variant))
                 .collect(),
@@ -77,7 +77,7 @@ impl Sheet {
         };
         let rows = variants.iter().map(row).collect::<Result<Vec<_>, _>>()?;
         bar.finish_and_clear();
-        sheet(&rows, usize::from(self.columns))?.write_and_tell(&self.output)
+        output::write_picture_and_tell(&self.output, &sheet(&rows, usize::from(self.columns))?)
     }
 
     fn row(&self, shown: &Shown) -> Result<SheetRow, Failure> {

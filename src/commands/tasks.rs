@@ -6,8 +6,8 @@ use clap::{Args, Subcommand};
 use driftworld_text::{one_line, printable};
 use serde_json::json;
 
-use super::table::wide_table;
 use super::{Failure, output};
+use crate::table::wide_table;
 
 /// List the built-in tasks, or show what varies in one.
 #[derive(Args)]

@@ -185,7 +185,7 @@ impl Verdict {
         let found = match &self.found {
             Ok(found) => found,
             Err(failure) => {
-                output::note(failure.text());
+                output::note(failure.text().for_command());
                 return Ok(());
             }
         };
@@ -214,7 +214,7 @@ impl Verdict {
         let found = match &self.found {
             Ok(found) => found,
             Err(failure) => {
-                let problem = json!({ "code": "document/unreadable", "message": failure.text() });
+                let problem = json!({ "code": "document/unreadable", "message": failure.text().for_command() });
                 return json!({ "file": self.path, "kind": null, "valid": false, "problems": [problem], "warnings": [] });
             }
         };

@@ -10,7 +10,6 @@ import inspect
 import json
 import numbers
 import os
-import tempfile
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -20,10 +19,8 @@ from typing import TYPE_CHECKING, Any
 import gymnasium
 
 from driftworld import _native
-from driftworld._command import ask
 from driftworld._files import write_whole
 from driftworld._literals import BlockKind, DesignOrder, Evaluate, Form, OrderMethod, Phase, Probe, TaskLabel
-from driftworld.errors import CurriculumError
 from driftworld.lifetimes import Agent, Lifetime, Summary, environment
 from driftworld.specs import variants
 
@@ -247,7 +244,7 @@ class Curriculum(Sequence[Block]):
         """
         options = dict(locals())
         del options["cls"]
-        return cls(_designed(options), "scenario")
+        return cls(_designed(options)[0], "scenario")
 
     @classmethod
     def experts(cls, *tasks: str, **options: Any) -> list[Curriculum]:
@@ -282,12 +279,7 @@ class Curriculum(Sequence[Block]):
         for name in options:
             if name not in known:
                 raise TypeError(f"{maker}: found option {name!r}, expected one of {', '.join(known)}")
-        options = {**options, **fixed}
-        with tempfile.TemporaryDirectory() as folder:
-            said = _designed({**options, "output": folder})
-            names = [line.removeprefix(folder + os.sep).partition(".json: ")[0] for line in said.splitlines()]
-            paths = [Path(folder) / f"{name}.json" for name in names]
-            return [cls(path.read_text(encoding="utf-8"), "scenario") for path in paths]
+        return [cls(text, "scenario") for text in _designed({**options, **fixed})]
 
     @property
     def name(self) -> str:
@@ -422,8 +414,8 @@ def _is_whole(value: Any) -> bool:
     return isinstance(value, numbers.Integral) and not isinstance(value, bool)
 
 
-def _designed(options: dict[str, Any]) -> str:
-    """What the command prints of a design: the scenario, or a line for each of several."""
+def _designed(options: dict[str, Any]) -> list[str]:
+    """The texts of the scenarios that were designed. Controls are written into their folder."""
     tasks = options.pop("tasks")
     if not tasks:
         raise ValueError('tasks: found none, expected at least one, such as "find_objects#red"')
@@ -438,8 +430,11 @@ def _designed(options: dict[str, Any]) -> str:
     if after is not None:
         if isinstance(after, str) or not isinstance(after, Iterable):
             raise TypeError(f"evaluate_after: found {after!r}, expected a list of whole numbers, such as [0, 2]")
-        options["evaluate_after"] = tuple(after)
+        options["evaluate_after"] = list(after)
         wrong = [place for place in options["evaluate_after"] if not _is_whole(place)]
         if wrong:
             raise TypeError(f"evaluate_after: found {wrong[0]!r} in it, expected whole numbers")
-    return ask("curriculum", tasks, options, CurriculumError, stacklevel=4)
+    designed, controls = _native.design_curriculum(list(tasks), options)
+    for name, text in controls:
+        write_whole(Path(options["controls"]) / f"{name}.json", text.encode())
+    return [text for _, text in designed]

@@ -6,15 +6,14 @@ Reading and writing logs is in ``logs.py``.
 
 from __future__ import annotations
 
-import json
 import os
-import tempfile
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from driftworld._command import ask
+from driftworld import _native
 from driftworld._literals import (
     Aggregation,
     Maintenance,
@@ -27,8 +26,6 @@ from driftworld._literals import (
     Unit,
     VariantMode,
 )
-from driftworld._plain import plain
-from driftworld.errors import MetricsError
 from driftworld.logs import _pandas
 
 if TYPE_CHECKING:
@@ -75,7 +72,8 @@ class Metrics:
     lifetimes_against: list[dict[str, Any]] = field(default_factory=list, repr=False)
     repeats_against: list[dict[str, Any]] = field(default_factory=list, repr=False)
     intervals: dict[str, Any] = field(default_factory=dict, repr=False)
-    _asked: tuple[tuple[str, ...], dict[str, Any]] = field(default=((), {}), repr=False, compare=False)
+    _asked: tuple[list[str], dict[str, Any]] = field(default=([], {}), repr=False, compare=False)
+    _scores: _native.Scores | None = field(default=None, repr=False, compare=False)
 
     @property
     def lifetime(self) -> dict[str, Any]:
@@ -118,15 +116,12 @@ class Metrics:
         return _pandas().DataFrame(rows, index=index, columns=names)
 
     def regimes(self) -> pandas.DataFrame:
-        """The regimes of the lifetimes as a data frame, a row for each, as ``driftworld metrics --do-save`` writes them.
+        """The regimes of the lifetimes as a data frame, a row for each: what it is, and its values in normalised units.
 
         Raises:
             ImportError: If pandas is not installed.
         """
-        with tempfile.TemporaryDirectory() as folder:
-            self.save(folder, name="all")
-            frame: pandas.DataFrame = _pandas().read_csv(Path(folder) / "all_regime.tsv", sep="\t")
-        return frame
+        return _pandas().DataFrame(self._native().regimes())
 
     def save(self, folder: PathLike, *, name: str | None = None) -> None:
         """Saves the results as ``driftworld metrics --do-save`` does: of one lifetime ``NAME_metrics.json``, ``NAME_regime.tsv``
@@ -136,8 +131,14 @@ class Metrics:
             folder: Where; made if need be.
             name: The log's, or ``ll_metrics`` for several, if not given.
         """
-        logs, options = self._asked
-        _ask(logs, {**options, "output_dir": Path(folder), "output": name})
+        self._native().save(folder, name)
+
+    def _native(self) -> _native.Scores:
+        """The scores themselves; a copy in another process scores the logs again."""
+        return self._scores if self._scores is not None else _native.Scores.of(*self._asked)[0]
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_scores": None}
 
 
 def metrics(
@@ -203,28 +204,16 @@ def metrics(
         MetricsError: If a log cannot be read or scored, or an option is wrong.
     """
     options = dict(locals())
-    folders = tuple(os.fspath(path) for path in _logs(options.pop("logs")))
-    for name in ("ste", "against"):
-        options[name] = None if options[name] is None else list(_paths(options[name]))
+    folders = _paths(options.pop("logs"), "logs")
+    for paths in ("ste", "against"):
+        options[paths] = None if options[paths] is None else _paths(options[paths])
     options["noise"] = None if noise is None else list(noise)
-    if data_range is not None:
-        options["data_range"] = {task: dict(limits) for task, limits in data_range.items()}
-    said = json.loads(_ask(folders, {**options, "json": True}))
-    if "lifetimes" not in said:
-        said = {"lifetimes": [said]}
-    return Metrics(**said, _asked=(folders, options))
-
-
-def _ask(folders: tuple[str, ...], options: Mapping[str, Any]) -> str:
-    """What the command says of logs. It reads ranges from a file, which is there while it is asked."""
-    options = dict(options)
-    ranges = options.pop("data_range", None)
-    if ranges is None:
-        return ask("metrics", folders, options, MetricsError, stacklevel=4)
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "data_range.json"
-        file.write_text(json.dumps(ranges, default=plain), encoding="utf-8")
-        return ask("metrics", folders, {**options, "data_range_file": file}, MetricsError, stacklevel=4)
+    scores, said = _native.Scores.of(folders, options)
+    _warn(said)
+    values = scores.values()
+    if "lifetimes" not in values:
+        values = {"lifetimes": [values]}
+    return Metrics(**values, _asked=(folders, options), _scores=scores)
 
 
 def report(
@@ -269,11 +258,12 @@ def report(
         MetricsError: If a log cannot be read or scored.
     """
     options = dict(locals())
-    folders, file = _logs(options.pop("logs")), options.pop("path")
-    for name in ("ste", "against"):
-        options[name] = None if options[name] is None else list(_paths(options[name]))
+    folders, file = _paths(options.pop("logs"), "logs"), options.pop("path")
+    for paths in ("ste", "against"):
+        options[paths] = None if options[paths] is None else _paths(options[paths])
     options["plot_types"] = None if plot_types is None else list(plot_types)
-    page = ask("report", folders, {**options, "output": "-"}, MetricsError)
+    page, said = _native.report(folders, options)
+    _warn(said)
     if file is not None:
         from driftworld._files import write_whole
 
@@ -281,12 +271,14 @@ def report(
     return page
 
 
-def _paths(paths: Paths) -> list[PathLike]:
-    return [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)
+def _warn(said: Iterable[str]) -> None:
+    for text in said:
+        warnings.warn(text, stacklevel=3)
 
 
-def _logs(paths: Paths) -> list[PathLike]:
-    folders = _paths(paths)
-    if not folders:
-        raise ValueError("logs: found none, expected the folder of a log, or several")
+def _paths(paths: Paths, name: str | None = None) -> list[str]:
+    """The paths of an argument; one that must be given has a name."""
+    folders = [os.fspath(path) for path in ([paths] if isinstance(paths, (str, os.PathLike)) else paths)]
+    if name is not None and not folders:
+        raise ValueError(f"{name}: found none, expected the folder of a log, or several")
     return folders

@@ -21,6 +21,7 @@ use driftworld_metrics::Lifetime;
 use plotters::prelude::*;
 
 pub(crate) use palette::dark_rules;
+pub(crate) use paper::load_font;
 pub(crate) use strip::{strip, told};
 
 use crate::ReportError;

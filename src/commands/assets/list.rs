@@ -7,9 +7,8 @@ use crate::env::{Asset, Catalogue, ColliderShape, LibraryModel, classes};
 use crate::spec::Model;
 use clap::Args;
 
-use super::super::table::table;
 use super::super::{Failure, output};
-use super::source;
+use crate::table::table;
 
 /// List the built-in classes, or the models of libraries.
 #[derive(Args)]
@@ -26,7 +25,7 @@ impl List {
             return output::line(built_in());
         }
         for path in &self.libraries {
-            let library = source::library(path)?;
+            let library = crate::libraries::library(path)?;
             output::line(models(library.models()))?;
         }
         Ok(())

@@ -14,7 +14,7 @@ use super::super::Failure;
 #[cfg(feature = "gltf")]
 use super::super::output;
 #[cfg(feature = "gltf")]
-use super::{gltf, list, source};
+use super::{gltf, list};
 
 /// Pack glTF files into a library, with levels of detail and bodies to bump into.
 #[derive(Args)]
@@ -80,7 +80,7 @@ impl Pack {
     pub(crate) fn run(self) -> Result<(), Failure> {
         gltf::check_output(&self.output)?;
         let mut library = if self.add && self.output.exists() {
-            source::library(&self.output)?
+            crate::libraries::library(&self.output)?
         } else {
             Library::default()
         };

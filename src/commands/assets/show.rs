@@ -7,9 +7,9 @@ use crate::env::{Asset, Camera, CpuRenderer, Frame, Library, LibraryModel, Scene
 use crate::spec::{Model, Object, World};
 use clap::Args;
 
-use super::super::pictures::{Picture, SheetRow, sheet};
 use super::super::{Failure, output};
 use super::LibraryChoice;
+use crate::report::picture::{Picture, SheetRow, sheet};
 
 /// Draw the models of a class, or one model from four sides, level by level.
 #[derive(Args)]
@@ -54,7 +54,7 @@ impl Show {
             }
             None => self.models(&class, &names)?,
         };
-        sheet(&rows, 1)?.write_and_tell(&self.output)
+        output::write_picture_and_tell(&self.output, &sheet(&rows, 1)?)
     }
 
     /// All models of a class, some in each row.

@@ -1,16 +1,13 @@
-//! Reading libraries from disk. How files are opened is `driftworld-files`'.
+//! The option that names asset libraries. Reading them is the library's.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::env::{Catalogue, Library};
+use crate::libraries::{self, MAX_LIBRARY_BYTES};
 use clap::Args;
-use driftworld_text::ShownPath;
 use serde_json::{Value, json};
 
 use super::super::{Failure, input};
-
-/// The largest library in bytes.
-pub(crate) const MAX_LIBRARY_BYTES: u64 = 1 << 30;
 
 /// The libraries that a command's worlds take their assets from.
 #[derive(Args, Clone, Debug, Default)]
@@ -23,11 +20,12 @@ pub(crate) struct LibraryChoice {
 impl LibraryChoice {
     /// The built-in assets, and the chosen libraries in front of them.
     pub(crate) fn catalogue(&self) -> Result<Catalogue, Failure> {
-        let mut catalogue = Catalogue::default();
-        for library in self.read()? {
-            catalogue = catalogue.with_library(&library);
-        }
-        Ok(catalogue)
+        libraries::catalogue(&self.libraries)
+    }
+
+    /// Their files.
+    pub(crate) fn paths(&self) -> &[PathBuf] {
+        &self.libraries
     }
 
     /// The checksum of each chosen library by its file's name, in the order they were named in; nothing if none was chosen.
@@ -42,12 +40,6 @@ impl LibraryChoice {
 
     /// The chosen libraries, in the order they were named in.
     pub(super) fn read(&self) -> Result<Vec<Library>, Failure> {
-        self.libraries.iter().map(|path| library(path)).collect()
+        self.libraries.iter().map(|path| libraries::library(path)).collect()
     }
-}
-
-/// A library from its file.
-pub(super) fn library(path: &Path) -> Result<Library, Failure> {
-    let bytes = driftworld_files::read(path, MAX_LIBRARY_BYTES)?;
-    Library::from_bytes(&bytes).map_err(|error| Failure::input(format!("{}: {error}", path.shown())))
 }

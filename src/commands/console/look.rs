@@ -6,11 +6,11 @@ use driftworld_text::ShownPath;
 
 use super::super::modality::Kind;
 use super::super::modality::target;
-use super::super::pictures;
 use super::line::Picture;
 use super::map;
 use super::screen::{colors, half_blocks, letters};
-use super::session::{Session, plain, said};
+use super::session::{Session, plain};
+use crate::report::picture;
 
 /// How many metres a level of a depth image stands for.
 const METRES_PER_LEVEL: f32 = 0.01;
@@ -66,10 +66,10 @@ impl Session<'_> {
             Picture::Seen(_) => own,
         });
         let bytes = match picture {
-            Picture::Seen(kind) => kind.to_png(&self.seen(kind, size)?, METRES_PER_LEVEL).map_err(said)?,
+            Picture::Seen(kind) => kind.to_png(&self.seen(kind, size)?, METRES_PER_LEVEL).map_err(plain)?,
             Picture::Map if size.iter().all(|side| (1..=4096).contains(side)) => {
                 let Image { width, height, rgb } = self.bird_view(size[0], size[1]);
-                pictures::Picture { width, height, rgb }.to_png().map_err(said)?
+                picture::Picture { width, height, rgb }.to_png().map_err(plain)?
             }
             Picture::Map => {
                 return Err(format!(

@@ -4,8 +4,8 @@ use std::path::{Component, Path, PathBuf};
 
 use driftworld_text::ShownPath;
 
-use super::super::Failure;
 use super::super::output;
+use super::session::said;
 
 /// A folder for files that are named by commands and messages.
 pub(super) struct Folder(PathBuf);
@@ -18,9 +18,7 @@ impl Folder {
     /// Writes a file inside the folder, and hands back its path. The ending is added where it is missing.
     pub(super) fn write(&self, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, String> {
         let path = self.inside(name, ending)?;
-        output::write(&path, bytes).map_err(|failure| match failure {
-            Failure::Input(text, _) | Failure::Usage(text) => text,
-        })?;
+        output::write(&path, bytes).map_err(said)?;
         Ok(path)
     }
 

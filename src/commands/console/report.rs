@@ -5,9 +5,9 @@ use std::fmt::Write;
 use crate::spec::nearest;
 
 use super::super::modality::Kind;
-use super::super::table::table;
 use super::line::COMMANDS;
 use super::session::{MOST_LINES, Session};
+use crate::table::table;
 
 impl Session<'_> {
     pub(super) fn agent(&self) -> String {

@@ -47,10 +47,9 @@ pub(super) enum Reply {
 }
 
 /// A refusal in one sentence.
+#[expect(clippy::needless_pass_by_value, reason = "it is what `map_err` hands over")]
 pub(super) fn said(failure: Failure) -> String {
-    match failure {
-        Failure::Input(text, _) | Failure::Usage(text) => text,
-    }
+    failure.text().for_command()
 }
 
 pub(super) fn plain(error: impl std::error::Error) -> String {

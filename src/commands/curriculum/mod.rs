@@ -1,17 +1,17 @@
-//! `driftworld curriculum`: learning and evaluation blocks of variants in the order of their distances. Which variants and which
-//! order is found in `choose.rs`, what is shown of them in `tables.rs` and `timeline.rs`; the design is the library's.
+//! `driftworld curriculum`: learning and evaluation blocks of variants in the order of their distances. The design is the
+//! library's; what is said of it is in `tables.rs`.
 
-mod choose;
-mod proof;
 mod tables;
-mod timeline;
-mod words;
 
 use std::path::{Path, PathBuf};
 
-use crate::curriculum::{Control, Design, Drifting, Evaluate, Hypothesis, control, design, design_control, experts};
+use crate::curriculum::{Design, Drifting, Evaluate};
+use crate::design::{
+    self, DEFAULT_STEPS, DEFAULT_TOLERANCE, DesignOrder, DesignRequest, Designed, MAX_LIFETIMES, MAX_TRIED,
+};
 use crate::spec::{
     DriftSchedule, DriftSwitch, Element, Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm, TaskLabel,
+    sound_name,
 };
 use clap::{Args, ValueEnum};
 use driftworld_text::ShownPath;
@@ -19,7 +19,6 @@ use driftworld_text::ShownPath;
 use super::assets::LibraryChoice;
 use super::order::OrderArgs;
 use super::{Failure, output, overwrite};
-use proof::Proof;
 pub(crate) use tables::{blocks, choices};
 
 /// Design learning and evaluation blocks from variants and their distances.
@@ -48,7 +47,7 @@ pub(crate) struct Curriculum {
     ordering: OrderArgs,
     /// Probe one element: variants that differ from the start in it and in nothing else. state, action, transition, reward or
     /// observation.
-    #[arg(long, value_parser = words::element, value_name = "ELEMENT")]
+    #[arg(long, value_parser = design::element, value_name = "ELEMENT")]
     probe: Option<Element>,
     /// How many variants the probe takes; all that are declared, and at least 4, if not said.
     #[arg(long, requires = "probe", conflicts_with = "step_distance", value_name = "N")]
@@ -60,10 +59,10 @@ pub(crate) struct Curriculum {
     #[arg(long, value_name = "DISTANCE", conflicts_with_all = ["method", "end"])]
     step_distance: Option<f64>,
     /// How far off each step may be.
-    #[arg(long, requires = "step_distance", default_value_t = 0.001)]
+    #[arg(long, requires = "step_distance", default_value_t = DEFAULT_TOLERANCE)]
     tolerance: f64,
     /// How many steps: one fewer than variants.
-    #[arg(long, requires = "step_distance", default_value_t = 4, value_name = "N")]
+    #[arg(long, requires = "step_distance", default_value_t = DEFAULT_STEPS, value_name = "N")]
     steps: u32,
     /// How learning blocks are arranged; the variants one after the other, beginning anew when there are more blocks, if not said.
     #[arg(long, value_enum)]
@@ -72,17 +71,17 @@ pub(crate) struct Curriculum {
     #[arg(long, value_name = "N")]
     blocks: Option<u32>,
     /// Write so many lifetimes of the permuted form, each in an order of its own, into the folder --output.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_LIFETIMES))]
     lifetimes: Option<u64>,
     /// Learning blocks drift from each variant to the next: linear, cosine, step:N or sawtooth:N. With --blocks the whole way is
     /// shared out among so many blocks, across their borders.
-    #[arg(long, value_parser = words::schedule, value_name = "SCHEDULE")]
+    #[arg(long, value_parser = design::schedule, value_name = "SCHEDULE")]
     drift: Option<DriftSchedule>,
     /// Values with nothing in between switch by chance, more likely as the drift goes on, not at a point.
     #[arg(long, requires = "drift")]
     mix: bool,
     /// The scenario's name.
-    #[arg(long, default_value = "curriculum", value_parser = words::name)]
+    #[arg(long, default_value = "curriculum", value_parser = name)]
     name: String,
     /// Experiences of each learning block.
     #[arg(long, default_value_t = 20, value_name = "N")]
@@ -112,7 +111,7 @@ pub(crate) struct Curriculum {
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// Draw so many worlds of each regime first, and refuse to write what cannot be drawn; 0 writes it unseen.
-    #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
+    #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(MAX_TRIED)))]
     worlds: u32,
     #[command(flatten)]
     libraries: LibraryChoice,
@@ -204,85 +203,89 @@ enum Label {
 
 impl Curriculum {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let several = self.form == Some(Form::Expert) || self.lifetimes.is_some();
-        self.check_arguments(several)?;
+        let request = self.request();
+        request.check()?;
+        let to_stdout = self.output.as_os_str() == "-";
+        if request.is_of_several() && to_stdout {
+            return Err(Failure::usage(
+                "several scenarios are written: name a folder with --output",
+            ));
+        }
+        if request.is_of_several() && self.plot.is_some() {
+            return Err(Failure::usage(
+                "--plot is of one scenario: leave it out, or --lifetimes and --form expert",
+            ));
+        }
         let targets = [Some(&self.output), self.plot.as_ref()];
         for target in targets.into_iter().flatten() {
             overwrite::refuse_inputs(target, self.tasks.iter().map(String::as_str))?;
         }
-        let chosen = self.choose()?;
-        let mut proof = Proof::new(self.worlds, &self.libraries)?;
+        let designed = design::design(&request)?;
+        let evidence = designed.chosen.evidence.as_ref();
         // What is printed beside a scenario on standard output would spoil it.
         let say = |text: String| {
-            if self.output.as_os_str() == "-" {
+            if to_stdout {
                 output::note(text);
                 return Ok(());
             }
             output::line(text)
         };
-        if let Some(proof) = &chosen.proof {
-            say(proof.clone())?;
+        if let Some(evidence) = evidence {
+            say(tables::evidence(evidence, &designed.chosen.order)?)?;
         }
-        let options = self.design();
-        let picked = chosen.in_order(&chosen.order);
-        if several {
-            return self.write_several(&chosen, &options, &mut proof);
+        if request.is_of_several() {
+            for scenario in &designed.scenarios {
+                let path = write_into(&self.output, scenario)?;
+                output::line(format!("{}: {}", path.shown(), tables::learned(scenario)))?;
+            }
+            return Ok(());
         }
-        let scenario = design(&picked, &options)?;
-        proof.check(&scenario)?;
-        write_checked(&self.output, &scenario)?;
-        if self.output.as_os_str() != "-" {
-            output::line(blocks(&scenario, Some(&chosen.matrix)))?;
+        self.write_one(&designed, say)
+    }
+
+    /// Writes one scenario, its picture and its controls.
+    fn write_one(&self, designed: &Designed, say: impl Fn(String) -> Result<(), Failure>) -> Result<(), Failure> {
+        let matrix = &designed.chosen.matrix;
+        for scenario in &designed.scenarios {
+            output::write_or_print(&self.output, &scenario.to_json_pretty())?;
+            if self.output.as_os_str() != "-" {
+                output::line(blocks(scenario, Some(matrix)))?;
+            }
         }
         if let Some(path) = &self.plot {
-            timeline::picture(&scenario)?.write(path)?;
+            designed.write_plot(path)?;
         }
-        if let Some(folder) = &self.controls {
-            for kind in Control::ALL {
-                let order = control(&chosen.matrix, &chosen.order, kind, self.seed)?;
-                let options = Design {
-                    name: format!("{}-{}", self.name, kind.name()),
-                    ..options.clone()
-                };
-                // By their places in the order that the design itself has.
-                let place = |index: &usize| chosen.order.iter().position(|own| own == index);
-                let order: Vec<usize> = order.iter().filter_map(place).collect();
-                let scenario = design_control(&picked, &order, &options)?;
-                let path = folder.join(format!("{}.json", options.name));
-                proof.check(&scenario)?;
-                write_checked(&path, &scenario)?;
-                say(format!("{}: {}", path.shown(), tables::path(&scenario, &chosen.matrix)))?;
-            }
+        let folder = self.controls.iter();
+        for (folder, scenario) in folder.flat_map(|folder| designed.controls.iter().map(move |one| (folder, one))) {
+            let path = write_into(folder, scenario)?;
+            say(format!("{}: {}", path.shown(), tables::path(scenario, matrix)))?;
         }
         Ok(())
     }
 
-    fn check_arguments(&self, several: bool) -> Result<(), Failure> {
-        if self.lifetimes.is_some() && self.form != Some(Form::Permuted) {
-            return Err(Failure::usage(
-                "--lifetimes are of the permuted form: add --form permuted",
-            ));
+    fn request(&self) -> DesignRequest {
+        let steps = self.step_distance.is_some();
+        DesignRequest {
+            tasks: self.tasks.clone(),
+            ordering: self.ordering.request(),
+            order: self.order.map(|order| match order {
+                Order::Gradual => DesignOrder::Gradual,
+                Order::Abrupt => DesignOrder::Abrupt,
+                Order::Path => DesignOrder::Path,
+                Order::Farthest => DesignOrder::Farthest,
+                Order::Named => DesignOrder::Named,
+            }),
+            probe: self.probe,
+            variants: self.variants,
+            step_distance: self.step_distance,
+            tolerance: steps.then_some(self.tolerance),
+            steps: steps.then_some(self.steps),
+            lifetimes: self.lifetimes,
+            controls: self.controls.is_some(),
+            worlds: self.worlds,
+            libraries: self.libraries.paths().to_vec(),
+            design: self.design(),
         }
-        if several && self.output.as_os_str() == "-" {
-            return Err(Failure::usage(
-                "several scenarios are written: name a folder with --output",
-            ));
-        }
-        if several && (self.plot.is_some() || self.controls.is_some()) {
-            return Err(Failure::usage(
-                "--plot and --controls are of one scenario: leave them out, or --lifetimes and --form expert",
-            ));
-        }
-        if self.form == Some(Form::Permuted) && self.controls.is_some() {
-            return Err(Failure::usage(
-                "the permuted form draws its own order, and --controls are of an order that was chosen: leave one of them out; \
-                 --lifetimes are each other's controls",
-            ));
-        }
-        if self.form == Some(Form::Expert) && self.drift.is_some() {
-            return Err(Failure::usage("an expert learns one variant alone: leave --drift out"));
-        }
-        Ok(())
     }
 
     fn design(&self) -> Design {
@@ -332,47 +335,16 @@ impl Curriculum {
             seed: self.seed,
         }
     }
-
-    /// Experts, or lifetimes of the permuted form: each in a file named after it.
-    fn write_several(&self, chosen: &choose::Chosen, options: &Design, proof: &mut Proof) -> Result<(), Failure> {
-        let picked = chosen.in_order(&chosen.order);
-        let lifetime = |lifetime: u64| {
-            let options = Design {
-                name: format!("{}-{}", self.name, lifetime + 1),
-                lifetime,
-                ..options.clone()
-            };
-            design(&picked, &options)
-        };
-        let scenarios = match self.lifetimes {
-            Some(lifetimes) => (0..lifetimes).map(lifetime).collect::<Result<Vec<_>, _>>()?,
-            None => experts(&picked, options)?,
-        };
-        for scenario in &scenarios {
-            let path = self.output.join(format!("{}.json", scenario.name));
-            proof.check(scenario)?;
-            write_checked(&path, scenario)?;
-            output::line(format!("{}: {}", path.shown(), tables::learned(scenario)))?;
-        }
-        Ok(())
-    }
 }
 
-/// Writes a scenario. What the schema refuses, such as a name that no folder can have, is refused before it is written.
-fn write_checked(path: &Path, scenario: &Scenario) -> Result<(), Failure> {
-    let text = scenario.to_json_pretty();
-    Scenario::from_json("scenario", &text)?;
-    output::write_or_print(path, &text)
+/// Writes a scenario into a folder, in a file named after it.
+fn write_into(folder: &Path, scenario: &Scenario) -> Result<PathBuf, Failure> {
+    let path = folder.join(format!("{}.json", scenario.name));
+    output::write(&path, scenario.to_json_pretty().as_bytes())?;
+    Ok(path)
 }
 
-impl Order {
-    /// The order by distances that is meant.
-    fn hypothesis(self) -> Hypothesis {
-        match self {
-            Self::Gradual | Self::Named => Hypothesis::Gradual,
-            Self::Abrupt => Hypothesis::Abrupt,
-            Self::Path => Hypothesis::Path,
-            Self::Farthest => Hypothesis::Farthest,
-        }
-    }
+/// A name that a scenario may have.
+fn name(text: &str) -> Result<String, String> {
+    sound_name(text).map(|()| text.to_owned())
 }

@@ -1,11 +1,12 @@
 //! What is shown of a curriculum: the proof of its variants, its blocks. The picture is `timeline.rs`'s.
 
 use crate::curriculum::{Choice, Picked, Steps};
+use crate::design::Evidence;
 use crate::similarity::{Distance, DistanceMatrix};
 use crate::spec::{Block, BlockKind, Element, Phase, Regime, Scenario, Variant};
 
 use crate::commands::Failure;
-use crate::commands::table::{table, wide_table};
+use crate::table::{table, wide_table};
 
 /// Variants in an order, as a scenario names them.
 pub(crate) fn choices(variants: &[(String, Variant)], order: &[usize]) -> Vec<Choice> {
@@ -13,10 +14,19 @@ pub(crate) fn choices(variants: &[(String, Variant)], order: &[usize]) -> Vec<Ch
     order.iter().map(choice).collect()
 }
 
+/// What shows that variants are as was asked for, in the order in which they are met.
+pub(super) fn evidence(evidence: &Evidence, order: &[usize]) -> Result<String, Failure> {
+    match evidence {
+        Evidence::Probe { picked, element } => probe(picked, order, *element),
+        Evidence::Steps { picked, wanted } => steps(picked, wanted),
+    }
+}
+
 /// The proof that variants differ from the first in one element only: every distance, 0 as such where it is exactly that.
-pub(super) fn probe(picked: &[&Picked], anchor: &Picked, element: Element) -> Result<String, Failure> {
+fn probe(picked: &[Picked], order: &[usize], element: Element) -> Result<String, Failure> {
+    let anchor = &picked[0];
     let mut rows = Vec::new();
-    for one in picked {
+    for one in order.iter().map(|index| &picked[*index]) {
         rows.push(row(one, &anchor.distance(one)?));
     }
     Ok(format!(
@@ -28,7 +38,7 @@ pub(super) fn probe(picked: &[&Picked], anchor: &Picked, element: Element) -> Re
 }
 
 /// The proof that each variant is a step from the one before.
-pub(super) fn steps(picked: &[Picked], wanted: &Steps) -> Result<String, Failure> {
+fn steps(picked: &[Picked], wanted: &Steps) -> Result<String, Failure> {
     let mut rows = Vec::new();
     for (index, one) in picked.iter().enumerate() {
         let before = &picked[index.saturating_sub(1)];

@@ -5,8 +5,8 @@ use crate::similarity::picture::PictureMeasure;
 use crate::spec::World;
 use serde_json::json;
 
-use super::super::table::table;
 use super::super::{Failure, output};
+use crate::table::table;
 
 /// Prints how different two worlds look to an agent in them.
 pub(super) fn run(names: [&str; 2], worlds: [&World; 2], as_json: bool) -> Result<(), Failure> {

@@ -9,9 +9,9 @@ use crate::metrics::{Delimiter, KeptRows, LogTable, read_log_with_texts};
 use clap::{Args, ValueEnum};
 use driftworld_text::{Cells, ShownPath};
 
-use super::super::table::cells;
 use super::super::{Failure, log_folders, output, overwrite};
 use super::count;
+use crate::table::cells;
 
 /// Write the rows of one log or several as one table.
 ///

@@ -1,30 +1,23 @@
 //! `driftworld metrics`: what agents kept and transferred, from the logs of their lifetimes. The metrics are the library's.
 
-mod lived;
-mod many;
 mod store;
 mod tables;
-mod yardstick;
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-use crate::metrics::{BootstrapOptions, LifetimeMetrics, Options, Settings, SteStoreMode, save_all};
+use crate::Failure;
+use crate::figure_files::{Files, drawn};
+use crate::metrics::SteStoreMode;
+use crate::scoring::{Scores, ScoringRequest, score, score_looking};
 use clap::Args;
 use driftworld_text::ShownPath;
 
-pub(crate) use lived::{Lived, score_logs};
-pub(crate) use tables::{own_scale, summary};
-pub(crate) use yardstick::Yardstick;
+pub(crate) use tables::summary;
 
-use lived::each_lived;
-
-use super::figures::{FigureChoice, Files, drawn};
-use super::scoring::{Experts, Scoring};
-use super::{Failure, log_folders, output};
-
-/// What several lifetimes are called together, as in l2metrics.
-const NAME_OF_MANY: &str = "ll_metrics";
+use super::figures::FigureChoice;
+use super::output;
+use super::scoring::{Intervals, Scoring};
 
 /// Score the logs of lifetimes.
 ///
@@ -86,161 +79,57 @@ pub(crate) struct Metrics {
     figures: FigureChoice,
 }
 
-/// How several lifetimes are put together, and how sure their numbers are.
-#[derive(Args)]
-#[command(next_help_heading = "Several lifetimes")]
-pub(crate) struct Intervals {
-    /// Scale each task by its range over all lifetimes, not each lifetime by its own; so it is with --against anyway.
-    #[arg(long)]
-    pub(crate) common_ranges: bool,
-    /// How much of the bootstrap's distribution an interval holds.
-    #[arg(long, value_name = "SHARE", default_value_t = BootstrapOptions::default().confidence)]
-    confidence: f64,
-    /// How many times lifetimes are drawn again; take 50000 for a figure to publish.
-    #[arg(long, value_name = "N", default_value_t = BootstrapOptions::default().resamples)]
-    resamples: u32,
-    /// What is drawn again: runs (whole lifetimes) or strata (within each task, as rliable, as if a lifetime's tasks shared no luck).
-    #[arg(long, value_name = "WHAT", default_value_t = BootstrapOptions::default().resampling)]
-    resampling: crate::metrics::Resampling,
-    /// What the draws come from.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    bootstrap_seed: u64,
-}
-
-impl Intervals {
-    pub(crate) fn options(&self) -> BootstrapOptions {
-        BootstrapOptions {
-            confidence: self.confidence,
-            resamples: self.resamples,
-            resampling: self.resampling,
-            seed: self.bootstrap_seed,
-        }
-    }
-}
-
 impl Metrics {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let logs = self.logs()?;
+        let request = self.request()?;
         if let (Some(mode), Some(data)) = (self.ste_store_mode, self.scoring.ste_data()) {
-            return store::store(&logs, mode, data);
+            return store::store(&request.folders()?, mode, data);
         }
-        let Yardstick {
-            options,
-            experts,
-            others,
-        } = Yardstick::new(&logs, &self.against, &self.scoring, &self.intervals)?;
-        let lifetimes = self.scored(&logs, &experts, &options)?;
-        let mut repeats = None;
-        match lifetimes.as_slice() {
-            [lifetime] if !self.recursive && self.against.is_empty() => {
-                if self.json {
-                    output::json(lifetime)?;
-                } else {
-                    output::line(summary(lifetime))?;
-                }
-            }
-            _ => {
-                let others = score_logs(&others, &experts, &options)?;
-                let together = many::together(&lifetimes, &others, &self.intervals.options())?;
-                if self.json {
-                    output::json(&together)?;
-                } else {
-                    output::line(tables::many(&lifetimes, &others, &together, &options))?;
-                }
-                repeats = Some(together.without_lifetimes()?);
-            }
+        let scores = self.score(&request)?;
+        if self.json {
+            output::json(&scores)?;
+        } else {
+            output::line(tables::scores(&scores))?;
         }
-        self.save(&lifetimes, repeats, options)
+        if !self.do_save && self.output_dir.is_none() && self.output.is_none() {
+            return Ok(());
+        }
+        for file in scores.save(&self.folder(), self.output.as_deref())? {
+            output::note(format!("wrote {}", file.shown()));
+        }
+        Ok(())
+    }
+
+    fn request(&self) -> Result<ScoringRequest, Failure> {
+        Ok(ScoringRequest {
+            logs: self.logs.iter().chain(&self.log_dir).cloned().collect(),
+            recursive: self.recursive,
+            against: self.against.clone(),
+            settings: self.scoring.settings()?,
+            common_ranges: self.intervals.common_ranges,
+            intervals: self.intervals.options(),
+        })
     }
 
     /// The scores of the logs; figures are drawn and written on the way where they are asked for.
-    fn scored(&self, logs: &[PathBuf], experts: &Experts, options: &Options) -> Result<Vec<LifetimeMetrics>, Failure> {
+    fn score(&self, request: &ScoringRequest) -> Result<Scores, Failure> {
         if !self.do_plot {
-            return score_logs(logs, experts, options);
+            return score(request, &|text| output::warning(text));
         }
-        let (shown, how) = (self.figures.shown()?, self.figures.options()?);
+        let (shown, options) = (self.figures.shown()?, self.figures.options()?);
         let files = Mutex::new(Files::new(&self.folder().join("plots")));
-        let draw = |lived: Lived| {
-            let drawn = drawn(&lived.lifetime, &lived.metrics.metrics_column, &shown, &how)?;
+        let scores = score_looking(request, &|text| output::warning(text), |log| {
+            let drawn = drawn(&log.lifetime, &log.metrics.metrics_column, &shown, &options)?;
             // Whoever panics with the lock has ended the process.
-            files.lock().unwrap_or_else(PoisonError::into_inner).write(&drawn)?;
-            Ok(lived.metrics)
-        };
-        let lifetimes = each_lived(logs, experts, options, draw)?;
+            files.lock().unwrap_or_else(PoisonError::into_inner).write(&drawn)
+        })?;
         let files = files.into_inner().unwrap_or_else(PoisonError::into_inner);
         output::note(format!("wrote {}", files.told()));
-        Ok(lifetimes)
+        Ok(scores)
     }
 
     /// Where results are saved.
     fn folder(&self) -> PathBuf {
         self.output_dir.clone().unwrap_or_else(|| "results".into())
-    }
-
-    /// The logs that the arguments name; those of the settings file where there is no argument.
-    fn logs(&self) -> Result<Vec<PathBuf>, Failure> {
-        let mut named: Vec<PathBuf> = self.logs.iter().chain(&self.log_dir).cloned().collect();
-        if named.is_empty() {
-            named.extend(self.scoring.log_of_settings()?);
-        }
-        if named.is_empty() {
-            let taken = self.scoring.named_experts();
-            let hint = if taken > 1 {
-                "; --ste took all folders behind it: name the log before"
-            } else {
-                ""
-            };
-            return Err(Failure::usage(format!(
-                "found no DIR, expected the folder of a log, or several{hint}"
-            )));
-        }
-        if self.recursive {
-            log_folders::below(&named)
-        } else {
-            log_folders::named(&named)
-        }
-    }
-
-    fn save(
-        &self,
-        lifetimes: &[LifetimeMetrics],
-        repeats: Option<serde_json::Value>,
-        options: Options,
-    ) -> Result<(), Failure> {
-        if !self.do_save && self.output_dir.is_none() && self.output.is_none() {
-            return Ok(());
-        }
-        let folder = self.folder();
-        let log_dir = self
-            .logs
-            .iter()
-            .chain(&self.log_dir)
-            .map(|log| log.display().to_string());
-        let settings = Settings {
-            log_dir: log_dir.collect::<Vec<_>>().join(" "),
-            options,
-        };
-        let files = match lifetimes {
-            [lifetime] if !self.recursive => {
-                let name = self.output.as_deref().unwrap_or(&lifetime.run_id);
-                let files = lifetime.save(&folder, name, &settings)?;
-                vec![files.metrics, files.regimes, files.settings]
-            }
-            _ => {
-                let name = self.output.as_deref().unwrap_or(NAME_OF_MANY);
-                let files = save_all(lifetimes, &folder, name, &settings)?;
-                vec![files.lifetimes, files.metrics, files.regimes, files.settings]
-            }
-        };
-        for file in files {
-            output::note(format!("wrote {}", file.shown()));
-        }
-        if let Some(repeats) = repeats {
-            let name = self.output.as_deref().unwrap_or(NAME_OF_MANY).replace(' ', "_");
-            let file = folder.join(format!("{name}_repeats.json"));
-            output::write(&file, serde_json::to_string_pretty(&repeats)?.as_bytes())?;
-            output::note(format!("wrote {}", file.shown()));
-        }
-        Ok(())
     }
 }

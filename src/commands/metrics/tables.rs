@@ -2,14 +2,21 @@
 
 use std::collections::BTreeSet;
 
-use crate::metrics::{
-    AsLogged, Direction, Improvement, Interval, LifetimeMetrics, NormalizationMethod, Options, RepeatedMetric,
-};
+use crate::metrics::{AsLogged, Direction, Improvement, Interval, LifetimeMetrics, RepeatedMetric};
 
 use driftworld_text::{one_line, printable};
 
-use super::many::Together;
-use crate::commands::table::{table, wide_table};
+use crate::scoring::{Comparison, Scores, own_scale};
+use crate::table::{table, wide_table};
+
+/// The scores of one lifetime, or of several with what they say together.
+pub(super) fn scores(scores: &Scores) -> String {
+    match (&scores.comparison, scores.lifetimes.as_slice()) {
+        (None, [lifetime]) => summary(lifetime),
+        (None, lifetimes) => lifetimes.iter().map(summary).collect::<Vec<_>>().join("\n\n"),
+        (Some(comparison), _) => several(scores, comparison),
+    }
+}
 
 /// The lifetime's values as a table for a newcomer.
 pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
@@ -75,12 +82,9 @@ fn as_logged(agents: &[(&str, &[LifetimeMetrics])]) -> String {
 }
 
 /// Several lifetimes, and how they compare with another agent's.
-pub(super) fn many(
-    lifetimes: &[LifetimeMetrics],
-    others: &[LifetimeMetrics],
-    together: &Together<'_>,
-    options: &Options,
-) -> String {
+fn several(scores: &Scores, together: &Comparison) -> String {
+    let (lifetimes, others) = (scores.lifetimes.as_slice(), scores.lifetimes_against.as_slice());
+    let options = &scores.options;
     let share = format!("{}% interval", together.intervals.confidence * 100.0);
     let mut parts = vec![
         format!(
@@ -105,7 +109,7 @@ pub(super) fn many(
         .collect();
     parts.extend(notes.into_iter().map(|note| format!("note: {}", one_line(note))));
     if let Some(own) = own_scale(options) {
-        parts.push(own.to_owned());
+        parts.push(own);
     } else if options.data_range.is_some() {
         parts.push("Performances of all lifetimes are scaled by the same ranges.".to_owned());
     }
@@ -126,16 +130,7 @@ pub(super) fn many(
     parts.join("\n\n")
 }
 
-/// What must be known before levels of different lifetimes are compared, where each has a scale of its own.
-pub(crate) fn own_scale(options: &Options) -> Option<&'static str> {
-    let is_own = options.normalization_method != NormalizationMethod::Off && options.data_range.is_none();
-    is_own.then_some(
-        "Each lifetime is scaled by its own smallest and largest performance: levels (avg_train_perf, avg_eval_perf) of one say \
-         nothing beside another's. --common-ranges, -d and -n none give one scale.",
-    )
-}
-
-fn improvements(together: &Together<'_>, share: &str) -> String {
+fn improvements(together: &Comparison, share: &str) -> String {
     let alpha = 1.0 - together.intervals.confidence;
     let told = |improvement: &Improvement| match improvement.p_value {
         // What 1 - 0.95 rounds to must not make a difference.

@@ -3,7 +3,7 @@
 use crate::similarity::{DistanceMatrix, Method, OrderOptions, Ordering, order};
 use serde_json::{Value, json};
 
-use super::table;
+use crate::table::table;
 
 /// Each method with what it found, or why it found nothing.
 pub(super) struct Comparison {

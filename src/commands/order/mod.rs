@@ -2,22 +2,22 @@
 
 mod arguments;
 mod compare;
-mod plot;
 
 use std::path::PathBuf;
 
-use crate::distances::variant_matrix;
+use crate::distances::labelled_matrix;
+use crate::report::picture::path_map;
 use crate::similarity::{DistanceMatrix, Method, Ordering};
-use crate::spec::Variant;
+use crate::tasks;
 use clap::Args;
 use serde_json::{Value, json};
 
 pub(crate) use arguments::OrderArgs;
 use compare::Comparison;
 
-use super::table::{cells, table};
 use super::weights::WeightArgs;
-use super::{Failure, input, matrix_file, output, overwrite, pictures};
+use super::{Failure, matrix_file, output, overwrite};
+use crate::table::{cells, table};
 
 /// Put variants into an order by their distances.
 ///
@@ -66,19 +66,21 @@ impl Order {
         for target in [&self.matrix, &self.plot].into_iter().flatten() {
             overwrite::refuse_inputs(target, self.tasks.iter().map(String::as_str))?;
         }
-        let matrix = match &self.from_matrix {
-            Some(path) => matrix_file::read("--from-matrix", path)?,
-            None => matrix(&input::variants(&self.tasks)?, &self.weights)?,
+        let matrix = if let Some(path) = &self.from_matrix {
+            matrix_file::read("from_matrix", path)?
+        } else {
+            let variants = tasks::variants_of(&self.tasks)?;
+            labelled_matrix(&variants, |declared| self.weights.over(declared))?
         };
         if let Some(path) = &self.matrix {
-            matrix_file::write("--matrix", path, &matrix, cells(self.raw_cells))?;
+            matrix_file::write("matrix", path, &matrix, cells(self.raw_cells))?;
         }
         if self.compare {
             return self.compare(&matrix);
         }
-        let (method, ordering) = self.ordering.order(&matrix, self.seed)?;
+        let (method, ordering) = self.ordering.request().order(&matrix, self.seed)?;
         if let Some(path) = &self.plot {
-            plot::path_map(&matrix, method, &ordering)?.write(path)?;
+            output::write_picture(path, &path_map(&matrix, method, &ordering)?)?;
         }
         if self.json {
             let mut found = json_of(&matrix, method, &ordering);
@@ -99,7 +101,7 @@ impl Order {
     }
 
     fn compare(&self, matrix: &DistanceMatrix) -> Result<(), Failure> {
-        let comparison = Comparison::new(matrix, &self.ordering.options(matrix, self.seed)?);
+        let comparison = Comparison::new(matrix, &self.ordering.request().options(matrix, self.seed)?);
         if self.json {
             return output::json(&comparison.json(matrix));
         }
@@ -115,15 +117,6 @@ fn json_of(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) -> Valu
         "largest_step": ordering.largest_step(), "mean_step": ordering.mean_step(),
         "anchor_correlation": ordering.anchor_correlation,
     })
-}
-
-/// Every distance among variants, under the names that commands know them by.
-pub(crate) fn matrix(variants: &[(String, Variant)], weights: &WeightArgs) -> Result<DistanceMatrix, Failure> {
-    let labelled: Vec<(String, Variant)> = variants
-        .iter()
-        .map(|(task, variant)| (format!("{task}#{}", variant.name()), variant.clone()))
-        .collect();
-    Ok(variant_matrix(&labelled, |declared| weights.over(declared))?)
 }
 
 /// The items of an order with the step that leads to each.

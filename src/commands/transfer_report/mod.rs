@@ -11,10 +11,9 @@ use crate::similarity::MAX_RELABELLINGS;
 use clap::{Args, ValueEnum};
 use driftworld_text::ShownPath;
 
-use super::metrics::score_logs;
-use super::pictures::scatter;
-use super::scoring::Experts;
 use super::{Failure, log_folders, matrix_file, output, overwrite};
+use crate::report::picture::scatter;
+use crate::scoring::{Experts, score_logs};
 
 /// Ask whether similar variants transferred more, by logs and distances.
 ///
@@ -90,7 +89,7 @@ impl TransferReport {
         if let Some(target) = &self.output {
             overwrite::refuse_inputs(target, self.distances.to_str())?;
         }
-        let distances = matrix_file::read("--distances", &self.distances)?;
+        let distances = matrix_file::read("distances", &self.distances)?;
         let measure = self.transfer_method.into();
         let options = Options {
             perf_measure: self.perf_measure,
@@ -99,7 +98,12 @@ impl TransferReport {
             smoothing_method: self.smoothing_method,
             ..Options::default()
         };
-        let lifetimes = score_logs(&log_folders::below(&self.logs)?, &Experts::default(), &options)?;
+        let lifetimes = score_logs(
+            &log_folders::below(&self.logs)?,
+            &Experts::default(),
+            &options,
+            &|text| output::warning(text),
+        )?;
         let options = TransferOptions {
             measure,
             relabellings: self.relabellings,
@@ -113,7 +117,7 @@ impl TransferReport {
         }
         let Some(path) = self.output else { return Ok(()) };
         let picture = scatter(&words::panels(&report))?;
-        picture.write(&path)?;
+        output::write_picture(&path, &picture)?;
         output::note(format!("wrote {}", path.shown()));
         Ok(())
     }

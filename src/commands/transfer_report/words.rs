@@ -4,8 +4,8 @@ use crate::curriculum::{DirectionReport, TransferReport};
 use crate::metrics::TransferMethod;
 use crate::similarity::MantelTest;
 
-use super::super::pictures::{Panel, Point};
-use super::super::table::table;
+use crate::report::picture::{Panel, Point};
+use crate::table::table;
 
 /// How many pairs the table shows; the rest is counted.
 const MOST_PAIRS: usize = 40;

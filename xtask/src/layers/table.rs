@@ -106,7 +106,7 @@ pub(super) const ROOMS: &[Room] = &[
     Room {
         package: REPORT,
         floor: 3,
-        may_import: &[TEXT, ATOMIC_FILES, FILES, METRICS],
+        may_import: &[FEATURES, TEXT, ATOMIC_FILES, FILES, SPEC, SIMILARITY, METRICS],
     },
     Room {
         package: FACADE,

@@ -1,0 +1,146 @@
+//! Keyword arguments as typed values. What is wrong with one is raised under its name.
+
+use std::fmt::Display;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use pyo3::exceptions::PyOverflowError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::de::DeserializeOwned;
+
+use crate::document::from_python;
+use crate::errors::{Error, Result};
+
+/// Keyword arguments; one that is `None` was not given.
+pub(crate) struct Options<'py> {
+    given: Bound<'py, PyDict>,
+    /// The exception for a wrong one.
+    class: &'static str,
+}
+
+impl<'py> Options<'py> {
+    pub(crate) fn new(given: Bound<'py, PyDict>, class: &'static str) -> Self {
+        Self { given, class }
+    }
+
+    fn value(&self, name: &str) -> Result<Option<Bound<'py, PyAny>>> {
+        Ok(self.given.get_item(name)?.filter(|value| !value.is_none()))
+    }
+
+    /// The exception for an option that has the wrong value.
+    pub(crate) fn wrong(&self, name: &str, found: impl Display, expected: impl Display) -> Error {
+        self.refuse(format!("{name}: found {found}, expected {expected}"))
+    }
+
+    pub(crate) fn refuse(&self, text: String) -> Error {
+        let class = self.class;
+        Error::Refused {
+            class,
+            text,
+            cause: None,
+        }
+    }
+
+    fn extracted<T: FromPyObjectOwned<'py>>(&self, name: &str, expected: &str) -> Result<Option<T>> {
+        let Some(value) = self.value(name)? else {
+            return Ok(None);
+        };
+        match value.extract::<T>() {
+            Ok(value) => Ok(Some(value)),
+            Err(error) => {
+                let is_large = error.into().is_instance_of::<PyOverflowError>(value.py()) && value.gt(0)?;
+                let expected = if is_large { "a smaller number" } else { expected };
+                Err(self.wrong(name, value.repr()?, expected))
+            }
+        }
+    }
+
+    pub(crate) fn flag(&self, name: &str) -> Result<bool> {
+        Ok(self.extracted(name, "True or False")?.unwrap_or(false))
+    }
+
+    pub(crate) fn text(&self, name: &str) -> Result<Option<String>> {
+        self.extracted(name, "a text")
+    }
+
+    pub(crate) fn number(&self, name: &str) -> Result<Option<f64>> {
+        self.extracted(name, "a number")
+    }
+
+    pub(crate) fn whole<T: FromPyObjectOwned<'py>>(&self, name: &str) -> Result<Option<T>> {
+        self.extracted(name, "a whole number from 0 on")
+    }
+
+    pub(crate) fn path(&self, name: &str) -> Result<Option<PathBuf>> {
+        self.extracted(name, "a path")
+    }
+
+    pub(crate) fn paths(&self, name: &str) -> Result<Vec<PathBuf>> {
+        Ok(self.extracted(name, "paths")?.unwrap_or_default())
+    }
+
+    pub(crate) fn list<T>(&self, name: &str, expected: &str) -> Result<Option<Vec<T>>>
+    where
+        Vec<T>: FromPyObjectOwned<'py>,
+    {
+        self.extracted(name, expected)
+    }
+
+    /// A value as JSON can say it.
+    pub(crate) fn json(&self, name: &str) -> Result<Option<serde_json::Value>> {
+        Ok(self.value(name)?.as_ref().map(from_python).transpose()?)
+    }
+
+    /// A word that a function reads; what it says in refusal ends with what was expected.
+    pub(crate) fn read<T, E: Display>(
+        &self,
+        name: &str,
+        read: impl FnOnce(&str) -> std::result::Result<T, E>,
+    ) -> Result<Option<T>> {
+        let Some(word) = self.text(name)? else {
+            return Ok(None);
+        };
+        read(&word).map(Some).map_err(|error| {
+            let said = error.to_string();
+            // Under which name it was found is said here.
+            let expected = said
+                .split_once("expected ")
+                .map_or(said.as_str(), |(_, expected)| expected);
+            self.wrong(name, quoted(&word), expected)
+        })
+    }
+
+    /// One of the words of a type.
+    pub(crate) fn word<T: FromStr>(&self, name: &str) -> Result<Option<T>>
+    where
+        T::Err: Display,
+    {
+        self.read(name, str::parse)
+    }
+
+    /// One of the words by which a type stands in documents.
+    pub(crate) fn named<T: DeserializeOwned>(&self, name: &str) -> Result<Option<T>> {
+        // Words stand in backticks there.
+        let read =
+            |word: &str| serde_json::from_value::<T>(word.into()).map_err(|error| error.to_string().replace('`', ""));
+        self.read(name, read)
+    }
+
+    /// One of these words, each with what it stands for.
+    pub(crate) fn choice<T: Clone>(&self, name: &str, words: &[(&str, T)]) -> Result<Option<T>> {
+        let Some(word) = self.text(name)? else {
+            return Ok(None);
+        };
+        if let Some((_, value)) = words.iter().find(|(known, _)| *known == word) {
+            return Ok(Some(value.clone()));
+        }
+        let known: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
+        Err(self.wrong(name, quoted(&word), format!("one of {}", known.join(", "))))
+    }
+}
+
+/// A text as Python shows it.
+fn quoted(text: &str) -> String {
+    format!("'{text}'")
+}

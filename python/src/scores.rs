@@ -1,0 +1,176 @@
+//! Scores of lifetimes and their page, as Python asks for them. What they are is the library's.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+
+use driftworld::lifetime_report::{ReportRequest, write_report};
+use driftworld::scoring::{Scores, ScoringRequest, ScoringSettings, score};
+use driftworld_metrics::{BootstrapOptions, DataRanges, Noise};
+use driftworld_report::{Figure, FigureOptions};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde_json::{Value, json};
+
+use crate::document::{to_python, told};
+use crate::errors::{Result, refused};
+use crate::options::Options;
+use crate::patience::impatiently;
+
+const REFUSED: &str = "MetricsError";
+
+/// The scores of lifetimes.
+#[pyclass(name = "Scores", module = "driftworld._native", frozen)]
+pub(crate) struct PyScores(Scores);
+
+#[pymethods]
+impl PyScores {
+    /// Scores logs by the options of `driftworld.metrics`; what is odd comes beside.
+    #[staticmethod]
+    fn of(py: Python<'_>, logs: Vec<PathBuf>, options: Bound<'_, PyDict>) -> Result<(Self, Vec<String>)> {
+        let request = scoring(logs, &Options::new(options, REFUSED))?;
+        let (scores, warnings) = impatiently(py, move || warned(|warn| score(&request, warn)))?;
+        let scores = scores.map_err(|failure| refused(REFUSED, &failure))?;
+        Ok((Self(scores), warnings))
+    }
+
+    /// All that was computed, as ``driftworld metrics --json`` says it.
+    fn values<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        Ok(told(py, &self.0)?)
+    }
+
+    /// The regimes of all lifetimes, a dictionary for each.
+    fn regimes<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        let mut rows = Vec::new();
+        for lifetime in &self.0.lifetimes {
+            for regime in &lifetime.regimes {
+                let mut row = json!({
+                    "run_id": lifetime.run_id, "block_num": regime.block_num, "block_type": regime.block_type.name(),
+                    "block_subtype": regime.block_subtype.name(), "task_name": regime.task_name,
+                    "regime_num": regime.regime_num, "task_params": regime.task_params,
+                });
+                for (name, value) in regime.values.iter() {
+                    row[name] = json!(value);
+                }
+                rows.push(row);
+            }
+        }
+        Ok(to_python(py, &Value::Array(rows))?)
+    }
+
+    /// Saves the results as ``driftworld metrics --do-save`` does.
+    fn save(&self, py: Python<'_>, folder: PathBuf, name: Option<&str>) -> Result<()> {
+        py.detach(|| self.0.save(&folder, name))
+            .map_err(|failure| refused(REFUSED, &failure))?;
+        Ok(())
+    }
+}
+
+/// The page of lifetimes, and what is odd.
+#[pyfunction]
+pub(crate) fn report(py: Python<'_>, logs: Vec<PathBuf>, options: Bound<'_, PyDict>) -> Result<(String, Vec<String>)> {
+    let options = Options::new(options, REFUSED);
+    let mut shown = Vec::new();
+    for word in options
+        .list::<String>("plot_types", "a list of words")?
+        .unwrap_or_default()
+    {
+        let figures = Figure::asked_for(&word);
+        shown.extend(figures.map_err(|error| options.refuse(format!("plot_types: {error}")))?);
+    }
+    let mut request = ReportRequest {
+        title: options.text("title")?,
+        date: options.text("date")?,
+        distances: options.path("distances")?,
+        plots: options.path("plots")?,
+        figure_options: FigureOptions {
+            unit: options.word("unit")?.unwrap_or_default(),
+            ..FigureOptions::default()
+        },
+        scoring: scoring(logs, &options)?,
+        ..ReportRequest::of([PathBuf::new()])
+    };
+    if !shown.is_empty() {
+        request.figures.retain(|figure| shown.contains(figure));
+    }
+    let (page, warnings) = impatiently(py, move || warned(|warn| write_report(&request, warn)))?;
+    let page = page.map_err(|failure| refused(REFUSED, &failure))?;
+    Ok((page.html, warnings))
+}
+
+/// Does work, and keeps what is odd.
+fn warned<T>(work: impl FnOnce(&(dyn Fn(String) + Sync)) -> T) -> (T, Vec<String>) {
+    let warnings = Mutex::new(Vec::new());
+    // Whoever panics with the lock has added nothing by halves.
+    let done = work(&|text| warnings.lock().unwrap_or_else(PoisonError::into_inner).push(text));
+    (done, warnings.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+fn scoring(logs: Vec<PathBuf>, options: &Options<'_>) -> Result<ScoringRequest> {
+    let usual = BootstrapOptions::default();
+    Ok(ScoringRequest {
+        logs,
+        recursive: options.flag("recursive")?,
+        against: options.paths("against")?,
+        settings: ScoringSettings {
+            experts: options.paths("ste")?,
+            expert_store: options.path("ste_data")?,
+            file: options.path("load_settings")?,
+            perf_measure: options.text("perf_measure")?,
+            variant_mode: options.word("variant_mode")?,
+            ste_averaging_method: options.word("ste_averaging_method")?,
+            aggregation_method: options.word("aggregation_method")?,
+            maintenance_method: options.word("maintenance_method")?,
+            transfer_method: options.word("transfer_method")?,
+            normalization_method: options.word("normalization_method")?,
+            smoothing_method: options.word("smoothing_method")?,
+            smooth_eval_data: options.flag("smooth_eval_data")?,
+            window_length: options.whole("window_length")?,
+            clamp_outliers: options.flag("clamp_outliers")?,
+            data_range: data_ranges(options)?,
+            noise: noise(options)?,
+            strict_definitions: options.flag("strict_definitions")?,
+        },
+        common_ranges: options.flag("common_ranges")?,
+        intervals: BootstrapOptions {
+            confidence: options.number("confidence")?.unwrap_or(usual.confidence),
+            resamples: options.whole("resamples")?.unwrap_or(usual.resamples),
+            resampling: options.word("resampling")?.unwrap_or(usual.resampling),
+            seed: options.whole("bootstrap_seed")?.unwrap_or(usual.seed),
+        },
+    })
+}
+
+/// The ranges of tasks: a dictionary for each, by names that are lower-cased as in the metrics.
+fn data_ranges(options: &Options<'_>) -> Result<Option<DataRanges>> {
+    let Some(value) = options.json("data_range")? else {
+        return Ok(None);
+    };
+    let expected = r#"a range for each task, such as {"find_red": {"min": 0, "max": 10}}"#;
+    let Value::Object(tasks) = value else {
+        return Err(options.wrong("data_range", value, expected));
+    };
+    let mut ranges = DataRanges::new();
+    for (task, range) in tasks {
+        let range = serde_json::from_value(range)
+            .map_err(|error| options.refuse(format!("data_range, {task:?}: {error}; expected {expected}")))?;
+        ranges.insert(task.to_lowercase(), range);
+    }
+    Ok(Some(ranges))
+}
+
+fn noise(options: &Options<'_>) -> Result<Option<Noise>> {
+    let expected = "mean and standard deviation, such as (0, 0.1)";
+    let seed = options.whole("noise_seed")?;
+    match options.list::<f64>("noise", expected)?.as_deref() {
+        None if seed.is_some() => {
+            Err(options.refuse("options: found no noise, expected it beside noise_seed".to_owned()))
+        }
+        None => Ok(None),
+        Some([mean, std]) => Ok(Some(Noise {
+            mean: *mean,
+            std: *std,
+            seed: seed.unwrap_or(0),
+        })),
+        Some(found) => Err(options.wrong("noise", format!("{} numbers", found.len()), expected)),
+    }
+}

@@ -1,0 +1,237 @@
+//! The picture of a curriculum: a row for each variant, a bar for each stretch of experiences.
+
+use driftworld_spec::{BlockKind, Phase, Regime, Scenario};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::{FAINT, INK, Picture};
+use crate::ReportError;
+
+/// Colours of the rows, told apart by most colour-blind eyes too (Okabe and Ito).
+const COLORS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(230, 159, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(213, 94, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(204, 121, 167),
+    RGBColor(148, 132, 20),
+];
+const ROW: i32 = 40;
+const BAR: i32 = 24;
+const TOP: i32 = 84;
+const WIDTH: i32 = 1200;
+/// The most rows that are drawn; the variants beyond share the last.
+const MOST_ROWS: usize = 60;
+
+/// One stretch of experiences of a variant.
+struct Stretch {
+    row: usize,
+    /// The row that its drift leads to, and the progress at its ends.
+    drift: Option<(usize, [f64; 2])>,
+    from: f64,
+    to: f64,
+    kind: BlockKind,
+    phase: Phase,
+}
+
+/// The blocks over the experiences: filled where the agent learns, grey where it is frozen, outlined before deployment, slanted
+/// where the variant drifts.
+///
+/// # Errors
+/// [`ReportError::Drawing`].
+pub fn blocks(scenario: &Scenario) -> Result<Picture, ReportError> {
+    let (rows, stretches) = stretches(scenario);
+    let total = scenario.num_experiences().max(1) as f64;
+    let longest = rows.iter().map(|row| row.chars().count()).max().unwrap_or(0) as i32;
+    let left = (28 + 8 * longest).min(WIDTH / 2);
+    let bottom = TOP + ROW * rows.len() as i32;
+    let mut picture = Picture::blank((WIDTH + 28) as u32, (bottom + 56) as u32);
+    let x = |experience: f64| left + (f64::from(WIDTH - left) * experience / total).round() as i32;
+    let y = |row: f64| TOP + (f64::from(ROW) * (row + 0.5)).round() as i32;
+    picture.draw(|area| {
+        let write = |text: &str, at: (i32, i32), size: u32, color: &RGBColor, anchor: Pos| {
+            let style = ("sans-serif", size).into_font().color(color).pos(anchor);
+            area.draw_text(text, &style, at)
+        };
+        let from_left = Pos::new(HPos::Left, VPos::Top);
+        write(&scenario.name, (16, 12), 24, &INK, from_left)?;
+        legend(
+            left,
+            |text, at| write(text, at, 15, &FAINT, from_left),
+            |shape, style| area.draw(&Rectangle::new(shape, style)),
+        )?;
+        for (index, row) in rows.iter().enumerate() {
+            let middle = y(index as f64);
+            area.draw(&PathElement::new(
+                [(left, middle), (WIDTH, middle)],
+                RGBColor(228, 230, 233),
+            ))?;
+            write(row, (left - 12, middle), 16, &INK, Pos::new(HPos::Right, VPos::Center))?;
+        }
+        for stretch in &stretches {
+            // A stretch too short to be seen is drawn a pixel wide.
+            let (start, end) = (x(stretch.from), x(stretch.to).max(x(stretch.from) + 1));
+            let color = COLORS[stretch.row % COLORS.len()];
+            let along = |progress: f64| match stretch.drift {
+                Some((to, _)) => y(stretch.row as f64 + (to as f64 - stretch.row as f64) * progress),
+                None => y(stretch.row as f64),
+            };
+            let [first, last] = stretch.drift.map_or([0.0, 0.0], |(_, ends)| ends);
+            let thick = if stretch.kind == BlockKind::Evaluation {
+                BAR / 4
+            } else {
+                BAR / 2
+            };
+            let (a, b) = (along(first), along(last));
+            let shape = vec![
+                (start, a - thick),
+                (end, b - thick),
+                (end, b + thick),
+                (start, a + thick),
+            ];
+            let fill = match (stretch.kind, stretch.phase) {
+                (BlockKind::Evaluation, _) => RGBColor(150, 154, 160).filled(),
+                (BlockKind::Learning, Phase::Deployment) => color.filled(),
+                (BlockKind::Learning, Phase::PreDeployment) => color.mix(0.3).filled(),
+            };
+            area.draw(&Polygon::new(shape, fill))?;
+            if stretch.kind == BlockKind::Learning {
+                let mut rim = vec![
+                    (start, a - thick),
+                    (end, b - thick),
+                    (end, b + thick),
+                    (start, a + thick),
+                ];
+                rim.push(rim[0]);
+                let rim_color = if stretch.phase == Phase::PreDeployment {
+                    color
+                } else {
+                    WHITE
+                };
+                area.draw(&PathElement::new(rim, rim_color))?;
+            }
+        }
+        area.draw(&PathElement::new([(left, bottom), (WIDTH, bottom)], INK))?;
+        for tick in ticks(total) {
+            let at = x(tick);
+            area.draw(&PathElement::new([(at, bottom), (at, bottom + 5)], INK))?;
+            write(
+                &format!("{tick}"),
+                (at, bottom + 8),
+                14,
+                &FAINT,
+                Pos::new(HPos::Center, VPos::Top),
+            )?;
+        }
+        write("experiences", (left, bottom + 28), 15, &FAINT, from_left)?;
+        Ok(())
+    })?;
+    Ok(picture)
+}
+
+/// A sample of each kind of bar with its name, under the title.
+fn legend<E>(
+    left: i32,
+    write: impl Fn(&str, (i32, i32)) -> Result<(), E>,
+    draw: impl Fn([(i32, i32); 2], ShapeStyle) -> Result<(), E>,
+) -> Result<(), E> {
+    let kinds = [
+        ("learning", COLORS[0].filled(), BAR / 2),
+        ("before deployment", COLORS[0].mix(0.3).filled(), BAR / 2),
+        ("evaluation, frozen", RGBColor(150, 154, 160).filled(), BAR / 4),
+    ];
+    for (index, (name, style, height)) in kinds.into_iter().enumerate() {
+        let x = left + index as i32 * 190;
+        draw([(x, 56 - height / 2), (x + 30, 56 + height / 2)], style)?;
+        write(name, (x + 38, 48))?;
+    }
+    Ok(())
+}
+
+/// The names of the rows, and every stretch.
+fn stretches(scenario: &Scenario) -> (Vec<String>, Vec<Stretch>) {
+    let mut rows: Vec<String> = Vec::new();
+    let mut row_of = |name: String| {
+        let known = rows.iter().position(|row| *row == name);
+        known.unwrap_or_else(|| {
+            if rows.len() < MOST_ROWS {
+                rows.push(name);
+            } else {
+                "others".clone_into(&mut rows[MOST_ROWS - 1]);
+            }
+            rows.len() - 1
+        })
+    };
+    // Learned variants first, in the order in which they are met: what evaluation adds comes below.
+    let regimes = |kind: BlockKind| {
+        let blocks = scenario.blocks.iter().filter(move |block| block.kind == kind);
+        blocks.flat_map(|block| &block.regimes)
+    };
+    for regime in regimes(BlockKind::Learning).chain(regimes(BlockKind::Evaluation)) {
+        row_of(id(regime));
+    }
+    let mut stretches = Vec::new();
+    let mut lived = 0.0;
+    for block in &scenario.blocks {
+        for regime in &block.regimes {
+            let from = lived;
+            lived += f64::from(regime.count);
+            let drift = regime.drift.as_ref().map(|drift| {
+                let end = format!("{}#{}", regime.task, drift.variant_name());
+                (row_of(end), [drift.from, drift.until])
+            });
+            stretches.push(Stretch {
+                row: row_of(id(regime)),
+                drift,
+                from,
+                to: lived,
+                kind: block.kind,
+                phase: block.phase,
+            });
+        }
+    }
+    (rows, stretches)
+}
+
+fn id(regime: &Regime) -> String {
+    format!("{}#{}", regime.task, regime.variant_name())
+}
+
+/// Round numbers from 0 to the last experience, at most a dozen.
+fn ticks(total: f64) -> Vec<f64> {
+    let rough = total / 10.0;
+    let power = 10f64.powi(rough.log10().floor() as i32);
+    let step = [1.0, 2.0, 5.0, 10.0]
+        .map(|factor| factor * power)
+        .into_iter()
+        .find(|step| *step >= rough)
+        .unwrap_or(10.0 * power)
+        .max(1.0);
+    let count = (total / step).floor() as u32;
+    (0..=count).map(|tick| f64::from(tick) * step).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_few() {
+        assert_eq!(ticks(3.0), [0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(ticks(100.0).len(), 11);
+        assert_eq!(ticks(190.0)[..3], [0.0, 20.0, 40.0]);
+        assert!((1..100_000).all(|total| ticks(f64::from(total)).len() <= 12));
+    }
+
+    #[test]
+    fn a_drift_leads_to_the_row_of_the_variant_at_its_end() {
+        let text = r#"{ "name": "s", "blocks": [
+            { "type": "learning", "regimes": [{ "task": "t", "variant": "a", "count": 4, "drift": { "to": "a", "values": { "x": 1 }, "name": "b" } }] },
+            { "type": "evaluation", "regimes": [{ "task": "t", "variant": "a", "values": { "x": 1 }, "name": "b", "count": 1 }] } ] }"#;
+        let (rows, stretches) = stretches(&Scenario::from_json("s", text).unwrap());
+        assert_eq!(rows, ["t#a", "t#b"]);
+        assert_eq!(stretches[0].drift, Some((1, [0.0, 1.0])));
+        assert_eq!((stretches[1].from, stretches[1].to, stretches[1].row), (4.0, 5.0, 1));
+    }
+}

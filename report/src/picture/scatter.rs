@@ -1,0 +1,238 @@
+//! Points on axes with their names beside them. What the points are is the caller's.
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::{FAINT, INK, Picture};
+use crate::ReportError;
+
+/// A point with a name.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// To the right.
+    pub x: f64,
+    /// Upwards.
+    pub y: f64,
+    /// Its name.
+    pub label: String,
+}
+
+/// One pair of axes and what is on them.
+#[derive(Clone, Debug)]
+pub struct Panel {
+    /// What stands on top.
+    pub title: String,
+    /// A line below the title.
+    pub words: String,
+    /// What the axis to the right shows.
+    pub across: String,
+    /// What the upright axis shows.
+    pub up: String,
+    /// The value of `y` at which a line says: no change.
+    pub neutral: f64,
+    /// What is on them.
+    pub points: Vec<Point>,
+}
+
+const WIDTH: u32 = 720;
+const HEIGHT: u32 = 580;
+/// Room around the axes: left, right, above, below.
+const ROOM: [i32; 4] = [84, 24, 104, 58];
+const LABEL_PX: u32 = 14;
+const DOT: RGBColor = RGBColor(22, 72, 130);
+const RIM: RGBColor = RGBColor(205, 209, 214);
+
+/// Panels side by side, each with its points. Names that find no free place are left out, and their number is told.
+///
+/// # Errors
+/// [`ReportError::Drawing`].
+pub fn scatter(panels: &[Panel]) -> Result<Picture, ReportError> {
+    let mut picture = Picture::blank(WIDTH * panels.len().max(1) as u32, HEIGHT);
+    for (index, panel) in panels.iter().enumerate() {
+        picture.draw(|area| panel.draw(area, index as i32 * WIDTH as i32))?;
+    }
+    Ok(picture)
+}
+
+type Area<'a> = DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>;
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+/// A rectangle in pixels: left, top, right, bottom.
+type Box4 = [i32; 4];
+
+/// A range of numbers on an axis of the picture.
+struct Axis {
+    from: f64,
+    step: f64,
+    ticks: usize,
+}
+
+impl Axis {
+    /// As far as the numbers reach, with a mark at every round number.
+    fn around(values: impl Iterator<Item = f64>) -> Self {
+        let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
+            (least.min(value), most.max(value))
+        });
+        let (least, most) = if most > least {
+            (least, most)
+        } else {
+            (least - 0.5, least + 0.5)
+        };
+        let raw = (most - least) / 5.0;
+        let power = 10_f64.powf(raw.log10().floor());
+        let step = power
+            * [1.0, 2.0, 5.0, 10.0]
+                .into_iter()
+                .find(|factor| power * factor >= raw)
+                .unwrap_or(10.0);
+        let from = (least / step).floor() * step;
+        let ticks = (((most - from) / step).ceil() as usize).max(1);
+        Self { from, step, ticks }
+    }
+
+    fn share(&self, value: f64) -> f64 {
+        (value - self.from) / (self.step * self.ticks as f64)
+    }
+
+    /// The marks with their words.
+    fn marks(&self) -> impl Iterator<Item = (f64, String)> + '_ {
+        let digits = (-self.step.log10().floor()).max(0.0) as usize;
+        (0..=self.ticks).map(move |tick| {
+            let value = self.from + self.step * tick as f64;
+            // No minus before a zero that is one but for rounding.
+            let value = if value.abs() < self.step * 1e-9 { 0.0 } else { value };
+            (value, format!("{value:.digits$}"))
+        })
+    }
+}
+
+impl Panel {
+    fn draw(&self, area: &Area<'_>, left: i32) -> Outcome {
+        let x_axis = Axis::around(self.points.iter().map(|point| point.x).chain([0.0]));
+        let y_axis = Axis::around(self.points.iter().map(|point| point.y).chain([self.neutral]));
+        let [room_left, room_right, room_above, room_below] = ROOM;
+        let (x0, x1) = (left + room_left, left + WIDTH as i32 - room_right);
+        let (y0, y1) = (room_above, HEIGHT as i32 - room_below);
+        let x = |value: f64| x0 + (x_axis.share(value) * f64::from(x1 - x0)).round() as i32;
+        let y = |value: f64| y1 - (y_axis.share(value) * f64::from(y1 - y0)).round() as i32;
+        write(area, &self.title, (left + 16, 14), 22, INK, HPos::Left)?;
+        write(area, &self.words, (left + 16, 44), 15, FAINT, HPos::Left)?;
+        for (value, word) in x_axis.marks() {
+            area.draw(&PathElement::new([(x(value), y0), (x(value), y1)], RIM))?;
+            write(area, &word, (x(value), y1 + 8), 15, FAINT, HPos::Center)?;
+        }
+        for (value, word) in y_axis.marks() {
+            area.draw(&PathElement::new([(x0, y(value)), (x1, y(value))], RIM))?;
+            write(area, &word, (x0 - 8, y(value) - 8), 15, FAINT, HPos::Right)?;
+        }
+        area.draw(&PathElement::new(
+            [(x0, y(self.neutral)), (x1, y(self.neutral))],
+            FAINT.stroke_width(2),
+        ))?;
+        write(
+            area,
+            &self.across,
+            (i32::midpoint(x0, x1), y1 + 30),
+            16,
+            INK,
+            HPos::Center,
+        )?;
+        write(area, &self.up, (x0, y0 - 22), 16, INK, HPos::Left)?;
+        let dots: Vec<(i32, i32)> = self.points.iter().map(|point| (x(point.x), y(point.y))).collect();
+        for dot in &dots {
+            area.draw(&Circle::new(*dot, 4, DOT.filled()))?;
+        }
+        let line = [x0, y(self.neutral) - 2, x1, y(self.neutral) + 2];
+        let unnamed = self.name(area, &dots, line, [x0, y0, x1, y1])?;
+        if unnamed > 0 {
+            let told = format!("{unnamed} of {} without room for a name", dots.len());
+            write(area, &told, (x1, y0 - 20), 14, FAINT, HPos::Right)?;
+        }
+        Ok(())
+    }
+
+    /// Writes each name at the first free place around its dot, off the line; returns how many found none.
+    fn name(
+        &self,
+        area: &Area<'_>,
+        dots: &[(i32, i32)],
+        line: Box4,
+        rim: Box4,
+    ) -> Result<usize, Box<dyn std::error::Error>> {
+        let boxes = dots.iter().map(|(x, y)| [x - 5, y - 5, x + 5, y + 5]);
+        let mut taken: Vec<Box4> = boxes.chain([line]).collect();
+        let mut unnamed = 0;
+        for (point, dot) in self.points.iter().zip(dots) {
+            let style = ("sans-serif", LABEL_PX).into_font().color(&INK);
+            let (wide, high) = area.estimate_text_size(&point.label, &style)?;
+            match free_place(*dot, [wide as i32 + 2, high as i32], &taken, rim) {
+                Some(place) => {
+                    write(area, &point.label, (place[0], place[1]), LABEL_PX, INK, HPos::Left)?;
+                    taken.push(place);
+                }
+                None => unnamed += 1,
+            }
+        }
+        Ok(unnamed)
+    }
+}
+
+/// The first place around a dot, to the right first, that overlaps nothing and lies within the rim.
+fn free_place((x, y): (i32, i32), [wide, high]: [i32; 2], taken: &[Box4], rim: Box4) -> Option<Box4> {
+    let (right, left, middle) = (x + 7, x - 7 - wide, x - wide / 2);
+    let (level, above, below) = (y - high / 2, y - high - 6, y + 7);
+    let corners = [
+        (right, level),
+        (left, level),
+        (middle, above),
+        (middle, below),
+        (right, above),
+        (right, below),
+        (left, above),
+        (left, below),
+    ];
+    let places = corners.map(|(left, top)| [left, top, left + wide, top + high]);
+    let apart = |a: &Box4, b: &Box4| a[2] <= b[0] || b[2] <= a[0] || a[3] <= b[1] || b[3] <= a[1];
+    let inside = |place: &Box4| place[0] >= rim[0] && place[1] >= rim[1] && place[2] <= rim[2] && place[3] <= rim[3];
+    places
+        .into_iter()
+        .find(|place| inside(place) && taken.iter().all(|other| apart(place, other)))
+}
+
+/// Writes a text below its anchor.
+fn write(area: &Area<'_>, text: &str, at: (i32, i32), size: u32, color: RGBColor, side: HPos) -> Outcome {
+    let style = ("sans-serif", size)
+        .into_font()
+        .color(&color)
+        .pos(Pos::new(side, VPos::Top));
+    area.draw_text(text, &style, at)?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_are_round_and_hold_every_number() {
+        for (values, words) in [
+            (vec![0.0, 1.0], vec!["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]),
+            (vec![0.03, 0.11], vec!["0.02", "0.04", "0.06", "0.08", "0.10", "0.12"]),
+        ] {
+            let axis = Axis::around(values.iter().copied());
+            assert_eq!(axis.marks().map(|(_, word)| word).collect::<Vec<_>>(), words);
+            assert!(values.iter().all(|value| (0.0..=1.0).contains(&axis.share(*value))));
+        }
+        let one = Axis::around([3.0].into_iter());
+        assert!((0.0..=1.0).contains(&one.share(3.0)));
+    }
+
+    #[test]
+    fn names_never_overlap() {
+        let rim = [0, 0, 200, 200];
+        let first = free_place((100, 100), [40, 12], &[], rim).expect("there is room");
+        let second = free_place((100, 100), [40, 12], &[first], rim).expect("there is room on the left");
+        assert!(first[0] > 100 && second[2] < 100);
+        assert_eq!(free_place((100, 100), [40, 12], &[rim], rim), None);
+    }
+}

@@ -1,0 +1,50 @@
+//! The options that say which figures of lifetimes are drawn. What they show is `report`'s.
+
+use crate::Failure;
+use crate::report::{Figure, FigureOptions, ReportError, Unit};
+use clap::Args;
+
+/// What is drawn, and how.
+#[derive(Args)]
+#[command(next_help_heading = "Figures")]
+pub(crate) struct FigureChoice {
+    /// Which figures: all, or some of raw, lb (learning), eb (evaluation), ste (against the expert), timeline.
+    #[arg(short = 'T', long, value_name = "TYPE", num_args = 1.., default_value = "all")]
+    plot_types: Vec<String>,
+    /// What the horizontal axis counts: `exp_num`, or steps by the column `episode_step_count`.
+    #[arg(short, long, value_name = "UNIT", default_value = "exp_num")]
+    unit: String,
+    /// Do not join the means of evaluations across learning.
+    #[arg(long)]
+    no_show_eval_lines: bool,
+    /// Join them, as is done anyway.
+    #[arg(short = 'e', long, hide = true, conflicts_with = "no_show_eval_lines")]
+    show_eval_lines: bool,
+}
+
+impl FigureChoice {
+    /// The figures asked for, in the order of a report.
+    pub(crate) fn shown(&self) -> Result<Vec<Figure>, Failure> {
+        let asked = self.plot_types.iter().map(|word| Figure::asked_for(word));
+        let asked = asked
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(|error| in_arguments(&error))?
+            .concat();
+        Ok(Figure::ALL
+            .into_iter()
+            .filter(|figure| asked.contains(figure))
+            .collect())
+    }
+
+    pub(crate) fn options(&self) -> Result<FigureOptions, Failure> {
+        Ok(FigureOptions {
+            unit: self.unit.parse::<Unit>().map_err(|error| in_arguments(&error))?,
+            show_eval_lines: !self.no_show_eval_lines,
+            distances: None,
+        })
+    }
+}
+
+fn in_arguments(error: &ReportError) -> Failure {
+    Failure::usage(error.to_string())
+}

@@ -1,0 +1,207 @@
+//! The variants of a curriculum and their order: all that are named, those of a probe, or a sequence of steps.
+
+use driftworld_curriculum::{Choice, Hypothesis, Picked, Steps, arrange, distances, probe, probe_named, steps};
+use driftworld_similarity::{DistanceMatrix, Method};
+use driftworld_spec::{DEFAULT_VARIANT, Element, Variant};
+
+use super::{DesignOrder, DesignRequest};
+use crate::distances::labelled_matrix;
+use crate::{Failure, argument, tasks};
+
+/// How far off a step may be where nobody says.
+pub const DEFAULT_TOLERANCE: f64 = 0.001;
+
+/// How many steps there are where nobody says.
+pub const DEFAULT_STEPS: u32 = 4;
+
+/// Variants and the order in which they are met.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Chosen {
+    /// The variants.
+    pub variants: Vec<Choice>,
+    /// Every distance among them.
+    pub matrix: DistanceMatrix,
+    /// Their positions in the order in which they are met.
+    pub order: Vec<usize>,
+    /// What shows of the variants what was asked for; `None` where they were only named.
+    pub evidence: Option<Evidence>,
+}
+
+/// What shows of chosen variants that they are as was asked for.
+#[derive(Debug)]
+pub enum Evidence {
+    /// Variants that differ from the first in one element only.
+    Probe {
+        /// The variants, and what each is.
+        picked: Vec<Picked>,
+        /// The element.
+        element: Element,
+    },
+    /// Variants of which each is a step from the one before.
+    Steps {
+        /// The variants, and what each is.
+        picked: Vec<Picked>,
+        /// The steps that were wanted.
+        wanted: Steps,
+    },
+}
+
+impl Chosen {
+    /// The variants in an order.
+    pub(super) fn in_order(&self, order: &[usize]) -> Vec<Choice> {
+        order.iter().map(|index| self.variants[*index].clone()).collect()
+    }
+}
+
+impl DesignRequest {
+    pub(super) fn choose(&self) -> Result<Chosen, Failure> {
+        let named = tasks::variants_of(&self.tasks)?;
+        if let Some(distance) = self.step_distance {
+            let wanted = Steps {
+                distance,
+                tolerance: self.tolerance.unwrap_or(DEFAULT_TOLERANCE),
+                count: self.steps.unwrap_or(DEFAULT_STEPS),
+                element: self.probe,
+            };
+            let (task, pool, anchor) = self.one_task(&named)?;
+            let picked = steps(&task, &pool, &anchor, &wanted)?;
+            let order = (0..picked.len()).collect();
+            return chosen(&picked.clone(), self.probe, order, Evidence::Steps { picked, wanted });
+        }
+        if let Some(element) = self.probe {
+            let (task, pool, anchor) = self.one_task(&named)?;
+            let picked = if self.names_variants() && pool.len() > 1 {
+                if let Some(wanted) = self.variants.filter(|wanted| *wanted < pool.len()) {
+                    return Err(Failure::usage(format!(
+                        "{}: found {wanted} and {} variants named, expected at least as many as are named; name fewer, or \
+                         leave it out",
+                        argument("variants"),
+                        pool.len()
+                    )));
+                }
+                let anchor = if self.ordering.start.is_some() {
+                    &anchor
+                } else {
+                    &pool[0]
+                };
+                probe_named(&task, &pool, anchor, element, self.variants)?
+            } else {
+                probe(&task, &pool, &anchor, element, self.variants)?
+            };
+            let matrix = distances(&picked, Some(element))?;
+            // A method or an end that was asked for, or the order of a hypothesis: by default the gradual one.
+            let order = if self.ordering.method.is_some() || self.ordering.end.is_some() {
+                self.ordering.order(&matrix, self.design.seed)?.1.indices
+            } else {
+                match self.order {
+                    Some(DesignOrder::Named) => (0..picked.len()).collect(),
+                    order => arrange(&matrix, order.map_or(Hypothesis::Gradual, DesignOrder::hypothesis), 0)?,
+                }
+            };
+            return chosen(
+                &picked.clone(),
+                Some(element),
+                order,
+                Evidence::Probe { picked, element },
+            );
+        }
+        let matrix = labelled_matrix(&named, Ok)?;
+        let order = match self.order {
+            Some(DesignOrder::Named) => {
+                let all = 0..matrix.len();
+                let first = self.ordering.options(&matrix, self.design.seed)?.first;
+                first
+                    .into_iter()
+                    .chain(all.filter(|index| Some(*index) != first))
+                    .collect()
+            }
+            Some(order) => {
+                let first = self.ordering.options(&matrix, self.design.seed)?.first.unwrap_or(0);
+                arrange(&matrix, order.hypothesis(), first)?
+            }
+            None => {
+                self.ordering
+                    .order_from(&matrix, self.design.seed, &self.firsts(&named))?
+                    .1
+                    .indices
+            }
+        };
+        let variants = named
+            .iter()
+            .map(|(task, variant)| Choice::new(task, variant.name()))
+            .collect();
+        Ok(Chosen {
+            variants,
+            matrix,
+            order,
+            evidence: None,
+        })
+    }
+
+    /// Whether every argument names a variant or a family, not a whole task.
+    fn names_variants(&self) -> bool {
+        self.tasks.iter().all(|name| tasks::split(name).1.is_some())
+    }
+
+    /// The variants that may come first where nobody says which: those of the first argument, if there are others.
+    fn firsts(&self, named: &[(String, Variant)]) -> Vec<usize> {
+        let (Some(first), true) = (self.tasks.first(), self.ordering.method != Some(Method::Random)) else {
+            return Vec::new();
+        };
+        let many = tasks::variants(first).map_or(0, |variants| variants.len());
+        // Arguments are unfolded in their order, each variant once.
+        (0..many.min(named.len())).collect()
+    }
+
+    /// The task that all variants are of, by the name that it was called by; its variants; and the one to begin with.
+    fn one_task(&self, named: &[(String, Variant)]) -> Result<(String, Vec<Variant>, Variant), Failure> {
+        let (task, first) = &named[0];
+        if let Some((other, _)) = named.iter().find(|(other, _)| other != task) {
+            return Err(Failure::input(format!(
+                "found variants of {task} and of {other}, expected those of one task: {} and {} measure within a task",
+                argument("probe"),
+                argument("step_distance")
+            )));
+        }
+        let pool: Vec<Variant> = named.iter().map(|(_, variant)| variant.clone()).collect();
+        let anchor = match &self.ordering.start {
+            Some(start) => {
+                let own = pool
+                    .iter()
+                    .find(|variant| format!("{task}#{}", variant.name()) == *start);
+                let names = || pool.iter().map(|variant| format!("{task}#{}", variant.name()));
+                own.cloned().ok_or_else(|| {
+                    let names: Vec<String> = names().collect();
+                    Failure::input(format!(
+                        "{}: found {start:?}, expected one of {}",
+                        argument("start"),
+                        names.join(", ")
+                    ))
+                })?
+            }
+            None if pool.len() == 1 => first.clone(),
+            // The variant in which everything has its default, by the name that the task gives it if it does.
+            None => {
+                let default = first.task().variant(DEFAULT_VARIANT)?;
+                let declared = pool.iter().find(|variant| variant.values() == default.values());
+                declared.cloned().unwrap_or(default)
+            }
+        };
+        Ok((task.clone(), pool, anchor))
+    }
+}
+
+fn chosen(
+    picked: &[Picked],
+    element: Option<Element>,
+    order: Vec<usize>,
+    evidence: Evidence,
+) -> Result<Chosen, Failure> {
+    Ok(Chosen {
+        variants: picked.iter().map(|picked| picked.choice.clone()).collect(),
+        matrix: distances(picked, element)?,
+        order,
+        evidence: Some(evidence),
+    })
+}

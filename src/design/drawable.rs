@@ -1,0 +1,46 @@
+//! That a scenario can be run, before it is written: its names in logs, its classes, a few of its worlds. Drawing them is
+//! `curriculum`'s.
+
+use driftworld_curriculum::Tried;
+use driftworld_env::Catalogue;
+use driftworld_spec::{Classes, Scenario};
+
+use crate::{Failure, argument, scenarios, tasks, trials};
+
+/// What is looked at of each scenario; what one has in common with another is looked at once.
+pub(super) struct Drawable {
+    worlds: u32,
+    classes: Classes,
+    tried: Tried,
+}
+
+impl Drawable {
+    pub(super) fn new(worlds: u32, catalogue: &Catalogue) -> Self {
+        Self {
+            worlds,
+            classes: tasks::classes(catalogue),
+            tried: Tried::default(),
+        }
+    }
+
+    /// Refuses a scenario that could not be run.
+    pub(super) fn check(&mut self, scenario: &Scenario) -> Result<(), Failure> {
+        let plan = scenarios::plan_to_try(scenario)?;
+        for (name, task) in plan.tasks() {
+            tasks::check_classes(name, task, &self.classes)?;
+        }
+        let found = plan.try_worlds(self.worlds, &mut self.tried);
+        let Some(told) = trials::told(&found) else {
+            return Ok(());
+        };
+        let failed: Vec<_> = found.into_iter().filter(|trial| trial.num_failed() > 0).collect();
+        Err(Failure::input(format!(
+            "{}: {told}, so the scenario is not written\n{}\nmend the task; or write it as it is with {} 0, and leave such \
+             experiences out with driftworld run {}",
+            scenario.name,
+            trials::shown(&failed),
+            argument("worlds"),
+            argument("skip_undrawable")
+        )))
+    }
+}

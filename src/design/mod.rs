@@ -1,0 +1,107 @@
+//! [`design`]: curricula from the names of tasks: which variants, in which order, in which blocks, and that their worlds can
+//! be drawn. Orders are `similarity`'s, blocks `curriculum`'s.
+
+mod choose;
+mod drawable;
+mod request;
+mod words;
+
+use driftworld_curriculum::{Control, Design, control, design as lay_out, design_control, experts};
+use driftworld_report::picture;
+use driftworld_spec::Scenario;
+use std::path::Path;
+
+pub use choose::{Chosen, DEFAULT_STEPS, DEFAULT_TOLERANCE, Evidence};
+pub use request::{DesignForm, DesignOrder, DesignRequest, MAX_LIFETIMES, MAX_TRIED};
+pub use words::{element, schedule};
+
+use crate::{Failure, output_file};
+use drawable::Drawable;
+
+/// What came of a request.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Designed {
+    /// The scenario; of experts and of several lifetimes one each.
+    pub scenarios: Vec<Scenario>,
+    /// The same variants, worlds and counts in other orders, where they were asked for.
+    pub controls: Vec<Scenario>,
+    /// The variants and their order.
+    pub chosen: Chosen,
+}
+
+impl Designed {
+    /// Draws the blocks of the first scenario over the experiences into a PNG file.
+    ///
+    /// # Errors
+    /// [`Failure`] where it cannot be written.
+    pub fn write_plot(&self, path: &Path) -> Result<(), Failure> {
+        let Some(scenario) = self.scenarios.first() else {
+            return Ok(());
+        };
+        output_file::write_picture(path, &picture::blocks(scenario)?)
+    }
+}
+
+/// Designs what a request asks for. A few worlds of everything are drawn, and every variant on the way of a drift is looked
+/// at: what could not be run is refused.
+///
+/// # Errors
+/// [`Failure`] where a task is nowhere or wrong, the design cannot be, or the request contradicts itself.
+///
+/// # Example
+/// ```
+/// use driftworld::design::{DesignRequest, design};
+/// let designed = design(&DesignRequest::of(["find_objects#blue", "find_objects#dusk"])).unwrap();
+/// assert_eq!(designed.scenarios[0].blocks.len(), 5);
+/// ```
+pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
+    request.check()?;
+    let chosen = request.choose()?;
+    let mut drawable = Drawable::new(request.worlds, &request.catalogue()?);
+    let (options, picked) = (&request.design, chosen.in_order(&chosen.order));
+    let scenarios = match (request.lifetimes, request.form()) {
+        (Some(lifetimes), _) => {
+            let lifetime = |lifetime| {
+                let name = format!("{}-{}", options.name, lifetime + 1);
+                lay_out(
+                    &picked,
+                    &Design {
+                        name,
+                        lifetime,
+                        ..options.clone()
+                    },
+                )
+            };
+            (0..lifetimes).map(lifetime).collect::<Result<Vec<_>, _>>()?
+        }
+        (None, Some(DesignForm::Expert)) => experts(&picked, options)?,
+        (None, _) => vec![lay_out(&picked, options)?],
+    };
+    let mut controls = Vec::new();
+    for kind in Control::ALL.into_iter().filter(|_| request.controls) {
+        let order = control(&chosen.matrix, &chosen.order, kind, options.seed)?;
+        let name = format!("{}-{}", options.name, kind.name());
+        // By their places in the order that the design itself has.
+        let place = |index: &usize| chosen.order.iter().position(|own| own == index);
+        let order: Vec<usize> = order.iter().filter_map(place).collect();
+        controls.push(design_control(
+            &picked,
+            &order,
+            &Design {
+                name,
+                ..options.clone()
+            },
+        )?);
+    }
+    for scenario in scenarios.iter().chain(&controls) {
+        drawable.check(scenario)?;
+        // What the schema refuses, such as a name that no folder can have.
+        Scenario::from_json("scenario", &scenario.to_json_pretty())?;
+    }
+    Ok(Designed {
+        scenarios,
+        controls,
+        chosen,
+    })
+}

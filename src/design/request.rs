@@ -1,0 +1,195 @@
+//! [`DesignRequest`]: what a curriculum is designed from.
+
+use std::path::PathBuf;
+
+use driftworld_curriculum::{Design, Hypothesis};
+use driftworld_env::Catalogue;
+use driftworld_spec::{Element, ScenarioForm};
+
+use crate::ordering::OrderRequest;
+use crate::{Failure, argument, libraries};
+
+/// The most lifetimes of one design.
+pub const MAX_LIFETIMES: u64 = 10_000;
+
+/// The most worlds of a regime that are drawn to see whether they can be.
+pub const MAX_TRIED: u32 = 1_000_000;
+
+/// How learning blocks are arranged, by the words of scenarios.
+pub type DesignForm = ScenarioForm;
+
+/// The order of the variants, where no method finds it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DesignOrder {
+    /// By growing distance from the first: the unlike come last.
+    Gradual,
+    /// The longest path from the first: neighbours as unlike as can be.
+    Abrupt,
+    /// The shortest path from the first: neighbours as alike as can be.
+    Path,
+    /// Each time what is farthest from everything met so far.
+    Farthest,
+    /// As they are named, whatever their distances.
+    Named,
+}
+
+impl DesignOrder {
+    /// The order by distances that is meant.
+    pub(super) fn hypothesis(self) -> Hypothesis {
+        match self {
+            Self::Gradual | Self::Named => Hypothesis::Gradual,
+            Self::Abrupt => Hypothesis::Abrupt,
+            Self::Path => Hypothesis::Path,
+            Self::Farthest => Hypothesis::Farthest,
+        }
+    }
+}
+
+/// What a curriculum is designed from.
+#[derive(Clone, Debug)]
+pub struct DesignRequest {
+    /// Variants, or tasks, which stand for all their variants.
+    pub tasks: Vec<String>,
+    /// How the order is found.
+    pub ordering: OrderRequest,
+    /// The order, in place of one that a method finds.
+    pub order: Option<DesignOrder>,
+    /// Probe one element: variants that differ from the start in it and in nothing else.
+    pub probe: Option<Element>,
+    /// How many variants the probe takes; all that are declared, and at least 4, where nobody says.
+    pub variants: Option<usize>,
+    /// Make a sequence of variants of which each is this far from the one before: in the probed element, or in all.
+    pub step_distance: Option<f64>,
+    /// How far off each step may be; default [`DEFAULT_TOLERANCE`](super::DEFAULT_TOLERANCE).
+    pub tolerance: Option<f64>,
+    /// How many steps: one fewer than variants; default [`DEFAULT_STEPS`](super::DEFAULT_STEPS).
+    pub steps: Option<u32>,
+    /// So many lifetimes of the permuted form, each in an order of its own.
+    pub lifetimes: Option<u64>,
+    /// Whether the same variants are laid out in reversed, random and contrasting order, too.
+    pub controls: bool,
+    /// How many worlds of each regime are drawn to see whether they can be; 0 for none.
+    pub worlds: u32,
+    /// Asset libraries whose classes the tasks use, in front of the built-in assets, the last one first.
+    pub libraries: Vec<PathBuf>,
+    /// The blocks.
+    pub design: Design,
+}
+
+impl DesignRequest {
+    /// The request for the usual curriculum of these variants or tasks.
+    pub fn of<S: Into<String>>(tasks: impl IntoIterator<Item = S>) -> Self {
+        Self {
+            tasks: tasks.into_iter().map(Into::into).collect(),
+            ordering: OrderRequest::default(),
+            order: None,
+            probe: None,
+            variants: None,
+            step_distance: None,
+            tolerance: None,
+            steps: None,
+            lifetimes: None,
+            controls: false,
+            worlds: 5,
+            libraries: Vec::new(),
+            design: Design::default(),
+        }
+    }
+
+    pub(super) fn form(&self) -> Option<DesignForm> {
+        self.design.form
+    }
+
+    /// Whether there are several scenarios, each in a file of its own.
+    pub fn is_of_several(&self) -> bool {
+        self.form() == Some(DesignForm::Expert) || self.lifetimes.is_some()
+    }
+
+    pub(super) fn catalogue(&self) -> Result<Catalogue, Failure> {
+        libraries::catalogue(&self.libraries)
+    }
+
+    /// Refuses what contradicts itself, as [`design`](super::design) does first.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`].
+    pub fn check(&self) -> Result<(), Failure> {
+        let given = [
+            ("variants", self.variants.is_some()),
+            ("probe", self.probe.is_some()),
+            ("order", self.order.is_some()),
+            ("method", self.ordering.method.is_some()),
+            ("end", self.ordering.end.is_some()),
+            ("step_distance", self.step_distance.is_some()),
+            ("tolerance", self.tolerance.is_some()),
+            ("steps", self.steps.is_some()),
+            ("lifetimes", self.lifetimes.is_some()),
+            ("controls", self.controls),
+        ];
+        let is_given = |name: &str| given.iter().any(|(known, is_given)| *known == name && *is_given);
+        for (one, needed) in [
+            ("variants", "probe"),
+            ("tolerance", "step_distance"),
+            ("steps", "step_distance"),
+        ] {
+            if is_given(one) && !is_given(needed) {
+                let (one, needed) = (argument(one), argument(needed));
+                return Err(Failure::usage(format!(
+                    "{one}: found it without {needed}, expected both"
+                )));
+            }
+        }
+        for (one, other) in [
+            ("variants", "step_distance"),
+            ("order", "method"),
+            ("order", "step_distance"),
+            ("order", "end"),
+            ("step_distance", "method"),
+            ("step_distance", "end"),
+            ("controls", "lifetimes"),
+        ] {
+            if is_given(one) && is_given(other) {
+                let (one, other) = (argument(one), argument(other));
+                return Err(Failure::usage(format!(
+                    "{one}: found {other}, too, expected one of the two"
+                )));
+            }
+        }
+        let within = |name: &str, found: u64, range: std::ops::RangeInclusive<u64>| {
+            if range.contains(&found) {
+                return Ok(());
+            }
+            let (first, last) = range.into_inner();
+            let text = format!(
+                "{}: found {found}, expected a whole number in {first}..={last}",
+                argument(name)
+            );
+            Err(Failure::usage(text))
+        };
+        within("lifetimes", self.lifetimes.unwrap_or(1), 1..=MAX_LIFETIMES)?;
+        within("worlds", self.worlds.into(), 0..=MAX_TRIED.into())?;
+        let [lifetimes, form, controls, drift] = ["lifetimes", "form", "controls", "drift"].map(argument);
+        if self.lifetimes.is_some() && self.form() != Some(DesignForm::Permuted) {
+            return Err(Failure::usage(format!(
+                "{lifetimes} are of the permuted form: add {form} permuted"
+            )));
+        }
+        if self.is_of_several() && self.controls {
+            return Err(Failure::usage(format!(
+                "{controls} are of one scenario: leave them out, or {lifetimes} and {form} expert"
+            )));
+        }
+        if self.form() == Some(DesignForm::Permuted) && self.controls {
+            return Err(Failure::usage(format!(
+                "the permuted form draws its own order, and {controls} are of an order that was chosen: leave one of them \
+                 out; {lifetimes} are each other's controls"
+            )));
+        }
+        if self.form() == Some(DesignForm::Expert) && self.design.drifting.is_some() {
+            return Err(Failure::usage(format!(
+                "an expert learns one variant alone: leave {drift} out"
+            )));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,140 @@
+//! [`Failure`]: why an operation of this library has no result. Each caller says it in its users' words.
+
+use std::error::Error;
+use std::fmt;
+use std::sync::Arc;
+
+/// The error behind a failure, for programs that ask it more than its text.
+pub type Cause = Arc<dyn Error + Send + Sync>;
+
+/// Told of what is odd while something is worked on, from any thread.
+pub type Warn<'a> = &'a (dyn Fn(String) + Sync);
+
+/// Stands around the name of an argument in a text; no text of others has it, for it is escaped there.
+const MARK: char = '\u{1}';
+
+/// The name of an argument in the text of a failure, such as `window_length`: the command writes `--window-length`,
+/// Python `window_length`.
+pub(crate) fn argument(name: &str) -> String {
+    format!("{MARK}{name}{MARK}")
+}
+
+/// Why an operation has no result.
+///
+/// # Example
+/// ```
+/// use driftworld::scoring::{ScoringRequest, score};
+/// let failure = score(&ScoringRequest::of(["nowhere"]), &|_| {}).unwrap_err();
+/// assert_eq!(
+///     failure.to_string(),
+///     "nowhere: found nothing, expected the folder of a log, which holds logger_info.json"
+/// );
+/// ```
+#[derive(Clone, Debug)]
+pub enum Failure {
+    /// The input, or the place for the output, is wrong. The command ends with 1.
+    Input(FailureText, Option<Cause>),
+    /// The arguments contradict each other. The command ends with 2.
+    Usage(FailureText),
+}
+
+/// What a failure says, whatever its arguments are called.
+#[derive(Clone, Debug)]
+pub struct FailureText(String);
+
+impl FailureText {
+    /// With arguments as options of the command: `--window-length`.
+    pub fn for_command(&self) -> String {
+        self.with(|name| format!("--{}", name.replace('_', "-")))
+    }
+
+    /// With arguments as Rust and Python have them: `window_length`.
+    pub fn for_library(&self) -> String {
+        self.with(str::to_owned)
+    }
+
+    fn with(&self, named: impl Fn(&str) -> String) -> String {
+        let parts = self.0.split(MARK).enumerate();
+        // Names stand between marks, so that every second part is one.
+        let parts = parts.map(|(index, part)| if index % 2 == 1 { named(part) } else { part.to_owned() });
+        parts.collect()
+    }
+}
+
+impl From<String> for FailureText {
+    fn from(text: String) -> Self {
+        Self(text)
+    }
+}
+
+impl Failure {
+    pub(crate) fn usage(text: impl Into<String>) -> Self {
+        Self::Usage(FailureText(text.into()))
+    }
+
+    pub(crate) fn input(text: impl Into<String>) -> Self {
+        Self::Input(FailureText(text.into()), None)
+    }
+
+    /// An error that is told in other words than its own.
+    pub(crate) fn because(text: impl Into<String>, error: impl Error + Send + Sync + 'static) -> Self {
+        Self::Input(FailureText(text.into()), Some(Arc::new(error)))
+    }
+
+    /// Several failures as one, by the cause of the first.
+    pub(crate) fn of_several(failures: &[&Self]) -> Self {
+        let texts: Vec<&str> = failures.iter().map(|failure| failure.text().0.as_str()).collect();
+        let cause = failures.first().and_then(|failure| failure.cause());
+        Self::Input(FailureText(texts.join("\n")), cause)
+    }
+
+    /// What it says.
+    pub fn text(&self) -> &FailureText {
+        match self {
+            Self::Input(text, _) | Self::Usage(text) => text,
+        }
+    }
+
+    /// The error behind it, where there is one.
+    pub fn cause(&self) -> Option<Cause> {
+        match self {
+            Self::Input(_, cause) => cause.clone(),
+            Self::Usage(_) => None,
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text().for_library())
+    }
+}
+
+// Not an `Error` itself: every error becomes one, and itself would become its own.
+impl<E: Error + Send + Sync + 'static> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::because(error.to_string(), error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_caller_names_arguments_as_its_users_do() {
+        let failure = Failure::usage(format!(
+            "{}: found 0, expected 1 or more; leave {} out",
+            argument("window_length"),
+            argument("noise")
+        ));
+        assert_eq!(
+            failure.text().for_command(),
+            "--window-length: found 0, expected 1 or more; leave --noise out"
+        );
+        assert_eq!(
+            failure.to_string(),
+            "window_length: found 0, expected 1 or more; leave noise out"
+        );
+    }
+}

@@ -1,0 +1,83 @@
+//! The figures of lifetimes in a folder, under the reference's names. What they show is `report`'s.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use driftworld_metrics::Lifetime;
+use driftworld_report::{Figure, FigureOptions, Figures};
+use driftworld_text::ShownPath;
+
+use crate::{Failure, output_file};
+
+/// A folder of figures, and what is in it already.
+pub(crate) struct Files {
+    folder: PathBuf,
+    names: BTreeSet<String>,
+    count: usize,
+    bytes: usize,
+}
+
+impl Files {
+    pub(crate) fn new(folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            names: BTreeSet::new(),
+            count: 0,
+            bytes: 0,
+        }
+    }
+
+    /// Writes the figures of a lifetime. Lifetimes of one name are numbered from the second on.
+    pub(crate) fn write(&mut self, drawn: &Drawn) -> Result<(), Failure> {
+        let numbered = |number: usize| match number {
+            1 => drawn.run_id.clone(),
+            number => format!("{}_{number}", drawn.run_id),
+        };
+        // Of one name more than there are, one is free.
+        let mut names = (1..=self.names.len() + 1).map(numbered);
+        let name = names.find(|name| !self.names.contains(name)).unwrap_or_default();
+        for (ending, bytes) in &drawn.files {
+            self.put(&format!("{name}_{ending}"), bytes)?;
+        }
+        self.names.insert(name);
+        Ok(())
+    }
+
+    fn put(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+        output_file::write(&self.folder.join(name), bytes)?;
+        self.count += 1;
+        self.bytes += bytes.len();
+        Ok(())
+    }
+
+    /// What was written, in words.
+    pub(crate) fn told(&self) -> String {
+        let (folder, kilobytes) = (self.folder.shown(), self.bytes.div_ceil(1000));
+        format!("{folder}: {} figures, {kilobytes} kB", self.count)
+    }
+}
+
+/// The figures of one lifetime as the bytes of files.
+pub(crate) struct Drawn {
+    run_id: String,
+    /// The end of each name, such as `raw.png`, and the bytes.
+    files: Vec<(String, Vec<u8>)>,
+}
+
+/// Draws a lifetime's figures, each as PNG and as SVG.
+pub(crate) fn drawn(
+    lifetime: &Lifetime,
+    column: &str,
+    shown: &[Figure],
+    options: &FigureOptions,
+) -> Result<Drawn, Failure> {
+    let figures = Figures::of(lifetime, column, options)?;
+    let mut files = Vec::new();
+    for figure in shown.iter().copied().filter(|figure| figures.has(*figure)) {
+        files.push((format!("{}.png", figure.name()), figures.png(figure)?));
+        files.push((format!("{}.svg", figure.name()), figures.svg(figure)?.into_bytes()));
+    }
+    // Names of several logs may be paths.
+    let run_id = lifetime.run_id().replace(['/', '\\'], "_");
+    Ok(Drawn { run_id, files })
+}

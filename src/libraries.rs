@@ -1,0 +1,26 @@
+//! Asset libraries from disk. How files are opened is `driftworld-files`'.
+
+use std::path::{Path, PathBuf};
+
+use driftworld_env::{Catalogue, Library};
+use driftworld_text::ShownPath;
+
+use crate::Failure;
+
+/// The largest library in bytes.
+pub(crate) const MAX_LIBRARY_BYTES: u64 = 1 << 30;
+
+/// The built-in assets, and these libraries in front of them, the last one first.
+pub(crate) fn catalogue(paths: &[PathBuf]) -> Result<Catalogue, Failure> {
+    let mut catalogue = Catalogue::default();
+    for path in paths {
+        catalogue = catalogue.with_library(&library(path)?);
+    }
+    Ok(catalogue)
+}
+
+/// A library from its file.
+pub(crate) fn library(path: &Path) -> Result<Library, Failure> {
+    let bytes = driftworld_files::read(path, MAX_LIBRARY_BYTES)?;
+    Library::from_bytes(&bytes).map_err(|error| Failure::input(format!("{}: {error}", path.shown())))
+}

@@ -1,0 +1,176 @@
+//! [`write_report`]: lifetimes on one page of HTML, with the distances between their blocks. Scores are `scoring`'s, pages
+//! and figures `report`'s.
+
+mod neighbours;
+
+use std::path::PathBuf;
+
+use driftworld_metrics::{LifetimeMetrics, Options, SmoothingMethod, compare_agents, over_repeats};
+use driftworld_report::{
+    Chapter, ChapterOptions, Comparison, Figure, FigureOptions, MAX_LIFETIMES, Report, ReportError,
+};
+
+use crate::figure_files::{Files, drawn};
+use crate::scoring::{ScoredLog, ScoringRequest, Setup, own_scale, score_logs};
+use crate::{Failure, Warn, log_folders};
+use neighbours::Neighbours;
+
+/// Which lifetimes a page shows, and how.
+#[derive(Clone, Debug)]
+pub struct ReportRequest {
+    /// The logs, in the folders named or below them, and how they are scored; `recursive` does not matter.
+    pub scoring: ScoringRequest,
+    /// What stands on top of the page; the lifetime's name where there is none.
+    pub title: Option<String>,
+    /// When the report was made, to be written on it; without, the same logs give the same bytes.
+    pub date: Option<String>,
+    /// A distance matrix file for the distances between blocks; measured from the scenario in the log where there is none.
+    pub distances: Option<PathBuf>,
+    /// Task specs that the logs name. Logs may name any file, so that only built-in tasks and these are looked at.
+    pub tasks: Vec<PathBuf>,
+    /// Which figures are shown.
+    pub figures: Vec<Figure>,
+    /// How they are drawn.
+    pub figure_options: FigureOptions,
+    /// A folder to write the figures into, too.
+    pub plots: Option<PathBuf>,
+}
+
+impl ReportRequest {
+    /// The request for a page with everything on the logs in or below these folders.
+    pub fn of<P: Into<PathBuf>>(logs: impl IntoIterator<Item = P>) -> Self {
+        Self {
+            scoring: ScoringRequest::of(logs),
+            title: None,
+            date: None,
+            distances: None,
+            tasks: Vec::new(),
+            figures: Figure::ALL.to_vec(),
+            figure_options: FigureOptions::default(),
+            plots: None,
+        }
+    }
+}
+
+/// A page that was written.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Page {
+    /// HTML that loads nothing.
+    pub html: String,
+    /// How many lifetimes are on it.
+    pub num_lifetimes: usize,
+    /// The figures that were written beside it, in words; `None` where none were asked for.
+    pub figures: Option<String>,
+}
+
+/// Writes the page of lifetimes. `warn` is told what is odd, log by log.
+///
+/// # Errors
+/// [`Failure`] where a log cannot be read or scored (all of them are told), or a figure cannot be written.
+pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Failure> {
+    let asked = &request.scoring;
+    let logs = log_folders::below(&asked.logs)?;
+    if logs.len() > MAX_LIFETIMES {
+        let (found, limit) = (logs.len(), MAX_LIFETIMES);
+        return Err(ReportError::TooManyLifetimes { found, limit }.into());
+    }
+    let setup = Setup::new(logs, asked)?;
+    let Setup {
+        logs,
+        options,
+        experts,
+        others,
+    } = &setup;
+    let mut neighbours = Neighbours::new(request.distances.as_deref(), &request.tasks, options.variant_mode)?;
+    let mut files = request.plots.as_deref().map(Files::new);
+    let mut failures = Vec::new();
+    let mut chapters = Vec::new();
+    let mut scores: Vec<LifetimeMetrics> = Vec::new();
+    for (log, name) in logs.iter().zip(&log_folders::names(logs)) {
+        let name = (logs.len() > 1).then_some(name.as_str());
+        let log = match ScoredLog::read(log, name, experts, options, warn) {
+            Ok(log) => log,
+            Err(failure) => {
+                failures.push(failure);
+                continue;
+            }
+        };
+        let chapter = chapter_options(&log, &mut neighbours, request, options);
+        chapters.push(Chapter::write(&log.lifetime, &log.metrics, &chapter)?);
+        if let Some(files) = &mut files {
+            let column = &log.metrics.metrics_column;
+            files.write(&drawn(&log.lifetime, column, &chapter.shown, &chapter.figures)?)?;
+        }
+        scores.push(log.metrics);
+    }
+    if !failures.is_empty() {
+        return Err(Failure::of_several(&failures.iter().collect::<Vec<_>>()));
+    }
+    let mut comparisons = Vec::new();
+    if !asked.against.is_empty() {
+        let others = score_logs(others, experts, options, warn)?;
+        comparisons.push(Comparison {
+            agent: called(&asked.logs),
+            other: called(&asked.against),
+            metrics: compare_agents(&scores, &others, &asked.intervals)?,
+        });
+    }
+    let overall = if scores.len() > 1 {
+        over_repeats(&scores, &asked.intervals)?
+    } else {
+        Vec::new()
+    };
+    let report = Report {
+        title: request.title.clone().filter(|title| !title.trim().is_empty()),
+        chapters,
+        overall,
+        intervals: asked.intervals,
+        comparisons,
+        // One lifetime has one scale.
+        warnings: own_scale(options).filter(|_| logs.len() > 1).into_iter().collect(),
+        options: serde_json::to_value(options)?,
+        date: request.date.clone(),
+    };
+    Ok(Page {
+        html: report.to_html()?,
+        num_lifetimes: logs.len(),
+        figures: files.map(|files| files.told()),
+    })
+}
+
+/// How the chapter of a lifetime is written.
+fn chapter_options(
+    log: &ScoredLog,
+    neighbours: &mut Neighbours,
+    request: &ReportRequest,
+    options: &Options,
+) -> ChapterOptions {
+    let (distances, distance_note) = neighbours.of(&log.log, &log.lifetime);
+    ChapterOptions {
+        figures: FigureOptions {
+            distances,
+            ..request.figure_options.clone()
+        },
+        shown: request.figures.clone(),
+        smoothed: options.smoothing_method != SmoothingMethod::Off,
+        warnings: log.warnings.clone(),
+        distance_note,
+    }
+}
+
+/// What the lifetimes under these folders are called together: by the folder, or the first of several.
+fn called(folders: &[PathBuf]) -> String {
+    let name = |path: &PathBuf| {
+        let path = path.canonicalize().unwrap_or_else(|_| path.clone());
+        path.file_name().map_or_else(
+            || path.display().to_string(),
+            |name| name.to_string_lossy().into_owned(),
+        )
+    };
+    match folders {
+        [] => String::new(),
+        [only] => name(only),
+        [first, rest @ ..] => format!("{} and {} more", name(first), rest.len()),
+    }
+}

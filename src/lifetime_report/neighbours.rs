@@ -1,0 +1,221 @@
+//! How far apart neighbouring learning blocks are: by a matrix that was handed in, or as measured from the scenario in the log.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use driftworld_curriculum::{log_name, log_name_of_label};
+use driftworld_metrics::{Lifetime, Log, VariantMode};
+use driftworld_report::neighbours;
+use driftworld_similarity::DistanceMatrix;
+use driftworld_spec::{BlockKind, Scenario, TaskSpec, Variant};
+use driftworld_text::ShownPath;
+
+use crate::distances::variant_matrix;
+use crate::{Failure, argument, matrix_file, tasks};
+
+/// Variants beyond these are not measured in passing.
+const MOST_MEASURED: usize = 32;
+
+/// Where distances come from.
+pub(super) struct Neighbours {
+    given: Option<Named>,
+    tasks: Tasks,
+    mode: VariantMode,
+    /// By the scenario's text: repeats live the same one.
+    measured: BTreeMap<String, Result<Named, String>>,
+}
+
+/// A matrix, and its variants by the names that logs give them.
+struct Named {
+    matrix: DistanceMatrix,
+    index: BTreeMap<String, Ends>,
+    /// Where it comes from, as the end of a sentence.
+    origin: String,
+}
+
+/// The variants that a block of a name begins and ends with: two only where it drifts.
+#[derive(Clone, Copy)]
+struct Ends {
+    first: usize,
+    last: usize,
+}
+
+/// Distances of neighbours, and a sentence about them.
+type Told = (Option<Vec<Option<f64>>>, String);
+
+impl Neighbours {
+    /// Of the matrix in a file, or else to be measured.
+    /// Tasks that are not built in are those of these files.
+    pub(super) fn new(file: Option<&Path>, tasks: &[PathBuf], mode: VariantMode) -> Result<Self, Failure> {
+        let read = |path: &Path| {
+            let matrix = matrix_file::read("distances", path)?;
+            let origin = format!("from {}", path.file_name().unwrap_or_default().to_string_lossy());
+            let labels = matrix.labels().iter().enumerate();
+            let index = labels.map(|(at, label)| (log_name_of_label(label), Ends { first: at, last: at }));
+            Ok::<_, Failure>(Named {
+                index: index.collect(),
+                matrix,
+                origin,
+            })
+        };
+        Ok(Self {
+            given: file.map(read).transpose()?,
+            tasks: Tasks::read(tasks)?,
+            mode,
+            measured: BTreeMap::new(),
+        })
+    }
+
+    /// The distances between neighbouring learning blocks of a lifetime.
+    pub(super) fn of(&mut self, log: &Log, lifetime: &Lifetime) -> Told {
+        if self.mode == VariantMode::Agnostic {
+            let why = "No distances between blocks: the lifetime was scored by tasks without their variants, and distances are between variants.";
+            return (None, why.to_owned());
+        }
+        if let Some(named) = &self.given {
+            return named.told(lifetime);
+        }
+        let Some(scenario) = log.scenario_info.extra.get("scenario").map(ToString::to_string) else {
+            let why =
+                "No distances between blocks: the log does not say which scenario was lived, and no matrix was given.";
+            return (None, why.to_owned());
+        };
+        let measured = self
+            .measured
+            .entry(scenario)
+            .or_insert_with_key(|scenario| measure(scenario, &self.tasks));
+        match measured {
+            Ok(named) => named.told(lifetime),
+            Err(why) => (None, format!("No distances between blocks: {why}.")),
+        }
+    }
+}
+
+impl Named {
+    fn told(&self, lifetime: &Lifetime) -> Told {
+        let apart = |[a, b]: [&str; 2]| {
+            let of = |name: &str| self.index.get(name).copied();
+            Some(self.matrix.get(of(a)?.last, of(b)?.first))
+        };
+        let distances: Vec<Option<f64>> = neighbours(lifetime).into_iter().map(apart).collect();
+        if distances.is_empty() {
+            return (None, "There is one learning block, and so no distance.".to_owned());
+        }
+        if distances.iter().all(Option::is_none) {
+            let why = format!(
+                "No distances between blocks: {} has none of the log's variants.",
+                self.origin_as_subject()
+            );
+            return (None, why);
+        }
+        let drifts = if self.drifts() > 0 {
+            " Of a block that drifts, its beginning is held against the block before, and its end against the one after."
+        } else {
+            ""
+        };
+        let words = format!(
+            "Stems: how far apart the variants of neighbouring learning blocks are, {}.{drifts}",
+            self.origin
+        );
+        (Some(distances), words)
+    }
+
+    /// How many names are those of drifts.
+    fn drifts(&self) -> usize {
+        self.index.values().filter(|ends| ends.first != ends.last).count()
+    }
+
+    fn origin_as_subject(&self) -> &str {
+        self.origin.strip_prefix("from ").unwrap_or("the scenario")
+    }
+}
+
+/// The tasks that a log may name: the built-in ones, and those of files that the user named.
+struct Tasks {
+    named: Vec<(PathBuf, Arc<TaskSpec>)>,
+}
+
+impl Tasks {
+    fn read(paths: &[PathBuf]) -> Result<Self, Failure> {
+        let read = |path: &PathBuf| {
+            let name = path.to_str().ok_or_else(|| {
+                Failure::usage(format!(
+                    "{}: found {}, expected a name that is UTF-8",
+                    argument("task"),
+                    path.shown()
+                ))
+            })?;
+            Ok::<_, Failure>((path.clone(), tasks::task(name)?))
+        };
+        Ok(Self {
+            named: paths.iter().map(read).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// The task of a name in a log: a file by its path, or else by its name alone, for the log may come from another
+    /// folder.
+    fn task(&self, called: &str) -> Option<Arc<TaskSpec>> {
+        if tasks::built_in_names().contains(&called) {
+            return tasks::task(called).ok();
+        }
+        let called = Path::new(called);
+        let alike = |path: &&(PathBuf, _)| path.0.file_name().is_some() && path.0.file_name() == called.file_name();
+        let same = self.named.iter().find(|(path, _)| path == called);
+        let found = same.or_else(|| self.named.iter().find(alike))?;
+        Some(Arc::clone(&found.1))
+    }
+}
+
+/// Measures the variants that a scenario learns, or says why that cannot be done.
+fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
+    let scenario = Scenario::from_json_with("scenario_info.json", scenario, |task| tasks.task(task))
+        .map_err(|_| "the scenario in the log is not one of this version's".to_owned())?;
+    let mut variants: Vec<(String, Variant)> = Vec::new();
+    let mut place = |variant: Variant| {
+        let name = log_name(variant.task().name(), variant.name());
+        let known = variants.iter().position(|(known, _)| *known == name);
+        known.unwrap_or_else(|| {
+            variants.push((name, variant));
+            variants.len() - 1
+        })
+    };
+    let mut index = BTreeMap::new();
+    let learnt = scenario.blocks.iter().filter(|block| block.kind == BlockKind::Learning);
+    for regime in learnt
+        .flat_map(|block| &block.regimes)
+        .filter(|regime| regime.world.is_none())
+    {
+        let task = tasks.task(&regime.task).ok_or_else(|| {
+            format!(
+                "the log names the task {:?}, which is not built in, and files that a log names are not opened; name it with --task FILE",
+                regime.task
+            )
+        })?;
+        let lost = |name: &str| format!("the task {} has no variant {name} as it was lived", regime.task);
+        let begins = regime.resolve(&task).map_err(|_| lost(regime.variant_name()))?;
+        let ends = regime.resolve_end(&task).map_err(|_| lost("its drift leads to"))?;
+        // As `driftworld run` names a block in its log.
+        let name = match &ends {
+            None => log_name(task.name(), begins.name()),
+            Some(ends) => log_name(task.name(), &format!("{}to{}", begins.name(), ends.name())),
+        };
+        let first = place(begins);
+        let last = ends.map_or(first, &mut place);
+        index.insert(name, Ends { first, last });
+        if first.max(last) >= MOST_MEASURED {
+            return Err(format!(
+                "more than {MOST_MEASURED} variants were learnt; measure them with driftworld order --matrix FILE and give --distances FILE"
+            ));
+        }
+    }
+    if variants.is_empty() {
+        return Err("the scenario was lived in world files, not in variants of tasks".to_owned());
+    }
+    let matrix = variant_matrix(&variants, Ok).map_err(|error| error.to_string())?;
+    Ok(Named {
+        matrix,
+        index,
+        origin: "as measured from the scenario in the log".to_owned(),
+    })
+}

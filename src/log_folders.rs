@@ -1,0 +1,374 @@
+//! Where logs are: the folders named, or all below them. Reading one is `metrics`'s.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Component, Path, PathBuf, absolute};
+
+use driftworld_files::FileError;
+
+use crate::contents::{Contents, OtherContents};
+use crate::documents;
+use crate::{Failure, argument};
+use driftworld_text::ShownPath;
+
+/// How deep logs are looked for below a folder that is none itself.
+const MOST_LEVELS: usize = 4;
+
+/// The most logs that are taken together.
+const MOST_LOGS: usize = 10_000;
+
+/// The most folders that are looked into for logs.
+const MOST_FOLDERS: usize = 200_000;
+
+/// What a search for logs has looked into and found. A link below the folder that it begins at is taken if it leads to
+/// a log, and is not looked into: one to `/` would have it read the machine, one to a folder above would have it go
+/// round.
+#[derive(Default)]
+struct Search {
+    found: Vec<PathBuf>,
+    /// Folders whose entries were read.
+    read: usize,
+}
+
+/// Every log that the arguments name, in order, those below a folder by name; each once.
+pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    let mut found = Vec::new();
+    for argument in arguments {
+        is_folder(argument)?;
+        let before = found.len();
+        let mut search = Search::default();
+        search.collect(argument, MOST_LEVELS)?;
+        found.append(&mut search.found);
+        too_many(argument, found.len())?;
+        if found.len() == before {
+            return Err(Failure::input(format!(
+                "{}: found no log, expected a folder with logger_info.json, or folders of such up to {MOST_LEVELS} levels \
+                 below; `driftworld run … --logs DIR` writes them",
+                argument.shown()
+            )));
+        }
+    }
+    Ok(each_once(found))
+}
+
+/// Every log that the arguments name, in order, each once. A folder that is no log, but has logs below, is refused with advice.
+pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
+    if let Some(folder) = arguments.iter().find(|folder| !is_log(folder)) {
+        is_folder(folder)?;
+        let mut search = Search::default();
+        search.collect(folder, MOST_LEVELS)?;
+        let below = search.found;
+        let path = folder.shown();
+        return Err(Failure::input(match below.first() {
+            Some(first) => format!(
+                "{path}: found a folder of {} logs such as {}, expected one log; name that, or take all with {}",
+                below.len(),
+                first.shown(),
+                argument("recursive")
+            ),
+            None => format!(
+                "{path}: found no log, expected a folder with logger_info.json and WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv; \
+                 `driftworld run … --logs DIR` writes such"
+            ),
+        }));
+    }
+    Ok(each_once(arguments.to_vec()))
+}
+
+/// What each of several logs is called: its folder's name, with as many of the folders above in front as tell it from the others,
+/// such as `a/log` and `b/log`.
+pub(crate) fn names(logs: &[PathBuf]) -> Vec<String> {
+    let paths: Vec<Vec<String>> = logs.iter().map(|log| folders_to(log)).collect();
+    let end = |path: &[String], length: usize| path[path.len().saturating_sub(length)..].join("/");
+    let mut names = vec![String::new(); logs.len()];
+    let mut alike: Vec<usize> = (0..logs.len()).collect();
+    for length in 1.. {
+        let mut called: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+        for log in alike {
+            called.entry(end(&paths[log], length)).or_default().push(log);
+        }
+        alike = Vec::new();
+        for (name, logs) in called {
+            for &log in &logs {
+                names[log].clone_from(&name);
+                if logs.len() > 1 && length < paths[log].len() {
+                    alike.push(log);
+                }
+            }
+        }
+        if alike.is_empty() {
+            break;
+        }
+    }
+    names
+}
+
+/// The names on the way from the root to a log, as it was named unless that leads back up.
+fn folders_to(log: &Path) -> Vec<String> {
+    let mut path = absolute(log).unwrap_or_else(|_| log.to_owned());
+    if path.components().any(|part| part == Component::ParentDir) {
+        path = path.canonicalize().unwrap_or(path);
+    }
+    path.components()
+        .filter_map(|part| match part {
+            Component::Normal(name) => Some(name.to_string_lossy().into_owned()),
+            _ => None,
+        })
+        .collect()
+}
+
+fn is_folder(argument: &Path) -> Result<(), Failure> {
+    let found = match fs::metadata(argument) {
+        Ok(kind) if kind.is_dir() => return Ok(()),
+        Ok(_) => {
+            let shown = documents::text(argument).ok().and_then(|text| Contents::of_text(&text));
+            if let Some(other) = OtherContents::check(argument, shown, &[Contents::Log]) {
+                return Err(other.into());
+            }
+            match driftworld_files::check(argument) {
+                Err(FileError::NotAFile { found, .. }) => found.to_owned(),
+                _ => "a file".to_owned(),
+            }
+        }
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => "nothing".to_owned(),
+        Err(error) => error.to_string(),
+    };
+    let path = argument.shown();
+    Err(Failure::input(format!(
+        "{path}: found {found}, expected the folder of a log, which holds logger_info.json"
+    )))
+}
+
+fn each_once(mut logs: Vec<PathBuf>) -> Vec<PathBuf> {
+    let mut seen = std::collections::BTreeSet::new();
+    logs.retain(|log| seen.insert(log.canonicalize().unwrap_or_else(|_| log.clone())));
+    logs
+}
+
+impl Search {
+    fn collect(&mut self, folder: &Path, levels: usize) -> Result<(), Failure> {
+        if self.is_log(folder)? {
+            self.found.push(folder.to_owned());
+            return too_many(folder, self.found.len());
+        }
+        if levels == 0 {
+            return Ok(());
+        }
+        for below in self.entries(folder)? {
+            match below {
+                Entry::Folder(below) => self.collect(&below, levels - 1)?,
+                Entry::Link(link) if has_info(&link) => self.found.push(link),
+                Entry::Link(_) => {}
+            }
+        }
+        too_many(folder, self.found.len())
+    }
+
+    /// Whether a folder is a log, be it one that lacks something.
+    fn is_log(&mut self, folder: &Path) -> Result<bool, Failure> {
+        if has_info(folder) {
+            return Ok(true);
+        }
+        for worker in listed(folder) {
+            self.count(&worker)?;
+            let blocks = listed(&worker);
+            if blocks.iter().any(|block| block.join("data-log.tsv").is_file()) {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    fn entries(&mut self, folder: &Path) -> Result<Vec<Entry>, Failure> {
+        self.count(folder)?;
+        entries(folder).map_err(|error| Failure::input(format!("{}: cannot be read: {error}", folder.shown())))
+    }
+
+    /// Takes down that a folder's entries are read.
+    fn count(&mut self, folder: &Path) -> Result<(), Failure> {
+        self.read += 1;
+        if self.read <= MOST_FOLDERS {
+            return Ok(());
+        }
+        Err(Failure::input(format!(
+            "{}: found more than {MOST_FOLDERS} folders on the search for logs, expected at most that; name a folder nearer to the logs",
+            folder.shown()
+        )))
+    }
+}
+
+fn too_many(path: &Path, logs: usize) -> Result<(), Failure> {
+    if logs <= MOST_LOGS {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "{}: found more than {MOST_LOGS} logs, expected at most that; name fewer folders",
+        path.shown()
+    )))
+}
+
+fn has_info(folder: &Path) -> bool {
+    ["logger_info.json", "scenario_info.json"]
+        .iter()
+        .any(|name| folder.join(name).is_file())
+}
+
+/// Whether a folder is a log, be it one that lacks something.
+fn is_log(folder: &Path) -> bool {
+    // A folder of more folders than are looked into is none.
+    has_info(folder) || Search::default().is_log(folder).unwrap_or(false)
+}
+
+/// What may hold logs in a folder.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum Entry {
+    Folder(PathBuf),
+    Link(PathBuf),
+}
+
+/// The folders in a folder, and the links, each by name.
+fn entries(folder: &Path) -> std::io::Result<Vec<Entry>> {
+    let mut below = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let kind = entry.file_type()?;
+        if kind.is_dir() {
+            below.push(Entry::Folder(entry.path()));
+        } else if kind.is_symlink() {
+            below.push(Entry::Link(entry.path()));
+        }
+    }
+    below.sort();
+    Ok(below)
+}
+
+/// The folders in a folder, links to folders not among them.
+fn listed(folder: &Path) -> Vec<PathBuf> {
+    // What cannot be listed here is reported when it is searched.
+    let entries = entries(folder).unwrap_or_default().into_iter();
+    let folders = entries.filter_map(|entry| match entry {
+        Entry::Folder(path) => Some(path),
+        Entry::Link(_) => None,
+    });
+    folders.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn logs_of_one_name_are_told_apart_by_the_folders_above() {
+        let check = |logs: &[&str], expected: &[&str]| {
+            let logs: Vec<PathBuf> = logs.iter().map(PathBuf::from).collect();
+            assert_eq!(names(&logs), expected, "{logs:?}");
+        };
+        check(&[], &[]);
+        check(&["col/x/log"], &["log"]);
+        check(&["col/x/log", "col/y/run/"], &["log", "run"]);
+        check(
+            &["col/x/log", "other", "col/y/./log", "z/y/log"],
+            &["x/log", "other", "col/y/log", "z/y/log"],
+        );
+        // One path is the end of another.
+        check(
+            &["/log", "/deep/log", "/deep/deep/log"],
+            &["log", "deep/log", "deep/deep/log"],
+        );
+        let here = std::env::current_dir().unwrap();
+        let name = here.file_name().unwrap().to_str().unwrap();
+        check(&[".", "x/log"], &[name, "log"]);
+        check(&["src/.."], &[name]);
+    }
+
+    #[test]
+    fn logs_are_found_even_where_they_lack_something() {
+        let base = tempfile::tempdir().unwrap();
+        let file = |path: &str| {
+            let path = base.path().join(path);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, "").unwrap();
+        };
+        file("deep/b/logger_info.json");
+        file("deep/a/scenario_info.json");
+        file("deep/c/worker/0-train/data-log.tsv");
+        file("other/notes.txt");
+        let root = base.path().to_owned();
+        let names = |found: Vec<PathBuf>| {
+            let name = |path: &PathBuf| path.strip_prefix(base.path()).unwrap().to_str().unwrap().to_owned();
+            found.iter().map(name).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            names(below(std::slice::from_ref(&root)).unwrap()),
+            ["deep/a", "deep/b", "deep/c"]
+        );
+        assert_eq!(
+            names(below(&[root.join("deep/b"), root.join("deep")]).unwrap()),
+            ["deep/b", "deep/a", "deep/c"]
+        );
+        assert_eq!(
+            names(named(&[root.join("deep/c"), root.join("deep/c")]).unwrap()),
+            ["deep/c"]
+        );
+        let message = named(&[root.join("deep")]).unwrap_err();
+        assert!(message.to_string().contains("3 logs such as") && message.text().for_command().contains("--recursive"));
+        assert!(
+            named(&[root.join("other")])
+                .unwrap_err()
+                .to_string()
+                .contains("found no log")
+        );
+        assert!(
+            below(&[root.join("other")])
+                .unwrap_err()
+                .to_string()
+                .contains("4 levels")
+        );
+        assert!(
+            named(&[root.join("absent")])
+                .unwrap_err()
+                .to_string()
+                .contains("found nothing")
+        );
+        assert!(
+            below(&[root.join("other/notes.txt")])
+                .unwrap_err()
+                .to_string()
+                .contains("found a file")
+        );
+    }
+    #[cfg(unix)]
+    #[test]
+    fn links_are_not_looked_into_and_a_link_to_a_log_is_taken() {
+        use std::os::unix::fs::symlink;
+        let base = tempfile::tempdir().unwrap();
+        let root = base.path().join("logs");
+        fs::create_dir_all(root.join("a")).unwrap();
+        fs::write(root.join("a/logger_info.json"), "").unwrap();
+        fs::create_dir_all(base.path().join("elsewhere/log")).unwrap();
+        fs::write(base.path().join("elsewhere/log/logger_info.json"), "").unwrap();
+        symlink("/", root.join("machine")).unwrap();
+        symlink(&root, root.join("round")).unwrap();
+        symlink(base.path().join("elsewhere"), root.join("beside")).unwrap();
+        symlink(base.path().join("elsewhere/log"), root.join("best")).unwrap();
+        let mut search = Search::default();
+        search.collect(&root, MOST_LEVELS).unwrap();
+        assert_eq!(search.found, [root.join("a"), root.join("best")]);
+        // The folder itself; in `a`, which is a log, nothing is looked for.
+        assert_eq!(search.read, 2, "one look at the root for workers, one for logs");
+        // A folder that is named is looked into, also by a link.
+        assert_eq!(below(&[root.join("beside")]).unwrap(), [root.join("beside/log")]);
+    }
+
+    #[test]
+    fn a_search_ends_after_so_many_folders() {
+        let base = tempfile::tempdir().unwrap();
+        fs::create_dir(base.path().join("a")).unwrap();
+        let mut search = Search {
+            read: MOST_FOLDERS,
+            ..Search::default()
+        };
+        let error = search.collect(base.path(), MOST_LEVELS).unwrap_err();
+        assert!(error.to_string().contains("more than 200000 folders"), "{error}");
+    }
+}

@@ -1,0 +1,89 @@
+//! [`OrderRequest`]: how variants are ordered, with its ends by their names. Orders are `similarity`'s.
+
+use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, Ordering, SimilarityError, order};
+
+use crate::{Failure, argument};
+
+/// How an order is found.
+#[derive(Clone, Debug, Default)]
+pub struct OrderRequest {
+    /// The method; exact where possible if there is none, else two-opt.
+    pub method: Option<Method>,
+    /// The item that comes first; whichever is best where there is none.
+    pub start: Option<String>,
+    /// The item that comes last; whichever is best where there is none.
+    pub end: Option<String>,
+    /// The step that the method target-step wants between neighbours.
+    pub target_step: Option<f64>,
+}
+
+impl OrderRequest {
+    /// The order of a matrix's items, and the method that found it. `seed` is what the method random draws from.
+    pub(crate) fn order(&self, matrix: &DistanceMatrix, seed: u64) -> Result<(Method, Ordering), Failure> {
+        let method = self.method.unwrap_or_else(|| Method::default_for(matrix.len()));
+        let options = self.options(matrix, seed)?;
+        let ordering = order(matrix, method, &options).map_err(|error| match error {
+            SimilarityError::BadTargetStep { .. } => {
+                Failure::usage(format!("{error}; give it with {}", argument("target_step")))
+            }
+            other => other.into(),
+        })?;
+        Ok((method, ordering))
+    }
+
+    /// The same, from whichever of some items makes the shortest path, where neither end is asked for.
+    pub(crate) fn order_from(
+        &self,
+        matrix: &DistanceMatrix,
+        seed: u64,
+        firsts: &[usize],
+    ) -> Result<(Method, Ordering), Failure> {
+        if self.start.is_some() || firsts.is_empty() || firsts.len() == matrix.len() {
+            return self.order(matrix, seed);
+        }
+        let last = self.options(matrix, seed)?.last;
+        let mut best: Option<(Method, Ordering)> = None;
+        // What was asked for as the last cannot be the first, too.
+        for first in firsts.iter().filter(|first| Some(**first) != last) {
+            let from = Self {
+                start: Some(matrix.labels()[*first].clone()),
+                ..self.clone()
+            };
+            let found = from.order(matrix, seed)?;
+            if best.as_ref().is_none_or(|(_, best)| found.1.length < best.length) {
+                best = Some(found);
+            }
+        }
+        best.map_or_else(|| self.order(matrix, seed), Ok)
+    }
+
+    /// The options that hold for every method.
+    pub(crate) fn options(&self, matrix: &DistanceMatrix, seed: u64) -> Result<OrderOptions, Failure> {
+        let position = |option: &str, name: &String| {
+            let found = matrix.labels().iter().position(|label| label == name);
+            let text = || format!("{}: found {name:?}, expected one of {}", argument(option), some(matrix));
+            found.ok_or_else(|| Failure::input(text()))
+        };
+        let first = self.start.as_ref().map(|name| position("start", name)).transpose()?;
+        let last = self.end.as_ref().map(|name| position("end", name)).transpose()?;
+        Ok(OrderOptions {
+            first,
+            last,
+            seed,
+            target_step: self.target_step,
+        })
+    }
+}
+
+/// The labels, or as many as a message can hold.
+fn some(matrix: &DistanceMatrix) -> String {
+    const MOST: usize = 20;
+    let shown = &matrix.labels()[..matrix.len().min(MOST)];
+    let rest = matrix.len() - shown.len();
+    let more = if rest > 0 {
+        format!(" and {rest} more")
+    } else {
+        String::new()
+    };
+    shown.join(", ") + &more
+}

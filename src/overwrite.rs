@@ -1,0 +1,51 @@
+//! What a command does not write over: files of a log, and what it reads itself. A slip of the keyboard is refused, and
+//! costs nothing.
+
+use std::path::Path;
+
+use driftworld_text::ShownPath;
+
+use crate::contents::Contents;
+use crate::tasks;
+
+use crate::Failure;
+
+/// The files of which a log is made.
+const LOG_FILES: [&str; 3] = ["data-log.tsv", "logger_info.json", "scenario_info.json"];
+
+/// Refuses a file that a log is made of, and one that would be read as such a file if it were there.
+pub(crate) fn refuse_log_files(target: &Path) -> Result<(), Failure> {
+    let name = target.file_name().unwrap_or_default();
+    if !LOG_FILES.iter().any(|log_file| name == *log_file) {
+        return Ok(());
+    }
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let Ok(folder) = folder.unwrap_or(Path::new(".")).canonicalize() else {
+        return Ok(());
+    };
+    let is_log = |folder: &&Path| Contents::of_folder(folder) == Some(Contents::Log);
+    match folder.ancestors().find(is_log) {
+        None => Ok(()),
+        Some(log) => Err(Failure::input(format!(
+            "{}: found a name that is part of the log {}, expected another file; the log would be lost",
+            target.shown(),
+            log.shown()
+        ))),
+    }
+}
+
+/// Refuses a file that the command reads: `names` are paths, with or without a variant behind them.
+pub(crate) fn refuse_inputs<'a>(target: &Path, names: impl IntoIterator<Item = &'a str>) -> Result<(), Failure> {
+    let Ok(target_itself) = target.canonicalize() else {
+        return Ok(());
+    };
+    let is_target = |path: &str| Path::new(path).canonicalize().is_ok_and(|path| path == target_itself);
+    let is_read = |name: &str| is_target(name) || is_target(tasks::split(name).0);
+    if target_itself.is_file() && names.into_iter().any(is_read) {
+        return Err(Failure::input(format!(
+            "{}: found the file that is read, expected another to write to; it would be lost",
+            target.shown()
+        )));
+    }
+    Ok(())
+}

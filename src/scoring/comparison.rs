@@ -1,0 +1,60 @@
+//! [`Comparison`]: what several lifetimes say together, and of two agents which is better. The statistics are `metrics`'.
+
+use std::collections::BTreeSet;
+
+use driftworld_metrics::{
+    BootstrapOptions, ComparedMetric, LifetimeMetrics, RepeatedMetric, compare_agents, over_repeats,
+};
+use serde::Serialize;
+
+use crate::{Failure, argument};
+
+/// What several lifetimes say together.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct Comparison {
+    /// How the intervals were made.
+    pub intervals: BootstrapOptions,
+    /// Each metric over the lifetimes.
+    pub repeats: Vec<RepeatedMetric>,
+    /// Each metric over the other agent's lifetimes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub repeats_against: Vec<RepeatedMetric>,
+    /// Each metric, how probably a lifetime is better than one of the other agent.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub improvement: Vec<ComparedMetric>,
+}
+
+impl Comparison {
+    /// Of lifetimes, and of another agent's, or none.
+    pub(super) fn new(
+        lifetimes: &[LifetimeMetrics],
+        others: &[LifetimeMetrics],
+        intervals: &BootstrapOptions,
+    ) -> Result<Self, Failure> {
+        let improvement = compare_agents(lifetimes, others, intervals)?;
+        if improvement.is_empty() && !others.is_empty() {
+            return Err(Failure::input(format!(
+                "{}: found no task that both agents have, {} here and {} there, expected the same tasks",
+                argument("against"),
+                tasks(lifetimes),
+                tasks(others)
+            )));
+        }
+        Ok(Self {
+            intervals: *intervals,
+            repeats: over_repeats(lifetimes, intervals)?,
+            repeats_against: over_repeats(others, intervals)?,
+            improvement,
+        })
+    }
+}
+
+/// The first tasks of lifetimes.
+fn tasks(lifetimes: &[LifetimeMetrics]) -> String {
+    let names = lifetimes
+        .iter()
+        .flat_map(|lifetime| lifetime.task_metrics.keys().map(String::as_str));
+    let names: BTreeSet<&str> = names.collect();
+    names.into_iter().take(5).collect::<Vec<_>>().join(", ")
+}

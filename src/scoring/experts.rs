@@ -1,0 +1,114 @@
+//! The single-task experts that lifetimes are compared with: logs that were named, and those kept in a folder, read when they are needed.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use driftworld_metrics::{
+    Log, MetricsError, Options, SteLog, StoredTask, VariantMode, experts_serving, find_ste, read_ste_log,
+};
+
+use crate::{Failure, log_folders};
+
+/// Experts of any number of tasks.
+#[derive(Default)]
+pub(crate) struct Experts {
+    named: Vec<SteLog>,
+    stored: Vec<Stored>,
+}
+
+/// The stored experts of one task, and their logs once they were read.
+struct Stored {
+    task: StoredTask,
+    logs: OnceLock<Result<Vec<SteLog>, String>>,
+}
+
+impl Experts {
+    pub(super) fn new(named: &[PathBuf], data: Option<&Path>) -> Result<Self, Failure> {
+        let named = log_folders::named(named)?
+            .iter()
+            .map(read_ste_log)
+            .collect::<Result<Vec<_>, _>>()?;
+        let stored = data.map(find_ste).transpose()?.unwrap_or_default().into_iter();
+        let stored = stored.map(|task| Stored {
+            task,
+            logs: OnceLock::new(),
+        });
+        Ok(Self {
+            named,
+            stored: stored.collect(),
+        })
+    }
+
+    /// What is said of experts that were named for a lifetime without their task.
+    pub(crate) fn left_aside(&self, log: &Log, options: &Options) -> Vec<String> {
+        let tasks = tasks(log, options);
+        let trained: Vec<&str> = self.trained().collect();
+        let taken = serving(&tasks, &trained);
+        let strangers = self
+            .named
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| !taken.contains(index));
+        let told = |(_, expert): (usize, &SteLog)| {
+            let (name, task) = (&expert.log().run_id, expert.task_name());
+            format!(
+                "the expert {name} of {task} is left aside: the lifetime has no such task, but {}",
+                tasks.join(", ")
+            )
+        };
+        strangers.map(told).collect()
+    }
+
+    /// The experts of the tasks that a lifetime has.
+    pub(crate) fn of(&self, log: &Log, options: &Options) -> Result<Vec<SteLog>, Failure> {
+        let trained: Vec<&str> = self.trained().collect();
+        let taken = serving(&tasks(log, options), &trained);
+        let mut experts = Vec::new();
+        for index in taken {
+            let Some(number) = index.checked_sub(self.named.len()) else {
+                experts.push(self.named[index].clone());
+                continue;
+            };
+            // What comes behind those that were named is stored.
+            let stored = &self.stored[number];
+            let read = || {
+                let logs = stored
+                    .task
+                    .runs
+                    .iter()
+                    .map(read_ste_log)
+                    .collect::<Result<Vec<_>, MetricsError>>();
+                logs.map_err(|error| error.to_string())
+            };
+            match stored.logs.get_or_init(read) {
+                Ok(logs) => experts.extend(logs.iter().cloned()),
+                Err(text) => return Err(Failure::input(text.clone())),
+            }
+        }
+        Ok(experts)
+    }
+
+    /// The tasks that experts trained: of those that were named, then of those that are stored.
+    fn trained(&self) -> impl Iterator<Item = &str> {
+        let stored = self.stored.iter().map(|stored| stored.task.task_name.as_str());
+        self.named.iter().map(SteLog::task_name).chain(stored)
+    }
+}
+
+/// Positions of the experts that serve some of the tasks.
+fn serving(tasks: &[String], trained: &[&str]) -> BTreeSet<usize> {
+    tasks.iter().flat_map(|task| experts_serving(task, trained)).collect()
+}
+
+/// The names under which a lifetime's tasks are scored.
+fn tasks(log: &Log, options: &Options) -> Vec<String> {
+    let scored = |task: &String| {
+        let task = task.to_lowercase();
+        match (options.variant_mode, task.split_once('_')) {
+            (VariantMode::Agnostic, Some((task, _))) => task.to_owned(),
+            _ => task,
+        }
+    };
+    log.rows.task_names().values().iter().map(scored).collect()
+}

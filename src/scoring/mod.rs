@@ -1,0 +1,20 @@
+//! What agents kept and transferred, from the folders of their logs: [`score`]. What a score is, is `metrics`'; what is
+//! printed of it, the command's.
+
+mod comparison;
+mod experts;
+mod request;
+mod scored_log;
+mod scores;
+mod settings;
+mod setup;
+
+pub use comparison::Comparison;
+pub use request::{ScoringRequest, ScoringSettings};
+pub use scores::{Scores, score};
+pub use settings::data_ranges;
+
+pub(crate) use experts::Experts;
+pub(crate) use scored_log::{ScoredLog, score_logs};
+pub(crate) use scores::score_looking;
+pub(crate) use setup::{Setup, own_scale};

@@ -1,0 +1,109 @@
+//! [`ScoredLog`]: a log, the lifetime in it, and its scores; many at once. What a score is, is `metrics`'.
+
+use std::path::{Path, PathBuf};
+
+use driftworld_metrics::{ExpStatus, Lifetime, LifetimeMetrics, Log, MetricsError, Options, Scorer, read_log};
+use driftworld_spec::nearest;
+use driftworld_text::ShownPath;
+use rayon::prelude::*;
+
+use super::Experts;
+use crate::{Failure, Warn, argument, log_folders};
+
+/// One lifetime with everything that is known of it.
+pub(crate) struct ScoredLog {
+    pub(crate) log: Log,
+    pub(crate) lifetime: Lifetime,
+    pub(crate) metrics: LifetimeMetrics,
+    /// What is odd about it, which was told already.
+    pub(crate) warnings: Vec<String>,
+}
+
+impl ScoredLog {
+    /// Reads a log and scores it; `name` tells it from others, by default its folder's.
+    pub(crate) fn read(
+        folder: &Path,
+        name: Option<&str>,
+        experts: &Experts,
+        options: &Options,
+        warn: Warn<'_>,
+    ) -> Result<Self, Failure> {
+        let mut log = read_log(folder)?;
+        if let Some(name) = name {
+            name.clone_into(&mut log.run_id);
+        }
+        let mut warnings: Vec<String> = log.warnings.iter().map(ToString::to_string).collect();
+        warnings.extend(missing_numbers(&log, &options.perf_measure));
+        warnings.extend(experts.left_aside(&log, options));
+        for warning in &warnings {
+            warn(format!("{}: {warning}", folder.shown()));
+        }
+        let lifetime = Lifetime::prepare(&log, &experts.of(&log, options)?, options).map_err(without_column)?;
+        let metrics = Scorer::default().judge(&log, &lifetime, options)?;
+        Ok(Self {
+            log,
+            lifetime,
+            metrics,
+            warnings,
+        })
+    }
+}
+
+/// A column that is not there was asked for, or is what is asked for by default.
+fn without_column(error: MetricsError) -> Failure {
+    let MetricsError::UnknownColumn { column, available, .. } = &error else {
+        return error.into();
+    };
+    let near = nearest(column, available.split(", "));
+    let advice = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
+    Failure::because(format!("{}: {error}{advice}", argument("perf_measure")), error)
+}
+
+/// Says how many rows are passed over because they have no number.
+fn missing_numbers(log: &Log, column: &str) -> Option<String> {
+    let is_complete = |status: &ExpStatus| *status == ExpStatus::Complete;
+    let complete = log
+        .rows
+        .exp_statuses()
+        .iter()
+        .filter(|status| is_complete(status))
+        .count();
+    let numbers = log.rows.exp_statuses().iter().zip(log.rows.metric(column)?);
+    let missing = numbers
+        .filter(|(status, number)| is_complete(status) && number.is_nan())
+        .count();
+    (missing > 0)
+        .then(|| format!("{missing} of {complete} complete rows have no number in column {column} and are left out"))
+}
+
+/// Reads and scores many logs and keeps of each what `keep` makes of it. Where several cannot be scored, every one is
+/// told, and the first is the cause.
+pub(super) fn each_log<T: Send>(
+    logs: &[PathBuf],
+    experts: &Experts,
+    options: &Options,
+    warn: Warn<'_>,
+    keep: impl Fn(ScoredLog) -> Result<T, Failure> + Sync,
+) -> Result<Vec<T>, Failure> {
+    let names = log_folders::names(logs);
+    let read = |(log, name): (&PathBuf, &String)| {
+        let name = (logs.len() > 1).then_some(name.as_str());
+        keep(ScoredLog::read(log, name, experts, options, warn)?)
+    };
+    let kept: Vec<_> = logs.par_iter().zip(&names).map(read).collect();
+    let failures: Vec<&Failure> = kept.iter().filter_map(|kept| kept.as_ref().err()).collect();
+    if failures.is_empty() {
+        return kept.into_iter().collect();
+    }
+    Err(Failure::of_several(&failures))
+}
+
+/// The scores of many logs.
+pub(crate) fn score_logs(
+    logs: &[PathBuf],
+    experts: &Experts,
+    options: &Options,
+    warn: Warn<'_>,
+) -> Result<Vec<LifetimeMetrics>, Failure> {
+    each_log(logs, experts, options, warn, |log| Ok(log.metrics))
+}

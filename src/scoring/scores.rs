@@ -1,0 +1,134 @@
+//! [`score`]: the scores of one lifetime or of several, together and against another agent's; and the files they are
+//! saved in, under l2metrics' names.
+
+use std::path::{Path, PathBuf};
+
+use driftworld_metrics::{LifetimeMetrics, Options, Settings, save_all};
+use serde::{Serialize, Serializer};
+
+use super::{Comparison, ScoredLog, ScoringRequest, Setup, score_logs};
+use crate::{Failure, Warn, output_file};
+
+/// What several lifetimes are called together, as in l2metrics.
+const NAME_OF_SEVERAL: &str = "ll_metrics";
+
+/// The scores of lifetimes. Serialises to what `driftworld metrics --json` prints: one lifetime alone, or several with
+/// what they say together.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct Scores {
+    /// The lifetimes, each by itself, in the order of their logs.
+    pub lifetimes: Vec<LifetimeMetrics>,
+    /// Those of the other agent.
+    pub lifetimes_against: Vec<LifetimeMetrics>,
+    /// What they say together; `None` for one lifetime alone.
+    pub comparison: Option<Comparison>,
+    /// What they were scored by.
+    pub options: Options,
+    /// The folders that were asked for.
+    asked: Vec<PathBuf>,
+    recursive: bool,
+}
+
+/// Scores the logs that a request names. `warn` is told what is odd, log by log.
+///
+/// # Errors
+/// [`Failure`] where a log cannot be read or scored, or the request contradicts itself; of several logs all that fail
+/// are told.
+pub fn score(request: &ScoringRequest, warn: Warn<'_>) -> Result<Scores, Failure> {
+    let setup = Setup::new(request.folders()?, request)?;
+    let lifetimes = setup.each(warn, |log| Ok(log.metrics))?;
+    Scores::new(request, setup, lifetimes, warn)
+}
+
+/// The same, and hands each log with its lifetime to `look`, from any thread.
+pub(crate) fn score_looking(
+    request: &ScoringRequest,
+    warn: Warn<'_>,
+    look: impl Fn(&ScoredLog) -> Result<(), Failure> + Sync,
+) -> Result<Scores, Failure> {
+    let setup = Setup::new(request.folders()?, request)?;
+    let lifetimes = setup.each(warn, |log| {
+        look(&log)?;
+        Ok(log.metrics)
+    })?;
+    Scores::new(request, setup, lifetimes, warn)
+}
+
+impl Scores {
+    fn new(
+        request: &ScoringRequest,
+        setup: Setup,
+        lifetimes: Vec<LifetimeMetrics>,
+        warn: Warn<'_>,
+    ) -> Result<Self, Failure> {
+        let Setup { options, experts, .. } = &setup;
+        let others = score_logs(&setup.others, experts, options, warn)?;
+        let is_alone = lifetimes.len() == 1 && !request.recursive && request.against.is_empty();
+        let comparison = (!is_alone).then(|| Comparison::new(&lifetimes, &others, &request.intervals));
+        Ok(Self {
+            lifetimes,
+            lifetimes_against: others,
+            comparison: comparison.transpose()?,
+            options: setup.options,
+            asked: request.logs.clone(),
+            recursive: request.recursive,
+        })
+    }
+
+    /// Saves the results in a folder, made if need be: of one lifetime `NAME_metrics.json`, `NAME_regime.tsv` and
+    /// `NAME_settings.json`; of several, or where folders were searched, `NAME.json`, `NAME.tsv`, `NAME_regime.tsv`,
+    /// `NAME_settings.json`; and `NAME_repeats.json` with what they say together. Hands back the files.
+    ///
+    /// `name` is the log's, or `ll_metrics` for several, where there is none.
+    ///
+    /// # Errors
+    /// [`Failure`] where a file cannot be written, or for a name that no file can have.
+    pub fn save(&self, folder: &Path, name: Option<&str>) -> Result<Vec<PathBuf>, Failure> {
+        let logs = self.asked.iter().map(|log| log.display().to_string());
+        let settings = Settings {
+            log_dir: logs.collect::<Vec<_>>().join(" "),
+            options: self.options.clone(),
+        };
+        let several = name.unwrap_or(NAME_OF_SEVERAL);
+        let mut files = match self.lifetimes.as_slice() {
+            [lifetime] if !self.recursive => {
+                let files = lifetime.save(folder, name.unwrap_or(&lifetime.run_id), &settings)?;
+                vec![files.metrics, files.regimes, files.settings]
+            }
+            lifetimes => {
+                let files = save_all(lifetimes, folder, several, &settings)?;
+                vec![files.lifetimes, files.metrics, files.regimes, files.settings]
+            }
+        };
+        if let Some(comparison) = &self.comparison {
+            let file = folder.join(format!("{}_repeats.json", several.replace(' ', "_")));
+            output_file::write(&file, serde_json::to_string_pretty(comparison)?.as_bytes())?;
+            files.push(file);
+        }
+        Ok(files)
+    }
+}
+
+impl Serialize for Scores {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Together<'a> {
+            #[serde(flatten)]
+            comparison: &'a Comparison,
+            lifetimes: &'a [LifetimeMetrics],
+            #[serde(skip_serializing_if = "<[_]>::is_empty")]
+            lifetimes_against: &'a [LifetimeMetrics],
+        }
+        match (&self.comparison, self.lifetimes.as_slice()) {
+            (None, [lifetime]) => lifetime.serialize(serializer),
+            (None, lifetimes) => lifetimes.serialize(serializer),
+            (Some(comparison), lifetimes) => Together {
+                comparison,
+                lifetimes,
+                lifetimes_against: &self.lifetimes_against,
+            }
+            .serialize(serializer),
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! [`Setup`]: what lifetimes are scored by and compared with, and one scale where they are compared: each task's range over
+//! all of them. How performances are scaled is `metrics`'.
+
+use std::path::PathBuf;
+
+use driftworld_metrics::{DataRanges, Lifetime, NormalizationMethod, Options, read_log};
+use rayon::prelude::*;
+
+use super::scored_log::each_log;
+use super::{Experts, ScoredLog, ScoringRequest};
+use crate::{Failure, Warn, log_folders};
+
+/// What lifetimes are scored by, and the logs that they are compared with.
+pub(crate) struct Setup {
+    pub(crate) logs: Vec<PathBuf>,
+    pub(crate) options: Options,
+    pub(crate) experts: Experts,
+    /// The other agent's; none where there is no other.
+    pub(crate) others: Vec<PathBuf>,
+}
+
+impl Setup {
+    /// As the request says; on one scale for all lifetimes where two agents are compared, or where it is asked for.
+    pub(crate) fn new(logs: Vec<PathBuf>, request: &ScoringRequest) -> Result<Self, Failure> {
+        let (mut options, experts) = (request.settings.options()?, request.settings.experts()?);
+        let others = log_folders::below(&request.against)?;
+        if request.common_ranges || !others.is_empty() {
+            options = with_common_ranges(&[logs.as_slice(), &others].concat(), &experts, options);
+        }
+        Ok(Self {
+            logs,
+            options,
+            experts,
+            others,
+        })
+    }
+
+    /// Reads and scores each log, and keeps what `keep` makes of it.
+    pub(super) fn each<T: Send>(
+        &self,
+        warn: Warn<'_>,
+        keep: impl Fn(ScoredLog) -> Result<T, Failure> + Sync,
+    ) -> Result<Vec<T>, Failure> {
+        each_log(&self.logs, &self.experts, &self.options, warn, keep)
+    }
+}
+
+/// The options with each task's range over all these logs, so that levels of different lifetimes can be compared.
+///
+/// Where nothing is normalised, or ranges were given, they are as they were.
+fn with_common_ranges(logs: &[PathBuf], experts: &Experts, mut options: Options) -> Options {
+    if options.normalization_method == NormalizationMethod::Off || options.data_range.is_some() {
+        return options;
+    }
+    let own = |log: &PathBuf| {
+        let log = read_log(log).ok()?;
+        let lifetime = Lifetime::prepare(&log, &experts.of(&log, &options).ok()?, &options).ok()?;
+        lifetime.normalization_data_range().cloned()
+    };
+    // What cannot be read or scored is told when all are scored.
+    let own: Vec<_> = logs.par_iter().filter_map(own).collect();
+    let mut common = DataRanges::new();
+    for (task, range) in own.into_iter().flatten() {
+        let known = common.entry(task).or_insert(range);
+        (known.min, known.max) = (known.min.min(range.min), known.max.max(range.max));
+    }
+    options.data_range = Some(common);
+    options
+}
+
+/// What must be known before levels of different lifetimes are compared, where each has a scale of its own.
+pub(crate) fn own_scale(options: &Options) -> Option<String> {
+    let is_own = options.normalization_method != NormalizationMethod::Off && options.data_range.is_none();
+    is_own.then(|| {
+        "Each lifetime is scaled by its own smallest and largest performance: levels (avg_train_perf, avg_eval_perf) of \
+         one say nothing beside another's. --common-ranges, -d and -n none give one scale."
+            .to_owned()
+    })
+}

@@ -1,0 +1,58 @@
+//! What came of drawing a few worlds of everything, for people and for programs. Drawing them is `curriculum`'s.
+
+use driftworld_curriculum::{Failed, Trial};
+
+use crate::table::table;
+
+/// The most failures that are told one by one.
+const MOST_TOLD: usize = 10;
+
+/// How often drawing failed, a row for each variant or regime; and why, for the first that failed.
+pub(crate) fn shown(trials: &[Trial]) -> String {
+    let share = |failed: u64, of: u64| match failed {
+        0 => "0".to_owned(),
+        _ => format!("{failed} ({:.0}%)", 100.0 * failed as f64 / of.max(1) as f64),
+    };
+    let rows = trials.iter().map(|trial| {
+        [
+            trial.block.map_or_else(|| "-".to_owned(), |block| block.to_string()),
+            trial.variant.clone(),
+            trial.seed.to_string(),
+            trial.worlds.to_string(),
+            share(trial.placement, trial.worlds),
+            share(trial.requirement, trial.worlds),
+            share(trial.other, trial.worlds),
+        ]
+    });
+    let headings = ["block", "variant", "seed", "worlds", "no place", "requirement", "other"];
+    let mut lines = vec![table(headings, rows.collect(), &[0, 2, 3, 4, 5, 6])];
+    // The first of each kind: what fails in one way may fail in another, too.
+    let failed = trials.iter().flat_map(|trial| {
+        let is_first =
+            |(place, one): &(usize, &Failed)| !trial.failed[..*place].iter().any(|other| other.code == one.code);
+        let firsts = trial.failed.iter().enumerate().filter(is_first);
+        firsts.map(move |(_, first)| (trial, first))
+    });
+    for (trial, first) in failed.take(MOST_TOLD) {
+        let experience = first
+            .experience
+            .map_or_else(String::new, |experience| format!(", experience {experience}"));
+        let way = if first.progress == 0.0 {
+            String::new()
+        } else {
+            format!(", at {} of its way", first.progress)
+        };
+        lines.push(format!(
+            "{}{experience}, world {}{way}: {}",
+            trial.variant, first.index, first.reason
+        ));
+    }
+    lines.join("\n")
+}
+
+/// That some worlds cannot be drawn, in a few words; nothing where all can.
+pub(crate) fn told(trials: &[Trial]) -> Option<String> {
+    let failed: u64 = trials.iter().map(Trial::num_failed).sum();
+    let worlds: u64 = trials.iter().map(|trial| trial.worlds).sum();
+    (failed > 0).then(|| format!("{failed} of {worlds} worlds cannot be drawn"))
+}
