@@ -1,11 +1,17 @@
 //! Scenarios and the logs that they are lived into, as Python holds them. What they mean is `spec`'s, the plan and the log
 //! `curriculum`'s; the agent and its environment are in `package/driftworld/curricula.py`.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
+use driftworld::clock::Clock;
 use driftworld::scenarios::{Missing, Named, ScenarioFile, task_from};
 use driftworld::tasks::TaskError;
-use driftworld_curriculum::{CurriculumError, Experience, FoundWorld, Journal, MOST_STEPS, Plan, Tried, Undrawable};
+use driftworld_curriculum::{
+    CurriculumError, Experience, FoundWorld, Journal, MOST_STEPS, Plan, Progress, Rollout, Tried, Undrawable,
+    run_rollout,
+};
 use driftworld_spec::{BlockKind, Scenario, TaskSpec, World};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -13,7 +19,7 @@ use serde_json::json;
 
 use crate::document::{Whole, from_python, to_python, told};
 use crate::errors::{Error, Result};
-use crate::logs::now;
+use crate::supply::{PyStream, Stream};
 
 /// A scenario with everything that it names.
 #[pyclass(name = "Plan", module = "driftworld._native")]
@@ -151,20 +157,9 @@ impl PyPlan {
         Ok(to_python(py, &told)?)
     }
 
-    /// The JSON of the world of experience `number`, its time step in seconds, for how many of these each action is held, and its
-    /// limit of seconds, 0 for none; a world without any limit has one of steps here.
-    fn world(&self, py: Python<'_>, number: Whole) -> Result<(String, f64, u32, f64)> {
-        let mut world = py.detach(|| self.plan.world(number.0))?;
-        if world.step_limit().is_none() {
-            world.max_steps = MOST_STEPS;
-        }
-        let agent = &world.agent_params;
-        Ok((
-            world.to_json(),
-            agent.time_step,
-            agent.frame_skip.max(1),
-            world.max_seconds,
-        ))
+    /// The world of experience `number`; one without any limit has one of steps here.
+    fn world(&self, py: Python<'_>, number: Whole) -> Result<PyStream> {
+        Ok(handle(py.detach(|| self.plan.world(number.0))?))
     }
 
     /// Draws so many worlds of each regime, and says how often that fails, and why: a list of dictionaries.
@@ -210,36 +205,25 @@ impl PyJournal {
         Ok(Self(Some(journal)))
     }
 
-    /// Logs the next experience; `outcome` is reward, success, steps, seconds and truncated.
-    fn record(&mut self, plan: &Bound<'_, PyPlan>, outcome: (f64, bool, u32, f64, bool)) -> Result<()> {
-        let (reward, success, steps, seconds, truncated) = outcome;
-        let experience = Experience {
-            reward,
-            success,
-            steps,
-            seconds,
-            truncated,
-        };
-        self.open()?.record(&plan.borrow().plan, &experience, now()?)?;
-        Ok(())
-    }
-
-    /// Logs that the next experience is left out; false if its world can be drawn.
-    fn skip(&mut self, py: Python<'_>, plan: &Bound<'_, PyPlan>) -> Result<bool> {
-        let (plan, now) = (&plan.borrow().plan, now()?);
-        let journal = self.open()?;
-        Ok(py.detach(|| journal.skip(plan, now))?)
+    /// Runs the plan from the first experience that is not in the log, and says what it came to, as a dictionary. `learned`:
+    /// how many experiences the agent has learned from. `rollout` has the methods of [`Rollout`].
+    fn run<'py>(
+        &mut self,
+        py: Python<'py>,
+        plan: &Bound<'py, PyPlan>,
+        rollout: Bound<'py, PyAny>,
+        learned: Whole,
+    ) -> Result<Bound<'py, PyAny>> {
+        let clock = Clock::from_environment().map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let (plan, mut rollout) = (&plan.borrow().plan, PythonRollout(rollout));
+        let summary = run_rollout(plan, &mut rollout, self.open()?, learned.0, &mut || clock.now())?;
+        Ok(told(py, &summary)?)
     }
 
     /// How many experiences are in the log.
     fn __len__(&mut self) -> Result<usize> {
         let lived = self.open()?.num_experiences();
         Ok(usize::try_from(lived).unwrap_or(usize::MAX))
-    }
-
-    /// What the lifetime came to so far, as a dictionary.
-    fn summary<'py>(&mut self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
-        Ok(told(py, self.open()?.summary())?)
     }
 
     /// Ends the log: asks the disk to have all of it. Does nothing a second time.
@@ -253,5 +237,57 @@ impl PyJournal {
         self.0
             .as_mut()
             .ok_or_else(|| PyValueError::new_err("log: found it closed, expected an open one"))
+    }
+}
+
+/// A world on its way to Python; one without any limit gets one of steps.
+fn handle(mut world: World) -> PyStream {
+    if world.step_limit().is_none() {
+        world.max_steps = MOST_STEPS;
+    }
+    PyStream(Stream::World {
+        world: Arc::new(world),
+        name: "world".to_owned(),
+    })
+}
+
+/// An agent of Python's with its environment: what it does is in `package/driftworld/lifetimes.py`.
+struct PythonRollout<'py>(Bound<'py, PyAny>);
+
+impl Rollout for PythonRollout<'_> {
+    type Error = Error;
+
+    fn begin_block(&mut self, learning: bool) -> Result<()> {
+        self.0.call_method1("begin_block", (learning,))?;
+        Ok(())
+    }
+
+    fn experience(&mut self, number: u64, world: World) -> Result<Option<Experience>> {
+        let agent = &world.agent_params;
+        let time = (agent.time_step, agent.frame_skip.max(1), world.max_seconds);
+        let outcome = self.0.call_method1("experience", (number, handle(world), time))?;
+        let (reward, success, steps, seconds, truncated) = outcome.extract()?;
+        Ok(Some(Experience {
+            reward,
+            success,
+            steps,
+            seconds,
+            truncated,
+        }))
+    }
+
+    fn end_learning(&mut self, done: u64) -> Result<()> {
+        self.0.call_method1("end_learning", (done,))?;
+        Ok(())
+    }
+
+    fn logged(&mut self, progress: &Progress, reward: Option<f64>) -> Result<ControlFlow<()>> {
+        let reward = reward.unwrap_or(f64::NAN);
+        let goes_on: bool = self.0.call_method1("logged", (progress.done - 1, reward))?.extract()?;
+        Ok(if goes_on {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        })
     }
 }

@@ -121,6 +121,14 @@ impl PyStream {
         Ok(Self(Stream::World { world, name }))
     }
 
+    /// The JSON of the one world that it hands out.
+    fn text(&self) -> Result<String> {
+        match &self.0 {
+            Stream::World { world, .. } => Ok(world.to_json()),
+            _ => Err(PyValueError::new_err("world: found a stream of variants, expected one of a world").into()),
+        }
+    }
+
     /// What environments of its worlds look like with these options (JSON), for each variant that it names, as JSON.
     fn layouts(&self, dress: &str) -> Result<Vec<String>> {
         let dress = dress_of(dress)?;

@@ -95,45 +95,6 @@ impl Journal {
         }
     }
 
-    /// Logs the next experience of the plan, and counts it. [`run`](crate::run) does this by itself; this is for whoever lives
-    /// experiences elsewhere, one after the other, in the worlds that [`Plan::world`] says.
-    ///
-    /// # Errors
-    /// [`CurriculumError::NoSuchExperience`] when all are in the log; [`CurriculumError::Log`] if it cannot be written;
-    /// [`CurriculumError::World`] if a drift has no variant there.
-    pub fn record(
-        &mut self,
-        plan: &Plan,
-        experience: &Experience,
-        now: Timestamp,
-    ) -> Result<Progress, CurriculumError> {
-        let number = self.next(plan)?;
-        let between = plan.regimes[plan.regime_of(number)].between(number)?;
-        self.take(plan, number, experience, between.as_ref(), now)
-    }
-
-    /// Logs that the next experience of the plan is left out, because its world cannot be drawn; false, and nothing is logged, if it
-    /// can. [`run`](crate::run) does this by itself where the plan says [`Undrawable::Skipped`](crate::Undrawable); this is for whoever
-    /// lives experiences elsewhere.
-    ///
-    /// # Errors
-    /// [`CurriculumError::NoSuchExperience`] when all are in the log; [`CurriculumError::Log`] if it cannot be written.
-    pub fn skip(&mut self, plan: &Plan, now: Timestamp) -> Result<bool, CurriculumError> {
-        let number = self.next(plan)?;
-        let drawn = plan.regimes[plan.regime_of(number)].draw(number, None);
-        let Err(why) = drawn else { return Ok(false) };
-        self.leave_out(plan, number, &why.to_string(), now)?;
-        Ok(true)
-    }
-
-    fn next(&self, plan: &Plan) -> Result<u64, CurriculumError> {
-        let (number, total) = (self.num_experiences(), plan.num_experiences());
-        if number >= total {
-            return Err(CurriculumError::NoSuchExperience { found: number, total });
-        }
-        Ok(number)
-    }
-
     /// Logs that experience `number`, which is the next, is left out.
     pub(super) fn leave_out(
         &mut self,

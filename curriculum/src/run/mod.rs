@@ -9,28 +9,31 @@ mod in_order;
 mod journal;
 mod log_names;
 mod plan;
+mod rollout;
 mod summary;
 mod undrawable;
+mod worlds;
 
 use std::num::NonZeroUsize;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use driftworld_env::{Agent, Catalogue, Environment};
-use driftworld_generator::Sampler;
 use driftworld_metrics::Timestamp;
-use driftworld_spec::{BlockKind, Variant};
+use driftworld_spec::{BlockKind, Variant, World};
 
 pub use columns::{COLUMNS, ENDING};
 pub use episode::{Experience, MOST_STEPS};
 pub use journal::Journal;
 pub use log_names::same_log_name;
 pub use plan::{Due, FoundWorld, Plan, Sources, log_name};
+pub use rollout::{Rollout, run_rollout};
 pub use summary::{LeftOut, Progress, RegimeSummary, Summary};
 pub use undrawable::{Failed, Trial, Tried, Undrawable, try_worlds};
 
 use crate::CurriculumError;
 use episode::Briefing;
+use worlds::{Drawn, Worlds};
 
 /// What a run is handed, since it does not look at the clock.
 pub struct Surroundings<'a> {
@@ -69,40 +72,66 @@ pub fn run(
 ) -> Result<Summary, CurriculumError> {
     let total = plan.num_experiences();
     let (jobs, catalogue, stop) = (around.jobs.get(), around.catalogue.clone(), around.stop);
-    let mut life = Life { plan, journal, around };
-    let desk = || Desk::new(plan, catalogue.clone(), stop);
-    let mut own = desk();
-    let mut next = life.journal.num_experiences();
+    let worker = || Worker::new(plan, catalogue.clone(), stop);
+    let mut own = worker();
+    let (mut worlds, mut block) = (Worlds::new(plan), None);
+    let mut next = journal.num_experiences();
     while next < total {
         let learns = agent.learns();
         let end = if learns { plan.end_of_kind(next) } else { total };
         let still = !learns || plan.regimes[plan.regime_of(next)].kind == BlockKind::Evaluation;
         let copies: Option<Vec<_>> = (still && jobs > 1)
             .then(|| {
-                let copy = |_| Some((agent.frozen()?, desk()));
+                let copy = |_| Some((agent.frozen()?, worker()));
                 (0..jobs).map(copy).collect()
             })
             .flatten();
-        let flow = match copies {
-            Some(copies) => {
-                let work =
-                    |(agent, desk): &mut (Box<dyn Agent + Send>, Desk), number| desk.live(agent.as_mut(), number);
-                in_order::in_order(next..end, copies, work, |number, lived| life.take(number, &lived?))?
-            }
-            None => life.one_by_one(next..end, agent, &mut own)?,
+        let flow = if let Some(copies) = copies {
+            run_in_parallel(plan, next..end, copies, journal, around)?
+        } else {
+            let mut one_by_one = OneByOne {
+                agent,
+                worker: &mut own,
+                watch: around.watch,
+            };
+            let place = (&mut worlds, &mut block);
+            rollout::run_range(plan, next..end, place, &mut one_by_one, journal, around.now)?
         };
         if flow.is_break() {
             break;
         }
         next = end;
     }
-    Ok(life.journal.summary().clone())
+    Ok(journal.summary().clone())
+}
+
+/// Runs experiences that do not depend on each other at the same time, and logs them in their order.
+fn run_in_parallel(
+    plan: &Plan,
+    numbers: Range<u64>,
+    copies: Vec<(Box<dyn Agent + Send>, Worker<'_>)>,
+    journal: &mut Journal,
+    around: &mut Surroundings,
+) -> Result<ControlFlow<()>, CurriculumError> {
+    let work =
+        |(agent, worker): &mut (Box<dyn Agent + Send>, Worker), number| worker.draw_and_run(agent.as_mut(), number);
+    in_order::in_order(numbers, copies, work, |number, outcome| {
+        let now = (around.now)();
+        let progress = match outcome? {
+            Outcome::CutOff => return Ok(ControlFlow::Break(())),
+            Outcome::Over { experience, between } => {
+                journal.take(plan, number, &experience, between.as_deref(), now)?
+            }
+            Outcome::LeftOut { reason } => journal.leave_out(plan, number, &reason, now)?,
+        };
+        Ok((around.watch)(&progress))
+    })
 }
 
 /// What became of an experience.
 enum Outcome {
-    /// It was lived; with the variant that it was an experience of where its regime drifts.
-    Lived {
+    /// It is over; with the variant that it was an experience of where its regime drifts.
+    Over {
         experience: Experience,
         between: Option<Box<Variant>>,
     },
@@ -112,45 +141,44 @@ enum Outcome {
     CutOff,
 }
 
-/// Where experiences are lived, one at a time.
-struct Desk<'a> {
+/// Runs experiences in an environment of its own, one at a time.
+struct Worker<'a> {
     plan: &'a Plan,
     catalogue: Catalogue,
     stop: &'a AtomicBool,
-    /// The regime that the last experience belonged to, and its sampler.
-    sampler: Option<(usize, Option<Sampler>)>,
+    worlds: Worlds<'a>,
     environment: Option<Environment>,
 }
 
-impl<'a> Desk<'a> {
+impl<'a> Worker<'a> {
     fn new(plan: &'a Plan, catalogue: Catalogue, stop: &'a AtomicBool) -> Self {
         Self {
             plan,
             catalogue,
             stop,
-            sampler: None,
+            worlds: Worlds::new(plan),
             environment: None,
         }
     }
 
-    fn live(&mut self, agent: &mut dyn Agent, number: u64) -> Result<Outcome, CurriculumError> {
+    fn draw_and_run(&mut self, agent: &mut dyn Agent, number: u64) -> Result<Outcome, CurriculumError> {
         if self.stop.load(Ordering::Relaxed) {
             return Ok(Outcome::CutOff);
         }
-        let index = self.plan.regime_of(number);
-        let planned = &self.plan.regimes[index];
-        let sampler = match &mut self.sampler {
-            Some((regime, sampler)) if *regime == index => sampler,
-            old => &mut old.insert((index, planned.sampler())).1,
+        let (world, between) = match self.worlds.draw(number)? {
+            Drawn::World { world, between } => (world, between),
+            Drawn::LeftOut { reason } => return Ok(Outcome::LeftOut { reason }),
         };
-        let assignment = match planned.draw(number, sampler.as_ref()) {
-            Ok(assignment) => assignment,
-            Err(source) if self.plan.undrawable() == Undrawable::Skipped => {
-                let reason = source.to_string();
-                return Ok(Outcome::LeftOut { reason });
-            }
-            Err(source) => return Err(planned.wrong(number, source)),
-        };
+        let experience = self.run(agent, number, world)?;
+        Ok(experience.map_or(Outcome::CutOff, |experience| Outcome::Over { experience, between }))
+    }
+
+    /// Runs one experience in its world; nothing if it was stopped on its way.
+    fn run(&mut self, agent: &mut dyn Agent, number: u64, world: World) -> Result<Option<Experience>, CurriculumError> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+        let planned = &self.plan.regimes[self.plan.regime_of(number)];
         let failed = |source| CurriculumError::Episode {
             block: planned.block,
             regime: planned.regime,
@@ -159,10 +187,10 @@ impl<'a> Desk<'a> {
         };
         let environment = match &mut self.environment {
             Some(environment) => {
-                environment.reset(assignment.world).map_err(failed)?;
+                environment.reset(world).map_err(failed)?;
                 environment
             }
-            none => none.insert(Environment::with_catalogue(assignment.world, self.catalogue.clone()).map_err(failed)?),
+            none => none.insert(Environment::with_catalogue(world, self.catalogue.clone()).map_err(failed)?),
         };
         let briefing = Briefing {
             seed: planned.chance(number),
@@ -170,48 +198,25 @@ impl<'a> Desk<'a> {
             learn: planned.kind == BlockKind::Learning,
             stop: self.stop,
         };
-        let lived = episode::live(agent, environment, &briefing).map_err(failed)?;
-        Ok(lived.map_or(Outcome::CutOff, |experience| Outcome::Lived {
-            experience,
-            between: assignment.between.map(Box::new),
-        }))
+        episode::live(agent, environment, &briefing).map_err(failed)
     }
 }
 
-/// A lifetime under way.
-struct Life<'a, 'b> {
-    plan: &'a Plan,
-    journal: &'a mut Journal,
-    around: &'a mut Surroundings<'b>,
+/// The rollout of an agent in this process.
+struct OneByOne<'a, 'b> {
+    agent: &'a mut dyn Agent,
+    worker: &'a mut Worker<'b>,
+    watch: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
 }
 
-impl Life<'_, '_> {
-    fn one_by_one(
-        &mut self,
-        numbers: std::ops::Range<u64>,
-        agent: &mut dyn Agent,
-        desk: &mut Desk,
-    ) -> Result<ControlFlow<()>, CurriculumError> {
-        for number in numbers {
-            let lived = desk.live(agent, number)?;
-            if self.take(number, &lived)?.is_break() {
-                return Ok(ControlFlow::Break(()));
-            }
-        }
-        Ok(ControlFlow::Continue(()))
+impl Rollout for OneByOne<'_, '_> {
+    type Error = CurriculumError;
+
+    fn experience(&mut self, number: u64, world: World) -> Result<Option<Experience>, CurriculumError> {
+        self.worker.run(self.agent, number, world)
     }
 
-    /// Logs an experience, counts it and tells whoever watches.
-    fn take(&mut self, number: u64, outcome: &Outcome) -> Result<ControlFlow<()>, CurriculumError> {
-        let mut now = || (self.around.now)();
-        let progress = match outcome {
-            Outcome::CutOff => return Ok(ControlFlow::Break(())),
-            Outcome::Lived { experience, between } => {
-                self.journal
-                    .take(self.plan, number, experience, between.as_deref(), now())?
-            }
-            Outcome::LeftOut { reason } => self.journal.leave_out(self.plan, number, reason, now())?,
-        };
-        Ok((self.around.watch)(&progress))
+    fn logged(&mut self, progress: &Progress, _reward: Option<f64>) -> Result<ControlFlow<()>, CurriculumError> {
+        Ok((self.watch)(progress))
     }
 }

@@ -454,12 +454,7 @@ impl Planned {
         digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte))
     }
 
-    /// The variant of an experience of a drift.
-    pub(super) fn between(&self, number: u64) -> Result<Option<Variant>, CurriculumError> {
-        self.variant_of(number).map_err(|source| self.wrong(number, source))
-    }
-
-    /// As [`Planned::between`], with the error as the generator says it.
+    /// The variant that an experience is of, where its regime drifts.
     pub(super) fn variant_of(&self, number: u64) -> Result<Option<Variant>, GeneratorError> {
         let Source::Drift { way, drift, .. } = &self.source else {
             return Ok(None);

@@ -66,7 +66,7 @@ class Experience:
 
     def world(self) -> dict[str, Any]:
         """Its world, as it is lived: with the scenario's limit of steps laid over it."""
-        world: dict[str, Any] = json.loads(self._plan.world(self.number)[0])
+        world: dict[str, Any] = json.loads(self._plan.world(self.number).text())
         return world
 
 
@@ -373,7 +373,7 @@ class Curriculum(Sequence[Block]):
         """
         # One of its own: what it depends on is noted in it. Of the same tasks, whatever became of their files since.
         plan = _native.Plan.from_values(self._plan.values(), skip_undrawable)
-        lifetime = Lifetime(plan, agent, options, log, resume, watch, skip_undrawable)
+        lifetime = Lifetime(plan, agent, options, log, resume, watch)
         return lifetime.live(lambda number: _experience(plan, number))
 
     def __len__(self) -> int:

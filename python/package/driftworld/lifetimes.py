@@ -127,7 +127,6 @@ class Lifetime:
         log: The folder to log into; without one the log is forgotten.
         resume: Go on with the log in the folder if there is one.
         watch: Told each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
-        skip_undrawable: Leave out experiences whose worlds cannot be drawn.
     """
 
     def __init__(
@@ -138,7 +137,6 @@ class Lifetime:
         log: str | PathLike[str] | None,
         resume: bool,
         watch: Callable[[Experience, float], Any] | None,
-        skip_undrawable: bool = False,
     ) -> None:
         missing = [name for name in ("act", "learn", "freeze") if not callable(getattr(agent, name, None))]
         if missing:
@@ -150,8 +148,6 @@ class Lifetime:
         # What is saved lies beside the log: a log holds rows, nothing else.
         self._saves = None if self._log is None else _beside(self._log)
         self._whose = ""
-        self._block: int | None = None
-        self._skips = skip_undrawable
 
     def live(self, experience: Callable[[int], Experience]) -> Summary:
         """Lives it from the first experience that is not in the log to the last; ``experience`` finds one by its number."""
@@ -165,62 +161,11 @@ class Lifetime:
             name = str(getattr(self._agent, "name", type(self._agent).__name__))
             journal = _native.Journal(folder, self._plan, name, self._resume)
             stack.callback(journal.close)
-            done, total = len(journal), len(self._plan)
+            done = len(journal)
             self._own_saves(done, {"scenario": self._plan.scenario(), "agent": name, "environment": made_with})
-            self._take_up(env, experience, done)
-            for number in range(done, total):
-                now = experience(number)
-                outcome = self._outcome(env, now)
-                if outcome is None:
-                    journal.skip(self._plan)
-                else:
-                    journal.record(self._plan, outcome)
-                if now.learning and (number + 1 == total or experience(number + 1).block != now.block):
-                    self._save(number + 1)
-                if self._watch is not None and self._watch(now, math.nan if outcome is None else outcome[0]) is False:
-                    break
-            said = journal.summary()
+            rollout = Rollout(self._agent, env, experience, self._options, self._watch, self._save)
+            said = journal.run(self._plan, rollout, self._load(done))
         return Summary(**said, log=self._log)
-
-    def _outcome(
-        self, env: gymnasium.Env[Any, Any], now: Experience
-    ) -> tuple[float, bool, int, float, bool] | None:
-        """One experience, lived; nothing if its world cannot be drawn and such are left out."""
-        if self._skips:
-            try:
-                self._plan.world(now.number)
-            except CurriculumError as error:
-                if error.code != "curriculum/world":
-                    raise
-                return None
-        return self._live_one(env, now)
-
-    def _live_one(self, env: gymnasium.Env[Any, Any], now: Experience) -> tuple[float, bool, int, float, bool]:
-        """One experience: reward, success, steps, seconds and whether a limit cut it off."""
-        if self._block != now.block:
-            self._block = now.block
-            self._agent.freeze(not now.learning)
-        begin = getattr(self._agent, "begin", None)
-        if begin is not None:
-            begin(None if now.label is None else now.label["name"], now.chance)
-        world, time_step, skip, max_seconds = self._plan.world(now.number)
-        seconds_per_step = time_step * (self._options.get("frame_skip") or skip)
-        # A limit of seconds cuts the last step short; one of steps stands in its place.
-        limited = max_seconds > 0 and self._options.get("max_steps") is None
-        most = max_seconds if limited else math.inf
-        observation, info = env.reset(options={"world": world, "label": now.label})
-        earned, steps, terminated, truncated = 0.0, 0, False, False
-        while not (terminated or truncated):
-            action = self._agent.act(observation, info)
-            following, reward, terminated, truncated, info = env.step(action)
-            earned += float(reward)
-            steps += 1
-            if now.learning:
-                self._agent.learn(
-                    Transition(observation, action, float(reward), terminated, truncated, following, info)
-                )
-            observation = following
-        return earned, bool(info["is_success"]), steps, min(steps * seconds_per_step, most), truncated and not terminated
 
     def _own_saves(self, done: int, lifetime: dict[str, Any]) -> None:
         """Sees to it that what is saved beside the log is of this lifetime: what another one left there goes."""
@@ -258,20 +203,80 @@ class Lifetime:
         places = [place for place in self._saves.iterdir() if re.fullmatch(r"\d{8,}", place.name)]
         return sorted((int(place.name), place) for place in places)
 
-    def _take_up(self, env: gymnasium.Env[Any, Any], experience: Callable[[int], Experience], done: int) -> None:
-        """Brings an agent that can be loaded to where the log stands.
+    def _load(self, done: int) -> int:
+        """Brings an agent that can be loaded to its last save before the end of the log; from how many experiences it has learned.
 
-        What it learned after the last save it learns again, in the same worlds, without being logged again.
+        What it learned after that it learns again. One that cannot be loaded has learned what is in the log.
         """
         if done == 0 or not hasattr(self._agent, "load"):
-            return
-        number = 0
+            return done
         for number, place in reversed([saved for saved in self._saved() if saved[0] <= done]):
             self._agent.load(place)
-            break
-        for lived in range(number, done):
-            if experience(lived).learning:
-                self._outcome(env, experience(lived))
+            return number
+        return 0
+
+
+class Rollout:
+    """An agent in its environment, which the native loop asks for one experience after the other.
+
+    Args:
+        agent: Who acts.
+        env: The environment.
+        experience: Finds an experience by its number.
+        options: Options of the environment.
+        watch: Told each experience and what it paid, as soon as it is logged; may say ``False`` to end there.
+        save: Saves the agent after so many experiences.
+    """
+
+    def __init__(
+        self,
+        agent: Agent,
+        env: gymnasium.Env[Any, Any],
+        experience: Callable[[int], Experience],
+        options: Mapping[str, Any],
+        watch: Callable[[Experience, float], Any] | None,
+        save: Callable[[int], None],
+    ) -> None:
+        self._agent, self._env, self._experience, self._options = agent, env, experience, options
+        self._watch, self.end_learning = watch, save
+
+    def begin_block(self, learning: bool) -> None:
+        """Before the first experience of a block."""
+        self._agent.freeze(not learning)
+
+    def experience(
+        self, number: int, world: _native.Stream, time: tuple[float, int, float]
+    ) -> tuple[float, bool, int, float, bool]:
+        """One experience in its world: reward, success, steps, seconds and whether a limit cut it off.
+
+        ``time`` is the world's time step in seconds, for how many of these each action is held, and its limit of seconds, 0 for none.
+        """
+        now = self._experience(number)
+        begin = getattr(self._agent, "begin", None)
+        if begin is not None:
+            begin(None if now.label is None else now.label["name"], now.chance)
+        time_step, skip, max_seconds = time
+        seconds_per_step = time_step * (self._options.get("frame_skip") or skip)
+        # A limit of seconds cuts the last step short; one of steps stands in its place.
+        limited = max_seconds > 0 and self._options.get("max_steps") is None
+        most = max_seconds if limited else math.inf
+        observation, info = self._env.reset(options={"world": world, "label": now.label})
+        earned, steps, terminated, truncated = 0.0, 0, False, False
+        while not (terminated or truncated):
+            action = self._agent.act(observation, info)
+            following, reward, terminated, truncated, info = self._env.step(action)
+            earned += float(reward)
+            steps += 1
+            if now.learning:
+                self._agent.learn(
+                    Transition(observation, action, float(reward), terminated, truncated, following, info)
+                )
+            observation = following
+        return earned, bool(info["is_success"]), steps, min(steps * seconds_per_step, most), truncated and not terminated
+
+    def logged(self, number: int, reward: float) -> bool:
+        """After an experience was logged, NaN for one that was left out; whether to go on."""
+        return self._watch is None or self._watch(self._experience(number), reward) is not False
 
 
 def environment(plan: _native.Plan, options: Mapping[str, Any]) -> gymnasium.Env[Any, Any]:
@@ -283,11 +288,11 @@ def environment(plan: _native.Plan, options: Mapping[str, Any]) -> gymnasium.Env
     return Labelled(env, plan.due(0)["label"])
 
 
-def _first_world(plan: _native.Plan) -> str:
+def _first_world(plan: _native.Plan) -> _native.Stream:
     """The first world of a plan that can be drawn; the spaces of all others are the same."""
     for number in range(len(plan)):
         try:
-            return plan.world(number)[0]
+            return plan.world(number)
         except CurriculumError as error:
             if error.code != "curriculum/world" or number + 1 == len(plan):
                 raise

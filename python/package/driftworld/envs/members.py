@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from driftworld import _native
 from driftworld.envs.options import Options, expect_same_spaces
-from driftworld.envs.origin import Home, OneVariant, OneWorld, Queue, Source, seed_in_range, world_text
+from driftworld.envs.origin import DrawnWorld, Home, OneVariant, OneWorld, Queue, Source, seed_in_range, world_text
 from driftworld.envs.spaces import action_space, label, observation_space
 
 #: Rewards, terminated, truncated, success, and the environments in which something happened.
@@ -131,7 +131,10 @@ class Members:
         sources = self._new_sources(options)
         streams = None if sources is None else self._streams(sources)
         world = options.get("world")
-        given = None if world is None else self._streams([OneWorld(*world_text(world))])[0]
+        given = None
+        if world is not None:
+            drawn = DrawnWorld(world) if isinstance(world, _native.Stream) else OneWorld(*world_text(world))
+            given = self._streams([drawn])[0]
         return Prepared(sources, streams, self._indices(options.get("index")), given)
 
     def take(self, prepared: Prepared, env: int, seed: int | None) -> None:

@@ -46,6 +46,17 @@ class OneWorld:
 
 
 @dataclass(frozen=True, eq=False)
+class DrawnWorld:
+    """A world that was drawn, in the native module's hands."""
+
+    world: _native.Stream
+
+    def streams(self, num_envs: int) -> list[_native.Stream]:
+        """The world, for each environment."""
+        return [self.world] * num_envs
+
+
+@dataclass(frozen=True, eq=False)
 class Drifting:
     """The worlds on the way from one variant to another; schedule and switch are JSON."""
 
@@ -79,7 +90,7 @@ class Queue:
 
 
 #: Where an environment's worlds come from, as values: what a user said is in none of them.
-Source = OneVariant | OneWorld | Drifting | Queue
+Source = OneVariant | OneWorld | DrawnWorld | Drifting | Queue
 
 
 class Home:
@@ -223,7 +234,9 @@ def _task(task: Any) -> tuple[_native.TaskSpec, _native.Variant | None]:
 
 
 def world_text(world: Any) -> tuple[str, str]:
-    """The name and the JSON of a world: a path, JSON text, or a dictionary."""
+    """The name and the JSON of a world: a path, JSON text, a dictionary, or one that was drawn."""
+    if isinstance(world, _native.Stream):
+        return "world", world.text()
     if isinstance(world, Mapping):
         return "world", json.dumps(world)
     if isinstance(world, str) and world.lstrip().startswith("{"):

@@ -1,5 +1,7 @@
 //! A small scenario lived from the first experience to the last: logged, repeatable, scorable, interruptible.
 
+mod rollout;
+
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -7,8 +9,8 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 
 use driftworld_curriculum::{
-    Choice, CurriculumError, Design, Drifting, Experience, FoundWorld, Journal, Plan, Progress, Sources, Summary,
-    Surroundings, design, run,
+    Choice, CurriculumError, Design, Drifting, FoundWorld, Journal, Plan, Progress, Sources, Summary, Surroundings,
+    design, run,
 };
 use driftworld_env::{Action, Agent, Catalogue, Environment, Label, OnRailsAgent, RandomAgent, Step};
 use driftworld_metrics::{MaintenanceMethod, Options, Record, Row, Timestamp, read_log, score};
@@ -616,50 +618,4 @@ fn a_world_file_that_is_nowhere_is_known_before_anything_is_lived() {
         .extra;
     assert_eq!(info["notes"]["yard.json"], "made up");
     assert_eq!(info["made_from"]["Task 1#yard"], yard().hash());
-}
-
-#[test]
-fn experiences_lived_elsewhere_are_logged_as_those_lived_here() {
-    let (folder, scenario) = (scratch(), varied());
-    let (here, there) = (folder.path().join("here"), folder.path().join("there"));
-    let lived = live(&scenario, &mut RandomAgent::new(0), &here, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
-    let plan = plan(&scenario).unwrap_or_else(|error| panic!("{error}"));
-    let now = || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020");
-    let mut records = rows(&here).into_iter().peekable();
-    // Interrupted once, and taken up again.
-    for (most, begin) in [
-        (8, Journal::create as fn(&Path, &Plan, &str) -> _),
-        (99, Journal::resume),
-    ] {
-        let mut journal = begin(&there, &plan, "test").unwrap_or_else(|error| panic!("{error}"));
-        while let Some(record) = records.next_if(|record| record.exp_num < most) {
-            let due = plan.due(record.exp_num).unwrap_or_else(|error| panic!("{error}"));
-            assert_eq!(
-                (due.block as u64, due.progress),
-                (record.block_num, record.metrics["progress"])
-            );
-            let experience = Experience {
-                reward: record.metrics["reward"],
-                success: record.metrics["success"] == 1.0,
-                steps: record.metrics["episode_step_count"] as u32,
-                seconds: record.metrics["time_to_completion"],
-                truncated: record.metrics["truncated"] == 1.0,
-            };
-            let progress = journal.record(&plan, &experience, now());
-            assert_eq!(
-                progress.unwrap_or_else(|error| panic!("{error}")).done,
-                record.exp_num + 1
-            );
-        }
-        if most == 99 {
-            assert_eq!(*journal.summary(), lived);
-            let beyond = journal.record(&plan, &Experience::default(), now());
-            assert!(matches!(
-                beyond,
-                Err(CurriculumError::NoSuchExperience { found: 15, total: 15 })
-            ));
-        }
-        journal.finish().unwrap_or_else(|error| panic!("{error}"));
-    }
-    assert_eq!(everything(&there), everything(&here));
 }

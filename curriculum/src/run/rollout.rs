@@ -1,0 +1,117 @@
+//! [`run_rollout`]: the loop of a lifetime, for whoever runs single experiences ([`Rollout`]).
+
+use std::ops::{ControlFlow, Range};
+
+use driftworld_metrics::Timestamp;
+use driftworld_spec::{BlockKind, World};
+
+use super::worlds::{Drawn, Worlds};
+use super::{Experience, Journal, Plan, Progress, Summary};
+use crate::CurriculumError;
+
+/// Runs single experiences: an agent with an environment of its own.
+pub trait Rollout {
+    /// What may go wrong in it.
+    type Error: From<CurriculumError>;
+
+    /// Before the first experience of a block: whether the agent may learn in it.
+    ///
+    /// # Errors
+    /// Ends the run.
+    fn begin_block(&mut self, learning: bool) -> Result<(), Self::Error> {
+        let _ = learning;
+        Ok(())
+    }
+
+    /// Runs an experience in its world, from the first step to the last. `None` ends the run without a row.
+    ///
+    /// # Errors
+    /// Ends the run.
+    fn experience(&mut self, number: u64, world: World) -> Result<Option<Experience>, Self::Error>;
+
+    /// After the last experience of a learning block, when so many are in the log.
+    ///
+    /// # Errors
+    /// Ends the run.
+    fn end_learning(&mut self, done: u64) -> Result<(), Self::Error> {
+        let _ = done;
+        Ok(())
+    }
+
+    /// After each experience, once it is in the log; may end the run there. `reward` is `None` for one that was left out.
+    ///
+    /// # Errors
+    /// Ends the run.
+    fn logged(&mut self, progress: &Progress, reward: Option<f64>) -> Result<ControlFlow<()>, Self::Error>;
+}
+
+/// Runs a scenario one experience after the other, from the first that is not in the log.
+///
+/// The agent has learned from the first `learned` experiences. Experiences in which it learned between these and the end of
+/// the log are run once more, in the same worlds, without being logged again.
+///
+/// # Errors
+/// [`CurriculumError`] as [`run`](super::run), and those of the rollout; what was run before is in the log.
+pub fn run_rollout<R: Rollout>(
+    plan: &Plan,
+    rollout: &mut R,
+    journal: &mut Journal,
+    learned: u64,
+    now: &mut dyn FnMut() -> Timestamp,
+) -> Result<Summary, R::Error> {
+    let (done, total) = (journal.num_experiences(), plan.num_experiences());
+    let mut worlds = Worlds::new(plan);
+    let mut block = None;
+    for number in learned..done {
+        let planned = &plan.regimes[plan.regime_of(number)];
+        if planned.kind == BlockKind::Learning
+            && let Drawn::World { world, .. } = worlds.draw(number)?
+        {
+            if block.replace(planned.block) != Some(planned.block) {
+                rollout.begin_block(true)?;
+            }
+            if rollout.experience(number, world)?.is_none() {
+                return Ok(journal.summary().clone());
+            }
+        }
+    }
+    // What the rollout says of it is in the summary.
+    let _ = run_range(plan, done..total, (&mut worlds, &mut block), rollout, journal, now)?;
+    Ok(journal.summary().clone())
+}
+
+/// Runs these experiences, and logs each as soon as it is over. `block` is the one that the rollout was last told of.
+pub(super) fn run_range<R: Rollout>(
+    plan: &Plan,
+    numbers: Range<u64>,
+    (worlds, block): (&mut Worlds<'_>, &mut Option<usize>),
+    rollout: &mut R,
+    journal: &mut Journal,
+    now: &mut dyn FnMut() -> Timestamp,
+) -> Result<ControlFlow<()>, R::Error> {
+    let total = plan.num_experiences();
+    for number in numbers {
+        let planned = &plan.regimes[plan.regime_of(number)];
+        let (progress, reward) = match worlds.draw(number)? {
+            Drawn::LeftOut { reason } => (journal.leave_out(plan, number, &reason, now())?, None),
+            Drawn::World { world, between } => {
+                if block.replace(planned.block) != Some(planned.block) {
+                    rollout.begin_block(planned.kind == BlockKind::Learning)?;
+                }
+                let Some(experience) = rollout.experience(number, world)? else {
+                    return Ok(ControlFlow::Break(()));
+                };
+                let progress = journal.take(plan, number, &experience, between.as_deref(), now())?;
+                (progress, Some(experience.reward))
+            }
+        };
+        let is_last = number + 1 == total || plan.regimes[plan.regime_of(number + 1)].block != planned.block;
+        if planned.kind == BlockKind::Learning && is_last {
+            rollout.end_learning(number + 1)?;
+        }
+        if rollout.logged(&progress, reward)?.is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
+    }
+    Ok(ControlFlow::Continue(()))
+}

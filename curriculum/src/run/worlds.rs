@@ -1,0 +1,55 @@
+//! [`Worlds`]: the worlds of a plan, drawn one after the other.
+
+use driftworld_generator::Sampler;
+use driftworld_spec::{Variant, World};
+
+use super::{Plan, Undrawable};
+use crate::CurriculumError;
+
+/// Draws worlds; those of one regime by one sampler.
+pub(super) struct Worlds<'a> {
+    plan: &'a Plan,
+    /// The regime of the last world, and its sampler.
+    sampler: Option<(usize, Option<Sampler>)>,
+}
+
+/// What came of drawing a world.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is one at a time, and nearly all are worlds"
+)]
+pub(super) enum Drawn {
+    /// The world, and the variant that it is of where its regime drifts.
+    World {
+        world: World,
+        between: Option<Box<Variant>>,
+    },
+    /// It cannot be drawn, and the plan leaves such experiences out.
+    LeftOut { reason: String },
+}
+
+impl<'a> Worlds<'a> {
+    pub(super) fn new(plan: &'a Plan) -> Self {
+        Self { plan, sampler: None }
+    }
+
+    /// The world of an experience, by its number.
+    pub(super) fn draw(&mut self, number: u64) -> Result<Drawn, CurriculumError> {
+        let index = self.plan.regime_of(number);
+        let planned = &self.plan.regimes[index];
+        let sampler = match &mut self.sampler {
+            Some((regime, sampler)) if *regime == index => sampler,
+            old => &mut old.insert((index, planned.sampler())).1,
+        };
+        match planned.draw(number, sampler.as_ref()) {
+            Ok(assignment) => Ok(Drawn::World {
+                world: assignment.world,
+                between: assignment.between.map(Box::new),
+            }),
+            Err(source) if self.plan.undrawable() == Undrawable::Skipped => Ok(Drawn::LeftOut {
+                reason: source.to_string(),
+            }),
+            Err(source) => Err(planned.wrong(number, source)),
+        }
+    }
+}

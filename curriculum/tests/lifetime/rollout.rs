@@ -1,0 +1,114 @@
+//! Experiences that are run elsewhere: logged as those run here, and learned again where they were not saved.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use driftworld_curriculum::{CurriculumError, Experience, Journal, Plan, Progress, Rollout, run_rollout};
+use driftworld_env::RandomAgent;
+use driftworld_metrics::{Record, Timestamp};
+use driftworld_spec::{BlockKind, World};
+
+use super::{everything, live, plan, rows, scratch, varied};
+
+/// Hands out what was logged elsewhere.
+struct Replay {
+    records: std::vec::IntoIter<Record>,
+    /// After so many experiences the run ends.
+    most: u64,
+    blocks: Vec<bool>,
+}
+
+impl Rollout for Replay {
+    type Error = CurriculumError;
+
+    fn begin_block(&mut self, learning: bool) -> Result<(), CurriculumError> {
+        self.blocks.push(learning);
+        Ok(())
+    }
+
+    fn experience(&mut self, number: u64, _world: World) -> Result<Option<Experience>, CurriculumError> {
+        let record = self.records.find(|record| record.exp_num == number);
+        Ok(record.map(|record| Experience {
+            reward: record.metrics["reward"],
+            success: record.metrics["success"] == 1.0,
+            steps: record.metrics["episode_step_count"] as u32,
+            seconds: record.metrics["time_to_completion"],
+            truncated: record.metrics["truncated"] == 1.0,
+        }))
+    }
+
+    fn logged(&mut self, progress: &Progress, reward: Option<f64>) -> Result<ControlFlow<()>, CurriculumError> {
+        assert!(reward.is_some());
+        Ok(if progress.done < self.most {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        })
+    }
+}
+
+#[test]
+fn experiences_run_elsewhere_are_logged_as_those_run_here() {
+    let (folder, scenario) = (scratch(), varied());
+    let (here, there) = (folder.path().join("here"), folder.path().join("there"));
+    let lived = live(&scenario, &mut RandomAgent::new(0), &here, u64::MAX).unwrap_or_else(|error| panic!("{error}"));
+    let plan = plan(&scenario).unwrap_or_else(|error| panic!("{error}"));
+    let mut now = || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020");
+    // Interrupted once, and gone on with.
+    for (most, begin) in [
+        (8, Journal::create as fn(&Path, &Plan, &str) -> _),
+        (99, Journal::resume),
+    ] {
+        let mut journal = begin(&there, &plan, "test").unwrap_or_else(|error| panic!("{error}"));
+        let records = rows(&here).into_iter();
+        let mut replay = Replay {
+            records,
+            most,
+            blocks: Vec::new(),
+        };
+        let learned = journal.num_experiences();
+        let summary = run_rollout(&plan, &mut replay, &mut journal, learned, &mut now);
+        let summary = summary.unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(summary.finished, most == 99);
+        if most == 99 {
+            assert_eq!(summary, lived);
+        }
+        journal.finish().unwrap_or_else(|error| panic!("{error}"));
+    }
+    assert_eq!(everything(&there), everything(&here));
+}
+
+/// Counts what it is asked for.
+#[derive(Default)]
+struct Counting(Vec<u64>);
+impl Rollout for Counting {
+    type Error = CurriculumError;
+    fn experience(&mut self, number: u64, _world: World) -> Result<Option<Experience>, CurriculumError> {
+        self.0.push(number);
+        Ok((number < 9).then(Experience::default))
+    }
+    fn logged(&mut self, _: &Progress, _: Option<f64>) -> Result<ControlFlow<()>, CurriculumError> {
+        Ok(ControlFlow::Continue(()))
+    }
+}
+
+#[test]
+fn an_agent_learns_again_what_it_had_not_saved() {
+    let (folder, scenario) = (scratch(), varied());
+    let log = folder.path().join("log");
+    live(&scenario, &mut RandomAgent::new(0), &log, 9).unwrap_or_else(|error| panic!("{error}"));
+    let before = everything(&log);
+    let plan = plan(&scenario).unwrap_or_else(|error| panic!("{error}"));
+    let now = &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020");
+    for learned in [0, 4, 9] {
+        let mut journal = Journal::resume(&log, &plan, "test").unwrap_or_else(|error| panic!("{error}"));
+        let mut counting = Counting::default();
+        run_rollout(&plan, &mut counting, &mut journal, learned, now).unwrap_or_else(|error| panic!("{error}"));
+        let is_learning = |number: &u64| plan.due(*number).is_ok_and(|due| due.kind == BlockKind::Learning);
+        let expected: Vec<u64> = (learned..9).filter(is_learning).chain([9]).collect();
+        assert_eq!(counting.0, expected);
+        assert_eq!(journal.num_experiences(), 9);
+        journal.finish().unwrap_or_else(|error| panic!("{error}"));
+    }
+    assert_eq!(everything(&log), before);
+}
