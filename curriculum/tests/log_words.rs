@@ -7,9 +7,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use driftworld_curriculum::{
-    CurriculumError, ENDING, Experience, FoundWorld, Journal, Plan, Sources, Surroundings, run,
-};
+use driftworld_curriculum::{CurriculumError, ENDING, Experience, FoundWorld, Journal, Plan, RunContext, Sources, run};
 use driftworld_env::{Catalogue, OnRailsAgent};
 use driftworld_metrics::{Complexity, Difficulty, Timestamp, read_log, validate_log};
 use driftworld_spec::{Block, BlockKind, Regime, Scenario, ScenarioComplexity, ScenarioDifficulty, World};
@@ -61,7 +59,7 @@ fn live(log: &Path, most: u64, resume: bool) -> Result<(), CurriculumError> {
     } else {
         Journal::create(log, &plan, "onrails")?
     };
-    let mut around = Surroundings {
+    let mut around = RunContext {
         now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("a year from 1 to 9999"),
         watch: &mut |progress| {
             if progress.done < most {

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use driftworld_curriculum::{FoundWorld, Journal, Plan, Sources, Summary, Surroundings, run};
+use driftworld_curriculum::{FoundWorld, Journal, Plan, RunContext, Sources, Summary, run};
 use driftworld_env::{Action, Agent, Catalogue, Environment, RandomAgent};
 use driftworld_metrics::Timestamp;
 use driftworld_spec::{Block, BlockKind, Regime, Scenario, World};
@@ -82,7 +82,7 @@ fn live(log: &Path, jobs: usize, before: u64) -> (Summary, u64) {
         stop: Arc::clone(&stop),
     };
     let mut journal = Journal::resume(log, &plan, "test").expect("the log can be written");
-    let mut around = Surroundings {
+    let mut around = RunContext {
         now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020"),
         watch: &mut |_| ControlFlow::Continue(()),
         stop: &stop,

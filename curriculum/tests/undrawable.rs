@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use driftworld_curriculum::{
-    Choice, CurriculumError, Design, Drifting, Journal, Plan, Progress, Sources, Summary, Surroundings, Tried,
+    Choice, CurriculumError, Design, Drifting, Journal, Plan, Progress, RunContext, Sources, Summary, Tried,
     Undrawable, design, run, try_worlds,
 };
 use driftworld_env::{Catalogue, RandomAgent};
@@ -54,7 +54,7 @@ fn plan(scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, CurriculumE
 fn live(plan: &Plan, folder: &Path, jobs: usize, most: u64) -> Result<Summary, CurriculumError> {
     let mut journal = Journal::resume(folder, plan, "test")?;
     let end = journal.num_experiences().saturating_add(most);
-    let mut around = Surroundings {
+    let mut around = RunContext {
         now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020"),
         watch: &mut |progress: &Progress| {
             if progress.done < end {

@@ -86,8 +86,8 @@ fn planned(scenario: &Scenario) {
     let total = plan.num_experiences();
     assert_eq!(total, scenario.num_experiences());
     for number in [0, total / 2, total.saturating_sub(1)] {
-        match plan.due(number) {
-            Ok(due) => assert!((0.0..=1.0).contains(&due.progress), "{}", due.progress),
+        match plan.experience_spec(number) {
+            Ok(spec) => assert!((0.0..=1.0).contains(&spec.progress), "{}", spec.progress),
             Err(error) => assert_eq!(total, 0, "{error}"),
         }
         if let Err(error) = plan.world(number) {

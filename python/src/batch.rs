@@ -20,8 +20,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::errors::{Error, Result};
-use crate::patience::patiently;
-use crate::supply::{PyStream, Stream, Supply, dress_of};
+use crate::interruptible::run_cancellable;
+use crate::supply::{PyStream, Stream, Supply, overrides_of};
 
 /// From so many environments on, Ctrl-C ends making and resetting them: fewer are done before anybody waits.
 const MANY: usize = 32;
@@ -60,12 +60,12 @@ type Stepped<'py> = (
 impl PyBatch {
     /// One environment for each stream, at the start of world 0 under seed 0.
     #[new]
-    #[pyo3(signature = (streams, dress, autoreset, num_threads, renderer, depth, libraries, max_episode_steps=None))]
+    #[pyo3(signature = (streams, overrides, autoreset, num_threads, renderer, depth, libraries, max_episode_steps=None))]
     #[expect(clippy::too_many_arguments, reason = "called from one place, by name")]
     fn new(
         py: Python<'_>,
         streams: Vec<Bound<'_, PyStream>>,
-        dress: &str,
+        overrides: &str,
         autoreset: &str,
         num_threads: usize,
         renderer: &str,
@@ -73,8 +73,9 @@ impl PyBatch {
         libraries: Vec<Vec<u8>>,
         max_episode_steps: Option<NonZeroU32>,
     ) -> Result<Self> {
-        let dress = Arc::new(dress_of(dress)?);
-        let supply = |stream: &Bound<'_, PyStream>| Arc::new(Supply::new(stream.get().0.clone(), Arc::clone(&dress)));
+        let overrides = Arc::new(overrides_of(overrides)?);
+        let supply =
+            |stream: &Bound<'_, PyStream>| Arc::new(Supply::new(stream.get().0.clone(), Arc::clone(&overrides)));
         let supplies: Vec<Arc<Supply>> = streams.iter().map(supply).collect();
         let options = BatchOptions {
             autoreset: autoreset_of(autoreset)?,
@@ -252,7 +253,7 @@ impl PyBatch {
     fn events<'py>(&self, py: Python<'py>, env: usize) -> Result<Bound<'py, PyTuple>> {
         let stepping = self.lock()?;
         let events = stepping.batch.events(env).unwrap_or_default();
-        let events: PyResult<Vec<_>> = events.iter().map(|event| told(py, event)).collect();
+        let events: PyResult<Vec<_>> = events.iter().map(|event| to_py(py, event)).collect();
         Ok(PyTuple::new(py, events?)?)
     }
 
@@ -394,7 +395,7 @@ fn interruptibly<T: Send>(
     if num_envs < MANY {
         return Ok(py.detach(|| work(&|| true))?);
     }
-    Ok(patiently(py, |stop| work(&|| !stop.load(Ordering::Relaxed)))??)
+    Ok(run_cancellable(py, |stop| work(&|| !stop.load(Ordering::Relaxed)))??)
 }
 
 /// The error of an action that is no row's number, told with the number that was found.
@@ -455,7 +456,7 @@ fn view<'py, T: Element>(
 }
 
 /// An event as a dictionary.
-fn told<'py>(py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyDict>> {
+fn to_py<'py>(py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyDict>> {
     let told = PyDict::new(py);
     told.set_item("object", event.object)?;
     told.set_item("tag", event.tag.as_deref())?;

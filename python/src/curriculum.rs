@@ -17,7 +17,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::json;
 
-use crate::document::{Whole, from_python, to_python, told};
+use crate::document::{Whole, from_python, json_to_py, to_py};
 use crate::errors::{Error, Result};
 use crate::supply::{PyStream, Stream};
 
@@ -130,7 +130,7 @@ impl PyPlan {
 
     /// The scenario as a dictionary, in our form.
     fn scenario<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
-        Ok(told(py, self.plan.scenario())?)
+        Ok(to_py(py, self.plan.scenario())?)
     }
 
     /// The scenario as the text of a file.
@@ -144,17 +144,17 @@ impl PyPlan {
     }
 
     /// What experience `number` is, as a dictionary, without its world.
-    fn due<'py>(&self, py: Python<'py>, number: Whole) -> Result<Bound<'py, PyAny>> {
-        let due = self.plan.due(number.0)?;
-        let label = due.label.map(
+    fn experience_spec<'py>(&self, py: Python<'py>, number: Whole) -> Result<Bound<'py, PyAny>> {
+        let spec = self.plan.experience_spec(number.0)?;
+        let label = spec.label.map(
             |label| json!({ "number": label.number, "of": label.of, "name": label.name, "observed": label.observed }),
         );
         let told = json!({
-            "number": number.0, "block": due.block, "regime": due.regime, "learning": due.kind == BlockKind::Learning,
-            "variant": due.variant, "seed": due.seed, "index": due.index, "progress": due.progress,
-            "chance": due.chance, "label": label,
+            "number": number.0, "block": spec.block, "regime": spec.regime, "learning": spec.kind == BlockKind::Learning,
+            "variant": spec.variant, "seed": spec.seed, "index": spec.index, "progress": spec.progress,
+            "chance": spec.chance, "label": label,
         });
-        Ok(to_python(py, &told)?)
+        Ok(json_to_py(py, &told)?)
     }
 
     /// The world of experience `number`; one without any limit has one of steps here.
@@ -165,12 +165,12 @@ impl PyPlan {
     /// Draws so many worlds of each regime, and says how often that fails, and why: a list of dictionaries.
     fn try_worlds<'py>(&self, py: Python<'py>, worlds: u32) -> Result<Bound<'py, PyAny>> {
         let trials = py.detach(|| self.plan.try_worlds(worlds, &mut Tried::default()));
-        Ok(told(py, &trials)?)
+        Ok(to_py(py, &trials)?)
     }
 
     /// Notes what else its lifetime depends on: a log is taken up only if it is the same.
-    fn made_from(&mut self, what: &str, print: &Bound<'_, PyAny>) -> Result<()> {
-        self.plan.made_from(what, from_python(print)?);
+    fn add_fingerprint(&mut self, what: &str, print: &Bound<'_, PyAny>) -> Result<()> {
+        self.plan.add_fingerprint(what, from_python(print)?);
         Ok(())
     }
 }
@@ -217,7 +217,7 @@ impl PyJournal {
         let clock = Clock::from_environment().map_err(|error| PyValueError::new_err(error.to_string()))?;
         let (plan, mut rollout) = (&plan.borrow().plan, PythonRollout(rollout));
         let summary = run_rollout(plan, &mut rollout, self.open()?, learned.0, &mut || clock.now())?;
-        Ok(told(py, &summary)?)
+        Ok(to_py(py, &summary)?)
     }
 
     /// How many experiences are in the log.

@@ -10,8 +10,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::{Result, refused};
+use crate::interruptible::run_detached;
 use crate::options::Options;
-use crate::patience::impatiently;
 
 const REFUSED: &str = "CurriculumError";
 
@@ -29,7 +29,7 @@ pub(crate) fn design_curriculum(py: Python<'_>, tasks: Vec<String>, options: Bou
             options.refuse("plot: found it for several scenarios, expected it for one; leave it out".to_owned())
         );
     }
-    let designed = impatiently(py, move || {
+    let designed = run_detached(py, move || {
         let designed = design::design(&request)?;
         if let Some(path) = plot {
             designed.write_plot(&path)?;

@@ -13,9 +13,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde_json::json;
 
-use crate::document::{Whole, to_python, told};
+use crate::document::{Whole, json_to_py, to_py};
 use crate::errors::Result;
-use crate::patience::{impatiently, patiently};
+use crate::interruptible::{run_cancellable, run_detached};
 use crate::task::PyVariant;
 
 /// What elements weigh, by letters or names.
@@ -52,8 +52,8 @@ pub(crate) fn distance<'py>(
         seed: seed.0,
         index: index.0,
     };
-    let (distance, compared) = impatiently(py, move || between(&a, &b, &sample, |declared| over(&laid, declared)))??;
-    let found = told(py, &distance)?;
+    let (distance, compared) = run_detached(py, move || between(&a, &b, &sample, |declared| over(&laid, declared)))??;
+    let found = to_py(py, &distance)?;
     found.set_item("compared", compared)?;
     Ok(found)
 }
@@ -84,7 +84,7 @@ impl PyMatrix {
         let laid = laid(weights)?;
         let variants = variants.iter().map(|variant| variant.get().0.clone());
         let variants: Vec<(String, Variant)> = labels.into_iter().zip(variants).collect();
-        let matrix = patiently(py, |stop| {
+        let matrix = run_cancellable(py, |stop| {
             variant_matrix_while(
                 &variants,
                 |declared| over(&laid, declared),
@@ -151,7 +151,7 @@ impl PyMatrix {
     /// The items as points of a plane, ``(items, 2)``, and how much of the matrix the plane shows.
     fn map<'py>(&self, py: Python<'py>) -> Result<(Bound<'py, PyArray2<f64>>, f64)> {
         let matrix = Arc::clone(&self.0);
-        let map = impatiently(py, move || classical_map(&matrix))?;
+        let map = run_detached(py, move || classical_map(&matrix))?;
         let flat: Vec<f64> = map.points.into_iter().flatten().collect();
         let points = numpy::ndarray::Array2::from_shape_vec((flat.len() / 2, 2), flat)
             .map_err(|error| PyValueError::new_err(error.to_string()))?;
@@ -178,14 +178,14 @@ impl PyMatrix {
             target_step,
         };
         let shared = Arc::clone(matrix);
-        let found = impatiently(py, move || order(&shared, method, &options))??;
+        let found = run_detached(py, move || order(&shared, method, &options))??;
         let labels: Vec<&String> = found.indices.iter().map(|index| &matrix.labels()[*index]).collect();
         let found = json!({
             "method": method, "order": labels, "indices": found.indices, "steps": found.steps, "length": found.length,
             "largest_step": found.largest_step(), "mean_step": found.mean_step(),
             "anchor_correlation": found.anchor_correlation,
         });
-        Ok(to_python(py, &found)?)
+        Ok(json_to_py(py, &found)?)
     }
 
     fn __len__(&self) -> usize {

@@ -13,7 +13,7 @@ use serde_json::Value;
 use crate::errors::{Result, described};
 
 /// A JSON value as Python has it.
-pub(crate) fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn json_to_py<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
     Ok(match value {
         Value::Null => py.None().into_bound(py),
         Value::Bool(truth) => PyBool::new(py, *truth).to_owned().into_any(),
@@ -24,13 +24,13 @@ pub(crate) fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'
         },
         Value::String(text) => PyString::new(py, text).into_any(),
         Value::Array(items) => {
-            let items = items.iter().map(|item| to_python(py, item));
+            let items = items.iter().map(|item| json_to_py(py, item));
             PyList::new(py, items.collect::<PyResult<Vec<_>>>()?)?.into_any()
         }
         Value::Object(fields) => {
             let dict = PyDict::new(py);
             for (key, field) in fields {
-                dict.set_item(key, to_python(py, field)?)?;
+                dict.set_item(key, json_to_py(py, field)?)?;
             }
             dict.into_any()
         }
@@ -38,9 +38,9 @@ pub(crate) fn to_python<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'
 }
 
 /// Anything that serialises, as Python has it.
-pub(crate) fn told<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
+pub(crate) fn to_py<'py>(py: Python<'py>, value: &impl serde::Serialize) -> PyResult<Bound<'py, PyAny>> {
     let value = serde_json::to_value(value).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    to_python(py, &value)
+    json_to_py(py, &value)
 }
 
 /// The JSON value of Python's, numbers of `NumPy` among them.

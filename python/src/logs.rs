@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use serde_json::{Map, Value, json};
 
-use crate::document::{Whole, from_python, to_python, told};
+use crate::document::{Whole, from_python, json_to_py, to_py};
 use crate::errors::Result;
 
 /// An open log. Threads that write into it take turns.
@@ -117,8 +117,8 @@ pub(crate) fn read_log(py: Python<'_>, folder: PathBuf, texts: bool) -> Result<R
     Ok((
         log.run_id,
         columns,
-        to_python(py, &logger)?,
-        told(py, &log.scenario_info)?,
+        json_to_py(py, &logger)?,
+        to_py(py, &log.scenario_info)?,
         warnings,
     ))
 }
@@ -139,7 +139,7 @@ pub(crate) fn validate_log(py: Python<'_>, folder: PathBuf) -> Result<Bound<'_, 
         "experiences": counts.experiences, "files": counts.files, "workers": counts.workers, "blocks": counts.blocks,
         "tasks": counts.tasks,
     });
-    Ok(to_python(py, &said)?)
+    Ok(json_to_py(py, &said)?)
 }
 
 /// The time on the clock, to the microsecond, or the one that `DRIFTWORLD_CLOCK` says.
@@ -184,7 +184,7 @@ fn columns<'py>(py: Python<'py>, rows: &Rows) -> Result<Bound<'py, PyDict>> {
         "task_name",
         shared(py, rows.task_names(), |name| Ok(name.into_pyobject(py)?.into_any()))?,
     )?;
-    let params = |params: &TaskParams| to_python(py, &Value::Object(Map::clone(&Arc::clone(params))));
+    let params = |params: &TaskParams| json_to_py(py, &Value::Object(Map::clone(&Arc::clone(params))));
     columns.set_item("task_params", shared(py, rows.task_params(), params)?)?;
     columns.set_item("exp_status", words(py, rows.exp_statuses())?)?;
     let micros = rows.timestamps().iter().map(|stamp| stamp.unix_micros());

@@ -11,10 +11,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde_json::{Value, json};
 
-use crate::document::{to_python, told};
+use crate::document::{json_to_py, to_py};
 use crate::errors::{Result, refused};
+use crate::interruptible::run_detached;
 use crate::options::Options;
-use crate::patience::impatiently;
 
 const REFUSED: &str = "MetricsError";
 
@@ -28,14 +28,14 @@ impl PyScores {
     #[staticmethod]
     fn of(py: Python<'_>, logs: Vec<PathBuf>, options: Bound<'_, PyDict>) -> Result<(Self, Vec<String>)> {
         let request = scoring(logs, &Options::new(options, REFUSED))?;
-        let (scores, warnings) = impatiently(py, move || warned(|warn| score(&request, warn)))?;
+        let (scores, warnings) = run_detached(py, move || warned(|warn| score(&request, warn)))?;
         let scores = scores.map_err(|failure| refused(REFUSED, &failure))?;
         Ok((Self(scores), warnings))
     }
 
     /// All that was computed, as ``driftworld metrics --json`` says it.
     fn values<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
-        Ok(told(py, &self.0)?)
+        Ok(to_py(py, &self.0)?)
     }
 
     /// The regimes of all lifetimes, a dictionary for each.
@@ -54,7 +54,7 @@ impl PyScores {
                 rows.push(row);
             }
         }
-        Ok(to_python(py, &Value::Array(rows))?)
+        Ok(json_to_py(py, &Value::Array(rows))?)
     }
 
     /// Saves the results as ``driftworld metrics --do-save`` does.
@@ -92,7 +92,7 @@ pub(crate) fn report(py: Python<'_>, logs: Vec<PathBuf>, options: Bound<'_, PyDi
     if !shown.is_empty() {
         request.figures.retain(|figure| shown.contains(figure));
     }
-    let (page, warnings) = impatiently(py, move || warned(|warn| write_report(&request, warn)))?;
+    let (page, warnings) = run_detached(py, move || warned(|warn| write_report(&request, warn)))?;
     let page = page.map_err(|failure| refused(REFUSED, &failure))?;
     Ok((page.html, warnings))
 }

@@ -1,4 +1,4 @@
-//! [`Supply`]: where one environment's worlds come from, episode after episode. What is laid over them is in `dress.rs`.
+//! [`Supply`]: where one environment's worlds come from, episode after episode. What is laid over them is in `overrides.rs`.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -8,8 +8,8 @@ use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::dress::Dress;
 use crate::errors::Result;
+use crate::overrides::WorldOverrides;
 use crate::task::PyVariant;
 
 /// Worlds without end: number *i* under a seed.
@@ -130,8 +130,8 @@ impl PyStream {
     }
 
     /// What environments of its worlds look like with these options (JSON), for each variant that it names, as JSON.
-    fn layouts(&self, dress: &str) -> Result<Vec<String>> {
-        let dress = dress_of(dress)?;
+    fn layouts(&self, overrides: &str) -> Result<Vec<String>> {
+        let overrides = overrides_of(overrides)?;
         let worlds = match &self.0 {
             Stream::Variants { variants, .. } => variants
                 .iter()
@@ -145,7 +145,7 @@ impl PyStream {
         };
         let layouts = worlds
             .into_iter()
-            .map(|world| Ok(dress.checked_layout(world)?.to_string()));
+            .map(|world| Ok(overrides.checked_layout(world)?.to_string()));
         layouts.collect()
     }
 }
@@ -186,7 +186,7 @@ fn first_world(variant: &Variant) -> std::result::Result<World, GeneratorError> 
 }
 
 /// Options from the JSON that the package makes of them.
-pub(crate) fn dress_of(text: &str) -> Result<Dress> {
+pub(crate) fn overrides_of(text: &str) -> Result<WorldOverrides> {
     Ok(serde_json::from_str(text).map_err(|error| PyValueError::new_err(format!("options: {error}")))?)
 }
 
@@ -203,7 +203,7 @@ pub(crate) struct Origin {
 
 /// Hands one environment its worlds.
 pub(crate) struct Supply {
-    dress: Arc<Dress>,
+    overrides: Arc<WorldOverrides>,
     state: Mutex<State>,
 }
 
@@ -222,9 +222,9 @@ struct State {
 }
 
 impl Supply {
-    pub(crate) fn new(stream: Stream, dress: Arc<Dress>) -> Self {
+    pub(crate) fn new(stream: Stream, overrides: Arc<WorldOverrides>) -> Self {
         Self {
-            dress,
+            overrides,
             state: Mutex::new(State {
                 samplers: no_samplers(&stream),
                 stream,
@@ -242,7 +242,7 @@ impl Supply {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The next world, dressed. After an error the same world is asked for again.
+    /// The next world, with the options laid over it. After an error the same world is asked for again.
     pub(crate) fn world(&self) -> std::result::Result<World, String> {
         let mut state = self.lock();
         let (mut world, origin) = state.draw().map_err(|error| error.to_string())?;
@@ -259,7 +259,7 @@ impl Supply {
         }
         state.origin = origin;
         drop(state);
-        self.dress.put_on(&mut world);
+        self.overrides.apply(&mut world);
         Ok(world)
     }
 

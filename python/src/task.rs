@@ -15,9 +15,9 @@ use pyo3::types::{PyDict, PyList};
 use rayon::prelude::*;
 
 use crate::distances::element;
-use crate::document::{Whole, from_python, to_python, told};
+use crate::document::{Whole, from_python, json_to_py, to_py};
 use crate::errors::Result;
-use crate::patience::{impatiently, patiently};
+use crate::interruptible::{run_cancellable, run_detached};
 
 /// Worlds that are drawn at once: between two such portions Ctrl-C is looked for.
 const PORTION: u64 = 256;
@@ -71,7 +71,7 @@ impl PyTask {
     /// The document as a dictionary.
     fn to_dict<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
         let value = serde_json::from_str(&self.0.to_json()).map_err(wrong)?;
-        Ok(to_python(py, &value)?)
+        Ok(json_to_py(py, &value)?)
     }
 
     /// Its name.
@@ -89,7 +89,7 @@ impl PyTask {
     /// Its parameters by name, each as the document declares it.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
-        Ok(told(py, self.0.parameters())?)
+        Ok(to_py(py, self.0.parameters())?)
     }
 
     /// The names of its families of variants, which grids and sweeps declare, each with the names of its members.
@@ -189,7 +189,7 @@ impl PyVariant {
     /// The values of all parameters that are the same in every world, by name.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
-        Ok(told(py, self.0.values())?)
+        Ok(to_py(py, self.0.values())?)
     }
 
     /// A hash of everything that its worlds and its distances are made from: 64 hexadecimal digits.
@@ -238,7 +238,7 @@ impl PyVariant {
             Err(_) => (Subject::Parameters(subject.extract()?), None),
         };
         let from = self.0.clone();
-        let found = impatiently(py, move || {
+        let found = run_detached(py, move || {
             let measured = VariantMeasure::new(from.task(), Weights::of_task(from.task()));
             let measure = |other: &Variant| {
                 // Distributions of numbers beyond all bounds have no finite distance: farther than any that is asked for.
@@ -256,7 +256,7 @@ impl PyVariant {
     #[pyo3(signature = (seed=Whole(0), index=Whole(0)), text_signature = "($self, seed=0, index=0)")]
     fn sample<'py>(&self, py: Python<'py>, seed: Whole, index: Whole) -> Result<Bound<'py, PyAny>> {
         let world = py.detach(|| driftworld_generator::sample(&self.0, seed.0, index.0))?;
-        Ok(told(py, &world)?)
+        Ok(to_py(py, &world)?)
     }
 
     /// The same as one line of JSON.
@@ -282,7 +282,7 @@ impl PyVariant {
         let drawn = PyList::empty(py);
         let value = |world: World| serde_json::to_value(&world).unwrap_or_default();
         self.draw(py, seed.0, numbers(start.0, count.0)?, threads.0, value, |value| {
-            drawn.append(to_python(py, &value)?)
+            drawn.append(json_to_py(py, &value)?)
         })?;
         Ok(drawn)
     }
@@ -312,7 +312,7 @@ impl PyVariant {
     #[pyo3(signature = (count, *, seed=Whole(0)), text_signature = "($self, count, *, seed=0)")]
     fn try_worlds<'py>(&self, py: Python<'py>, count: Whole, seed: Whole) -> Result<Bound<'py, PyAny>> {
         let trial = py.detach(|| driftworld_curriculum::try_worlds(&self.0, seed.0, count.0));
-        Ok(crate::document::told(py, &trial)?)
+        Ok(crate::document::to_py(py, &trial)?)
     }
 
     fn __repr__(&self) -> String {
@@ -376,7 +376,7 @@ impl PyVariant {
             };
             // Before a portion that is quickly drawn ends, nobody has looked.
             py.check_signals()?;
-            for made in patiently(py, draw)??.into_iter().flatten() {
+            for made in run_cancellable(py, draw)??.into_iter().flatten() {
                 take(made)?;
             }
         }

@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 import json
 import pickle
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -107,7 +109,8 @@ def test_every_variant_of_every_built_in_task_pickles(task: str) -> None:
 
 def test_worlds_are_those_of_the_command() -> None:
     variant = driftworld.variant("find_objects#red")
-    text, _, _ = driftworld._native.ask(["sample", "find_objects#red", "--seed", "7", "--index", "123"])
+    command = [sys.executable, "-m", "driftworld", "sample", "find_objects#red", "--seed", "7", "--index", "123"]
+    text = subprocess.run(command, capture_output=True, check=True).stdout.decode()
     assert variant.sample_json(7, 123) == text.strip()
     assert variant.sample(7, 123) == json.loads(text)
     assert TaskSpec.load("find_objects").sample("red", 7, 123) == variant.sample(7, 123)

@@ -15,12 +15,12 @@ use crate::tasks;
 use clap::Args;
 use driftworld_text::ShownPath;
 
+use super::agent::AgentArg;
 use super::curriculum::{blocks, choices};
 use super::metrics::summary;
 use super::order::path_table;
 use super::render::Views;
-use super::run::{Life, Start, processors};
-use super::who::Who;
+use super::run::{LifetimeRun, Start, processors};
 use super::{Failure, output};
 use crate::report::picture::{SheetRow, heat_map, sheet};
 use crate::table::wide_table;
@@ -83,15 +83,15 @@ impl Demo {
         heading("4", "A lifetime: an agent that knows the map lives it")?;
         let logs = folder.join("log");
         remove_old_log(&logs)?;
-        let life = Life {
+        let run = LifetimeRun {
             plan: &scenarios::plan(&scenario, &mut |_| Err("the demo has no world files".to_owned()))?,
-            who: Who::Onrails.agent()?,
+            agent: AgentArg::Onrails.agent()?,
             logs: &logs,
             start: Start::New,
             jobs: processors(),
             catalogue: Catalogue::default(),
         };
-        let lived = life.live()?;
+        let lived = run.run()?;
         output::line(block_table(&lived))?;
 
         heading("5", "What the lifetime is worth, by the metrics of lifelong learning")?;

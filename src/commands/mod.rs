@@ -2,6 +2,7 @@
 //!
 //! [`run`] is the whole command: it prints. The rest of the library never does.
 
+mod agent;
 mod assets;
 mod bench;
 mod console;
@@ -34,7 +35,6 @@ mod unity;
 mod validate;
 mod vary;
 mod weights;
-mod who;
 
 use std::borrow::Cow;
 use std::ffi::OsString;

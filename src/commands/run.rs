@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use crate::clock::Clock;
-use crate::curriculum::{CurriculumError, Journal, Plan, Progress, Summary, Surroundings, Undrawable, run};
+use crate::curriculum::{CurriculumError, Journal, Plan, Progress, RunContext, Summary, Undrawable, run};
 use crate::env::Catalogue;
 use crate::metrics::MetricsError;
 use crate::scenarios::{Missing, ScenarioFile};
@@ -14,9 +14,9 @@ use crate::tasks;
 use clap::Args;
 use driftworld_text::{ShownPath, printable};
 
+use super::agent::{AgentArg, NamedAgent};
 use super::assets::LibraryChoice;
 use super::interrupt::Interrupt;
-use super::who::{Hired, Who};
 use super::{Failure, output};
 use crate::table::table;
 
@@ -42,8 +42,8 @@ const MAX_JOBS: usize = 256;
 pub(crate) struct Run {
     /// The scenario file.
     scenario: PathBuf,
-    #[arg(long, default_value = "onrails", value_name = "AGENT", help = Who::HELP)]
-    agent: Who,
+    #[arg(long, default_value = "onrails", value_name = "AGENT", help = AgentArg::HELP)]
+    agent: AgentArg,
     /// A folder for the log; it must not hold anything yet, unless with --resume.
     #[arg(long, default_value = "logs/run", value_name = "DIR")]
     logs: PathBuf,
@@ -108,23 +108,23 @@ impl Run {
         for (name, task) in plan.tasks() {
             tasks::check_classes(name, task, &classes)?;
         }
-        let hired = self.agent.agent()?;
-        if let Some(script) = &hired.script {
-            plan.made_from("script", script.as_str());
+        let agent = self.agent.agent()?;
+        if let Some(script) = &agent.script {
+            plan.add_fingerprint("script", script.as_str());
         }
-        let libraries = self.libraries.prints()?;
+        let libraries = self.libraries.fingerprints()?;
         if !libraries.is_empty() {
-            plan.made_from("assets", libraries);
+            plan.add_fingerprint("assets", libraries);
         }
-        let life = Life {
+        let run = LifetimeRun {
             plan: &plan,
-            who: hired,
+            agent,
             logs: &self.logs,
             start: if self.resume { Start::Resumed } else { Start::New },
             jobs: self.jobs.unwrap_or_else(processors),
             catalogue: self.libraries.catalogue()?,
         };
-        let summary = life.live()?;
+        let summary = run.run()?;
         if self.json {
             return output::json(&summary);
         }
@@ -191,18 +191,18 @@ pub(crate) enum Start {
 }
 
 /// A lifetime that is to be lived.
-pub(crate) struct Life<'a> {
+pub(crate) struct LifetimeRun<'a> {
     pub(crate) plan: &'a Plan,
-    pub(crate) who: Hired,
+    pub(crate) agent: NamedAgent,
     pub(crate) logs: &'a Path,
     pub(crate) start: Start,
     pub(crate) jobs: NonZeroUsize,
     pub(crate) catalogue: Catalogue,
 }
 
-impl Life<'_> {
+impl LifetimeRun<'_> {
     /// Lives it, with a bar on a terminal. Whatever stops it, the log holds whole experiences, and the message says how to go on.
-    pub(crate) fn live(mut self) -> Result<Summary, Failure> {
+    pub(crate) fn run(mut self) -> Result<Summary, Failure> {
         // Before there is a log, so that whoever sees one may ask for its end.
         let interrupt = Interrupt::listen(format!(
             "interrupted in the middle of a step\n{}: each experience in it is whole; go on with the same command and --resume",
@@ -212,7 +212,7 @@ impl Life<'_> {
         let mut journal = self.journal()?;
         let bar = output::progress(self.plan.num_experiences(), "living");
         bar.set_position(journal.num_experiences());
-        let mut around = Surroundings {
+        let mut context = RunContext {
             now: &mut || clock.now(),
             watch: &mut |progress: &Progress| {
                 bar.set_position(progress.done);
@@ -228,7 +228,7 @@ impl Life<'_> {
             catalogue: self.catalogue.clone(),
             jobs: self.jobs,
         };
-        let lived = run(self.plan, self.who.agent.as_mut(), &mut journal, &mut around);
+        let lived = run(self.plan, self.agent.agent.as_mut(), &mut journal, &mut context);
         bar.finish_and_clear();
         let done = journal.num_experiences();
         let finished = journal.finish();
@@ -255,8 +255,8 @@ impl Life<'_> {
 
     fn journal(&self) -> Result<Journal, Failure> {
         let opened = match self.start {
-            Start::New => Journal::create(self.logs, self.plan, &self.who.name),
-            Start::Resumed => Journal::resume(self.logs, self.plan, &self.who.name),
+            Start::New => Journal::create(self.logs, self.plan, &self.agent.name),
+            Start::Resumed => Journal::resume(self.logs, self.plan, &self.agent.name),
         };
         opened.map_err(|error| match error {
             CurriculumError::Log(MetricsError::LogExists { path }) => Failure::input(format!(

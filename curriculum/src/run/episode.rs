@@ -8,7 +8,7 @@ use driftworld_env::{Agent, EnvError, Environment, Label, Step};
 pub const MOST_STEPS: u32 = 100_000;
 
 /// What an agent is told of an experience.
-pub(super) struct Briefing<'a> {
+pub(super) struct EpisodeContext<'a> {
     /// The number that it draws its own chance from.
     pub(super) seed: u64,
     pub(super) label: Option<&'a Label>,
@@ -48,26 +48,26 @@ impl Experience {
 ///
 /// It ends as the environment says, so that the last of a block ends like any other: by what happened, or cut off by
 /// the limit of steps, never because the block does. One that was stopped on its way returns nothing.
-pub(super) fn live(
+pub(super) fn run_episode(
     agent: &mut dyn Agent,
     environment: &mut Environment,
-    briefing: &Briefing,
+    context: &EpisodeContext,
 ) -> Result<Option<Experience>, EnvError> {
-    if let Some(label) = briefing.label {
+    if let Some(label) = context.label {
         agent.told(label);
     }
-    agent.begin(briefing.seed);
+    agent.begin(context.seed);
     // A world without a limit of steps and without an end would never be over.
     let limit = environment.world().step_limit().map_or(MOST_STEPS, |_| u32::MAX);
     let mut last = Step::default();
     while !environment.ended() && environment.num_steps() < limit {
-        if briefing.stop.load(Ordering::Relaxed) {
+        if context.stop.load(Ordering::Relaxed) {
             return Ok(None);
         }
         let action = agent.act(environment);
         last = environment.step(action)?;
         last.truncated |= !last.terminated && environment.num_steps() >= limit;
-        if briefing.learn {
+        if context.learn {
             agent.learn(environment, &last);
         }
     }

@@ -80,7 +80,7 @@ impl Journal {
                 found,
                 expected,
             };
-            take(plan, &mut summary, number, row).map_err(|(found, expected)| wrong(found, expected))?;
+            count_row(plan, &mut summary, number, row).map_err(|(found, expected)| wrong(found, expected))?;
         }
         summary.finished = summary.num_over() == plan.num_experiences();
         Ok(Self::new(writer, summary))
@@ -136,7 +136,7 @@ impl Journal {
     }
 
     /// Logs experience `number`, which is the next; `between` is its variant where its regime drifts.
-    pub(super) fn take(
+    pub(super) fn append(
         &mut self,
         plan: &Plan,
         number: u64,
@@ -192,7 +192,7 @@ impl Journal {
 }
 
 /// Counts a row of an earlier run, if it is the one that the plan has there; else says what it is, and what the plan has.
-fn take(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> Result<(), (String, String)> {
+fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> Result<(), (String, String)> {
     if number >= plan.num_experiences() {
         return Err((
             "one row more".to_owned(),
@@ -251,7 +251,7 @@ fn scenario_info(plan: &Plan, agent: &str) -> ScenarioInfo {
     let mut extra = Map::new();
     extra.insert("agent".to_owned(), json!(agent));
     extra.insert("scenario".to_owned(), json!(plan.scenario));
-    extra.insert("made_from".to_owned(), json!(plan.prints));
+    extra.insert("made_from".to_owned(), json!(plan.fingerprints));
     if !plan.notes.is_empty() {
         extra.insert("notes".to_owned(), json!(plan.notes));
     }

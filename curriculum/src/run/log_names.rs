@@ -14,7 +14,7 @@ pub(super) struct LogNames(BTreeMap<String, String>);
 
 impl LogNames {
     /// Takes a name for what a regime is about; an error if it stands for something else already.
-    pub(super) fn take(&mut self, regime: &Regime, name: &str) -> Result<(), CurriculumError> {
+    pub(super) fn claim(&mut self, regime: &Regime, name: &str) -> Result<(), CurriculumError> {
         let called = called(regime);
         match self.0.insert(name.to_owned(), called.clone()) {
             Some(other) if other != called => Err(CurriculumError::SameLogName {
@@ -62,7 +62,7 @@ pub fn same_log_name(
             Some(drift) => format!("{}to{}", regime.variant_name(), drift.variant_name()),
             None => regime.variant_name().to_owned(),
         };
-        if let Err(error) = names.take(regime, &log_name(own, &variant)) {
+        if let Err(error) = names.claim(regime, &log_name(own, &variant)) {
             return Some(error);
         }
     }

@@ -26,17 +26,17 @@ pub use columns::{COLUMNS, ENDING};
 pub use episode::{Experience, MOST_STEPS};
 pub use journal::Journal;
 pub use log_names::same_log_name;
-pub use plan::{Due, FoundWorld, Plan, Sources, log_name};
+pub use plan::{ExperienceSpec, FoundWorld, Plan, Sources, log_name};
 pub use rollout::{Rollout, run_rollout};
 pub use summary::{LeftOut, Progress, RegimeSummary, Summary};
 pub use undrawable::{Failed, Trial, Tried, Undrawable, try_worlds};
 
 use crate::CurriculumError;
-use episode::Briefing;
+use episode::EpisodeContext;
 use worlds::{Drawn, Worlds};
 
 /// What a run is handed, since it does not look at the clock.
-pub struct Surroundings<'a> {
+pub struct RunContext<'a> {
     /// The time now.
     pub now: &'a mut dyn FnMut() -> Timestamp,
     /// Told after each experience; may end the run there. What was lived until then is in the log.
@@ -68,10 +68,10 @@ pub fn run(
     plan: &Plan,
     agent: &mut dyn Agent,
     journal: &mut Journal,
-    around: &mut Surroundings,
+    context: &mut RunContext,
 ) -> Result<Summary, CurriculumError> {
     let total = plan.num_experiences();
-    let (jobs, catalogue, stop) = (around.jobs.get(), around.catalogue.clone(), around.stop);
+    let (jobs, catalogue, stop) = (context.jobs.get(), context.catalogue.clone(), context.stop);
     let worker = || Worker::new(plan, catalogue.clone(), stop);
     let mut own = worker();
     let (mut worlds, mut block) = (Worlds::new(plan), None);
@@ -87,15 +87,15 @@ pub fn run(
             })
             .flatten();
         let flow = if let Some(copies) = copies {
-            run_in_parallel(plan, next..end, copies, journal, around)?
+            run_in_parallel(plan, next..end, copies, journal, context)?
         } else {
             let mut one_by_one = OneByOne {
                 agent,
                 worker: &mut own,
-                watch: around.watch,
+                watch: context.watch,
             };
             let place = (&mut worlds, &mut block);
-            rollout::run_range(plan, next..end, place, &mut one_by_one, journal, around.now)?
+            rollout::run_range(plan, next..end, place, &mut one_by_one, journal, context.now)?
         };
         if flow.is_break() {
             break;
@@ -111,20 +111,20 @@ fn run_in_parallel(
     numbers: Range<u64>,
     copies: Vec<(Box<dyn Agent + Send>, Worker<'_>)>,
     journal: &mut Journal,
-    around: &mut Surroundings,
+    context: &mut RunContext,
 ) -> Result<ControlFlow<()>, CurriculumError> {
     let work =
         |(agent, worker): &mut (Box<dyn Agent + Send>, Worker), number| worker.draw_and_run(agent.as_mut(), number);
     in_order::in_order(numbers, copies, work, |number, outcome| {
-        let now = (around.now)();
+        let now = (context.now)();
         let progress = match outcome? {
             Outcome::CutOff => return Ok(ControlFlow::Break(())),
             Outcome::Over { experience, between } => {
-                journal.take(plan, number, &experience, between.as_deref(), now)?
+                journal.append(plan, number, &experience, between.as_deref(), now)?
             }
             Outcome::LeftOut { reason } => journal.leave_out(plan, number, &reason, now)?,
         };
-        Ok((around.watch)(&progress))
+        Ok((context.watch)(&progress))
     })
 }
 
@@ -192,13 +192,13 @@ impl<'a> Worker<'a> {
             }
             none => none.insert(Environment::with_catalogue(world, self.catalogue.clone()).map_err(failed)?),
         };
-        let briefing = Briefing {
+        let episode = EpisodeContext {
             seed: planned.chance(number),
             label: planned.label(number),
             learn: planned.kind == BlockKind::Learning,
             stop: self.stop,
         };
-        episode::live(agent, environment, &briefing).map_err(failed)
+        episode::run_episode(agent, environment, &episode).map_err(failed)
     }
 }
 

@@ -38,8 +38,8 @@ pub struct Plan {
     pub(super) scenario: Scenario,
     pub(super) regimes: Vec<Planned>,
     /// What must be the same when a log is taken up again: for each variant and world its name and hashes of what it is, and what
-    /// [`Plan::made_from`] was told.
-    pub(super) prints: BTreeMap<String, Value>,
+    /// [`Plan::add_fingerprint`] was told.
+    pub(super) fingerprints: BTreeMap<String, Value>,
     /// What has to be known about world files, by path.
     pub(super) notes: BTreeMap<String, String>,
     /// What becomes of experiences whose worlds cannot be drawn.
@@ -49,7 +49,7 @@ pub struct Plan {
 
 /// An experience that is to be lived, for whoever lives it elsewhere than [`run`](crate::run) does.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Due<'a> {
+pub struct ExperienceSpec<'a> {
     /// Its block, from 0.
     pub block: usize,
     /// Its regime in the block, from 0.
@@ -139,7 +139,7 @@ impl Plan {
         let mut plan = Self {
             scenario: scenario.clone(),
             regimes: Vec::new(),
-            prints: BTreeMap::new(),
+            fingerprints: BTreeMap::new(),
             notes: BTreeMap::new(),
             undrawable,
             tasks: BTreeMap::new(),
@@ -157,7 +157,7 @@ impl Plan {
             for (r, regime) in block.regimes.iter().enumerate() {
                 let mut planned = plan.planned(&mut finder, (b, block), (r, regime), first, learned)?;
                 first += u64::from(planned.count);
-                log_names.take(regime, &planned.log_name)?;
+                log_names.claim(regime, &planned.log_name)?;
                 if planned.kind == BlockKind::Learning {
                     learned = Some(plan.regimes.len());
                     let [begins, _] = planned.ends();
@@ -175,8 +175,8 @@ impl Plan {
 
     /// Notes something else that its lifetime depends on, such as the bytes of an agent's script: a log is taken up again only if
     /// it is still the same. `what` is a name that is no variant's, so one without `#`.
-    pub fn made_from(&mut self, what: &str, print: impl Into<Value>) {
-        self.prints.insert(what.to_owned(), print.into());
+    pub fn add_fingerprint(&mut self, what: &str, fingerprint: impl Into<Value>) {
+        self.fingerprints.insert(what.to_owned(), fingerprint.into());
     }
 
     /// The scenario that it was made from.
@@ -205,14 +205,14 @@ impl Plan {
     ///
     /// # Errors
     /// [`CurriculumError::NoSuchExperience`].
-    pub fn due(&self, number: u64) -> Result<Due<'_>, CurriculumError> {
+    pub fn experience_spec(&self, number: u64) -> Result<ExperienceSpec<'_>, CurriculumError> {
         let total = self.num_experiences();
         if number >= total {
             return Err(CurriculumError::NoSuchExperience { found: number, total });
         }
         let planned = &self.regimes[self.regime_of(number)];
         let is_drawn = !matches!(planned.source, Source::World { .. });
-        Ok(Due {
+        Ok(ExperienceSpec {
             block: planned.block,
             regime: planned.regime,
             kind: planned.kind,
@@ -287,7 +287,7 @@ impl Plan {
             learned,
             labels: None,
         };
-        self.print(&planned)?;
+        self.fingerprint(&planned)?;
         if let Source::World { path, .. } = &planned.source
             && let Some(note) = finder.worlds[path].1.clone()
         {
@@ -297,10 +297,10 @@ impl Plan {
     }
 
     /// Takes down what a regime's worlds are made from.
-    fn print(&mut self, planned: &Planned) -> Result<(), CurriculumError> {
+    fn fingerprint(&mut self, planned: &Planned) -> Result<(), CurriculumError> {
         let undrawable = self.undrawable;
         let mut take = |variant: &Variant, is_lived: bool| {
-            let Entry::Vacant(place) = self.prints.entry(variant.id()) else {
+            let Entry::Vacant(place) = self.fingerprints.entry(variant.id()) else {
                 return Ok(());
             };
             // The variant says what all worlds are made from, the first world that they are still made in the same way.
@@ -322,7 +322,7 @@ impl Plan {
             }
             Source::World { world, .. } => {
                 let hash = || json!(world.hash());
-                self.prints.entry(planned.id.clone()).or_insert_with(hash);
+                self.fingerprints.entry(planned.id.clone()).or_insert_with(hash);
                 Ok(())
             }
         }

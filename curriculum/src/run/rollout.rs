@@ -101,7 +101,7 @@ pub(super) fn run_range<R: Rollout>(
                 let Some(experience) = rollout.experience(number, world)? else {
                     return Ok(ControlFlow::Break(()));
                 };
-                let progress = journal.take(plan, number, &experience, between.as_deref(), now())?;
+                let progress = journal.append(plan, number, &experience, between.as_deref(), now())?;
                 (progress, Some(experience.reward))
             }
         };

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 
 use driftworld_curriculum::{
-    Choice, CurriculumError, Design, Drifting, FoundWorld, Journal, Plan, Progress, Sources, Summary, Surroundings,
+    Choice, CurriculumError, Design, Drifting, FoundWorld, Journal, Plan, Progress, RunContext, Sources, Summary,
     design, run,
 };
 use driftworld_env::{Action, Agent, Catalogue, Environment, Label, OnRailsAgent, RandomAgent, Step};
@@ -87,7 +87,7 @@ fn live_by(
     } else {
         Journal::create(folder, &plan, "test")?
     };
-    let mut around = Surroundings {
+    let mut around = RunContext {
         now: &mut || Timestamp::from_unix_micros(1_600_000_000_000_000).expect("the year is 2020"),
         watch: &mut |progress: &Progress| {
             if progress.done < living.most {

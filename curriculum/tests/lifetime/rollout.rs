@@ -104,7 +104,10 @@ fn an_agent_learns_again_what_it_had_not_saved() {
         let mut journal = Journal::resume(&log, &plan, "test").unwrap_or_else(|error| panic!("{error}"));
         let mut counting = Counting::default();
         run_rollout(&plan, &mut counting, &mut journal, learned, now).unwrap_or_else(|error| panic!("{error}"));
-        let is_learning = |number: &u64| plan.due(*number).is_ok_and(|due| due.kind == BlockKind::Learning);
+        let is_learning = |number: &u64| {
+            plan.experience_spec(*number)
+                .is_ok_and(|spec| spec.kind == BlockKind::Learning)
+        };
         let expected: Vec<u64> = (learned..9).filter(is_learning).chain([9]).collect();
         assert_eq!(counting.0, expected);
         assert_eq!(journal.num_experiences(), 9);

@@ -104,7 +104,7 @@ class Block:
 
 
 def _experience(plan: _native.Plan, number: int) -> Experience:
-    return Experience(**plan.due(number), _plan=plan)
+    return Experience(**plan.experience_spec(number), _plan=plan)
 
 
 class Curriculum(Sequence[Block]):

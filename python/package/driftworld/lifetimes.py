@@ -157,7 +157,7 @@ class Lifetime:
             env = environment(self._plan, self._options)
             stack.callback(env.close)
             made_with = _told(self._options)
-            self._plan.made_from("environment", made_with)
+            self._plan.add_fingerprint("environment", made_with)
             name = str(getattr(self._agent, "name", type(self._agent).__name__))
             journal = _native.Journal(folder, self._plan, name, self._resume)
             stack.callback(journal.close)
@@ -285,7 +285,7 @@ def environment(plan: _native.Plan, options: Mapping[str, Any]) -> gymnasium.Env
     if refused:
         raise TypeError(f"{refused[0]}: found it among the options, expected none: the curriculum says what is lived")
     env = DriftworldEnv(world=_first_world(plan), **options)
-    return Labelled(env, plan.due(0)["label"])
+    return Labelled(env, plan.experience_spec(0)["label"])
 
 
 def _first_world(plan: _native.Plan) -> _native.Stream:

@@ -29,13 +29,13 @@ impl LibraryChoice {
     }
 
     /// The checksum of each chosen library by its file's name, in the order they were named in; nothing if none was chosen.
-    pub(crate) fn prints(&self) -> Result<Vec<Value>, Failure> {
-        let print = |path: &PathBuf| {
+    pub(crate) fn fingerprints(&self) -> Result<Vec<Value>, Failure> {
+        let fingerprint = |path: &PathBuf| {
             let bytes = driftworld_files::read(path, MAX_LIBRARY_BYTES)?;
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             Ok(json!({ "library": name, "sha256": input::checksum(&bytes) }))
         };
-        self.libraries.iter().map(print).collect()
+        self.libraries.iter().map(fingerprint).collect()
     }
 
     /// The chosen libraries, in the order they were named in.

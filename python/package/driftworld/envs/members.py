@@ -65,7 +65,7 @@ class Members:
         self.action_space = action_space(self.layout)
         self.batch = _native.Batch(
             streams,
-            options.dress,
+            options.overrides,
             autoreset,
             num_threads,
             options.renderer,

@@ -39,7 +39,7 @@ class Options:
         renderer: What draws.
         task_label: Where the agent is told which variant it is in.
         libraries: The bytes of asset libraries, the last one first in search.
-        dress: What is laid over each world, as JSON.
+        overrides: What is laid over each world, as JSON.
     """
 
     modalities: tuple[str, ...]
@@ -48,7 +48,7 @@ class Options:
     renderer: str
     task_label: str
     libraries: tuple[bytes, ...]
-    dress: str
+    overrides: str
 
     @classmethod
     def read(
@@ -86,7 +86,7 @@ class Options:
             raise ValueError(
                 'task_label: found "obs", expected modalities to be a list: a single image has no room for it'
             )
-        dress = {
+        overrides = {
             "modalities": [kind for kind in kinds if kind != "state"],
             "size": _size(size),
             "actions": _actions(actions),
@@ -102,7 +102,7 @@ class Options:
             renderer=renderer,
             task_label=task_label,
             libraries=library_bytes(assets),
-            dress=json.dumps({name: value for name, value in dress.items() if value is not None}),
+            overrides=json.dumps({name: value for name, value in overrides.items() if value is not None}),
         )
 
     def layouts(self, stream: _native.Stream) -> list[dict[str, Any]]:
@@ -112,7 +112,7 @@ class Options:
             SpecError: If an option is out of range, or does not go with the worlds.
         """
         try:
-            return [json.loads(text) for text in stream.layouts(self.dress)]
+            return [json.loads(text) for text in stream.layouts(self.overrides)]
         except SpecError as error:
             raise _as_options(error) from None
 

@@ -1,4 +1,4 @@
-//! [`Dress`]: what an environment's options lay over each of its worlds. Where the worlds come from is in `supply.rs`.
+//! [`WorldOverrides`]: what an environment's options lay over each of its worlds. Where the worlds come from is in `supply.rs`.
 
 use driftworld_spec::{ActionModel, ActionSpace, AgentParams, Modality, SpecError, World};
 use serde::Deserialize;
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 /// Options that stand in place of what worlds say; what is `None` stays as it is.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub(crate) struct Dress {
+pub(crate) struct WorldOverrides {
     modalities: Option<Vec<Modality>>,
     /// Height and width in pixels.
     size: Option<[u32; 2]>,
@@ -18,9 +18,9 @@ pub(crate) struct Dress {
     supersampling: Option<u32>,
 }
 
-impl Dress {
+impl WorldOverrides {
     /// Lays the options over a world, unchecked.
-    pub(crate) fn put_on(&self, world: &mut World) {
+    pub(crate) fn apply(&self, world: &mut World) {
         let agent = &mut world.agent_params;
         if let Some(modalities) = &self.modalities {
             agent.modalities.clone_from(modalities);
@@ -45,7 +45,7 @@ impl Dress {
     /// # Errors
     /// [`SpecError`] with every value out of its range.
     pub(crate) fn checked_layout(&self, mut world: World) -> Result<Value, SpecError> {
-        self.put_on(&mut world);
+        self.apply(&mut world);
         let world = World::from_json("options", &world.to_json())?;
         Ok(layout(&world))
     }

@@ -37,7 +37,7 @@ pub(crate) fn workers(_held: Python<'_>) -> PyResult<Arc<ThreadPool>> {
 
 /// Does work without the interpreter's lock. On Ctrl-C the flag that the work is handed becomes true, and the interrupt is raised
 /// once the work has ended.
-pub(crate) fn patiently<T: Send>(py: Python<'_>, work: impl FnOnce(&AtomicBool) -> T + Send) -> PyResult<T> {
+pub(crate) fn run_cancellable<T: Send>(py: Python<'_>, work: impl FnOnce(&AtomicBool) -> T + Send) -> PyResult<T> {
     let (stop, pool) = (AtomicBool::new(false), workers(py)?);
     let (done, ended) = mpsc::channel();
     thread::scope(|scope| {
@@ -58,13 +58,16 @@ pub(crate) fn patiently<T: Send>(py: Python<'_>, work: impl FnOnce(&AtomicBool) 
 }
 
 /// Does work that cannot be ended from outside: after Ctrl-C it is left to itself, and what it comes to is dropped.
-pub(crate) fn impatiently<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
+pub(crate) fn run_detached<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> PyResult<T> {
     let pool = workers(py)?;
-    apart(py, move || pool.install(work))
+    spawn(py, move || pool.install(work))
 }
 
 /// The same on one thread, which is not among the workers.
-pub(crate) fn apart<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
+pub(crate) fn spawn<T: Send + 'static>(py: Python<'_>, work: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
     let (done, ended) = mpsc::channel();
     let worker = thread::spawn(move || {
         let _done: mpsc::Sender<()> = done;

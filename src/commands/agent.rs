@@ -11,7 +11,7 @@ use super::{Failure, input};
 
 /// The built-in agents.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Who {
+pub(crate) enum AgentArg {
     /// Acts at random.
     Random,
     /// Knows the map and tours what pays.
@@ -20,7 +20,7 @@ pub(crate) enum Who {
     Scripted(PathBuf),
 }
 
-impl Who {
+impl AgentArg {
     /// What the help says of the argument.
     pub(crate) const HELP: &'static str =
         "Who lives it: random, onrails (knows the map and tours what pays), or scripted:FILE";
@@ -35,7 +35,7 @@ impl Who {
     }
 
     /// The agent at the start of its life.
-    pub(crate) fn agent(&self) -> Result<Hired, Failure> {
+    pub(crate) fn agent(&self) -> Result<NamedAgent, Failure> {
         let (agent, script): (Box<dyn Agent>, _) = match self {
             Self::Random => (Box::new(RandomAgent::new(0)), None),
             Self::Onrails => (Box::new(OnRailsAgent::new()), None),
@@ -46,12 +46,12 @@ impl Who {
             }
         };
         let name = self.name();
-        Ok(Hired { name, agent, script })
+        Ok(NamedAgent { name, agent, script })
     }
 }
 
 /// An agent that is ready to live.
-pub(crate) struct Hired {
+pub(crate) struct NamedAgent {
     /// What logs call it.
     pub(crate) name: String,
     pub(crate) agent: Box<dyn Agent>,
@@ -59,7 +59,7 @@ pub(crate) struct Hired {
     pub(crate) script: Option<String>,
 }
 
-impl FromStr for Who {
+impl FromStr for AgentArg {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -88,15 +88,15 @@ mod tests {
 
     #[test]
     fn agents_are_called_by_name_and_a_script_by_its_file() {
-        assert_eq!("random".parse(), Ok(Who::Random));
-        assert_eq!("onrails".parse(), Ok(Who::Onrails));
-        assert_eq!("scripted:a:b.txt".parse(), Ok(Who::Scripted("a:b.txt".into())));
-        assert_eq!(Who::Scripted("a.txt".into()).name(), "scripted:a.txt");
+        assert_eq!("random".parse(), Ok(AgentArg::Random));
+        assert_eq!("onrails".parse(), Ok(AgentArg::Onrails));
+        assert_eq!("scripted:a:b.txt".parse(), Ok(AgentArg::Scripted("a:b.txt".into())));
+        assert_eq!(AgentArg::Scripted("a.txt".into()).name(), "scripted:a.txt");
     }
 
     #[test]
     fn a_misspelt_agent_is_told_the_agents_there_are() {
-        let said = |text: &str| text.parse::<Who>().expect_err("there is no such agent");
+        let said = |text: &str| text.parse::<AgentArg>().expect_err("there is no such agent");
         let expected = "expected random, onrails or scripted:FILE; did you mean";
         assert_eq!(said("onrail"), format!("found \"onrail\", {expected} \"onrails\"?"));
         assert_eq!(
