@@ -7,7 +7,8 @@ use crate::env::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent};
 use crate::spec::nearest;
 use driftworld_text::ShownPath;
 
-use super::{Failure, input};
+use crate::checksum::checksum;
+use crate::{Failure, documents};
 
 /// The built-in agents.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,9 +41,9 @@ impl AgentArg {
             Self::Random => (Box::new(RandomAgent::new(0)), None),
             Self::Onrails => (Box::new(OnRailsAgent::new()), None),
             Self::Scripted(path) => {
-                let text = input::text(path)?;
+                let text = documents::text(path)?;
                 let agent = ScriptedAgent::parse(&path.display().to_string(), &text)?;
-                (Box::new(agent), Some(input::checksum(text.as_bytes())))
+                (Box::new(agent), Some(checksum(text.as_bytes())))
             }
         };
         let name = self.name();

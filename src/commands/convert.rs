@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use driftworld_text::ShownPath;
 
 use super::draw_maps::draw_maps;
-use super::input::WorldChoice;
+use super::world_choice::WorldChoice;
 use super::{Failure, output, overwrite};
 use crate::scenarios::{Missing, ScenarioFile};
 

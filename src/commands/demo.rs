@@ -19,11 +19,11 @@ use super::agent::AgentArg;
 use super::curriculum::{blocks, choices};
 use super::metrics::summary;
 use super::order::path_table;
-use super::render::Views;
 use super::run::{LifetimeRun, Start, processors};
 use super::{Failure, output};
 use crate::report::picture::{SheetRow, heat_map, sheet};
 use crate::table::wide_table;
+use crate::views::Views;
 
 /// The task that the demo is about.
 const TASK: &str = "find_objects";

@@ -12,7 +12,9 @@ use driftworld_text::one_line;
 use serde_json::json;
 
 use super::weights::WeightArgs;
-use super::{Failure, input, output};
+use crate::{Failure, worlds};
+
+use super::output;
 use crate::table::table;
 
 /// Measure how far apart two variants or two worlds are.
@@ -56,7 +58,7 @@ pub(crate) struct Distance {
 impl Distance {
     pub(crate) fn run(self) -> Result<(), Failure> {
         if self.pictures {
-            let world = |name: &str| input::world(name, self.seed, self.index, false);
+            let world = |name: &str| worlds::world(name, self.seed, self.index, false, &|text| output::warning(text));
             let (a, b) = (world(&self.a)?, world(&self.b)?);
             return pictures::run([&self.a, &self.b], [&a, &b], self.json);
         }
@@ -86,9 +88,9 @@ impl Distance {
     }
 
     fn side(&self, name: &str) -> Result<Side, Failure> {
-        input::expect_world_or_task(name)?;
-        if input::is_world_file(name) {
-            let world = input::world(name, self.seed, self.index, false)?;
+        worlds::expect_world_or_task(name)?;
+        if worlds::is_world_file(name) {
+            let world = worlds::world(name, self.seed, self.index, false, &|text| output::warning(text))?;
             Ok(Side::World(Box::new(world)))
         } else {
             Ok(Side::Variant(tasks::variant(name)?))

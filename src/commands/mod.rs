@@ -13,11 +13,9 @@ mod distance;
 mod doctor;
 mod draw_maps;
 mod figures;
-mod input;
 mod interrupt;
 mod logs;
 mod metrics;
-mod modality;
 mod optional;
 mod order;
 mod output;
@@ -35,6 +33,7 @@ mod unity;
 mod validate;
 mod vary;
 mod weights;
+mod world_choice;
 
 use std::borrow::Cow;
 use std::ffi::OsString;
@@ -44,7 +43,7 @@ use clap::Parser;
 use driftworld_text::printable;
 
 pub(crate) use crate::Failure;
-use crate::{log_folders, matrix_file, overwrite, trials};
+use crate::{log_folders, matrix_file, overwrite};
 
 /// Runs the command as a program of its own does, and prints what it has to say; `args` begins with the program's name.
 ///

@@ -13,9 +13,9 @@ use clap::Args;
 use driftworld_text::ShownPath;
 use serde::Serialize;
 
-use super::input::WorldChoice;
-use super::modality::{Kind, metres_per_level, target};
+use super::world_choice::WorldChoice;
 use super::{Failure, output};
+use crate::modality::{Kind, metres_per_level, target};
 
 /// The longest part of a file name that comes from the document.
 const LONGEST_NAME: usize = 40;

@@ -16,7 +16,9 @@ use driftworld_text::ShownPath;
 use rayon::prelude::*;
 
 use super::interrupt::Interrupt;
-use super::{Failure, input, output, overwrite};
+use crate::{Failure, worlds};
+
+use super::{output, overwrite};
 
 /// The most worlds that are drawn at once while streaming.
 const CHUNK: u64 = 1024;
@@ -212,7 +214,7 @@ impl Sample {
                 count,
             },
         };
-        let maps = self.maps.as_deref().map(input::maps).transpose()?.map(Arc::new);
+        let maps = self.maps.as_deref().map(worlds::maps).transpose()?.map(Arc::new);
         let Some(name) = &self.drift_to else {
             let mut sampler = Sampler::new(variant, self.seed).with_coverage(coverage);
             if let Some(maps) = maps {

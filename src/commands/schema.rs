@@ -6,7 +6,9 @@ use crate::spec::schema;
 use clap::Args;
 use driftworld_text::ShownPath;
 
-use super::{Failure, input, output};
+use crate::{Failure, documents};
+
+use super::output;
 
 /// Write or check the JSON Schemas of the documents.
 #[derive(Args)]
@@ -35,7 +37,7 @@ impl Schema {
         if let Some(folder) = &self.check {
             for (name, expected) in texts()? {
                 let path = folder.join(name);
-                if input::text(&path)? != expected {
+                if documents::text(&path)? != expected {
                     let text = format!("{}: is stale; run: cargo xtask schemas", path.shown());
                     return Err(Failure::input(text));
                 }

@@ -8,12 +8,12 @@ use crate::tasks;
 use clap::Args;
 use driftworld_text::ShownPath;
 
-use super::render::Views;
 use super::{Failure, output};
 use crate::contents::Contents;
 use crate::documents;
 use crate::report::picture::{SheetRow, sheet};
 use crate::scenarios::is_original;
+use crate::views::Views;
 
 /// The most variants that one picture shows.
 const MOST_VARIANTS: usize = 60;

@@ -13,7 +13,9 @@ use driftworld_text::ShownPath;
 use serde_json::{Value, json};
 
 use super::assets::LibraryChoice;
-use super::{Failure, input, output, trials};
+use crate::{Failure, trials, worlds};
+
+use super::output;
 
 /// Check task specs, worlds, scenarios and maps files, and name every problem with its place.
 ///
@@ -87,7 +89,7 @@ impl Validate {
         let files = match Contents::of_folder(path) {
             // What lies in a log is no document of ours, and `logs validate` judges it.
             Some(Contents::Log) => Ok(vec![path.to_owned()]),
-            _ => input::json_files(path),
+            _ => worlds::json_files(path),
         };
         match files {
             Ok(files) => files.into_iter().map(|path| self.verdict(path, classes)).collect(),

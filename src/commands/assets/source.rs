@@ -7,7 +7,8 @@ use crate::libraries::{self, MAX_LIBRARY_BYTES};
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::super::{Failure, input};
+use crate::Failure;
+use crate::checksum::checksum;
 
 /// The libraries that a command's worlds take their assets from.
 #[derive(Args, Clone, Debug, Default)]
@@ -33,7 +34,7 @@ impl LibraryChoice {
         let fingerprint = |path: &PathBuf| {
             let bytes = driftworld_files::read(path, MAX_LIBRARY_BYTES)?;
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            Ok(json!({ "library": name, "sha256": input::checksum(&bytes) }))
+            Ok(json!({ "library": name, "sha256": checksum(&bytes) }))
         };
         self.libraries.iter().map(fingerprint).collect()
     }

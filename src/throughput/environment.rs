@@ -7,14 +7,15 @@ use crate::env::{Action, Autoreset, Batch, BatchOptions, Environment, Renderer, 
 use crate::spec::{Modality, World};
 use serde_json::json;
 
-use super::super::Failure;
+use crate::Failure;
+
 use super::{Figures, rate, rates};
 
 /// 20 objects of 2,652 triangles spread over a walled arena of 100 × 100 m; rewards for touching and for coming near.
-const ARENA_20: &str = include_str!("../../../env/benches/scenes/arena_20.json");
+const ARENA_20: &str = include_str!("../../env/benches/scenes/arena_20.json");
 
 /// The same with 8 objects.
-const ARENA_8: &str = include_str!("../../../env/benches/scenes/arena_8.json");
+const ARENA_8: &str = include_str!("../../env/benches/scenes/arena_8.json");
 
 /// Environments that step together: few enough that their pictures stay near the processor.
 const NUM_ENVS: usize = 16;
@@ -29,7 +30,7 @@ const CURVE: Action = Action::Continuous([5.0, 15.0, 0.0]);
 const NUM_MEASURED: usize = 512;
 
 /// Steps, with physics, rewards and pictures, and resets, each second.
-pub(super) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures, Failure> {
+pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures, Failure> {
     if Renderer::new(renderer)?.kind() == RendererKind::Gpu {
         return measure_graphics(round);
     }

@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use crate::spec::nearest;
 
-use super::super::modality::Kind;
 use super::line::COMMANDS;
 use super::session::{MOST_LINES, Session};
+use crate::modality::Kind;
 use crate::table::table;
 
 impl Session<'_> {

@@ -9,16 +9,16 @@ use rustyline::history::MemHistory;
 use rustyline::validate::Validator;
 use rustyline::{Config, Context, Helper};
 
-use super::super::Failure;
-use super::super::modality::Kind;
 use super::line::COMMANDS;
 use super::names::Names;
+use crate::Failure;
+use crate::modality::Kind;
 
 /// Reads lines from a terminal.
-pub(super) struct Editor(rustyline::Editor<Words, MemHistory>);
+pub(crate) struct Editor(rustyline::Editor<Words, MemHistory>);
 
 impl Editor {
-    pub(super) fn new() -> Result<Self, Failure> {
+    pub(crate) fn new() -> Result<Self, Failure> {
         let config = Config::builder().auto_add_history(true).build();
         let mut editor = rustyline::Editor::with_history(config.clone(), MemHistory::with_config(&config))?;
         editor.set_helper(Some(Words(Names::default())));
@@ -26,7 +26,7 @@ impl Editor {
     }
 
     /// The next line that is neither empty nor a comment; none when the user leaves. Ctrl-C drops the line.
-    pub(super) fn read(&mut self, names: Names) -> Result<Option<String>, Failure> {
+    pub(crate) fn read(&mut self, names: Names) -> Result<Option<String>, Failure> {
         self.0.set_helper(Some(Words(names)));
         loop {
             match self.0.readline("driftworld> ") {

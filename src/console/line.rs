@@ -4,7 +4,7 @@ use crate::env::{Action, Category};
 use crate::spec::nearest;
 use serde_json::{Map, Value, json};
 
-use super::super::modality::Kind;
+use crate::modality::Kind;
 
 /// The most steps of one command.
 const MOST_STEPS: u32 = 100_000;

@@ -1,24 +1,13 @@
-//! `driftworld bench`: how fast this build is on this machine, one core at a time. What is measured is in the files of this
-//! folder; the benches of single functions are criterion's, beside each crate.
+//! `driftworld bench`: how fast this build is on this machine, one core at a time. What is measured is the library's.
 
-mod environment;
-mod generator;
-mod metrics;
-mod similarity;
+use std::time::Duration;
 
-use std::time::{Duration, Instant};
-
+use crate::Failure;
 use crate::env::RendererKind;
+use crate::throughput::{environment, generator, metrics, similarity};
 use clap::{Args, Subcommand};
-use serde_json::{Map, Value, json};
 
-use super::{Failure, output};
-
-/// Figures under their names.
-type Figures = Map<String, Value>;
-
-/// How many rounds the median is taken of.
-const ROUNDS: usize = 5;
+use super::output;
 
 /// Measure how fast this build is on this machine, on one core.
 #[derive(Args)]
@@ -100,45 +89,4 @@ impl Bench {
         }
         Ok(())
     }
-}
-
-/// How often a job is done each second: the median of several rounds, after one to warm up.
-fn rate<E>(round: Duration, mut job: impl FnMut(u64) -> Result<(), E>) -> Result<f64, E> {
-    let mut rates = Vec::with_capacity(ROUNDS);
-    let mut index = 0;
-    for number in 0..=ROUNDS {
-        let start = Instant::now();
-        let first = index;
-        while start.elapsed() < round {
-            // The clock is read once for several jobs, which may be short.
-            for _ in 0..16 {
-                job(index)?;
-                index += 1;
-            }
-        }
-        if number > 0 {
-            rates.push((index - first) as f64 / start.elapsed().as_secs_f64());
-        }
-    }
-    rates.sort_by(f64::total_cmp);
-    Ok(rates[rates.len() / 2])
-}
-
-/// Figures that are rates, whole.
-fn rates<const N: usize>(figures: [(&str, f64); N]) -> Figures {
-    let named = figures.into_iter();
-    named
-        .map(|(name, rate)| (name.to_owned(), json!(rate.round())))
-        .collect()
-}
-
-/// The least seconds that a job takes in three times.
-fn best_of_three<E: Into<Failure>>(mut job: impl FnMut() -> Result<(), E>) -> Result<f64, Failure> {
-    let mut best = f64::INFINITY;
-    for _ in 0..3 {
-        let start = Instant::now();
-        job().map_err(Into::into)?;
-        best = best.min(start.elapsed().as_secs_f64());
-    }
-    Ok(best)
 }

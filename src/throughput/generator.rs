@@ -6,14 +6,15 @@ use crate::generator::Sampler;
 use crate::spec::{TaskSpec, World};
 use crate::tasks;
 
-use super::super::Failure;
+use crate::Failure;
+
 use super::{Figures, rate, rates};
 
 /// The scene of about 86 objects on the backslash map.
-const SETTLEMENT: &str = include_str!("../../../examples/tasks/settlement.json");
+const SETTLEMENT: &str = include_str!("../../examples/tasks/settlement.json");
 
 /// Worlds and validations each second.
-pub(super) fn measure(round: Duration) -> Result<Figures, Failure> {
+pub(crate) fn measure(round: Duration) -> Result<Figures, Failure> {
     let settlement = TaskSpec::from_json("settlement.json", SETTLEMENT)?.variant("near")?;
     let of_86 = Sampler::new(&settlement, 7);
     let find_objects = Sampler::new(&tasks::variant("find_objects#red")?, 7);

@@ -13,14 +13,15 @@ use crate::spec::World;
 use crate::tasks;
 use serde_json::json;
 
-use super::super::Failure;
+use crate::Failure;
+
 use super::{Figures, best_of_three, rate};
 
 /// Items of the matrix and of the order.
 const NUM_ITEMS: usize = 1000;
 
 /// Pairs each second on one core; seconds of a matrix and of an order, on all cores.
-pub(super) fn measure(round: Duration) -> Result<Figures, Failure> {
+pub(crate) fn measure(round: Duration) -> Result<Figures, Failure> {
     let mut figures = Figures::new();
     let mut add = |name: &str, pairs_a_second: f64| {
         figures.insert(name.to_owned(), json!(pairs_a_second.round()));

@@ -1,19 +1,5 @@
 //! `driftworld console`: a running world by hand. Lines come from a terminal, a pipe or a script, and are read here; what
-//! they say is in `line.rs`, what is done in `session.rs`.
-
-#[cfg(feature = "line-editor")]
-mod editor;
-mod line;
-mod look;
-mod map;
-mod messages;
-mod names;
-mod place;
-#[cfg(not(feature = "line-editor"))]
-mod prompt;
-mod report;
-mod screen;
-mod session;
+//! they do is the library's `console`.
 
 use std::io::{BufRead, IsTerminal, Read};
 use std::path::PathBuf;
@@ -21,14 +7,11 @@ use std::path::PathBuf;
 use clap::Args;
 use driftworld_text::ShownPath;
 
-use super::input::{self, WorldChoice};
-use super::{Failure, output};
-#[cfg(feature = "line-editor")]
-use editor::Editor;
-#[cfg(not(feature = "line-editor"))]
-use prompt::Editor;
-use screen::Screen;
-use session::{Reply, Session};
+use crate::console::{Editor, Reply, Screen, Session};
+use crate::{Failure, documents};
+
+use super::output;
+use super::world_choice::WorldChoice;
 
 /// The longest line that is read, in bytes: a message may hold a whole world.
 const LONGEST_LINE: u64 = 64 << 20;
@@ -62,11 +45,13 @@ pub(crate) struct Console {
 impl Console {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let script = match &self.script {
-            Some(path) => Some((path, input::text(path)?)),
+            Some(path) => Some((path, documents::text(path)?)),
             None => None,
         };
-        let world = self.choice.world()?;
-        let mut session = Session::new(&self.choice, world, &self.out, Screen::of_this_terminal())?;
+        let choice = self.choice.request();
+        let warn = |text| output::warning(text);
+        let world = choice.world(&warn)?;
+        let mut session = Session::new((choice, &warn), world, &self.out, Screen::of_this_terminal())?;
         output::line(session.greeting())?;
         if let Some((path, text)) = script {
             let lines = text.lines().map(|line| Ok(line.to_owned()));

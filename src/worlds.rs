@@ -1,36 +1,20 @@
-//! What arguments name: tasks, variants, worlds. Names of tasks are read by the library's `tasks`.
+//! Worlds by what they are named: files of ours or of the original's, or variants with a seed and a number. Names of tasks
+//! are read by `tasks`.
 
-use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::contents::{Contents, OtherContents};
 use crate::documents;
-use crate::generator::Sampler;
-use crate::spec::maps::MapLibrary;
-use crate::spec::{Warning, World};
 use crate::tasks;
 use crate::top_level::TopLevel;
-use clap::Args;
+use driftworld_generator::Sampler;
+use driftworld_spec::maps::MapLibrary;
+use driftworld_spec::{Warning, World};
 use driftworld_text::ShownPath;
-use sha2::{Digest, Sha256};
 
-use super::{Failure, output};
-
-/// The text of a file.
-pub(crate) fn text(path: &Path) -> Result<String, Failure> {
-    Ok(documents::text(path)?)
-}
-
-/// The SHA-256 of a file's bytes, in hexadecimal.
-pub(crate) fn checksum(bytes: &[u8]) -> String {
-    let digest = Sha256::digest(bytes);
-    digest.iter().fold(String::with_capacity(64), |mut text, byte| {
-        write!(text, "{byte:02x}").expect("writing to a String does not fail");
-        text
-    })
-}
+use crate::{Failure, Warn, argument};
 
 /// A world file, in our form or in the original's.
 pub(crate) fn world_file(path: &Path, l2explorer: bool) -> Result<(World, Vec<Warning>), Failure> {
@@ -43,7 +27,8 @@ pub(crate) fn world_file(path: &Path, l2explorer: bool) -> Result<(World, Vec<Wa
         Ok(world) => Ok((world, Vec::new())),
         Err(error) => Err(match World::from_l2explorer(&name, &text) {
             Ok(_) => Failure::input(format!(
-                "{error}\nhint: this reads as a map of L2Explorer; add --l2explorer"
+                "{error}\nhint: this reads as a map of L2Explorer; add {}",
+                argument("l2explorer")
             )),
             Err(_) => error.into(),
         }),
@@ -111,36 +96,27 @@ pub(crate) fn json_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(files)
 }
 
-/// Which world a command is about: one of a file, or one drawn from a variant.
-#[derive(Args)]
-pub(crate) struct WorldChoice {
-    /// A world file, or a task's variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
-    world: String,
+/// Which world is meant: one of a file, or one drawn from a variant.
+#[derive(Clone, Debug)]
+pub(crate) struct WorldRequest {
+    /// A world file, or a task's variant.
+    pub(crate) world: String,
     /// The seed, where the world is drawn from a variant.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
+    pub(crate) seed: u64,
     /// The number of the world, where it is drawn from a variant.
-    #[arg(long, default_value_t = 0)]
-    index: u64,
-    /// Read the world as L2Explorer wrote it, with warnings.
-    #[arg(long)]
-    l2explorer: bool,
+    pub(crate) index: u64,
+    /// Whether a file is read as L2Explorer wrote it.
+    pub(crate) l2explorer: bool,
     /// Layouts in place of the built-in maps: a maps file, or a folder of them.
-    #[arg(long, value_name = "PATH")]
-    maps: Option<PathBuf>,
+    pub(crate) maps: Option<PathBuf>,
 }
 
-impl WorldChoice {
-    /// The name that was given.
-    pub(crate) fn name(&self) -> &str {
-        &self.world
-    }
-
+impl WorldRequest {
     /// Reads or draws the world.
-    pub(crate) fn world(&self) -> Result<World, Failure> {
+    pub(crate) fn world(&self, warn: Warn<'_>) -> Result<World, Failure> {
         expect_world_or_task(&self.world)?;
         if self.is_file() {
-            return self.named(&self.world);
+            return self.named(&self.world, warn);
         }
         self.numbered(self.index)
     }
@@ -162,9 +138,9 @@ impl WorldChoice {
     }
 
     /// Another world, by the same options: a file, or the first world of a variant.
-    pub(crate) fn named(&self, name: &str) -> Result<World, Failure> {
+    pub(crate) fn named(&self, name: &str, warn: Warn<'_>) -> Result<World, Failure> {
         let maps = self.maps.as_deref().map(maps).transpose()?;
-        let mut world = world(name, self.seed, 0, self.l2explorer)?;
+        let mut world = world(name, self.seed, 0, self.l2explorer, warn)?;
         if let Some(maps) = maps {
             maps.apply(&mut world);
         }
@@ -177,14 +153,14 @@ impl WorldChoice {
 }
 
 /// The world that an argument names: a file, or number `index` of a variant under a seed.
-pub(crate) fn world(name: &str, seed: u64, index: u64, l2explorer: bool) -> Result<World, Failure> {
+pub(crate) fn world(name: &str, seed: u64, index: u64, l2explorer: bool, warn: Warn<'_>) -> Result<World, Failure> {
     expect_world_or_task(name)?;
     if !l2explorer && !is_world_file(name) {
         return Ok(Sampler::new(&tasks::variant(name)?, seed).world(index)?);
     }
     let (world, warnings) = world_file(Path::new(name), l2explorer)?;
     for warning in warnings {
-        output::note(format!("warning: {warning}"));
+        warn(warning.to_string());
     }
     Ok(world)
 }

@@ -7,10 +7,10 @@ use crate::env::{Channel, Outgoing};
 use crate::spec::nearest;
 use serde_json::Value;
 
-use super::super::input;
-use super::super::modality::Kind;
 use super::line::Picture;
-use super::session::{Session, said};
+use super::session::{Session, plain};
+use crate::documents;
+use crate::modality::Kind;
 
 /// The longest message that is shown whole, in characters.
 const LONGEST: usize = 600;
@@ -22,10 +22,10 @@ impl Session<'_> {
         let read = if inline {
             Ok(text.to_owned())
         } else {
-            input::text(Path::new(text))
+            documents::text(Path::new(text))
         };
         let (mut lines, mut refused) = (Vec::new(), None);
-        for (channel, message) in messages(&read.map_err(said)?) {
+        for (channel, message) in messages(&read.map_err(plain)?) {
             let time = self.time();
             let received = self.channels.receive(&mut self.environment, channel, &message, &time);
             if received.reset {

@@ -1,11 +1,11 @@
-//! Where the console may write: inside one folder, whatever a name says. Writing itself is in `output.rs`.
+//! Where the console may write: inside one folder, whatever a name says. Writing itself is in `output_file.rs`.
 
 use std::path::{Component, Path, PathBuf};
 
 use driftworld_text::ShownPath;
 
-use super::super::output;
 use super::session::said;
+use crate::output_file;
 
 /// A folder for files that are named by commands and messages.
 pub(super) struct Folder(PathBuf);
@@ -18,7 +18,7 @@ impl Folder {
     /// Writes a file inside the folder, and hands back its path. The ending is added where it is missing.
     pub(super) fn write(&self, name: &str, ending: &str, bytes: &[u8]) -> Result<PathBuf, String> {
         let path = self.inside(name, ending)?;
-        output::write(&path, bytes).map_err(said)?;
+        output_file::write(&path, bytes).map_err(said)?;
         Ok(path)
     }
 

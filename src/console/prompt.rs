@@ -2,21 +2,21 @@
 
 use std::io::{self, BufRead, Write};
 
-use super::super::Failure;
 use super::names::Names;
+use crate::Failure;
 
 /// Reads lines from a terminal.
-pub(super) struct Editor(());
+pub(crate) struct Editor(());
 
 impl Editor {
     #[expect(clippy::unnecessary_wraps, reason = "as where there is the feature")]
-    pub(super) fn new() -> Result<Self, Failure> {
+    pub(crate) fn new() -> Result<Self, Failure> {
         Ok(Self(()))
     }
 
     /// The next line that is neither empty nor a comment; none when the user leaves.
     #[expect(clippy::unused_self, reason = "as where there is the feature")]
-    pub(super) fn read(&mut self, _: Names) -> Result<Option<String>, Failure> {
+    pub(crate) fn read(&mut self, _: Names) -> Result<Option<String>, Failure> {
         let failed = |error: io::Error| Failure::input(format!("terminal: {error}"));
         loop {
             let mut stdout = io::stdout().lock();

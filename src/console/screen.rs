@@ -8,7 +8,7 @@ use crate::env::{
     depth_to_gray,
 };
 
-use super::super::modality::Kind;
+use crate::modality::Kind;
 
 /// Width where nobody knows the terminal's.
 const USUAL_COLUMNS: u32 = 80;
@@ -18,7 +18,7 @@ const SHADES: &[u8] = b" .:-=+*#%@";
 
 /// What the terminal can show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Screen {
+pub(crate) struct Screen {
     pub(super) colors: bool,
     columns: u32,
     rows: u32,
@@ -33,7 +33,7 @@ impl Screen {
     };
 
     /// What standard output leads to. Colours are left out for `NO_COLOR` and for `TERM=dumb`.
-    pub(super) fn of_this_terminal() -> Self {
+    pub(crate) fn of_this_terminal() -> Self {
         if !std::io::stdout().is_terminal() {
             return Self::PLAIN;
         }

@@ -10,7 +10,8 @@ use crate::metrics::{
 use driftworld_atomic_files::ScratchFolder;
 use serde_json::{Map, json};
 
-use super::super::Failure;
+use crate::Failure;
+
 use super::{Figures, best_of_three};
 
 /// Experiences of the lifetime, and of the one that is looked at quickly.
@@ -30,7 +31,7 @@ const TASKS: [&str; 4] = ["find_red", "find_blue", "reach_near", "reach_far"];
 const PACE: i64 = 1_234_567;
 
 /// Seconds and rows each second of writing, reading and scoring.
-pub(super) fn measure(is_quick: bool) -> Result<Figures, Failure> {
+pub(crate) fn measure(is_quick: bool) -> Result<Figures, Failure> {
     let num_rows = if is_quick { NUM_ROWS_QUICK } else { NUM_ROWS };
     let base = ScratchFolder::new(".driftworld-bench-", &std::env::temp_dir())?;
     let dir = base.path().join("lifetime");

@@ -4,12 +4,11 @@
 use crate::env::{Frame, Image, top_down};
 use driftworld_text::ShownPath;
 
-use super::super::modality::Kind;
-use super::super::modality::target;
 use super::line::Picture;
 use super::map;
 use super::screen::{colors, half_blocks, letters};
 use super::session::{Session, plain};
+use crate::modality::{Kind, target};
 use crate::report::picture;
 
 /// How many metres a level of a depth image stands for.

@@ -6,7 +6,7 @@
     not(feature = "line-editor"),
     expect(dead_code, reason = "read where there is the feature")
 )]
-pub(super) struct Names {
+pub(crate) struct Names {
     pub(super) objects: Vec<String>,
     pub(super) snapshots: Vec<String>,
 }

@@ -8,14 +8,15 @@ use crate::env::{Action, Category, Channels, CpuRenderer, Environment, Event, Le
 use crate::spec::{Object, World, nearest};
 use driftworld_text::ShownPath;
 
-use super::super::Failure;
-use super::super::input::WorldChoice;
 use super::line::Line;
 use super::messages::shown;
 use super::names::Names;
 use super::place::Folder;
 use super::report::{amount, help};
 use super::screen::Screen;
+use crate::Failure;
+use crate::Warn;
+use crate::worlds::WorldRequest;
 
 /// The most moments that are remembered.
 const MOST_SNAPSHOTS: usize = 100;
@@ -24,8 +25,10 @@ const MOST_SNAPSHOTS: usize = 100;
 pub(super) const MOST_LINES: usize = 500;
 
 /// A running world with all that the console remembers.
-pub(super) struct Session<'a> {
-    pub(super) choice: &'a WorldChoice,
+pub(crate) struct Session<'a> {
+    choice: WorldRequest,
+    /// Told what is odd of a world that is read.
+    warn: Warn<'a>,
     /// The world that `reset` goes back to.
     pub(super) start: World,
     pub(super) environment: Environment,
@@ -37,7 +40,7 @@ pub(super) struct Session<'a> {
 }
 
 /// What comes of a line.
-pub(super) enum Reply {
+pub(crate) enum Reply {
     Said(String),
     /// What it says, as a document.
     Json(String),
@@ -57,9 +60,15 @@ pub(super) fn plain(error: impl std::error::Error) -> String {
 }
 
 impl<'a> Session<'a> {
-    pub(super) fn new(choice: &'a WorldChoice, world: World, out: &Path, screen: Screen) -> Result<Self, Failure> {
+    pub(crate) fn new(
+        (choice, warn): (WorldRequest, Warn<'a>),
+        world: World,
+        out: &Path,
+        screen: Screen,
+    ) -> Result<Self, Failure> {
         Ok(Self {
             choice,
+            warn,
             channels: Channels::new(&world),
             environment: Environment::new(world.clone())?,
             start: world,
@@ -71,14 +80,14 @@ impl<'a> Session<'a> {
     }
 
     /// What stands above the first prompt.
-    pub(super) fn greeting(&self) -> String {
+    pub(crate) fn greeting(&self) -> String {
         let hash = self.start.hash();
         let objects = self.start.objects.len();
         format!("world {hash:.12}, {objects} objects; help lists the commands")
     }
 
     /// Names for completion.
-    pub(super) fn names(&self) -> Names {
+    pub(crate) fn names(&self) -> Names {
         let objects = &self.environment.world().objects;
         Names {
             objects: objects
@@ -91,7 +100,7 @@ impl<'a> Session<'a> {
     }
 
     /// Does what a line says. On error nothing is changed, but by the messages of a file before the one refused.
-    pub(super) fn execute(&mut self, line: &str) -> Result<Reply, String> {
+    pub(crate) fn execute(&mut self, line: &str) -> Result<Reply, String> {
         let text = match Line::parse(line)? {
             Line::Quit => return Ok(Reply::Quit),
             Line::Help(command) => help(command.as_deref())?,
@@ -190,7 +199,7 @@ impl<'a> Session<'a> {
             None => self.start.clone(),
             Some(text) => match text.parse() {
                 Ok(index) => self.choice.numbered(index).map_err(said)?,
-                Err(_) => self.choice.named(text).map_err(said)?,
+                Err(_) => self.choice.named(text, self.warn).map_err(said)?,
             },
         };
         self.environment.reset(world.clone()).map_err(plain)?;

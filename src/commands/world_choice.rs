@@ -1,0 +1,52 @@
+//! The options that say which world a command is about. Reading or drawing it is the library's.
+
+use std::path::PathBuf;
+
+use crate::Failure;
+use crate::spec::World;
+use crate::worlds::WorldRequest;
+use clap::Args;
+
+use super::output;
+
+/// Which world a command is about: one of a file, or one drawn from a variant.
+#[derive(Args)]
+pub(crate) struct WorldChoice {
+    /// A world file, or a task's variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
+    world: String,
+    /// The seed, where the world is drawn from a variant.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// The number of the world, where it is drawn from a variant.
+    #[arg(long, default_value_t = 0)]
+    index: u64,
+    /// Read the world as L2Explorer wrote it, with warnings.
+    #[arg(long)]
+    l2explorer: bool,
+    /// Layouts in place of the built-in maps: a maps file, or a folder of them.
+    #[arg(long, value_name = "PATH")]
+    maps: Option<PathBuf>,
+}
+
+impl WorldChoice {
+    /// The name that was given.
+    pub(crate) fn name(&self) -> &str {
+        &self.world
+    }
+
+    /// The same for the library.
+    pub(crate) fn request(&self) -> WorldRequest {
+        WorldRequest {
+            world: self.world.clone(),
+            seed: self.seed,
+            index: self.index,
+            l2explorer: self.l2explorer,
+            maps: self.maps.clone(),
+        }
+    }
+
+    /// Reads or draws the world, with warnings to standard error.
+    pub(crate) fn world(&self) -> Result<World, Failure> {
+        self.request().world(&|text| output::warning(text))
+    }
+}
