@@ -1,5 +1,7 @@
 //! [`Views`]: the pictures of one world, as the agent sees it, from above and from near by.
 
+#![expect(clippy::disallowed_methods, reason = "where a camera stands for a picture")]
+
 use std::cell::RefCell;
 use std::rc::Rc;
 

@@ -63,7 +63,7 @@ fn constant(text: &str, name: &str) -> Option<f64> {
     let plain = |text: &str| text.trim().replace('_', "").parse::<f64>().ok();
     value.split('*').try_fold(1.0, |product, factor| {
         let factor = match factor.split_once("<<") {
-            Some((number, bits)) => plain(number)? * plain(bits)?.exp2(),
+            Some((number, bits)) => plain(number)? * (1_u64 << plain(bits)? as u32) as f64,
             None => plain(factor)?,
         };
         Some(product * factor)

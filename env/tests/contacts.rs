@@ -1,6 +1,8 @@
 //! The laws of touching and coming near: what one pass sets off does not depend on speed, on the time step, or on how often one
 //! looks.
 
+#![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
+
 use driftworld_env::{Action, Environment};
 use driftworld_spec::{Object, Stimulus, World};
 use proptest::prelude::*;

@@ -2,7 +2,9 @@
 //!
 //! A pixel may differ at an edge: the card snaps corners to a grid within the pixel, the processor does not. Where there is no
 //! adapter the tests say that they are skipped; with `DRIFTWORLD_REQUIRE_GPU=1` they fail there.
+
 #![cfg(feature = "gpu")]
+#![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
 use std::io::Write as _;
 use std::path::Path;

@@ -1,6 +1,8 @@
 //! The laws of sliding: along anything the agent, a mover or a pushed body keeps the part of its speed that leads along it, and
 //! nothing is passed.
 
+#![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
+
 use driftworld_env::{Action, Environment};
 use driftworld_spec::{MotionModel, Object, Pushable, Wall, World};
 use proptest::prelude::*;

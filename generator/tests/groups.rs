@@ -1,6 +1,8 @@
 //! Groups around each other, what they keep clear of and where they look; requirements, coverage, and maps from files. How
 //! places scatter is tested by statistics of their own.
 
+#![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
+
 use std::sync::Arc;
 
 use driftworld_generator::{Coverage, GeneratorError, Sampler, sample};

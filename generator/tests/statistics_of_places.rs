@@ -1,5 +1,7 @@
 //! Where objects stand has the law it is declared with. Numbers are tested in `statistics.rs`.
 
+#![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
+
 use driftworld_generator::Sampler;
 use driftworld_spec::{Distribution, TaskSpec, World};
 

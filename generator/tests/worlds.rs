@@ -1,5 +1,7 @@
 //! Sampled worlds: the same as ever, valid, independent where they should be, alike where they should be.
 
+#![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
+
 use std::sync::Arc;
 
 use driftworld_generator::{GeneratorError, Sampler, sample};

@@ -2,6 +2,7 @@
 //!
 //! Not here: the numbers of other implementations, see `repeats_rliable` and `repeats_whole_runs`.
 
+#![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
 use driftworld_metrics::{

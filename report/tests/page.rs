@@ -367,6 +367,7 @@ fn pages_of_long_lifetimes_and_many_tasks_stay_small() {
 }
 
 /// Lightness as contrast is reckoned from (WCAG 2.2).
+#[expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 fn luminance(color: &str) -> f64 {
     let digits: String = match color.len() {
         3 => color.chars().flat_map(|digit| [digit, digit]).collect(),

@@ -1,5 +1,7 @@
 //! How long distances of colours, pictures and sets take. What is measured beside other tools is in `driftworld bench similarity`.
 
+#![expect(clippy::disallowed_methods, reason = "only its speed is measured")]
+
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -1,5 +1,7 @@
 //! How long orders, matrices of embedded items and maps take. Distances of documents are measured elsewhere.
 
+#![expect(clippy::disallowed_methods, reason = "only its speed is measured")]
+
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -1,6 +1,8 @@
 //! How fast distances are measured and orders found: the jobs of the peers' script on inputs of the same kind, and two that only
 //! we have.
 
+#![expect(clippy::disallowed_methods, reason = "only its speed is measured")]
+
 use std::time::Duration;
 
 use crate::generator::Sampler;

@@ -26,6 +26,7 @@ const ORDERS: [[usize; 6]; 6] = [
 type Kernel = fn(usize, usize) -> f64;
 
 /// The nearer, the more.
+#[expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 fn by_distance(a: usize, b: usize) -> f64 {
     (-(PLACES[a] - PLACES[b]).abs() / 0.3).exp()
 }

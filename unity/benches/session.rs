@@ -1,5 +1,7 @@
 //! How long a session takes for a command, without a network: a step with its pictures in both forms, a reset, a state message.
 
+#![expect(clippy::disallowed_methods, reason = "only its speed is measured")]
+
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -306,7 +306,7 @@ mod tests {
             .boxed();
         let line = (point(), 0.0..6.3_f64, 0.1..4.0_f64, 0.0..0.5_f64).prop_map(|(at, turn, half, radius)| {
             let mut placed = Footprint::default();
-            Footprint::line(half, radius).place_into([turn.sin(), turn.cos()], at, &mut placed);
+            Footprint::line(half, radius).place_into([libm::sin(turn), libm::cos(turn)], at, &mut placed);
             placed
         });
         prop_oneof![disc, polygon, line]
@@ -321,7 +321,7 @@ mod tests {
                 let share = f64::from(k) / 2000.0;
                 let x = from[0] + (to[0] - from[0]) * share - at[0];
                 let y = from[1] + (to[1] - from[1]) * share - at[1];
-                least = least.min(x.hypot(y));
+                least = least.min(libm::hypot(x, y));
             }
         }
         least - footprint.rounding

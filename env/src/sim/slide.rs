@@ -273,7 +273,7 @@ mod tests {
         let noise = prop_oneof![Just(0.0), -1e-5..1e-5_f64, -1e-7..1e-7_f64, -0.5..0.5_f64];
         (0..24_i32, noise).prop_map(|(step, noise)| {
             let angle = f64::from(step) * std::f64::consts::TAU / 24.0 + noise;
-            [angle.sin(), angle.cos()]
+            [libm::sin(angle), libm::cos(angle)]
         })
     }
 

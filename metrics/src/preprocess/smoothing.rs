@@ -91,11 +91,11 @@ fn window(method: SmoothingMethod, length: usize) -> Vec<f64> {
         let turn = PI * place / last;
         match method {
             SmoothingMethod::Flat | SmoothingMethod::Off => 1.0,
-            SmoothingMethod::Hanning => 0.5 + 0.5 * turn.cos(),
-            SmoothingMethod::Hamming => 0.54 + 0.46 * turn.cos(),
+            SmoothingMethod::Hanning => 0.5 + 0.5 * libm::cos(turn),
+            SmoothingMethod::Hamming => 0.54 + 0.46 * libm::cos(turn),
             SmoothingMethod::Bartlett if place <= 0.0 => 1.0 + place / last,
             SmoothingMethod::Bartlett => 1.0 - place / last,
-            SmoothingMethod::Blackman => 0.42 + 0.5 * turn.cos() + 0.08 * (2.0 * PI * place / last).cos(),
+            SmoothingMethod::Blackman => 0.42 + 0.5 * libm::cos(turn) + 0.08 * libm::cos(2.0 * PI * place / last),
         }
     };
     (0..length).map(weight).collect()

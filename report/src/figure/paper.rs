@@ -2,6 +2,11 @@
 //!
 //! Not here: what is drawn, see the file of each figure.
 
+#![expect(
+    clippy::disallowed_methods,
+    reason = "ticks and arrows of a figure, rounded to what is drawn"
+)]
+
 use std::ops::Range;
 use std::sync::Once;
 

@@ -1,5 +1,10 @@
 //! The picture of a curriculum: a row for each variant, a bar for each stretch of experiences.
 
+#![expect(
+    clippy::disallowed_methods,
+    reason = "ticks and arrows of a figure, rounded to what is drawn"
+)]
+
 use driftworld_spec::{BlockKind, Phase, Regime, Scenario};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

@@ -1,5 +1,10 @@
 //! A picture of a path: the items on a map of their distances, joined in their order. Where they stand is `similarity`'s.
 
+#![expect(
+    clippy::disallowed_methods,
+    reason = "ticks and arrows of a figure, rounded to what is drawn"
+)]
+
 use driftworld_similarity::{DistanceMatrix, Method, Ordering, classical_map};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

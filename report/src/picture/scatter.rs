@@ -1,5 +1,10 @@
 //! Points on axes with their names beside them. What the points are is the caller's.
 
+#![expect(
+    clippy::disallowed_methods,
+    reason = "ticks and arrows of a figure, rounded to what is drawn"
+)]
+
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 

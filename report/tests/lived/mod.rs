@@ -73,6 +73,7 @@ impl Life<'_> {
         }
     }
 
+    #[expect(clippy::disallowed_methods, reason = "rewards of any kind will do")]
     fn write(&self, dir: &std::path::Path, tasks: &[String], rounds: u64) {
         let columns = if self.steps {
             vec!["reward", "episode_step_count"]

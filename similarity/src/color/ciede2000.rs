@@ -253,11 +253,11 @@ mod tests {
         let ([l1, a1, b1], [l2, a2, b2]) = (x.0, y.0);
         let sin = |degrees: f64| libm::sin(degrees.to_radians());
         let cos = |degrees: f64| libm::cos(degrees.to_radians());
-        let g = 0.5 * (1.0 - saturation(f64::midpoint(a1.hypot(b1), a2.hypot(b2))));
+        let g = 0.5 * (1.0 - saturation(f64::midpoint(libm::hypot(a1, b1), libm::hypot(a2, b2))));
         let polar = |a: f64, b: f64| {
             let a = a * (1.0 + g);
             let hue = libm::atan2(b, a).to_degrees().rem_euclid(360.0);
-            (a.hypot(b), hue)
+            (libm::hypot(a, b), hue)
         };
         let ((c1, h1), (c2, h2)) = (polar(a1, b1), polar(a2, b2));
         let (gap, grey) = (h2 - h1, c1 * c2 == 0.0);

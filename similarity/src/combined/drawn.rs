@@ -54,7 +54,7 @@ impl DrawnMeasure {
             measure,
             colors: colors.then(|| ways_of(measure)),
             headings,
-            width: corners.map(|[low, high]| (high[0] - low[0]).hypot(high[1] - low[1])),
+            width: corners.map(|[low, high]| libm::hypot(high[0] - low[0], high[1] - low[1])),
             mixed: families.iter().flatten().count() > 1 || (colors && kinds == [true; 2]),
         }
     }

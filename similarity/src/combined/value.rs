@@ -36,7 +36,7 @@ impl ValueMeasure {
         match compare.and_then(|compare| compare.measure) {
             Some(MeasureName::SameOrNot) => Self::SameOrNot,
             Some(MeasureName::LogRatio) => Self::LogRatio {
-                width: range(parameter, f64::ln),
+                width: range(parameter, libm::log),
             },
             Some(MeasureName::Srgb) => color("srgb / largest", ColorMeasure::Srgb),
             Some(MeasureName::Cie76) => color("cie76 / largest", ColorMeasure::Cie76),
@@ -100,7 +100,7 @@ impl ValueMeasure {
                 (raw, share(raw, *width))
             }),
             Self::LogRatio { width } => a.as_number().zip(b.as_number()).map_or_else(same_or_not, |(a, b)| {
-                let raw = (a.ln() - b.ln()).abs();
+                let raw = (libm::log(a) - libm::log(b)).abs();
                 (raw, share(raw, *width))
             }),
             Self::Turn => a.as_number().zip(b.as_number()).map_or_else(same_or_not, |(a, b)| {
@@ -164,7 +164,7 @@ fn widest_choice(parameter: &Parameter) -> f64 {
         })
         .collect();
     let from = |a: &[f64; 2]| {
-        let apart = points.iter().map(|b| (a[0] - b[0]).hypot(a[1] - b[1]));
+        let apart = points.iter().map(|b| libm::hypot(a[0] - b[0], a[1] - b[1]));
         apart.fold(0.0, f64::max)
     };
     points.iter().map(from).fold(0.0, f64::max)

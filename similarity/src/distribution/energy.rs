@@ -30,7 +30,7 @@ pub fn energy(a: &Distribution, b: &Distribution) -> Option<Measured> {
         return None;
     }
     if let (Distribution::Normal { mean: m, std: s }, Distribution::Normal { mean: n, std: t }) = (a, b) {
-        let square = 2.0 * folded((m - n).abs(), s.hypot(*t)) - 2.0 * (s + t) / PI.sqrt();
+        let square = 2.0 * folded((m - n).abs(), libm::hypot(*s, *t)) - 2.0 * (s + t) / PI.sqrt();
         // Neighbours would lose their digits: the quadrature has them.
         if square > 1e-4 * (s + t) {
             return Some(Measured::closed(square).root());

@@ -33,7 +33,7 @@ pub fn planar_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measur
     if a == b {
         return Some(Measured::closed(0.0));
     }
-    let apart = (of_a.mean[0] - of_b.mean[0]).hypot(of_a.mean[1] - of_b.mean[1]);
+    let apart = libm::hypot(of_a.mean[0] - of_b.mean[0], of_a.mean[1] - of_b.mean[1]);
     if let (Some(x), Some(y)) = (Form::of(a), Form::of(b)) {
         if x == y && of_a.covariance == of_b.covariance {
             return Some(Measured::closed(apart));
@@ -46,7 +46,7 @@ pub fn planar_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measur
             return Some(x.compare(y, f64::abs));
         }
     }
-    paired(a, b, |x, y| (x[0] - y[0]).hypot(x[1] - y[1]))
+    paired(a, b, |x, y| libm::hypot(x[0] - y[0], x[1] - y[1]))
 }
 
 /// Root mean square of how far each point has to move, in metres.
@@ -72,7 +72,7 @@ pub fn planar_wasserstein_2(a: &Distribution, b: &Distribution) -> Option<Measur
     }
     if let (Some([a_x, a_y]), Some([b_x, b_y])) = (axes(a), axes(b)) {
         let (x, y) = (wasserstein_2(&a_x, &b_x)?, wasserstein_2(&a_y, &b_y)?);
-        let value = x.value.hypot(y.value);
+        let value = libm::hypot(x.value, y.value);
         let error = |found: Measured| match found.how {
             How::Quadrature { tolerance } => tolerance,
             _ => 0.0,
@@ -291,7 +291,7 @@ mod tests {
         let near = planar_wasserstein_2(&disc(0.0, 2.0), &round(0.0, 1.0)).unwrap().value;
         check(
             planar_wasserstein_2(&disc(0.0, 2.0), &round(3.0, 1.0)),
-            near.hypot(3.0),
+            libm::hypot(near, 3.0),
             1e-9,
         );
     }

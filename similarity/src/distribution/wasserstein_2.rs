@@ -58,7 +58,7 @@ fn closed(a: &Distribution, b: &Distribution) -> Option<f64> {
         let (of_m, of_n) = (a.mean()?, b.mean()?);
         let spread = libm::expm1(s * s) * of_m * of_m + libm::expm1(t * t) * of_n * of_n;
         let both = libm::expm1(s * t) * libm::exp(m + n + f64::midpoint(s * s, t * t));
-        return Some((of_m - of_n).hypot((spread - 2.0 * both).max(0.0).sqrt()));
+        return Some(libm::hypot(of_m - of_n, (spread - 2.0 * both).max(0.0).sqrt()));
     }
     let (of_a, of_b) = (Shape::of(a), Shape::of(b));
     let is_point = |shape: Option<(Shape, f64, f64)>| shape.is_some_and(|(shape, ..)| shape == Shape::Point);
@@ -66,7 +66,10 @@ fn closed(a: &Distribution, b: &Distribution) -> Option<f64> {
     if !alike && !is_point(of_a) && !is_point(of_b) {
         return None;
     }
-    Some((a.mean()? - b.mean()?).hypot(a.variance()?.sqrt() - b.variance()?.sqrt()))
+    Some(libm::hypot(
+        a.mean()? - b.mean()?,
+        a.variance()?.sqrt() - b.variance()?.sqrt(),
+    ))
 }
 
 /// A stretch of chance in which the number goes straight from one to another: how much chance, from, to.

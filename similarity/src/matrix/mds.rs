@@ -122,7 +122,7 @@ mod tests {
 
         #[test]
         fn points_of_a_plane_keep_their_distances(points in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 1..30)) {
-            let gap = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+            let gap = |a: [f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]);
             let labels = (0..points.len()).map(|k| k.to_string()).collect();
             let measure = |a: usize, b: usize| Ok::<_, SimilarityError>(gap(points[a], points[b]));
             let matrix = DistanceMatrix::measure(labels, measure).unwrap();

@@ -118,7 +118,7 @@ mod tests {
         #[test]
         fn points_on_a_plane_break_nothing(points in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 0..20)) {
             let n = points.len() as u64;
-            let gap = |a: usize, b: usize| (points[a][0] - points[b][0]).hypot(points[a][1] - points[b][1]);
+            let gap = |a: usize, b: usize| libm::hypot(points[a][0] - points[b][0], points[a][1] - points[b][1]);
             let found = matrix(points.len(), gap).triangle_violations();
             prop_assert_eq!((found.broken, found.worst), (0, None));
             prop_assert_eq!(found.compared, n * n.saturating_sub(1) * n.saturating_sub(2) / 2);

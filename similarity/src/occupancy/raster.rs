@@ -209,7 +209,7 @@ impl Raster {
             let (east, north) = (self.range(x, reach, 0), self.range(y, reach, 1));
             for row in north {
                 for column in east.clone() {
-                    let overlaps = self.gap(x, column, 0).hypot(self.gap(y, row, 1)) < reach;
+                    let overlaps = libm::hypot(self.gap(x, column, 0), self.gap(y, row, 1)) < reach;
                     if overlaps || home == (Some(column), Some(row)) {
                         tell((plane * rows + row) * columns + column);
                     }

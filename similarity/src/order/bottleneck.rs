@@ -73,8 +73,8 @@ fn largest_step(path: &[usize], items: &Items) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::OrderOptions;
     use super::*;
+    use crate::OrderOptions;
     use crate::{DistanceMatrix, SimilarityError};
     use proptest::prelude::*;
 
@@ -86,7 +86,7 @@ mod tests {
             points in prop::collection::vec(prop::array::uniform2(0.0..10.0_f64), 3..11),
         ) {
             let labels = (0..points.len()).map(|k| format!("{k:02}")).collect();
-            let gap = |a: usize, b: usize| (points[a][0] - points[b][0]).hypot(points[a][1] - points[b][1]);
+            let gap = |a: usize, b: usize| libm::hypot(points[a][0] - points[b][0], points[a][1] - points[b][1]);
             let matrix = DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>(gap(a, b))).unwrap();
             let items = Items::new(&matrix, &OrderOptions::default()).unwrap();
             let (least, found) = (largest_step(&exact(&items), &items), largest_step(&search(&items), &items));

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 fn matrix(points: &[[f64; 2]]) -> DistanceMatrix {
     let labels = (0..points.len()).map(|k| format!("{k:03}")).collect();
-    let distance = |a: usize, b: usize| (points[a][0] - points[b][0]).hypot(points[a][1] - points[b][1]);
+    let distance = |a: usize, b: usize| libm::hypot(points[a][0] - points[b][0], points[a][1] - points[b][1]);
     DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>(distance(a, b))).unwrap()
 }
 

@@ -142,7 +142,7 @@ mod tests {
     /// Sources on a line and sinks on another.
     fn lines(n: usize, m: usize) -> Vec<f64> {
         (0..n)
-            .flat_map(|i| (0..m).map(move |j| (i as f64 - j as f64).hypot(1.0)))
+            .flat_map(|i| (0..m).map(move |j| libm::hypot(i as f64 - j as f64, 1.0)))
             .collect()
     }
 

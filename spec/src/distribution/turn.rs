@@ -202,7 +202,7 @@ mod tests {
             points in prop::collection::vec([-4_i32..4, -4..4], 1..12), count in 0_u64..16, separation in 0.0_f64..3.0,
         ) {
             let values: Vec<[f64; 2]> = points.iter().map(|point| point.map(f64::from)).collect();
-            let far = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) >= separation;
+            let far = |a: [f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]) >= separation;
             let (mut taken, mut places): (Vec<[f64; 2]>, _) = (Vec::new(), Plain(vec![0; values.len()]));
             let mut room = 0;
             for number in 0..count {

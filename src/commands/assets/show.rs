@@ -1,5 +1,7 @@
 //! `driftworld assets show`: pictures of a class's models, or of one model from all sides, level by level.
 
+#![expect(clippy::disallowed_methods, reason = "where a camera stands for a picture")]
+
 use std::path::PathBuf;
 use std::sync::Arc;
 

@@ -141,7 +141,7 @@ mod tests {
         let fan = |count: u32| {
             let mut corners = vec![[0.0, 0.0, 1.0]];
             corners.extend((0..count).map(|k| {
-                let (sin, cos) = (k as f32 / count as f32 * std::f32::consts::TAU).sin_cos();
+                let (sin, cos) = libm::sincosf(k as f32 / count as f32 * std::f32::consts::TAU);
                 [sin, cos, 0.0]
             }));
             let triangles: Vec<[u32; 3]> = (0..count).map(|k| [0, 1 + k, 1 + (k + 1) % count]).collect();
