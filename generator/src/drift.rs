@@ -6,7 +6,6 @@ use driftworld_spec::{
 };
 
 use crate::GeneratorError;
-use crate::oklab;
 use crate::stream::Stream;
 
 /// How far a drift has come, as a function of the progress of what it happens in.
@@ -199,7 +198,7 @@ pub(crate) fn interpolate(
 ) -> Option<Value> {
     let straight = |from: f64, to: f64| from + (to - from) * t;
     match (from, to) {
-        (Value::Color(from), Value::Color(to)) => Some(Value::Color(oklab::between(*from, *to, t))),
+        (Value::Color(from), Value::Color(to)) => Some(Value::Color(from.mix(*to, t))),
         (Value::Point(from), Value::Point(to)) => {
             Some(Value::Point([straight(from[0], to[0]), straight(from[1], to[1])]))
         }
@@ -317,7 +316,7 @@ fn colored(between: Distribution, from: &Distribution, to: &Distribution, t: f64
         if a == b {
             a.clone()
         } else {
-            Channels::from(oklab::between(Color(a.0), Color(b.0), t))
+            Channels::from(Color(a.0).mix(Color(b.0), t))
         }
     };
     match (between, from, to) {

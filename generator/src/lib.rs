@@ -7,7 +7,6 @@ mod crowd;
 mod draw;
 mod drift;
 mod error;
-mod oklab;
 mod philox;
 mod placement;
 mod regions;

@@ -16,6 +16,7 @@ mod occupancy;
 mod order;
 pub mod picture;
 pub mod scalar;
+mod split_mix;
 mod transport;
 
 pub use assignment::{Assignment, MAX_ASSIGNED};
@@ -24,7 +25,7 @@ pub use color::ciede2000::{ciede2000, ciede2000_to_each};
 pub use color::hyab::hyab;
 pub use color::lab::{Lab, LabTable};
 pub use color::measure::ColorMeasure;
-pub use color::oklab::{Oklab, oklab_distance};
+pub use color::oklab::oklab_distance;
 pub use color::sets::color_sets_distance;
 pub use color::srgb::srgb_distance;
 pub use combined::variant::{VariantMeasure, variant_distance};
@@ -34,6 +35,7 @@ pub use correlation::{
     Correlation, MAX_MANTEL_ITEMS, MAX_RELABELLINGS, MIN_CORRELATED, MantelTest, PairValue, mantel, pearson, ranks,
     spearman,
 };
+pub use driftworld_spec::Oklab;
 pub use error::SimilarityError;
 pub use matrix::{
     DistanceMatrix, Embedding, MAX_DISTANCE, MAX_FEATURES, MAX_ITEMS, PlanarMap, Triangles, Violation, classical_map,

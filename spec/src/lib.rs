@@ -28,6 +28,7 @@ pub use distribution::{
 pub use document::{MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_VALUES, MAX_WORLD_VALUES};
 pub use error::{MAX_PROBLEMS, Problem, SpecError, nearest};
 pub use names::sound_name;
+pub use oklab::{Oklab, linear_from_srgb};
 pub use scenario::{
     Block, BlockKind, DriftSchedule, DriftSwitch, MAX_EXPERIENCES, Phase, Regime, RegimeDrift, Scenario,
     ScenarioComplexity, ScenarioDifficulty, ScenarioForm, TaskLabel,

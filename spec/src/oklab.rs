@@ -1,4 +1,4 @@
-//! Colours in Oklab, and how far apart two are there, through `libm`: what a requirement says must be the same on every platform.
+//! [`Oklab`]: colours where Euclidean distance follows the eye, through `libm`, so that every platform has the same bits.
 //! Other measures of colours are `similarity`'s.
 
 use crate::Color;
@@ -19,21 +19,64 @@ const LAB_FROM_ROOTS: Matrix = [
     [0.025_904_037_1, 0.782_771_766_2, -0.808_675_766_0],
 ];
 
-impl Color {
-    /// Lightness 0 to 1, a from green to red, b from blue to yellow, both about ±0.3. Source: Ottosson 2020.
-    pub fn to_oklab(self) -> [f64; 3] {
-        let linear = self.0.map(|c| {
-            if c <= 0.040_45 {
-                c / 12.92
-            } else {
-                libm::pow((c + 0.055) / 1.055, 2.4)
-            }
-        });
-        times(&LAB_FROM_ROOTS, times(&CONES_FROM_LINEAR, linear).map(libm::cbrt))
+const ROOTS_FROM_LAB: Matrix = [
+    [1.0, 0.396_337_777_4, 0.215_803_757_3],
+    [1.0, -0.105_561_345_8, -0.063_854_172_8],
+    [1.0, -0.089_484_177_5, -1.291_485_548_0],
+];
+
+const LINEAR_FROM_CONES: Matrix = [
+    [4.076_741_662_1, -3.307_711_591_3, 0.230_969_929_2],
+    [-1.268_438_004_6, 2.609_757_401_1, -0.341_319_396_5],
+    [-0.004_196_086_3, -0.703_418_614_7, 1.707_614_701_0],
+];
+
+/// A colour in Oklab: lightness 0 to 1, a from green to red, b from blue to yellow, both about ±0.3 for sRGB.
+///
+/// Made once per colour, so that matrices of distances do not convert again.
+///
+/// Source: Ottosson 2020, "A perceptual color space for image processing", with the matrices of 2021.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Oklab(pub [f64; 3]);
+
+impl From<Color> for Oklab {
+    #[inline]
+    fn from(color: Color) -> Self {
+        Self::from_linear(color.0.map(linear_from_srgb))
+    }
+}
+
+impl Oklab {
+    /// From linear sRGB: amounts of light, each in 0..=1.
+    #[inline]
+    pub fn from_linear(rgb: [f64; 3]) -> Self {
+        Self(times(&LAB_FROM_ROOTS, times(&CONES_FROM_LINEAR, rgb).map(libm::cbrt)))
     }
 
-    /// Euclidean distance in Oklab: 0 for equal colours, about 0.02 just noticeable, 1 between black and white, which no two colours
-    /// exceed.
+    /// Euclidean distance to another colour: 0 for equal ones, about 0.02 just noticeable.
+    #[inline]
+    pub fn distance(self, other: Self) -> f64 {
+        let [x, y, z] = std::array::from_fn(|k| self.0[k] - other.0[k]);
+        (x * x + y * y + z * z).sqrt()
+    }
+
+    /// The colour in sRGB; each channel is cut off at what a screen can show.
+    fn to_srgb(self) -> Color {
+        let cones = times(&ROOTS_FROM_LAB, self.0).map(|root| root * root * root);
+        let encode = |c: f64| {
+            if c <= 0.003_130_8 {
+                12.92 * c
+            } else {
+                1.055 * libm::pow(c, 1.0 / 2.4) - 0.055
+            }
+        };
+        Color(times(&LINEAR_FROM_CONES, cones).map(|c| encode(c).clamp(0.0, 1.0)))
+    }
+}
+
+impl Color {
+    /// Euclidean distance in [`Oklab`]: 0 for equal colours, about 0.02 just noticeable, 1 between black and white, which no two
+    /// colours exceed.
     ///
     /// # Example
     /// ```
@@ -43,12 +86,66 @@ impl Color {
     /// assert!(named("gold").distance(named("orange")) < 0.15);
     /// ```
     pub fn distance(self, other: Self) -> f64 {
-        let (a, b) = (self.to_oklab(), other.to_oklab());
-        let squares: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
-        squares.sqrt()
+        Oklab::from(self).distance(Oklab::from(other))
+    }
+
+    /// The colour at fraction `t` of the straight line to another in [`Oklab`]; where that leaves what a screen can show, each
+    /// channel is cut off.
+    #[must_use]
+    pub fn mix(self, other: Self, t: f64) -> Self {
+        let (from, to) = (Oklab::from(self).0, Oklab::from(other).0);
+        Oklab(std::array::from_fn(|k| from[k] + (to[k] - from[k]) * t)).to_srgb()
     }
 }
 
+/// The amount of light of an sRGB channel: its curve undone (IEC 61966-2-1). Both are in 0..=1.
+#[inline]
+pub fn linear_from_srgb(channel: f64) -> f64 {
+    if channel <= 0.040_45 {
+        channel / 12.92
+    } else {
+        libm::pow((channel + 0.055) / 1.055, 2.4)
+    }
+}
+
+#[inline]
 fn times(matrix: &Matrix, v: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ends_come_back_and_the_middle_of_black_and_white_is_middle_grey() {
+        let colors = ["red", "green", "blue", "white", "black", "gold", "rebeccapurple"];
+        for color in colors.map(|name| Color::from_name(name).unwrap()) {
+            let back = color.mix(color, 0.3);
+            assert!(
+                color.0.iter().zip(back.0).all(|(a, b)| (a - b).abs() < 1e-6),
+                "{color:?}: {back:?}"
+            );
+        }
+        let grey = Color([0.0; 3]).mix(Color([1.0; 3]), 0.5);
+        assert!(
+            grey.0.iter().all(|channel| (channel - 0.388_57).abs() < 1e-4),
+            "{grey:?}"
+        );
+    }
+
+    #[test]
+    fn lightness_changes_evenly_between_blue_and_yellow() {
+        let (blue, yellow) = (Color([0.0, 0.0, 1.0]), Color([1.0, 1.0, 0.0]));
+        let steps: Vec<f64> = (0..=4)
+            .map(|k| blue.mix(yellow, f64::from(k) / 4.0))
+            .map(|color| Oklab::from(color).0[0])
+            .collect();
+        for pair in steps.windows(2) {
+            assert!(
+                (pair[1] - pair[0] - (steps[4] - steps[0]) / 4.0).abs() < 0.01,
+                "{steps:?}"
+            );
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! [`Lab`]: a colour in CIE L*a*b*, where distances mean more than in sRGB. The distances are in files of their own.
 
-use driftworld_spec::Color;
+use driftworld_spec::{Color, linear_from_srgb};
 
 /// Linear sRGB to CIE XYZ (ITU-R BT.709 primaries, D65), rounded as scikit-image has it.
 const XYZ_FROM_RGB: [[f64; 3]; 3] = [
@@ -32,7 +32,7 @@ pub struct Lab(pub [f64; 3]);
 
 impl From<Color> for Lab {
     fn from(color: Color) -> Self {
-        let rgb = color.0.map(linear);
+        let rgb = color.0.map(linear_from_srgb);
         let row = |k: usize| XYZ_FROM_RGB[k][0] * rgb[0] + XYZ_FROM_RGB[k][1] * rgb[1] + XYZ_FROM_RGB[k][2] * rgb[2];
         let [x, y, z] = [0, 1, 2].map(|k| compressed(row(k) / WHITE[k]));
         Self([116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)])
@@ -43,15 +43,6 @@ impl Lab {
     /// Distance from the grey of the same lightness.
     pub fn chroma(self) -> f64 {
         (self.0[1] * self.0[1] + self.0[2] * self.0[2]).sqrt()
-    }
-}
-
-/// sRGB's curve undone: from what a file says to amounts of light (IEC 61966-2-1).
-pub(crate) fn linear(channel: f64) -> f64 {
-    if channel > 0.040_45 {
-        libm::pow((channel + 0.055) / 1.055, 2.4)
-    } else {
-        channel / 12.92
     }
 }
 

@@ -3,13 +3,12 @@
 
 use driftworld_spec::Color;
 
-use crate::Nature;
 use crate::color::cie76::{CIE76_DIAMETER, cie76};
 use crate::color::ciede2000::{CIEDE2000_DIAMETER, ciede2000};
 use crate::color::hyab::hyab;
 use crate::color::lab::Lab;
-use crate::color::oklab::Oklab;
 use crate::color::srgb::srgb_distance;
+use crate::{Nature, Oklab};
 
 /// A way to say how far two colours are apart.
 ///

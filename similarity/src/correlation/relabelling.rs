@@ -1,5 +1,7 @@
 //! Relabellings of items: all of them, or some drawn by chance. What is compared under them is in `mantel.rs`.
 
+use crate::split_mix::SplitMix64;
+
 /// The ways in which `items` can change labels that a test goes through; each is found by its number alone, so that any thread
 /// may take any of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,39 +56,10 @@ impl Relabellings {
                 }
             }
             Self::Drawn { seed, .. } => {
-                let mut chance = SplitMix::keyed(seed, number);
+                let mut rng = SplitMix64::keyed(seed, number);
                 for last in (1..labels.len()).rev() {
-                    labels.swap(last, chance.below(last as u64 + 1) as usize);
+                    labels.swap(last, rng.unbiased_below(last as u64 + 1) as usize);
                 }
-            }
-        }
-    }
-}
-
-/// `SplitMix64` (Steele, Lea and Flood 2014), a stream for each key: the same on every platform.
-struct SplitMix(u64);
-
-impl SplitMix {
-    fn keyed(seed: u64, number: u64) -> Self {
-        let first = Self(seed).next();
-        Self(first ^ Self(number).next().rotate_left(32))
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// A number below `bound`, each as likely: numbers from the incomplete last stretch are drawn again.
-    fn below(&mut self, bound: u64) -> u64 {
-        let whole = u64::MAX - u64::MAX % bound;
-        loop {
-            let drawn = self.next();
-            if drawn < whole {
-                return drawn % bound;
             }
         }
     }

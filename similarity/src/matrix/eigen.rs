@@ -3,7 +3,7 @@
 //! Lanczos' method with full reorthogonalisation, in plain sums and square roots: the same bits on every machine, however many
 //! threads the callers' products use.
 
-use crate::order::SplitMix64;
+use crate::split_mix::SplitMix64;
 
 /// The most steps between two beginnings.
 const MAX_STEPS: usize = 160;
@@ -23,8 +23,8 @@ pub(crate) fn largest(
     against: &[Vec<f64>],
 ) -> Option<(f64, Vec<f64>)> {
     // Another start each time: the old one has no part left in an eigenspace that it has led into before.
-    let mut chance = SplitMix64(against.len() as u64);
-    let mut start: Vec<f64> = (0..n).map(|_| chance.unit() - 0.5).collect();
+    let mut rng = SplitMix64(against.len() as u64);
+    let mut start: Vec<f64> = (0..n).map(|_| rng.unit() - 0.5).collect();
     let mut best = None;
     for _ in 0..MAX_RESTARTS {
         let Some(found) = climb(n, multiply, against, start.clone()) else {

@@ -1,6 +1,6 @@
 //! [`Items`]: the items of a matrix by the order of their names, which is how the methods see them. Finds no order itself.
 
-use super::OrderOptions;
+use super::options::OrderOptions;
 use crate::{DistanceMatrix, SimilarityError};
 
 /// Which items stand at the ends of a path.

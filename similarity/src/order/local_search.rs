@@ -8,8 +8,8 @@
 use rayon::prelude::*;
 
 use super::items::Ends;
-use super::random::SplitMix64;
 use super::tour::Tour;
+use crate::split_mix::SplitMix64;
 
 /// Towards how many of its nearest a change of an item is tried.
 const NEIGHBOURS: usize = 10;
@@ -195,10 +195,10 @@ impl<'a, C: Fn(usize, usize) -> f64 + Sync> Search<'a, C> {
             return;
         }
         let most = SHAKEN.min((round - 2) / 2) as u64;
-        let mut chance = SplitMix64(0);
+        let mut rng = SplitMix64(0);
         for _ in 0..shakes {
-            let start = chance.below(round as u64) as usize;
-            let (first, second) = (1 + chance.below(most) as usize, 1 + chance.below(most) as usize);
+            let start = rng.below(round as u64) as usize;
+            let (first, second) = (1 + rng.below(most) as usize, 1 + rng.below(most) as usize);
             let [a, b, c, d, e, f] =
                 [0, 1, first, first + 1, first + second, first + second + 1].map(|step| self.tour.at(start + step));
             let lost = self.cost(a, d) + self.cost(e, b) + self.cost(c, f)

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use serde::Serialize;
 
-use super::MAX_EXACT;
+use super::exact::MAX_EXACT;
 use crate::SimilarityError;
 
 /// How items are put into an order.

@@ -11,6 +11,7 @@ mod linkage;
 mod local_search;
 mod method;
 mod nearest;
+mod options;
 mod ordering;
 mod random;
 mod spectral;
@@ -23,44 +24,11 @@ mod typical_last;
 pub use exact::MAX_EXACT;
 pub use leaf::MAX_LEAVES;
 pub use method::Method;
+pub use options::OrderOptions;
 pub use ordering::Ordering;
-pub(crate) use random::SplitMix64;
 
 use crate::{DistanceMatrix, SimilarityError};
 use items::Items;
-
-/// What an order has to keep to, besides its method.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct OrderOptions {
-    /// The item that comes first, by its index in the matrix; whichever is best if none is given.
-    pub first: Option<usize>,
-    /// The item that comes last, by its index in the matrix; whichever is best if none is given.
-    pub last: Option<usize>,
-    /// What [`Method::Random`] draws from; 0 by default. The other methods draw nothing.
-    pub seed: u64,
-    /// The step that [`Method::TargetStep`] wants, in the distances' own unit; the other methods want none.
-    pub target_step: Option<f64>,
-}
-
-impl OrderOptions {
-    /// With an item that comes first.
-    #[must_use]
-    pub fn with_first(self, first: usize) -> Self {
-        Self {
-            first: Some(first),
-            ..self
-        }
-    }
-
-    /// With an item that comes last.
-    #[must_use]
-    pub fn with_last(self, last: usize) -> Self {
-        Self {
-            last: Some(last),
-            ..self
-        }
-    }
-}
 
 /// Puts items into an order. Of equal orders the one whose labels come first is taken, so the same distances always give the
 /// same order, however the matrix is sorted.

@@ -1,68 +1,14 @@
-//! Orders by chance, as controls, and the small portable generator behind them. Worlds are not drawn from it.
+//! Random orders from a seed, as controls.
 
 use super::items::Items;
+use crate::split_mix::SplitMix64;
 
 pub(super) fn order(items: &Items, seed: u64) -> Vec<usize> {
     let mut ranks: Vec<usize> = (0..items.len()).collect();
-    let mut chance = SplitMix64(seed);
+    let mut rng = SplitMix64(seed);
     // Fisher and Yates: every order as likely.
     for place in (1..ranks.len()).rev() {
-        ranks.swap(place, chance.below(place as u64 + 1) as usize);
+        ranks.swap(place, rng.below(place as u64 + 1) as usize);
     }
     items.with_ends_outside(ranks)
-}
-
-/// `SplitMix64` (Steele, Lea and Flood 2014): 64 bits of state, the same numbers on every machine.
-pub(crate) struct SplitMix64(pub(crate) u64);
-
-impl SplitMix64 {
-    /// The next 64 bits.
-    pub(crate) fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// A whole number below `bound`, by the high half of a product: biased by less than `bound / 2⁶⁴`.
-    pub(crate) fn below(&mut self, bound: u64) -> u64 {
-        ((u128::from(self.next()) * u128::from(bound)) >> 64) as u64
-    }
-
-    /// A number in `0..1`, of 53 bits.
-    pub(crate) fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_numbers_are_those_of_the_published_generator() {
-        let mut chance = SplitMix64(1_234_567);
-        let found: Vec<u64> = (0..5).map(|_| chance.next()).collect();
-        // The output of Vigna's splitmix64.c for this seed.
-        let expected = [
-            6_457_827_717_110_365_317,
-            3_203_168_211_198_807_973,
-            9_817_491_932_198_370_423,
-            4_593_380_528_125_082_431,
-            16_408_922_859_458_223_821,
-        ];
-        assert_eq!(found, expected);
-    }
-
-    #[test]
-    fn a_draw_stays_below_its_bound_and_reaches_all() {
-        let mut chance = SplitMix64(1);
-        let mut seen = [0_u32; 5];
-        for _ in 0..5000 {
-            seen[chance.below(5) as usize] += 1;
-            assert!((0.0..1.0).contains(&chance.unit()));
-        }
-        assert!(seen.iter().all(|count| (900..1100).contains(count)), "{seen:?}");
-    }
 }

@@ -1,6 +1,7 @@
 //! Laws that every method keeps, and answers found by trying everything. What a single file does is tested there.
 
 use super::*;
+use crate::split_mix::SplitMix64;
 use proptest::prelude::*;
 
 fn matrix(points: &[[f64; 2]]) -> DistanceMatrix {
@@ -178,7 +179,7 @@ fn farthest_first_always_takes_what_is_newest() {
 }
 
 #[test]
-fn chance_follows_its_seed_and_given_keeps_the_order() {
+fn random_orders_follow_their_seed_and_given_keeps_the_order() {
     let matrix = matrix(&[[0.0, 0.0]; 9]);
     let random = |seed| {
         let options = OrderOptions {
@@ -255,8 +256,8 @@ fn what_cannot_be_ordered_says_why() {
 
 /// Points of the unit square, as `tests/oracle/make_orders.py` makes them.
 fn drawn(seed: u64, count: usize) -> DistanceMatrix {
-    let mut chance = SplitMix64(seed);
-    let points: Vec<[f64; 2]> = (0..count).map(|_| [chance.unit(), chance.unit()]).collect();
+    let mut rng = SplitMix64(seed);
+    let points: Vec<[f64; 2]> = (0..count).map(|_| [rng.unit(), rng.unit()]).collect();
     matrix(&points)
 }
 

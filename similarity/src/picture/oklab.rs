@@ -2,13 +2,14 @@
 
 use std::sync::LazyLock;
 
+use driftworld_spec::{Oklab, linear_from_srgb};
+
 use super::Picture;
 use crate::SimilarityError;
-use crate::color::lab::linear;
-use crate::color::oklab::Oklab;
 
 /// Amounts of light of the 256 bytes.
-static LIGHT: LazyLock<[f64; 256]> = LazyLock::new(|| std::array::from_fn(|byte| linear(byte as f64 / 255.0)));
+static LIGHT: LazyLock<[f64; 256]> =
+    LazyLock::new(|| std::array::from_fn(|byte| linear_from_srgb(byte as f64 / 255.0)));
 
 /// Mean over all pixels of the distance in Oklab between what two pictures show there.
 ///
