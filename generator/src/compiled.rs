@@ -6,7 +6,7 @@ use driftworld_spec::{
 };
 
 use crate::coverage::Coverage;
-use crate::draw::{draw, point_at};
+use crate::draw::draw;
 use crate::placement::Margins;
 use crate::stream::{Chance, Stream};
 
@@ -61,7 +61,7 @@ impl Randomized {
         let law = &self.drawn.distribution;
         match count {
             1 => law.value_at(u),
-            2 => point_at(law, [u, further(1)?]).map(Value::Point),
+            2 => law.point_at([u, further(1)?]).map(Value::Point),
             _ => law.color_at([u, further(1)?, further(2)?]).map(Value::Color),
         }
     }

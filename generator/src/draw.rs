@@ -5,7 +5,6 @@
 //! rejection needs no transcendental function; all else goes through `libm`, so that the bits are the same everywhere.
 
 use std::borrow::Cow;
-use std::f64::consts::TAU;
 
 use driftworld_spec::{Distribution, Order, Value};
 use rand_distr::{Distribution as _, UnitCircle, UnitDisc};
@@ -106,10 +105,9 @@ pub(crate) fn place(distribution: &Distribution, number: u64, chance: &mut Chanc
             };
             [axis(0, cell % columns, columns), axis(1, cell / columns, rows)]
         }
-        Distribution::PoissonDisc { low, high, distance } => {
+        Distribution::PoissonDisc { distance, .. } => {
             own_distance = *distance;
-            let [u, v] = [chance.unit(), chance.unit()];
-            [low[0] + (high[0] - low[0]) * u, low[1] + (high[1] - low[1]) * v]
+            point_at(distribution, chance)
         }
         Distribution::Mixture { parts, .. } => {
             return place(&parts[distribution.chosen_at(chance.unit())], number, chance);
@@ -121,9 +119,15 @@ pub(crate) fn place(distribution: &Distribution, number: u64, chance: &mut Chanc
             Value::Point(point) => point,
             _ => [0.0, 0.0],
         },
-        other => point_at(other, [chance.unit(), chance.unit()]).unwrap_or([0.0, 0.0]),
+        other => point_at(other, chance),
     };
     Place { at, own_distance }
+}
+
+fn point_at(distribution: &Distribution, chance: &mut Chance) -> [f64; 2] {
+    distribution
+        .point_at([chance.unit(), chance.unit()])
+        .unwrap_or([0.0, 0.0])
 }
 
 fn turn(order: Order, count: u64, number: u64, chance: &mut Chance) -> usize {
@@ -131,30 +135,4 @@ fn turn(order: Order, count: u64, number: u64, chance: &mut Chance) -> usize {
         Order::Turn => (number % count) as usize,
         Order::Random => ((chance.unit() * count as f64) as u64).min(count - 1) as usize,
     }
-}
-
-/// The point that two numbers of chance decide; `None` for distributions that more or fewer decide.
-pub(crate) fn point_at(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
-    let ring = |[x, y]: [f64; 2], inner: f64, outer: f64| {
-        let radius = (inner * inner + (outer * outer - inner * inner) * u).sqrt();
-        [x + radius * libm::cos(TAU * v), y + radius * libm::sin(TAU * v)]
-    };
-    Some(match distribution {
-        Distribution::Box { low, high } => [low[0] + (high[0] - low[0]) * u, low[1] + (high[1] - low[1]) * v],
-        Distribution::Disc { center, radius } => ring(*center, 0.0, *radius),
-        Distribution::Annulus { center, inner, outer } => ring(*center, *inner, *outer),
-        Distribution::Gaussian { mean, .. } => {
-            let [[xx, xy], [_, yy]] = distribution.gaussian_covariance()?;
-            let normal = Distribution::Normal { mean: 0.0, std: 1.0 };
-            let (a, b) = (normal.quantile(u)?, normal.quantile(v)?);
-            // Cholesky: x takes the first number, y its share of it and the rest from the second.
-            let along = xx.sqrt();
-            let shared = if along > 0.0 { xy / along } else { 0.0 };
-            [
-                mean[0] + along * a,
-                mean[1] + shared * a + (yy - shared * shared).max(0.0).sqrt() * b,
-            ]
-        }
-        _ => return None,
-    })
 }

@@ -1,8 +1,6 @@
 //! Points that stand for a distribution of the plane, evenly strewn and always the same. What is reckoned from them is in
 //! `planar.rs`; worlds are drawn elsewhere, by chance.
 
-use std::f64::consts::TAU;
-
 use driftworld_spec::{Distribution, Value};
 
 /// So many points that each stands for the same share; `None` if it draws no points.
@@ -20,30 +18,12 @@ pub(super) fn scatter(distribution: &Distribution, count: usize) -> Option<Vec<[
 
 /// The point that two numbers of chance decide. `poisson_disc` is taken without its distance.
 fn point(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
-    let ring = |[x, y]: [f64; 2], inner: f64, outer: f64| {
-        let radius = (inner * inner + (outer * outer - inner * inner) * u).sqrt();
-        [x + radius * libm::cos(TAU * v), y + radius * libm::sin(TAU * v)]
-    };
     let among = |count: usize| {
         let at = u * count as f64;
         let index = (at as usize).min(count - 1);
         (index, at - index as f64)
     };
     Some(match distribution {
-        Distribution::Box { low, high } | Distribution::PoissonDisc { low, high, .. } => {
-            [low[0] + (high[0] - low[0]) * u, low[1] + (high[1] - low[1]) * v]
-        }
-        Distribution::Disc { center, radius } => ring(*center, 0.0, *radius),
-        Distribution::Annulus { center, inner, outer } => ring(*center, *inner, *outer),
-        Distribution::Gaussian { mean, .. } => {
-            let [[xx, xy], [_, yy]] = distribution.gaussian_covariance()?;
-            let normal = Distribution::Normal { mean: 0.0, std: 1.0 };
-            let (a, b) = (normal.quantile(u)?, normal.quantile(v)?);
-            let along = xx.sqrt();
-            let shared = if along > 0.0 { xy / along } else { 0.0 };
-            let across = (yy - shared * shared).max(0.0).sqrt();
-            [mean[0] + along * a, mean[1] + shared * a + across * b]
-        }
         Distribution::Points { values, .. } => values[among(values.len()).0],
         Distribution::Grid {
             low,
@@ -80,7 +60,7 @@ fn point(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
             let (index, within) = chosen(parts.len(), weights.as_deref(), u);
             return point(&parts[index], [within, v]);
         }
-        _ => return None,
+        other => return other.point_at([u, v]),
     })
 }
 

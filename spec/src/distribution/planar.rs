@@ -1,4 +1,7 @@
-//! Mean and covariance of the distributions that draw points. Those of numbers are in `moments.rs`.
+//! Of the distributions that draw points: the point that two numbers decide, mean and covariance. Those of numbers are in
+//! `quantile.rs` and `moments.rs`.
+
+use std::f64::consts::TAU;
 
 use super::{Distribution, Spread};
 use crate::task::Value;
@@ -46,6 +49,34 @@ impl PlanarMoments {
 }
 
 impl Distribution<f64> {
+    /// The point that two numbers in 0..1 decide; of `poisson_disc` without its distance. `None` for distributions that more
+    /// or fewer numbers decide.
+    #[inline]
+    pub fn point_at(&self, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
+        let ring = |[x, y]: [f64; 2], inner: f64, outer: f64| {
+            let radius = (inner * inner + (outer * outer - inner * inner) * u).sqrt();
+            [x + radius * libm::cos(TAU * v), y + radius * libm::sin(TAU * v)]
+        };
+        Some(match self {
+            Self::Box { low, high } | Self::PoissonDisc { low, high, .. } => {
+                [low[0] + (high[0] - low[0]) * u, low[1] + (high[1] - low[1]) * v]
+            }
+            Self::Disc { center, radius } => ring(*center, 0.0, *radius),
+            Self::Annulus { center, inner, outer } => ring(*center, *inner, *outer),
+            Self::Gaussian { mean, .. } => {
+                let [[xx, xy], [_, yy]] = self.gaussian_covariance()?;
+                let normal = Self::Normal { mean: 0.0, std: 1.0 };
+                let (a, b) = (normal.quantile(u)?, normal.quantile(v)?);
+                // Cholesky: x takes the first number, y its share of it and the rest from the second.
+                let along = xx.sqrt();
+                let shared = if along > 0.0 { xy / along } else { 0.0 };
+                let across = (yy - shared * shared).max(0.0).sqrt();
+                [mean[0] + along * a, mean[1] + shared * a + across * b]
+            }
+            _ => return None,
+        })
+    }
+
     /// Mean and covariance, exact; of places taken in turn those of one round, of `poisson_disc` those without its distance.
     /// `None` if it draws no points.
     pub fn planar_moments(&self) -> Option<PlanarMoments> {
