@@ -10,7 +10,8 @@ use driftworld_text::{ShownPath, one_line};
 use crate::behavior::BEHAVIOR;
 
 /// Everything that ends a session before its client does.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
+#[strum(prefix = "unity/", serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum UnityError {
     /// Arguments that cannot be.
@@ -20,6 +21,7 @@ pub enum UnityError {
         text: String,
     },
     /// A file that cannot be read, is no regular file, is too large or is no text.
+    #[strum(serialize = "file")]
     #[error("{option} {source}")]
     Reading {
         /// The option that named it.
@@ -28,6 +30,7 @@ pub enum UnityError {
         source: FileError,
     },
     /// A file that cannot be written.
+    #[strum(serialize = "unwritable")]
     #[error("{option} {}: cannot be written: {source}", path.shown(), source = one_line(source))]
     Writing {
         /// The option that named it.
@@ -163,28 +166,7 @@ impl UnityError {
 
     /// A name for programs, which stays as it is.
     pub fn code(&self) -> &'static str {
-        match self {
-            Self::Arguments { .. } => "unity/arguments",
-            Self::Reading { .. } => "unity/file",
-            Self::Writing { .. } => "unity/unwritable",
-            Self::Network { .. } => "unity/network",
-            Self::Document(_) => "unity/document",
-            Self::NoClient { .. } => "unity/no-client",
-            Self::NoAddress { .. } => "unity/no-address",
-            Self::NotAClient { .. } => "unity/not-a-client",
-            Self::ClientVersion { .. } => "unity/client-version",
-            Self::Unreadable { .. } => "unity/unreadable",
-            Self::Incomplete { .. } => "unity/incomplete",
-            Self::UnknownCommand { .. } => "unity/unknown-command",
-            Self::ClientFailed { .. } => "unity/client-failed",
-            Self::WrongAgent { .. } => "unity/wrong-agent",
-            Self::ActionLength { .. } => "unity/action-length",
-            Self::ActionRow { .. } => "unity/action-row",
-            Self::Library { .. } => "unity/library",
-            Self::TooLarge { .. } => "unity/too-large",
-            Self::Picture { .. } => "unity/picture",
-            Self::Env(_) => "unity/env",
-        }
+        self.into()
     }
 
     /// The exit status of the executable.

@@ -12,7 +12,8 @@ use driftworld_text::{ShownPath, one_line};
 /// Everything that can stop a log from being written or read, or metrics from being computed.
 ///
 /// Every message reads: where, what was found, what was expected, and what to do where that is not plain.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
+#[strum(prefix = "metrics/", serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum MetricsError {
     /// The file system refused.
