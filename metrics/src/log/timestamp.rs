@@ -5,10 +5,12 @@
 use std::fmt;
 use std::str::FromStr;
 
+use jiff::SignedDuration;
+use jiff::civil::{DateTime, datetime};
+
 use crate::MetricsError;
 
-const MICROS_PER_SECOND: i64 = 1_000_000;
-const SECONDS_PER_DAY: i64 = 86_400;
+const EPOCH: DateTime = datetime(1970, 1, 1, 0, 0, 0, 0);
 
 /// A checked time stamp, year 1 to 9999, to the microsecond, without a time zone. Earlier ones compare as less.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -30,14 +32,11 @@ impl Timestamp {
     /// # Ok::<(), driftworld_metrics::MetricsError>(())
     /// ```
     pub fn from_unix_micros(micros: i64) -> Result<Self, MetricsError> {
-        let first = days_from_civil(1, 1, 1) * SECONDS_PER_DAY * MICROS_PER_SECOND;
-        let end = days_from_civil(10_000, 1, 1) * SECONDS_PER_DAY * MICROS_PER_SECOND;
-        if (first..end).contains(&micros) {
-            Ok(Self { micros })
-        } else {
-            Err(MetricsError::Timestamp {
+        match moment(micros) {
+            Some(_) => Ok(Self { micros }),
+            None => Err(MetricsError::Timestamp {
                 found: format!("{micros} microseconds after 1970"),
-            })
+            }),
         }
     }
 
@@ -48,7 +47,7 @@ impl Timestamp {
 
     /// Seconds from `earlier` to `self`; negative if `self` is the earlier one.
     pub fn seconds_since(self, earlier: Self) -> f64 {
-        (self.micros - earlier.micros) as f64 / MICROS_PER_SECOND as f64
+        (self.micros - earlier.micros) as f64 / 1e6
     }
 }
 
@@ -65,15 +64,8 @@ impl FromStr for Timestamp {
 
 impl fmt::Display for Timestamp {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let seconds = self.micros.div_euclid(MICROS_PER_SECOND);
-        let (year, month, day) = civil_from_days(seconds.div_euclid(SECONDS_PER_DAY));
-        let of_day = seconds.rem_euclid(SECONDS_PER_DAY);
-        let (hour, minute, second) = (of_day / 3600, of_day / 60 % 60, of_day % 60);
-        let micros = self.micros.rem_euclid(MICROS_PER_SECOND);
-        write!(
-            f,
-            "{year:04}{month:02}{day:02}T{hour:02}{minute:02}{second:02}.{micros:06}"
-        )
+        let moment = moment(self.micros).expect("a stamp is of the years 1 to 9999");
+        write!(f, "{}", moment.strftime("%Y%m%dT%H%M%S.%6f"))
     }
 }
 
@@ -82,20 +74,19 @@ fn parse(text: &str) -> Option<Timestamp> {
     if whole[8] != b'T' || whole[15] != b'.' || !(1..=6).contains(&fraction.len()) {
         return None;
     }
-    let (year, month, day) = (number(&whole[..4])?, number(&whole[4..6])?, number(&whole[6..8])?);
-    let (hour, minute, second) = (number(&whole[9..11])?, number(&whole[11..13])?, number(&whole[13..15])?);
-    if year < 1 || !(1..=12).contains(&month) || !(1..=days_in_month(year, month)).contains(&day) {
-        return None;
-    }
-    if hour > 23 || minute > 59 || second > 59 {
-        return None;
-    }
+    let two = |at: usize| Some(number(&whole[at..at + 2])? as i8);
+    let year = number(&whole[..4]).filter(|year| *year >= 1)? as i16;
     // Missing digits are zeros.
-    let micros = (fraction.len()..6).fold(number(fraction)?, |micros, _| micros * 10);
-    let seconds = days_from_civil(year, month, day) * SECONDS_PER_DAY + hour * 3600 + minute * 60 + second;
-    Some(Timestamp {
-        micros: seconds * MICROS_PER_SECOND + micros,
-    })
+    let nanos = (fraction.len()..9).fold(number(fraction)?, |nanos, _| nanos * 10) as i32;
+    let moment = DateTime::new(year, two(4)?, two(6)?, two(9)?, two(11)?, two(13)?, nanos).ok()?;
+    let micros = moment.duration_since(EPOCH).as_micros() as i64;
+    Some(Timestamp { micros })
+}
+
+/// The day and time that is so many microseconds from the epoch; `None` outside the years 1 to 9999.
+fn moment(micros: i64) -> Option<DateTime> {
+    let moment = EPOCH.checked_add(SignedDuration::from_micros(micros)).ok();
+    moment.filter(|moment| moment.year() >= 1)
 }
 
 /// The number that a few digits stand for; `None` where there is anything else.
@@ -103,44 +94,6 @@ fn number(digits: &[u8]) -> Option<i64> {
     digits.iter().try_fold(0, |number, digit| {
         digit.is_ascii_digit().then(|| number * 10 + i64::from(digit - b'0'))
     })
-}
-
-fn days_in_month(year: i64, month: i64) -> i64 {
-    match month {
-        2 if year % 4 == 0 && (year % 100 != 0 || year % 400 == 0) => 29,
-        2 => 28,
-        4 | 6 | 9 | 11 => 30,
-        _ => 31,
-    }
-}
-
-/// Days from 1970-01-01 to a date of the Gregorian calendar. Years are counted from March, so that the leap day is
-/// the last of its year and months before it have a fixed length pattern (153 days in five months).
-fn days_from_civil(year: i64, month: i64, day: i64) -> i64 {
-    let (year, month_from_march) = if month > 2 {
-        (year, month - 3)
-    } else {
-        (year - 1, month + 9)
-    };
-    let (era, year_of_era) = (year.div_euclid(400), year.rem_euclid(400));
-    let day_of_year = (153 * month_from_march + 2) / 5 + day - 1;
-    era * 146_097 + year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year - 719_468
-}
-
-/// The inverse of [`days_from_civil`] for dates that exist.
-fn civil_from_days(days: i64) -> (i64, i64, i64) {
-    let days = days + 719_468;
-    let (era, day_of_era) = (days.div_euclid(146_097), days.rem_euclid(146_097));
-    let year_of_era = (day_of_era - day_of_era / 1_460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let month_from_march = (5 * day_of_year + 2) / 153;
-    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
-    let month = if month_from_march < 10 {
-        month_from_march + 3
-    } else {
-        month_from_march - 9
-    };
-    (era * 400 + year_of_era + i64::from(month <= 2), month, day)
 }
 
 #[cfg(test)]
@@ -196,8 +149,16 @@ mod tests {
 
         #[test]
         fn days_that_exist_are_those_that_come_back(year in 1_i64..10_000, month in 0_i64..14, day in 0_i64..33) {
-            let exists = (1..=12).contains(&month) && (1..=days_in_month(year, month)).contains(&day);
-            prop_assert_eq!(civil_from_days(days_from_civil(year, month, day)) == (year, month, day), exists);
+            let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+            let last = match month {
+                2 => 28 + i64::from(is_leap),
+                4 | 6 | 9 | 11 => 30,
+                1..=12 => 31,
+                _ => 0,
+            };
+            let text = format!("{year:04}{month:02}{day:02}T000000.000000");
+            let found = text.parse::<Timestamp>().ok().map(|stamp| stamp.to_string());
+            prop_assert_eq!(found, (1..=last).contains(&day).then_some(text));
         }
 
         #[test]

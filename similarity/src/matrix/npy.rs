@@ -1,4 +1,7 @@
 //! Distance matrices in numpy's file format, version 1.0. It has no place for labels: they are handed in and out beside it.
+//!
+//! Not by `ndarray-npy`: it makes room for as many numbers as a heading announces before it looks whether they are there, and
+//! brings a parser generator for what are two keys here.
 
 use ndarray::Array2;
 
