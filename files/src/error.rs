@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use driftworld_text::ShownPath;
 
 /// Why a file cannot be read. Each says the path, what was found, what was expected, and what to do.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, thiserror::Error, strum::IntoStaticStr, strum::VariantNames)]
+#[strum(prefix = "files/", serialize_all = "kebab-case")]
 #[non_exhaustive]
 pub enum FileError {
     /// There is nothing, or the system does not let it be read.
@@ -71,12 +72,7 @@ impl FileError {
 
     /// The stable name of this kind of error.
     pub fn code(&self) -> &'static str {
-        match self {
-            Self::Unreadable { .. } => "files/unreadable",
-            Self::NotAFile { .. } => "files/not-a-file",
-            Self::TooLarge { .. } => "files/too-large",
-            Self::NotText { .. } => "files/not-text",
-        }
+        self.into()
     }
 }
 
