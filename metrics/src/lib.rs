@@ -41,14 +41,14 @@ mod score;
 mod statistics;
 
 pub use error::MetricsError;
-pub use lifetime::{Lifetime, MAX_REGIMES, Regime, SteLog, experts_serving};
+pub use lifetime::{Lifetime, MAX_REGIMES, Regime, SteLog, experts_serving, read_ste_log};
 pub use log::{
     BlockSubtype, BlockType, Complexity, DEFAULT_WORKER, Delimiter, Difficulty, ExpStatus, KeptRows,
     LOG_FORMAT_VERSION, Log, LogColumn, LogCounts, LogTable, LogWarning, LogWriter, LoggerInfo, MAX_CELL_BYTES,
     MAX_CELLS, MAX_COLUMNS, MAX_FILE_BYTES, MAX_JSON_BYTES, MAX_JSON_VALUES, MAX_LISTED, MAX_LOG_FILES, MAX_RECORDS,
     Record, Row, Rows, ScenarioInfo, ScenarioType, SharedColumn, SteStoreMode, StoredRun, StoredTask, TaskParams,
-    TextColumn, Timestamp, Validation, Words, begun_log, clear_ste, find_ste, read_log, read_log_with_texts,
-    read_ste_log, store_ste, validate_log,
+    TextColumn, Timestamp, Validation, Words, begun_log, clear_ste, find_ste, read_log, read_log_with_texts, store_ste,
+    validate_log,
 };
 pub use options::{
     AggregationMethod, DataRange, DataRanges, Definitions, MAX_WINDOW_LENGTH, MaintenanceMethod, Noise,

@@ -11,6 +11,9 @@ use crate::choice::choice;
 /// Longest smoothing window that may be asked for, in experiences.
 pub const MAX_WINDOW_LENGTH: usize = 10_000;
 
+/// Performances must stay below this magnitude, so that no sum or quotient of them overflows.
+pub(crate) const MAX_PERFORMANCE: f64 = 1e100;
+
 choice! {
     /// Whether variants of a task (`find_red`, `find_blue`) are tasks of their own.
     VariantMode, "variant mode" {
@@ -18,6 +21,17 @@ choice! {
         Aware = "aware",
         /// Names are cut at their first underscore, so that all variants are one task.
         Agnostic = "agnostic",
+    }
+}
+
+impl VariantMode {
+    /// The name under which a task is scored: lower-case, and without its variant where variants do not count.
+    pub(crate) fn scored_name(self, task_name: &str) -> String {
+        let mut name = task_name.to_lowercase();
+        if self == Self::Agnostic {
+            name.truncate(name.find('_').unwrap_or(name.len()));
+        }
+        name
     }
 }
 
@@ -244,7 +258,7 @@ impl Options {
             });
         }
         if let Some(noise) = self.noise {
-            let bounded = |value: f64| value.abs() < crate::lifetime::MAX_PERFORMANCE;
+            let bounded = |value: f64| value.abs() < MAX_PERFORMANCE;
             if !bounded(noise.mean) || !bounded(noise.std) || noise.std < 0.0 {
                 return Err(MetricsError::BadOption {
                     option: "noise",
@@ -254,8 +268,7 @@ impl Options {
             }
         }
         for (task, range) in self.data_range.iter().flatten() {
-            let bounded = range.min.abs() < crate::lifetime::MAX_PERFORMANCE
-                && range.max.abs() < crate::lifetime::MAX_PERFORMANCE;
+            let bounded = range.min.abs() < MAX_PERFORMANCE && range.max.abs() < MAX_PERFORMANCE;
             if !bounded || range.min > range.max {
                 return Err(MetricsError::BadOption {
                     option: "data_range",

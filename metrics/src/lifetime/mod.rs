@@ -2,22 +2,20 @@
 //!
 //! Not here: reading files (`log`), changing the numbers (`preprocess`), and judging them (`score`).
 
+mod prepare;
 mod regime;
 mod ste;
+mod usable;
 
-use indexmap::{IndexMap, IndexSet};
+use indexmap::IndexMap;
 
 pub(crate) use regime::mean_per_experience;
 pub use regime::{MAX_REGIMES, Regime};
 pub(crate) use ste::SteRun;
-pub use ste::{SteLog, experts_serving};
+pub use ste::{SteLog, experts_serving, read_ste_log};
+pub(crate) use usable::complete_rows;
 
-use crate::log::{TaskParams, Timestamp};
-use crate::preprocess;
-use crate::{BlockSubtype, BlockType, DataRange, ExpStatus, Log, MetricsError, Options, Rows, VariantMode};
-
-/// Performances must stay below this magnitude, so that no sum or quotient of them overflows.
-pub(crate) const MAX_PERFORMANCE: f64 = 1e100;
+use crate::{BlockSubtype, BlockType, DataRange};
 
 /// One agent's lifetime after preprocessing, ready to be scored or drawn.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,38 +30,6 @@ pub struct Lifetime {
 }
 
 impl Lifetime {
-    /// Takes the complete rows that have a number in the performance column, forms regimes, and preprocesses them:
-    /// smoothing, clamping, normalisation, in that order. Which experts a task is compared with, [`experts_serving`] says; others
-    /// are left aside. Several logs of one task are several runs of its expert.
-    ///
-    /// # Errors
-    /// [`MetricsError::UnknownColumn`], [`MetricsError::NoUsableRows`], [`MetricsError::TooManyRegimes`],
-    /// [`MetricsError::PerformanceOutOfRange`], [`MetricsError::BadOption`].
-    pub fn prepare(log: &Log, experts: &[SteLog], options: &Options) -> Result<Self, MetricsError> {
-        options.check()?;
-        let rows = usable_rows(log, &log.run_id, &options.perf_measure)?;
-        let regimes = regime::form(&log.run_id, &rows, options)?;
-        let tasks = tasks_by_training(&regimes);
-        let experts = ste::gather(experts, &tasks, options)?;
-        let stamps = || rows.indices.iter().map(|&row| log.rows.timestamps()[row]);
-        let mut lifetime = Self {
-            run_id: log.run_id.clone(),
-            tasks,
-            sleeps: regimes.iter().any(|regime| regime.block_subtype == BlockSubtype::Sleep),
-            regimes,
-            experts,
-            normalization_data_range: None,
-            runtime_secs: span_secs(stamps().min(), stamps().max()),
-        };
-        lifetime.check_bounds("as logged")?;
-        preprocess::smooth(&mut lifetime, options);
-        preprocess::clamp(&mut lifetime, options)?;
-        lifetime.normalization_data_range = preprocess::normalize(&mut lifetime, options)?;
-        preprocess::disturb(&mut lifetime, options);
-        lifetime.check_bounds("after preprocessing")?;
-        Ok(lifetime)
-    }
-
     /// Name of the log.
     pub fn run_id(&self) -> &str {
         &self.run_id
@@ -143,96 +109,4 @@ impl Lifetime {
             .flat_map(|regime| regime.performance.iter().copied())
             .chain(expert)
     }
-
-    fn check_bounds(&mut self, after: &'static str) -> Result<(), MetricsError> {
-        let run_id = self.run_id.clone();
-        for regime in self.all_regimes_mut() {
-            let bounded = |value: f64| value.abs() < MAX_PERFORMANCE;
-            if let Some(&found) = regime.performance.iter().find(|value| !bounded(**value)) {
-                let task = regime.task_name.clone();
-                return Err(MetricsError::PerformanceOutOfRange {
-                    run_id,
-                    task,
-                    found,
-                    after,
-                });
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Parameter of a task by which a row says which part of the life it belongs to, and the part that is not scored.
-const PHASE: (&str, &str) = ("phase", "pre_deployment");
-
-/// The rows of a log that count, and the column of their performance.
-pub(crate) struct Usable<'a> {
-    pub(crate) rows: &'a Rows,
-    /// Which rows count, in order.
-    pub(crate) indices: Vec<usize>,
-    /// Performance of every row of the log.
-    pub(crate) performance: &'a [f64],
-}
-
-/// The rows that count: complete, with a number in the performance column, and not of the time before deployment, which prepares
-/// a lifetime and is no part of it. Rows of that time have the task parameter `phase`, `pre_deployment`. Messages call the log `name`.
-pub(crate) fn usable_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<Usable<'a>, MetricsError> {
-    let mut usable = complete_rows(log, name, column)?;
-    let performance = usable.performance;
-    usable.indices.retain(|&row| !performance[row].is_nan());
-    Ok(usable)
-}
-
-/// The same with complete rows that have no number; at least one has a number.
-pub(crate) fn complete_rows<'a>(log: &'a Log, name: &str, column: &str) -> Result<Usable<'a>, MetricsError> {
-    let declared = log.logger_info.metrics_columns();
-    let performance = (declared.iter().any(|name| name == column))
-        .then(|| log.rows.metric(column))
-        .flatten()
-        .ok_or_else(|| MetricsError::UnknownColumn {
-            run_id: name.to_owned(),
-            column: column.to_owned(),
-            available: declared.join(", "),
-        })?;
-    let rows = &log.rows;
-    let params = rows.task_params();
-    let is_deployed = |params: &TaskParams| params.get(PHASE.0).is_none_or(|phase| phase != PHASE.1);
-    let deployed: Vec<bool> = params.values().iter().map(is_deployed).collect();
-    let counts = |&row: &usize| rows.exp_statuses()[row] == ExpStatus::Complete && deployed[params.ids()[row] as usize];
-    let indices: Vec<usize> = (0..rows.len()).filter(counts).collect();
-    if indices.iter().all(|&row| performance[row].is_nan()) {
-        return Err(MetricsError::NoUsableRows {
-            run_id: name.to_owned(),
-            column: column.to_owned(),
-        });
-    }
-    Ok(Usable {
-        rows,
-        indices,
-        performance,
-    })
-}
-
-/// The name under which a task is scored: lower-case, and without its variant where variants do not count.
-pub(crate) fn scored_name(task_name: &str, mode: VariantMode) -> String {
-    let mut name = task_name.to_lowercase();
-    if mode == VariantMode::Agnostic {
-        name.truncate(name.find('_').unwrap_or(name.len()));
-    }
-    name
-}
-
-fn tasks_by_training(regimes: &[Regime]) -> Vec<String> {
-    let mut ordered: Vec<&Regime> = regimes.iter().collect();
-    ordered.sort_by_key(|regime| (regime.block_type, regime.block_num));
-    ordered
-        .into_iter()
-        .map(|regime| regime.task_name.clone())
-        .collect::<IndexSet<_>>()
-        .into_iter()
-        .collect()
-}
-
-fn span_secs(first: Option<Timestamp>, last: Option<Timestamp>) -> f64 {
-    first.zip(last).map_or(0.0, |(first, last)| last.seconds_since(first))
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use indexmap::IndexSet;
 
-use super::{Usable, scored_name};
+use super::usable::Usable;
 use crate::log::TaskParams;
 use crate::{BlockSubtype, BlockType, Definitions, MetricsError, Options};
 
@@ -164,7 +164,7 @@ struct ScoredTasks {
 impl ScoredTasks {
     fn new(logged: &[String], options: &Options) -> Self {
         let mut names = IndexSet::new();
-        let number = |name: &String| names.insert_full(scored_name(name, options.variant_mode)).0;
+        let number = |name: &String| names.insert_full(options.variant_mode.scored_name(name)).0;
         let numbers = logged.iter().map(number).collect();
         Self { names, numbers }
     }

@@ -8,8 +8,9 @@ use std::sync::Arc;
 use indexmap::{IndexMap, IndexSet};
 
 use super::regime::{self, Regime};
-use super::{complete_rows, scored_name};
-use crate::{BlockType, Log, MetricsError, Options, VariantMode};
+use super::usable::complete_rows;
+use crate::log::{Log, read_log};
+use crate::{BlockType, MetricsError, Options, VariantMode};
 
 /// The log of a single-task expert: exactly one task is trained in it. A clone shares the log.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +35,7 @@ impl SteLog {
             .collect();
         let mut names: IndexSet<String> = trained
             .into_iter()
-            .map(|task| scored_name(&tasks.values()[task as usize], VariantMode::Aware))
+            .map(|task| VariantMode::Aware.scored_name(&tasks.values()[task as usize]))
             .collect();
         match (names.len(), names.pop()) {
             (1, Some(task_name)) => Ok(Self {
@@ -57,12 +58,6 @@ impl SteLog {
         }
     }
 
-    /// Says where the log was read.
-    pub(crate) fn read_from(mut self, dir: &Path) -> Self {
-        self.dir = Some(dir.to_owned());
-        self
-    }
-
     /// What messages call the log: experts' logs often have one name, and lie in folders that tell them apart.
     fn place(&self) -> String {
         (self.dir.as_ref()).map_or_else(|| self.log.run_id.clone(), |dir| dir.display().to_string())
@@ -77,6 +72,19 @@ impl SteLog {
     pub fn log(&self) -> &Log {
         &self.log
     }
+}
+
+/// Reads the log of a single-task expert, which `ste_rel_perf` and `sample_efficiency` compare with.
+///
+/// # Errors
+/// Those of [`read_log`], and [`MetricsError::NotSingleTask`] when it does not train exactly one task.
+pub fn read_ste_log(dir: impl AsRef<Path>) -> Result<SteLog, MetricsError> {
+    let dir = dir.as_ref();
+    let expert = SteLog::new(read_log(dir)?)?;
+    Ok(SteLog {
+        dir: Some(dir.to_owned()),
+        ..expert
+    })
 }
 
 /// One run of an expert, as regimes of its own.
@@ -120,7 +128,7 @@ impl SteRun {
 pub fn experts_serving(task: &str, trained: &[&str]) -> Vec<usize> {
     let task = task.to_lowercase();
     let serving = |mode| {
-        let is_named = |name: &&str| scored_name(name, mode) == task;
+        let is_named = |name: &&str| VariantMode::scored_name(mode, name) == task;
         (0..)
             .zip(trained)
             .filter(|(_, name)| is_named(name))

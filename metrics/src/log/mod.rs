@@ -41,7 +41,7 @@ pub use data_files::MAX_LOG_FILES;
 pub use faults::MAX_LISTED;
 pub use json_file::{MAX_JSON_BYTES, MAX_JSON_VALUES};
 pub use logger_info::{LOG_FORMAT_VERSION, LoggerInfo};
-pub use reader::{Log, read_log, read_log_with_texts, read_ste_log};
+pub use reader::{Log, read_log, read_log_with_texts};
 pub use record::{BlockSubtype, BlockType, DEFAULT_WORKER, ExpStatus, Record, TaskParams};
 pub use rows::{Row, Rows};
 pub use scenario_info::{Complexity, Difficulty, ScenarioInfo, ScenarioType};

@@ -12,7 +12,7 @@ use super::scenario_info::ScenarioInfo;
 use super::table::{Table, Texts};
 use super::warning::LogWarning;
 use super::{data_file, data_files};
-use crate::{MetricsError, SteLog};
+use crate::MetricsError;
 
 /// A log as it was read.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,15 +49,6 @@ pub fn read_log(dir: impl AsRef<Path>) -> Result<Log, MetricsError> {
 /// Those of [`read_log`].
 pub fn read_log_with_texts(dir: impl AsRef<Path>) -> Result<Log, MetricsError> {
     read(dir.as_ref(), Texts::Keep)
-}
-
-/// Reads the log of a single-task expert, the yardstick of `ste_rel_perf` and `sample_efficiency`.
-///
-/// # Errors
-/// Those of [`read_log`], and [`MetricsError::NotSingleTask`] when it does not train exactly one task.
-pub fn read_ste_log(dir: impl AsRef<Path>) -> Result<SteLog, MetricsError> {
-    let dir = dir.as_ref();
-    Ok(SteLog::new(read_log(dir)?)?.read_from(dir))
 }
 
 fn read(dir: &Path, texts: Texts) -> Result<Log, MetricsError> {

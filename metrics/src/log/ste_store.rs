@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 
 use driftworld_atomic_files::ScratchFolder;
 
-use super::reader::read_ste_log;
 use super::{data_files, folder_name, log_folder, logger_info, scenario_info};
 use crate::MetricsError;
 use crate::choice::choice;
+use crate::lifetime::read_ste_log;
 
 /// What folders are called while they are filled or taken away. What a killed process leaves begins so, and is never read.
 const TEMPORARY: &str = ".storing-";

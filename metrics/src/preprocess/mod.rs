@@ -23,7 +23,7 @@ fn given_range(task: &str, lifetime: &Lifetime, options: &Options) -> Result<Opt
     let Some(ranges) = &options.data_range else {
         return Ok(None);
     };
-    let belongs = |name: &str| crate::lifetime::scored_name(name, options.variant_mode) == task;
+    let belongs = |name: &str| options.variant_mode.scored_name(name) == task;
     let hull = |a: DataRange, b: DataRange| DataRange {
         min: a.min.min(b.min),
         max: a.max.max(b.max),

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::resample::Resample;
 use crate::MetricsError;
-use crate::lifetime::MAX_PERFORMANCE;
+use crate::options::MAX_PERFORMANCE;
 use crate::statistics::{mean, median};
 
 /// How the scores of all runs and strata become one number. Same numbers as rliable 1.2, see `tests/oracles/`.

@@ -10,6 +10,7 @@ mod bootstrap;
 mod contest;
 mod estimate;
 mod improvement;
+mod interval;
 mod jackknife;
 mod permutation;
 mod profile;
@@ -19,8 +20,9 @@ mod student;
 
 pub use aggregate::Aggregate;
 pub use bootstrap::{BootstrapOptions, MAX_RESAMPLES, MAX_SCORES_DRAWN, Resampling};
-pub use estimate::{Estimate, Interval, estimate};
+pub use estimate::{Estimate, estimate};
 pub use improvement::{Improvement, StratumImprovement, probability_of_improvement};
+pub use interval::Interval;
 pub use jackknife::FEW_RUNS;
 pub use profile::performance_profile;
 pub use score_table::{MAX_RUNS, MAX_SCORES, MAX_STRATA, ScoreTable};

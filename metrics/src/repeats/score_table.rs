@@ -6,7 +6,7 @@ use indexmap::{IndexMap, IndexSet};
 
 use super::Resampling;
 use crate::MetricsError;
-use crate::lifetime::MAX_PERFORMANCE;
+use crate::options::MAX_PERFORMANCE;
 
 /// Most runs in a table.
 pub const MAX_RUNS: usize = 10_000;

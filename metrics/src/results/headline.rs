@@ -6,8 +6,6 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-use super::LifetimeMetrics;
-
 /// Which way a metric is good, and from where on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -41,32 +39,5 @@ impl Headline {
             explanation: explanation.into(),
             good,
         }
-    }
-}
-
-/// One line of the table of a lifetime.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SummaryRow {
-    /// Name of the metric, as in the JSON.
-    pub name: Cow<'static, str>,
-    /// Its value; `None` where it was not asked for or could not be computed.
-    pub value: Option<f64>,
-    /// What it says, in one line.
-    pub explanation: Cow<'static, str>,
-    /// Which way is good.
-    pub good: Direction,
-}
-
-impl LifetimeMetrics {
-    /// The lifetime's values as a table, one row for each headline of the metrics it was scored with, also those
-    /// without a value.
-    pub fn summary(&self) -> Vec<SummaryRow> {
-        let row = |headline: &Headline| SummaryRow {
-            name: headline.name.clone(),
-            value: self.lifetime.number(&headline.name),
-            explanation: headline.explanation.clone(),
-            good: headline.good,
-        };
-        self.headlines.iter().map(row).collect()
     }
 }

@@ -2,11 +2,13 @@
 //!
 //! Not here: how the values are computed, see the file of each metric in `score`.
 
+use std::borrow::Cow;
+
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::rounding::ten_decimals;
-use super::{AsLogged, Headline, RegimeMetrics, Value, Values};
+use super::{AsLogged, Direction, Headline, RegimeMetrics, Value, Values};
 use crate::{DataRange, Definitions};
 
 /// Everything that scoring one lifetime gives. Serialises to the reference's `NAME_metrics.json`; regimes have a
@@ -122,5 +124,32 @@ impl Serialize for LifetimeMetrics {
             task_metrics: &self.task_metrics,
         };
         document.serialize(serializer)
+    }
+}
+
+/// One line of the table of a lifetime.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SummaryRow {
+    /// Name of the metric, as in the JSON.
+    pub name: Cow<'static, str>,
+    /// Its value; `None` where it was not asked for or could not be computed.
+    pub value: Option<f64>,
+    /// What it says, in one line.
+    pub explanation: Cow<'static, str>,
+    /// Which way is good.
+    pub good: Direction,
+}
+
+impl LifetimeMetrics {
+    /// The lifetime's values as a table, one row for each headline of the metrics it was scored with, also those
+    /// without a value.
+    pub fn summary(&self) -> Vec<SummaryRow> {
+        let row = |headline: &Headline| SummaryRow {
+            name: headline.name.clone(),
+            value: self.lifetime.number(&headline.name),
+            explanation: headline.explanation.clone(),
+            good: headline.good,
+        };
+        self.headlines.iter().map(row).collect()
     }
 }

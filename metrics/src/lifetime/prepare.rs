@@ -1,0 +1,78 @@
+//! From a log to a lifetime: its rows as regimes, preprocessed.
+//!
+//! Not here: each step of preprocessing, see `preprocess`.
+
+use indexmap::IndexSet;
+
+use super::usable::usable_rows;
+use super::{Lifetime, Regime, SteLog, regime, ste};
+use crate::log::{Log, Timestamp};
+use crate::options::MAX_PERFORMANCE;
+use crate::preprocess;
+use crate::{BlockSubtype, MetricsError, Options};
+
+impl Lifetime {
+    /// Takes the complete rows that have a number in the performance column, forms regimes, and preprocesses them:
+    /// smoothing, clamping, normalisation, in that order. Which experts a task is compared with, [`experts_serving`] says; others
+    /// are left aside. Several logs of one task are several runs of its expert.
+    ///
+    /// # Errors
+    /// [`MetricsError::UnknownColumn`], [`MetricsError::NoUsableRows`], [`MetricsError::TooManyRegimes`],
+    /// [`MetricsError::PerformanceOutOfRange`], [`MetricsError::BadOption`].
+    pub fn prepare(log: &Log, experts: &[SteLog], options: &Options) -> Result<Self, MetricsError> {
+        options.check()?;
+        let rows = usable_rows(log, &log.run_id, &options.perf_measure)?;
+        let regimes = regime::form(&log.run_id, &rows, options)?;
+        let tasks = tasks_by_training(&regimes);
+        let experts = ste::gather(experts, &tasks, options)?;
+        let stamps = || rows.indices.iter().map(|&row| log.rows.timestamps()[row]);
+        let mut lifetime = Self {
+            run_id: log.run_id.clone(),
+            tasks,
+            sleeps: regimes.iter().any(|regime| regime.block_subtype == BlockSubtype::Sleep),
+            regimes,
+            experts,
+            normalization_data_range: None,
+            runtime_secs: span_secs(stamps().min(), stamps().max()),
+        };
+        lifetime.check_bounds("as logged")?;
+        preprocess::smooth(&mut lifetime, options);
+        preprocess::clamp(&mut lifetime, options)?;
+        lifetime.normalization_data_range = preprocess::normalize(&mut lifetime, options)?;
+        preprocess::disturb(&mut lifetime, options);
+        lifetime.check_bounds("after preprocessing")?;
+        Ok(lifetime)
+    }
+
+    fn check_bounds(&mut self, after: &'static str) -> Result<(), MetricsError> {
+        let run_id = self.run_id.clone();
+        for regime in self.all_regimes_mut() {
+            let bounded = |value: f64| value.abs() < MAX_PERFORMANCE;
+            if let Some(&found) = regime.performance.iter().find(|value| !bounded(**value)) {
+                let task = regime.task_name.clone();
+                return Err(MetricsError::PerformanceOutOfRange {
+                    run_id,
+                    task,
+                    found,
+                    after,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn tasks_by_training(regimes: &[Regime]) -> Vec<String> {
+    let mut ordered: Vec<&Regime> = regimes.iter().collect();
+    ordered.sort_by_key(|regime| (regime.block_type, regime.block_num));
+    ordered
+        .into_iter()
+        .map(|regime| regime.task_name.clone())
+        .collect::<IndexSet<_>>()
+        .into_iter()
+        .collect()
+}
+
+fn span_secs(first: Option<Timestamp>, last: Option<Timestamp>) -> f64 {
+    first.zip(last).map_or(0.0, |(first, last)| last.seconds_since(first))
+}
