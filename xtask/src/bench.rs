@@ -2,9 +2,9 @@
 //! `benches/` folder of each crate and in `driftworld bench`.
 
 use crate::error::XtaskError;
+use crate::process::AS_TESTED;
 use crate::process::{cargo, run};
 use crate::side_by_side;
-use crate::stage::AS_TESTED;
 use crate::workspace::Workspace;
 
 /// The benches of one part of the house.

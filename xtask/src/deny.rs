@@ -7,8 +7,8 @@ use std::process::Command;
 
 use crate::advisories;
 use crate::error::XtaskError;
+use crate::outcome::Outcome;
 use crate::process::{bare, cargo, quiet_output, run, works};
-use crate::stage::Outcome;
 use crate::workspace::Workspace;
 
 /// Set where cargo-deny is promised.

@@ -5,8 +5,8 @@ use std::env;
 use std::process::Command;
 
 use crate::error::XtaskError;
+use crate::outcome::Outcome;
 use crate::process::{program, run, works};
-use crate::stage::Outcome;
 use crate::workspace::Workspace;
 
 /// Names the interpreter that has the package, such as that of a virtual environment.

@@ -8,8 +8,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::error::XtaskError;
+use crate::process::AS_TESTED;
 use crate::process::{cargo, not_started, run, shown, succeeded};
-use crate::stage::AS_TESTED;
 use crate::workspace::Workspace;
 
 /// Long enough for an unoptimised build on a slow machine; an example that needs it bores its reader.

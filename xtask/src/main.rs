@@ -20,6 +20,7 @@ mod fuzz;
 mod layers;
 mod lock;
 mod metadata;
+mod outcome;
 mod peers;
 mod process;
 mod protocol;

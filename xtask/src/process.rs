@@ -6,6 +6,9 @@ use std::process::{Command, ExitStatus, Stdio};
 use crate::error::XtaskError;
 use crate::workspace::Workspace;
 
+/// What is built for tests: everything but the renderer for graphics cards, whose driver and whose crates few have.
+pub(crate) const AS_TESTED: [&str; 3] = ["--workspace", "--features", "gltf,line-editor,parquet"];
+
 /// The Cargo that started us, in the workspace's root, with these arguments.
 pub(crate) fn cargo(workspace: &Workspace, arguments: &[&str]) -> Command {
     let mut command = bare_cargo();

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::error::XtaskError;
+use crate::outcome::Outcome;
 use crate::process::run;
-use crate::stage::Outcome;
 use crate::virtual_environment::{VirtualEnvironment, interpreter};
 use crate::workspace::Workspace;
 

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::error::XtaskError;
-use crate::stage::Outcome;
+use crate::outcome::Outcome;
 use crate::workspace::Workspace;
 
 /// Set, it turns "found some" into a failure: in a folder that was empty, nothing older can be meant.

@@ -6,8 +6,8 @@ use std::process::{Command, Stdio};
 use std::thread;
 
 use crate::error::XtaskError;
+use crate::process::AS_TESTED;
 use crate::process::{cargo, not_started, shown, succeeded, works};
-use crate::stage::AS_TESTED;
 use crate::workspace::Workspace;
 
 /// Runs every test of the workspace; returns the runner's closing line.

@@ -4,8 +4,8 @@
 use std::process::Command;
 
 use crate::error::XtaskError;
+use crate::process::AS_TESTED;
 use crate::process::{cargo, run};
-use crate::stage::AS_TESTED;
 use crate::workspace::Workspace;
 
 /// Fails when a file in `schemas/` is stale or missing.

@@ -4,12 +4,10 @@
 use std::time::Instant;
 
 use crate::error::XtaskError;
-use crate::process::{cargo, run};
+use crate::outcome::Outcome;
+use crate::process::{AS_TESTED, cargo, run};
 use crate::workspace::Workspace;
 use crate::{bench, deny, documents, examples, layers, protocol, python, rebuilds, runner, schemas, tidy, unity};
-
-/// What is built for tests: everything but the renderer for graphics cards, whose driver and whose crates few have.
-pub(crate) const AS_TESTED: [&str; 3] = ["--workspace", "--features", "gltf,line-editor,parquet"];
 
 /// One step of `cargo xtask test`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,15 +31,6 @@ pub(crate) enum Stage {
     Unity,
     Deny,
     Rebuilds,
-}
-
-/// How a stage that did not fail ended: a closing line for the summary, or why it had nothing to run.
-pub(crate) enum Outcome {
-    Passed,
-    PassedWith(String),
-    /// What was checked was as it should be; what was not is said.
-    Partly(String),
-    Skipped(String),
 }
 
 impl Stage {

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::error::XtaskError;
+use crate::outcome::Outcome;
 use crate::process::{cargo, output, run};
 use crate::python::{NO_INTERPRETER, install_wheel, missing};
-use crate::stage::Outcome;
 use crate::virtual_environment::{VirtualEnvironment, interpreter, interpreter_before};
 use crate::workspace::Workspace;
 

@@ -7,8 +7,8 @@ use std::process::Child;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::Options;
 use super::figures::Figures;
+use super::options::Options;
 use super::rng::Rng;
 use super::signals::send;
 use super::subject::{Subject, all_files, difference, end, file_error, num_bytes, start, to_its_end};

@@ -6,8 +6,8 @@ use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::Options;
 use super::figures::Figures;
+use super::options::Options;
 use super::subject::{Subject, all_files, end, file_error};
 use crate::error::XtaskError;
 use crate::process::{not_started, works};
