@@ -196,7 +196,7 @@ impl PyMatrix {
 /// The names of the methods of ordering.
 #[pyfunction]
 pub(crate) fn order_methods() -> Vec<&'static str> {
-    Method::ALL.map(Method::name).to_vec()
+    Method::ALL.iter().map(|method| method.name()).collect()
 }
 
 /// An element of the decision process by its letter or name.

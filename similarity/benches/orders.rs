@@ -24,7 +24,7 @@ fn points(n: usize) -> DistanceMatrix {
 
 fn orders(c: &mut Criterion) {
     let (few, many) = (points(15), points(1000));
-    for method in Method::ALL {
+    for &method in Method::ALL {
         let matrix = if method == Method::Exact { &few } else { &many };
         let options = OrderOptions {
             target_step: Some(0.1),

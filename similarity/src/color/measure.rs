@@ -2,6 +2,7 @@
 //! files of their own.
 
 use driftworld_spec::Color;
+use strum::VariantArray;
 
 use crate::color::cie76::{CIE76_DIAMETER, cie76};
 use crate::color::ciede2000::{CIEDE2000_DIAMETER, ciede2000};
@@ -21,7 +22,8 @@ use crate::{Nature, Oklab};
 /// let near = ColorMeasure::Ciede2000.normalised(named("blue"), named("navy"));
 /// assert!(near < far && far <= 1.0);
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString, strum::IntoStaticStr, strum::VariantArray)]
+#[strum(serialize_all = "kebab-case")]
 pub enum ColorMeasure {
     /// [`srgb_distance`]: the L2Explorer paper's.
     Srgb,
@@ -38,22 +40,16 @@ pub enum ColorMeasure {
 
 impl ColorMeasure {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::Srgb, Self::Cie76, Self::Ciede2000, Self::Oklab, Self::Hyab];
+    pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Its name in tables and on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Srgb => "srgb",
-            Self::Cie76 => "cie76",
-            Self::Ciede2000 => "ciede2000",
-            Self::Oklab => "oklab",
-            Self::Hyab => "hyab",
-        }
+        self.into()
     }
 
     /// The measure of this name, if there is one.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|measure| measure.name() == name)
+        name.parse().ok()
     }
 
     /// How far two colours are apart, in the measure's own numbers.
@@ -142,7 +138,7 @@ mod tests {
 
     #[test]
     fn names_are_read_back() {
-        for measure in ColorMeasure::ALL {
+        for &measure in ColorMeasure::ALL {
             assert_eq!(ColorMeasure::from_name(measure.name()), Some(measure));
         }
         assert_eq!(ColorMeasure::from_name("rgb"), None);
@@ -165,7 +161,7 @@ mod tests {
     proptest! {
         #[test]
         fn they_are_what_they_say(a in color(), b in color(), c in color()) {
-            for measure in ColorMeasure::ALL {
+            for &measure in ColorMeasure::ALL {
                 let d = |a, b| measure.normalised(a, b);
                 prop_assert_eq!(d(a, a), 0.0);
                 prop_assert!((d(a, b) - d(b, a)).abs() < 1e-9);

@@ -82,7 +82,7 @@ mod tests {
     proptest! {
         #[test]
         fn it_is_a_metric_between_sets(a in colors(), b in colors(), c in colors()) {
-            for measure in ColorMeasure::ALL {
+            for &measure in ColorMeasure::ALL {
                 let d = |a: &[Color], b: &[Color]| color_sets_distance(a, b, measure).unwrap();
                 let mut turned = a.clone();
                 turned.reverse();

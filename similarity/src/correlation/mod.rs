@@ -6,10 +6,8 @@ mod pearson;
 mod relabelling;
 mod spearman;
 
-use std::fmt;
-use std::str::FromStr;
-
 use serde::{Deserialize, Serialize};
+use strum::VariantArray;
 
 pub use mantel::{MAX_MANTEL_ITEMS, MAX_RELABELLINGS, MantelTest, PairValue, mantel};
 pub use pearson::pearson;
@@ -21,8 +19,22 @@ use crate::SimilarityError;
 pub const MIN_CORRELATED: usize = 3;
 
 /// How two lists are compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    strum::Display,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case", parse_err_ty = SimilarityError, parse_err_fn = unknown)]
 pub enum Correlation {
     /// By their ranks: whether one rises where the other does, however steeply. See [`spearman`].
     #[default]
@@ -33,14 +45,11 @@ pub enum Correlation {
 
 impl Correlation {
     /// Both.
-    pub const ALL: [Self; 2] = [Self::Spearman, Self::Pearson];
+    pub const ALL: &[Self] = Self::VARIANTS;
 
     /// The word by which the command line calls it.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Spearman => "spearman",
-            Self::Pearson => "pearson",
-        }
+        self.into()
     }
 
     /// The correlation of two lists, −1 to 1.
@@ -55,19 +64,8 @@ impl Correlation {
     }
 }
 
-impl fmt::Display for Correlation {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Correlation {
-    type Err = SimilarityError;
-
-    fn from_str(word: &str) -> Result<Self, SimilarityError> {
-        let found = Self::ALL.into_iter().find(|correlation| correlation.name() == word);
-        found.ok_or_else(|| SimilarityError::UnknownCorrelation { found: word.to_owned() })
-    }
+fn unknown(word: &str) -> SimilarityError {
+    SimilarityError::UnknownCorrelation { found: word.to_owned() }
 }
 
 /// Whether two lists can be correlated: of one length, long enough, finite, neither all one number.
@@ -123,7 +121,7 @@ mod tests {
              together with nothing"
         );
         assert!("kendall".parse::<Correlation>().is_err());
-        for correlation in Correlation::ALL {
+        for &correlation in Correlation::ALL {
             assert_eq!(correlation.to_string().parse(), Ok(correlation));
         }
     }

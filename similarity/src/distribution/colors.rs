@@ -210,7 +210,7 @@ mod tests {
             law(r#"{"color_normal": {"mean": "red", "std": 0}}"#),
             law(r#"{"constant": {"value": "blue"}}"#),
         );
-        for measure in ColorMeasure::ALL {
+        for &measure in ColorMeasure::ALL {
             let expected = measure.between(red, blue);
             for found in [
                 color_wasserstein_1(&a, &b, measure).unwrap(),

@@ -1,15 +1,17 @@
 //! [`Method`]: the names of the ways to an order, and which is taken where none is asked for. What they do is in their files.
 
-use std::str::FromStr;
-
 use serde::Serialize;
+use strum::VariantArray;
 
 use super::exact::MAX_EXACT;
 use crate::SimilarityError;
 
 /// How items are put into an order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Serialize, strum::EnumString, strum::IntoStaticStr, strum::VariantArray,
+)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case", parse_err_ty = SimilarityError, parse_err_fn = unknown)]
 pub enum Method {
     /// Each time the nearest that is left. Simple, and often far from the shortest.
     Nearest,
@@ -41,21 +43,7 @@ pub enum Method {
 
 impl Method {
     /// Every method.
-    pub const ALL: [Self; 13] = [
-        Self::Nearest,
-        Self::Exact,
-        Self::TwoOpt,
-        Self::Spectral,
-        Self::Tree,
-        Self::Leaf,
-        Self::Contrast,
-        Self::TypicalLast,
-        Self::FarthestFirst,
-        Self::Random,
-        Self::Bottleneck,
-        Self::TargetStep,
-        Self::Given,
-    ];
+    pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Exact where that is possible, 2-opt beyond.
     pub fn default_for(items: usize) -> Self {
@@ -64,36 +52,21 @@ impl Method {
 
     /// The word by which the command line calls it.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Nearest => "nearest",
-            Self::Exact => "exact",
-            Self::TwoOpt => "two-opt",
-            Self::Spectral => "spectral",
-            Self::Tree => "tree",
-            Self::Leaf => "leaf",
-            Self::Contrast => "contrast",
-            Self::TypicalLast => "typical-last",
-            Self::FarthestFirst => "farthest-first",
-            Self::Random => "random",
-            Self::Bottleneck => "bottleneck",
-            Self::TargetStep => "target-step",
-            Self::Given => "given",
-        }
+        self.into()
     }
 
     /// All names, for messages and help.
     pub fn names() -> String {
-        Self::ALL.map(Self::name).join(", ")
+        Self::ALL
+            .iter()
+            .map(|method| method.name())
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 }
 
-impl FromStr for Method {
-    type Err = SimilarityError;
-
-    fn from_str(word: &str) -> Result<Self, SimilarityError> {
-        let found = Self::ALL.into_iter().find(|method| method.name() == word);
-        found.ok_or_else(|| SimilarityError::UnknownMethod { found: word.to_owned() })
-    }
+fn unknown(word: &str) -> SimilarityError {
+    SimilarityError::UnknownMethod { found: word.to_owned() }
 }
 
 #[cfg(test)]
@@ -102,7 +75,7 @@ mod tests {
 
     #[test]
     fn every_name_leads_back_to_its_method_and_serialises_as_such() {
-        for method in Method::ALL {
+        for &method in Method::ALL {
             assert_eq!(method.name().parse(), Ok(method));
             assert_eq!(
                 serde_json::to_string(&method).unwrap(),

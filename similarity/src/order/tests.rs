@@ -78,7 +78,7 @@ proptest! {
     fn every_method_visits_each_item_once_and_keeps_the_ends(points in points(24), fixed in any::<[bool; 2]>()) {
         let matrix = matrix(&points);
         let options = options(&points, fixed);
-        for method in Method::ALL {
+        for &method in Method::ALL {
             let found = match order(&matrix, method, &options) {
                 Ok(found) => found,
                 Err(SimilarityError::TooManyForMethod { .. }) => {
@@ -123,7 +123,7 @@ proptest! {
         let labels = moved.iter().map(|index| matrix.labels()[*index].clone()).collect();
         let other = DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>(matrix.get(moved[a], moved[b]))).unwrap();
         let options = OrderOptions { target_step: Some(2.0), ..OrderOptions::default() };
-        for method in Method::ALL.into_iter().filter(|method| *method != Method::Given) {
+        for &method in Method::ALL.iter().filter(|method| **method != Method::Given) {
             if method == Method::Exact && n > MAX_EXACT {
                 continue;
             }
@@ -206,7 +206,7 @@ fn ties_fall_to_the_first_names() {
         target_step: Some(1.0),
         ..OrderOptions::default()
     };
-    for method in Method::ALL.into_iter().filter(|method| *method != Method::Random) {
+    for &method in Method::ALL.iter().filter(|method| **method != Method::Random) {
         let found = order(&matrix, method, &options).unwrap();
         if !matches!(method, Method::Leaf) {
             assert_eq!(found.indices, [0, 1, 2, 3, 4, 5, 6, 7, 8], "{method:?}");
@@ -297,7 +297,7 @@ fn the_largest_distances_there_can_be_are_ordered_by_every_method() {
         let labels = (0..n).map(|k| format!("{k:03}")).collect();
         let far = |_, _| Ok::<_, SimilarityError>(crate::MAX_DISTANCE);
         let matrix = DistanceMatrix::measure(labels, far).unwrap();
-        for method in Method::ALL {
+        for &method in Method::ALL {
             let options = OrderOptions {
                 target_step: Some(2.0),
                 ..OrderOptions::default()

@@ -17,7 +17,7 @@ impl Comparison {
             (method, found)
         };
         Self {
-            outcomes: Method::ALL.map(outcome).into(),
+            outcomes: Method::ALL.iter().copied().map(outcome).collect(),
         }
     }
 
