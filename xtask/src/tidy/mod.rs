@@ -8,6 +8,7 @@ mod names;
 mod opening;
 mod paths;
 mod reading;
+mod retired;
 mod shown;
 mod sizes;
 mod tree;
@@ -35,6 +36,7 @@ fn check(tree: &Tree, members: &[(String, String)]) -> Vec<Finding> {
     findings.extend(links::check(tree));
     findings.extend(paths::check(tree));
     findings.extend(reading::check(tree));
+    findings.extend(retired::check(tree));
     findings.extend(shown::check(tree));
     findings.extend(architecture::check(tree, members));
     findings.extend(unsafety::check(tree));

@@ -1,7 +1,7 @@
 //! Every path of this repository that a page names in backticks is there. Links are checked by `links.rs`.
 
 use super::links::prose;
-use super::tree::Tree;
+use super::tree::{Tree, ending};
 use crate::finding::Finding;
 
 /// The pages for people who change the code: what looks like a path there is one of this repository. Other pages also name
@@ -51,7 +51,7 @@ fn is_path(span: &str) -> bool {
 fn is_ours(tree: &Tree, span: &str) -> bool {
     let first = span.split_once('/').map(|(first, _)| first);
     let last = span.rsplit('/').next().unwrap_or(span);
-    span.ends_with(".rs") || first.is_some_and(|first| tree.has(first)) && (last.is_empty() || last.contains('.'))
+    ending(span) == "rs" || first.is_some_and(|first| tree.has(first)) && (last.is_empty() || last.contains('.'))
 }
 
 /// A path from the root; the name of a file anywhere; or a pattern whose folder exists.

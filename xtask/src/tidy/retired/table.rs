@@ -1,0 +1,150 @@
+//! The retired words as data: each with what stands in its place, and the rooms that still use it. Rooms only leave this
+//! list; how words are looked for is in `mod.rs`.
+
+/// Where a word is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Where {
+    /// The name of a file without its ending.
+    File,
+    /// Identifiers of shipped sources: the whole, or a part between underscores.
+    Name,
+    /// README, `docs/`, the command's help.
+    Prose,
+}
+
+/// A word that is not used any more.
+#[derive(Debug)]
+pub(super) struct Retired {
+    pub(super) kind: Where,
+    pub(super) word: &'static str,
+    /// What is said in its place.
+    pub(super) instead: &'static str,
+    /// Rooms that have not parted with it yet.
+    pub(super) still_in: &'static [&'static str],
+}
+
+impl Retired {
+    pub(super) const fn file(word: &'static str, instead: &'static str, still_in: &'static [&'static str]) -> Self {
+        Self {
+            kind: Where::File,
+            word,
+            instead,
+            still_in,
+        }
+    }
+
+    pub(super) const fn name(word: &'static str, instead: &'static str, still_in: &'static [&'static str]) -> Self {
+        Self {
+            kind: Where::Name,
+            word,
+            instead,
+            still_in,
+        }
+    }
+
+    pub(super) const fn prose(word: &'static str, instead: &'static str, still_in: &'static [&'static str]) -> Self {
+        Self {
+            kind: Where::Prose,
+            word,
+            instead,
+            still_in,
+        }
+    }
+}
+
+/// The words, as the house parted with them.
+pub(super) const RETIRED: &[Retired] = &[
+    Retired::file("answer", "interactions.rs", &["env"]),
+    Retired::file("chance", "rng.rs or streams.rs", &["env"]),
+    Retired::file("judge", "termination.rs", &["env"]),
+    Retired::file("nature", "metric_properties.rs", &["env", "similarity"]),
+    Retired::file("patience", "interruptible.rs", &["python"]),
+    Retired::file("sight", "visibility.rs", &["env"]),
+    Retired::file("lived", "scored.rs", &["tests"]),
+    Retired::file("yardstick", "comparison_setup.rs", &[]),
+    Retired::file("coverage", "sequence.rs", &["generator"]),
+    Retired::file("crowd", "spatial_hash.rs", &["generator"]),
+    Retired::name("Briefing", "EpisodeContext", &["curriculum"]),
+    Retired::name("Came", "ResumeState", &["env"]),
+    Retired::name("Chance", "Rng", &["generator"]),
+    Retired::name("Coat", "Material", &["env"]),
+    Retired::name("Coverage", "Sequence", &["generator", "src"]),
+    Retired::name("Crowd", "SpatialHash", &["generator"]),
+    Retired::name("Desk", "Worker", &[]),
+    Retired::name("Dress", "WorldOverrides", &["python"]),
+    Retired::name("Due", "ExperienceSpec", &["curriculum"]),
+    Retired::name("Ground", "FreeSpace or CollisionWorld", &["env", "generator"]),
+    Retired::name("Hired", "NamedAgent", &["src"]),
+    Retired::name("How", "Method", &["similarity"]),
+    Retired::name("Life", "Run", &["src"]),
+    Retired::name("Lived", "Run or a scored log", &[]),
+    Retired::name("Losers", "LossCount", &["spec"]),
+    Retired::name("Nature", "MetricProperties", &["similarity", "src"]),
+    Retired::name("Paintwork", "ShadingParams", &["env"]),
+    Retired::name("Plot", "PlacementContext", &["generator"]),
+    Retired::name("Spot", "Node", &["similarity"]),
+    Retired::name("Surroundings", "RunContext", &["curriculum", "src"]),
+    Retired::name("Thing", "ObjectFeatures", &["similarity"]),
+    Retired::name("Together", "RepeatSummary", &["spec", "src"]),
+    Retired::name("Unsettled", "UnresolvedParams", &["spec"]),
+    Retired::name("When", "EvaluationSchedule", &["src"]),
+    Retired::name("Who", "AgentArg", &["src"]),
+    Retired::name("Words", "DictionaryColumn", &["metrics", "src"]),
+    Retired::name("Yardstick", "ComparisonSetup", &[]),
+    Retired::name("bring_back", "respawn", &["env"]),
+    Retired::name("carry_out", "apply_action", &["env"]),
+    Retired::name(
+        "chance",
+        "rng, or seed where it is one",
+        &[
+            "curriculum",
+            "env",
+            "generator",
+            "metrics",
+            "python",
+            "similarity",
+            "spec",
+        ],
+    ),
+    Retired::name(
+        "how",
+        "method",
+        &["env", "report", "similarity", "spec", "src", "unity"],
+    ),
+    Retired::name("ink", "packed pixel", &["env", "report"]),
+    Retired::name(
+        "lived",
+        "run, scored log",
+        &["curriculum", "env", "python", "report", "src"],
+    ),
+    Retired::name("made_from", "add_fingerprint", &["curriculum", "python", "src"]),
+    Retired::name("nature", "properties", &["env", "python", "similarity", "src"]),
+    Retired::name("patience", "interruptible", &["env", "python", "spec"]),
+    Retired::name("patiently", "run_cancellable", &["python"]),
+    Retired::name("prints", "fingerprints", &["curriculum", "src"]),
+    Retired::name("put_on", "apply", &["python"]),
+    Retired::name("take_stock", "init_contacts", &["env"]),
+    Retired::name("take_up", "resume", &[]),
+    Retired::name(
+        "told",
+        "set_task_label, to_py, or what it is",
+        &[
+            "curriculum",
+            "env",
+            "generator",
+            "metrics",
+            "python",
+            "report",
+            "spec",
+            "src",
+            "unity",
+        ],
+    ),
+    Retired::name("yardstick", "comparison setup", &[]),
+    Retired::prose("anecdote", "\"proves little\"", &["README.md", "docs"]),
+    Retired::prose("chance", "randomness, a seed, at random", &["README.md", "docs", "src"]),
+    Retired::prose("lived", "run", &["README.md", "docs", "src"]),
+    Retired::prose("lives", "runs", &["README.md", "docs", "src"]),
+    Retired::prose("told", "reported", &["README.md", "docs", "src"]),
+    Retired::prose("yardstick", "baseline", &["docs"]),
+];
