@@ -4,7 +4,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use driftworld_generator::{Coverage, Sampler, drift};
+use driftworld_generator::{Sampler, Sequence, drift};
 use driftworld_spec::{TaskSpec, Variant};
 
 fn task(name: &str) -> Arc<TaskSpec> {
@@ -52,8 +52,8 @@ fn worlds(c: &mut Criterion) {
 
 fn values(c: &mut Criterion) {
     let settlement = variant("settlement", "near");
-    for (name, coverage) in [("independent", Coverage::Independent), ("sobol", Coverage::Sobol)] {
-        let sampler = Sampler::new(&settlement, 7).with_coverage(coverage);
+    for (name, sequence) in [("independent", Sequence::Independent), ("sobol", Sequence::Sobol)] {
+        let sampler = Sampler::new(&settlement, 7).with_sequence(sequence);
         let mut index = 0;
         c.bench_function(&format!("randomized parameters, {name}"), |bench| {
             bench.iter(|| {

@@ -5,10 +5,10 @@ use driftworld_spec::{
     Variant, World,
 };
 
-use crate::coverage::Coverage;
 use crate::draw::draw;
 use crate::placement::Margins;
-use crate::stream::{Chance, Stream};
+use crate::sequence::Sequence;
+use crate::stream::{Rng, Stream};
 
 /// What a world is drawn from.
 #[derive(Debug)]
@@ -34,15 +34,15 @@ pub(crate) struct Randomized {
     pub(crate) name: String,
     kind: ParameterType,
     drawn: Drawn,
-    /// Which dimensions of a coverage it takes: the first, and how many.
+    /// Which dimensions of a sequence it takes: the first, and how many.
     dimensions: Option<(usize, usize)>,
 }
 
 impl Randomized {
     /// The parameter's value in a world.
-    pub(crate) fn value(&self, coverage: Coverage, spread: &Stream, index: u64, attempt: u32) -> Value {
+    pub(crate) fn value(&self, sequence: Sequence, stream: &Stream, index: u64, attempt: u32) -> Value {
         let covered = if attempt == 0 {
-            self.covered(coverage, spread, index)
+            self.covered(sequence, stream, index)
         } else {
             None
         };
@@ -54,10 +54,10 @@ impl Randomized {
             .expect("loading the task checked what the distribution yields")
     }
 
-    fn covered(&self, coverage: Coverage, spread: &Stream, index: u64) -> Option<Value> {
+    fn covered(&self, sequence: Sequence, stream: &Stream, index: u64) -> Option<Value> {
         let (first, count) = self.dimensions?;
-        let u = coverage.unit(spread, first, index)?;
-        let further = |dimension: usize| coverage.unit(spread, first + dimension, index);
+        let u = sequence.unit(stream, first, index)?;
+        let further = |dimension: usize| sequence.unit(stream, first + dimension, index);
         let law = &self.drawn.distribution;
         match count {
             1 => law.value_at(u),
@@ -85,7 +85,7 @@ pub(crate) enum Fill {
     Own(Box<Drawn>),
 }
 
-/// Where in the streams of chance a value is drawn.
+/// Where in its stream a value is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Address {
     /// The world's number.
@@ -107,8 +107,8 @@ impl Fill {
                     .expect("loading the task checked the index"),
             ),
             Self::Own(drawn) => {
-                let mut chance: Chance = drawn.stream.at(at.index, at.object, at.attempt);
-                take(&draw(&drawn.distribution, &mut chance))
+                let mut rng: Rng = drawn.stream.at(at.index, at.object, at.attempt);
+                take(&draw(&drawn.distribution, &mut rng))
             }
         }
     }
@@ -124,13 +124,13 @@ pub(crate) struct Group {
     pub(crate) around: Option<usize>,
     pub(crate) turned: bool,
     pub(crate) facing: Option<Look>,
-    /// Where its objects have their seeds from, if chance has a part in what becomes of them in any variant.
+    /// Where its objects have their seeds from, if what becomes of them is random in any variant.
     pub(crate) seeds: Option<Stream>,
     /// About how many objects it will have: room is made for them at once.
     pub(crate) expected: f64,
 }
 
-/// Whether chance has a part in what becomes of objects of a template, in any variant of its task. One answer for all of them:
+/// Whether what becomes of objects of a template is random, in any variant of its task. One answer for all of them:
 /// worlds of two variants differ in what the variants differ in, and not in who has a seed.
 fn may_take_chances(template: &Template<Object>) -> bool {
     let opens = |hole: &Hole<Object>| ["/motion_model", "/reward_probability"].contains(&hole.pointer.as_str());

@@ -1,7 +1,7 @@
 //! Draws from the declared distributions. Numbers come from `stream.rs`, laws from the spec.
 //!
-//! Numbers are drawn by inversion: one number of chance through the distribution's quantile. Two variants under one seed so
-//! share their chance: where one draws high, so does the other. Points of discs and rings come from `rand_distr`, whose
+//! Numbers are drawn by inversion: one random number through the distribution's quantile. Two variants under one seed share
+//! random numbers: where one draws high, so does the other. Points of discs and rings come from `rand_distr`, whose
 //! rejection needs no transcendental function; all else goes through `libm`, so that the bits are the same everywhere.
 
 use std::borrow::Cow;
@@ -9,30 +9,30 @@ use std::borrow::Cow;
 use driftworld_spec::{Distribution, Order, Value};
 use rand_distr::{Distribution as _, UnitCircle, UnitDisc};
 
-use crate::stream::Chance;
+use crate::stream::Rng;
 
 /// Draws a value.
-pub(crate) fn draw<'a>(distribution: &'a Distribution, chance: &mut Chance) -> Cow<'a, Value> {
+pub(crate) fn draw<'a>(distribution: &'a Distribution, rng: &mut Rng) -> Cow<'a, Value> {
     match distribution {
         Distribution::Constant { value } => Cow::Borrowed(value),
-        Distribution::Choice { values, .. } => Cow::Borrowed(&values[distribution.chosen_at(chance.unit())]),
-        Distribution::Mixture { parts, .. } => draw(&parts[distribution.chosen_at(chance.unit())], chance),
+        Distribution::Choice { values, .. } => Cow::Borrowed(&values[distribution.chosen_at(rng.unit())]),
+        Distribution::Mixture { parts, .. } => draw(&parts[distribution.chosen_at(rng.unit())], rng),
         Distribution::Dirichlet { alpha } => {
-            let units: Vec<f64> = alpha[1..].iter().map(|_| chance.unit()).collect();
+            let units: Vec<f64> = alpha[1..].iter().map(|_| rng.unit()).collect();
             Cow::Owned(Value::Vector(shares(alpha, &units)))
         }
         colors if colors.draws_colors() => {
             // All three numbers, also where one decides: a variant whose channels stray together shares its first.
-            let units = [chance.unit(), chance.unit(), chance.unit()];
+            let units = [rng.unit(), rng.unit(), rng.unit()];
             Cow::Owned(Value::Color(
-                colors.color_at(units).expect("three numbers of chance decide a colour"),
+                colors.color_at(units).expect("three random numbers decide a colour"),
             ))
         }
-        planar if planar.is_planar() => Cow::Owned(Value::Point(place(planar, 0, chance).at)),
+        planar if planar.is_planar() => Cow::Owned(Value::Point(place(planar, 0, rng).at)),
         other => Cow::Owned(
             other
-                .value_at(chance.unit())
-                .expect("one number of chance decides what every other distribution draws"),
+                .value_at(rng.unit())
+                .expect("one random number decides what every other distribution draws"),
         ),
     }
 }
@@ -67,11 +67,11 @@ pub(crate) struct Place {
 }
 
 /// Draws a place; the distribution is a planar one. `number` is the object's: lists are taken in turn.
-pub(crate) fn place(distribution: &Distribution, number: u64, chance: &mut Chance) -> Place {
+pub(crate) fn place(distribution: &Distribution, number: u64, rng: &mut Rng) -> Place {
     let mut own_distance = 0.0;
     let at = match distribution {
         Distribution::Disc { center: [x, y], radius } => {
-            let [u, v]: [f64; 2] = UnitDisc.sample(chance);
+            let [u, v]: [f64; 2] = UnitDisc.sample(rng);
             [x + radius * u, y + radius * v]
         }
         Distribution::Annulus {
@@ -79,11 +79,11 @@ pub(crate) fn place(distribution: &Distribution, number: u64, chance: &mut Chanc
             inner,
             outer,
         } => {
-            let [u, v]: [f64; 2] = UnitCircle.sample(chance);
-            let radius = (inner * inner + (outer * outer - inner * inner) * chance.unit()).sqrt();
+            let [u, v]: [f64; 2] = UnitCircle.sample(rng);
+            let radius = (inner * inner + (outer * outer - inner * inner) * rng.unit()).sqrt();
             [x + radius * u, y + radius * v]
         }
-        Distribution::Points { values, order } => values[turn(*order, values.len() as u64, number, chance)],
+        Distribution::Points { values, order } => values[turn(*order, values.len() as u64, number, rng)],
         Distribution::Grid {
             low,
             high,
@@ -93,46 +93,40 @@ pub(crate) fn place(distribution: &Distribution, number: u64, chance: &mut Chanc
             order,
         } => {
             let (columns, rows) = (*columns as u64, *rows as u64);
-            let cell = turn(*order, columns * rows, number, chance) as u64;
+            let cell = turn(*order, columns * rows, number, rng) as u64;
             let jitter = jitter.unwrap_or(0.0);
             let mut axis = |k: usize, cell: u64, count: u64| {
-                let stray = if jitter > 0.0 {
-                    jitter * (chance.unit() - 0.5)
-                } else {
-                    0.0
-                };
+                let stray = if jitter > 0.0 { jitter * (rng.unit() - 0.5) } else { 0.0 };
                 low[k] + (high[k] - low[k]) * (cell as f64 + 0.5 + stray) / count as f64
             };
             [axis(0, cell % columns, columns), axis(1, cell / columns, rows)]
         }
         Distribution::PoissonDisc { distance, .. } => {
             own_distance = *distance;
-            point_at(distribution, chance)
+            point_at(distribution, rng)
         }
         Distribution::Mixture { parts, .. } => {
-            return place(&parts[distribution.chosen_at(chance.unit())], number, chance);
+            return place(&parts[distribution.chosen_at(rng.unit())], number, rng);
         }
         Distribution::Constant {
             value: Value::Point(point),
         } => *point,
-        Distribution::Choice { values, .. } => match values[distribution.chosen_at(chance.unit())] {
+        Distribution::Choice { values, .. } => match values[distribution.chosen_at(rng.unit())] {
             Value::Point(point) => point,
             _ => [0.0, 0.0],
         },
-        other => point_at(other, chance),
+        other => point_at(other, rng),
     };
     Place { at, own_distance }
 }
 
-fn point_at(distribution: &Distribution, chance: &mut Chance) -> [f64; 2] {
-    distribution
-        .point_at([chance.unit(), chance.unit()])
-        .unwrap_or([0.0, 0.0])
+fn point_at(distribution: &Distribution, rng: &mut Rng) -> [f64; 2] {
+    distribution.point_at([rng.unit(), rng.unit()]).unwrap_or([0.0, 0.0])
 }
 
-fn turn(order: Order, count: u64, number: u64, chance: &mut Chance) -> usize {
+fn turn(order: Order, count: u64, number: u64, rng: &mut Rng) -> usize {
     match order {
         Order::Turn => (number % count) as usize,
-        Order::Random => ((chance.unit() * count as f64) as u64).min(count - 1) as usize,
+        Order::Random => ((rng.unit() * count as f64) as u64).min(count - 1) as usize,
     }
 }

@@ -2,24 +2,24 @@
 
 mod at_distance;
 mod compiled;
-mod coverage;
-mod crowd;
 mod draw;
 mod drift;
 mod error;
+mod free_space;
 mod philox;
 mod placement;
-mod regions;
 mod sampler;
+mod sequence;
+mod spatial_hash;
 mod stream;
 
 use driftworld_spec::{Variant, World};
 
 pub use at_distance::{Found, Subject, at_distance};
-pub use coverage::Coverage;
 pub use drift::{Drift, Schedule, Switch, drift};
 pub use error::GeneratorError;
 pub use sampler::Sampler;
+pub use sequence::Sequence;
 
 /// World number `index` of a variant under a seed. Who draws many prepares a [`Sampler`] once.
 ///

@@ -1,23 +1,23 @@
-//! Finding a free place for each object. Where a place lies is drawn in `draw.rs`; what walls leave free is in `regions.rs`.
+//! Finding a free place for each object. Where a place lies is drawn in `draw.rs`; distances to walls are in `free_space.rs`.
 
 use driftworld_spec::{Distribution, Turns};
 
-use crate::crowd::Crowd;
 use crate::draw::{self, Place};
-use crate::regions::Ground;
-use crate::stream::Chance;
+use crate::free_space::FreeSpace;
+use crate::spatial_hash::SpatialHash;
+use crate::stream::Rng;
 
 /// How many places are tried for one object; where places are taken in turn and stray in their cells, so many in its own cell, and as
 /// many again in all others together.
 pub(crate) const TRIES: u32 = 1000;
 
-/// What is known of the ground while objects are placed on it.
-pub(crate) struct Plot<'a> {
-    ground: &'a Ground,
+/// What placing an object looks at: free space, the agent's start, and the objects placed before.
+pub(crate) struct PlacementContext<'a> {
+    free_space: &'a FreeSpace,
     agent: [f64; 2],
-    everything: Crowd,
+    everything: SpatialHash,
     /// For each group the places of its objects.
-    groups: Vec<Crowd>,
+    groups: Vec<SpatialHash>,
 }
 
 /// What a place must keep clear of, in metres.
@@ -119,23 +119,23 @@ struct Miss {
     wants: f64,
 }
 
-impl<'a> Plot<'a> {
-    pub(crate) fn new(ground: &'a Ground, agent: [f64; 2], groups: usize) -> Self {
+impl<'a> PlacementContext<'a> {
+    pub(crate) fn new(free_space: &'a FreeSpace, agent: [f64; 2], groups: usize) -> Self {
         Self {
-            ground,
+            free_space,
             agent,
-            everything: Crowd::default(),
-            groups: (0..groups).map(|_| Crowd::default()).collect(),
+            everything: SpatialHash::default(),
+            groups: (0..groups).map(|_| SpatialHash::default()).collect(),
         }
     }
 
-    /// Takes the ground at a place, so that later objects keep their separation from it.
+    /// Takes a place, so that later objects keep their separation from it.
     pub(crate) fn occupy(&mut self, place: [f64; 2]) {
         self.everything.push(place);
     }
 
     /// The places of a group.
-    pub(crate) fn group(&self, number: usize) -> &Crowd {
+    pub(crate) fn group(&self, number: usize) -> &SpatialHash {
         &self.groups[number]
     }
 
@@ -146,10 +146,10 @@ impl<'a> Plot<'a> {
         &mut self,
         request: &Request,
         turns: Option<&mut Turns>,
-        chance: &mut Chance,
+        rng: &mut Rng,
     ) -> Result<[f64; 2], (u32, String)> {
         if let Some(turns) = turns {
-            return self.find_in_turn(request, turns, chance);
+            return self.find_in_turn(request, turns, rng);
         }
         let mut tried = Tried::default();
         let tries = if matches!(request.placement, Distribution::Constant { .. }) {
@@ -161,20 +161,15 @@ impl<'a> Plot<'a> {
         for turn in 0..tries {
             // Among other distributions a list goes on from the object's own place once half of the tries came to nothing.
             let on = if mixed { turn.saturating_sub(TRIES / 2) } else { 0 };
-            if let Some(at) = self.try_at(request, request.number + u64::from(on), chance, &mut tried) {
+            if let Some(at) = self.try_at(request, request.number + u64::from(on), rng, &mut tried) {
                 return Ok(at);
             }
         }
-        Err(tried.told())
+        Err(tried.failure())
     }
 
-    /// As [`Plot::find`], where places are taken in turn: the object's own, then the next ones on.
-    fn find_in_turn(
-        &mut self,
-        request: &Request,
-        turns: &mut Turns,
-        chance: &mut Chance,
-    ) -> Result<[f64; 2], (u32, String)> {
+    /// As [`PlacementContext::find`], where places are taken in turn: the object's own, then the next ones on.
+    fn find_in_turn(&mut self, request: &Request, turns: &mut Turns, rng: &mut Rng) -> Result<[f64; 2], (u32, String)> {
         let strays = matches!(request.placement, Distribution::Grid { jitter, .. } if jitter.unwrap_or(0.0) > 0.0);
         let others = request.placement.num_turns().unwrap_or(1).clamp(2, TRIES as usize) as u32 - 1;
         let mut tried = Tried::default();
@@ -184,19 +179,19 @@ impl<'a> Plot<'a> {
                 (true, 0) => TRIES,
                 (true, _) => TRIES / others,
             };
-            let at = (0..tries).find_map(|_| self.try_at(request, place as u64, chance, &mut tried))?;
+            let at = (0..tries).find_map(|_| self.try_at(request, place as u64, rng, &mut tried))?;
             Some((place, at))
         });
         let Some((place, at)) = found else {
-            return Err(tried.told());
+            return Err(tried.failure());
         };
         turns.take(request.number, place);
         Ok(at)
     }
 
     /// Draws a place and takes it if it is free; `number` is that of the place, where places are taken in turn.
-    fn try_at(&mut self, request: &Request, number: u64, chance: &mut Chance, tried: &mut Tried) -> Option<[f64; 2]> {
-        let Place { at, own_distance } = draw::place(request.placement, number, chance);
+    fn try_at(&mut self, request: &Request, number: u64, rng: &mut Rng, tried: &mut Tried) -> Option<[f64; 2]> {
+        let Place { at, own_distance } = draw::place(request.placement, number, rng);
         let at = request.anchor.world(at);
         let Some(miss) = self.miss(at, own_distance, request) else {
             self.everything.push(at);
@@ -216,7 +211,7 @@ impl<'a> Plot<'a> {
     /// The first condition that a place breaks.
     fn miss(&self, place: [f64; 2], own_distance: f64, request: &Request) -> Option<Miss> {
         let margins = request.margins;
-        let wall = self.ground.clearance(place, margins.walls);
+        let wall = self.free_space.clearance(place, margins.walls);
         if wall.is_nan() || wall < margins.walls {
             return Some(Miss {
                 condition: Condition::Wall,
@@ -266,7 +261,7 @@ struct Tried {
 
 impl Tried {
     /// How many were tried, and why none was free.
-    fn told(self) -> (u32, String) {
+    fn failure(self) -> (u32, String) {
         let tries = self.failed.iter().sum();
         if tries == 0 {
             // Only where places are taken in turn, and others that found theirs taken went on to those that were left.

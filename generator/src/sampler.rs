@@ -7,9 +7,9 @@ use driftworld_spec::{MAX_OBJECTS, ParameterType, Requirement, Turns, Value, Var
 
 use crate::GeneratorError;
 use crate::compiled::{Address, Compiled, Filled, Group, GroupCount, Look};
-use crate::coverage::Coverage;
-use crate::placement::{Anchor, Plot, Request};
-use crate::regions::Ground;
+use crate::free_space::FreeSpace;
+use crate::placement::{Anchor, PlacementContext, Request};
+use crate::sequence::Sequence;
 use crate::stream::Stream;
 
 /// How often the randomized parameters of a world are drawn before a requirement that never holds is an error.
@@ -36,16 +36,16 @@ pub struct Sampler {
     variant: Variant,
     seed: u64,
     compiled: Compiled,
-    /// The requirements that chance has a part in.
+    /// The requirements on randomized parameters.
     requirements: Vec<Requirement>,
-    coverage: Coverage,
-    spread: Stream,
+    sequence: Sequence,
+    sequence_stream: Stream,
     /// Where worlds have their seeds from.
     seeds: Stream,
     maps: Option<Arc<MapLibrary>>,
-    /// The ground, where it is the same in every world.
-    ground: Option<Ground>,
-    /// Whether chance has a part in where the agent starts, or in what ground there is.
+    /// The free space, where it is the same in every world.
+    free_space: Option<FreeSpace>,
+    /// Whether the agent's start or the free space varies between worlds.
     start_varies: bool,
 }
 
@@ -71,21 +71,21 @@ impl Sampler {
             seed,
             compiled,
             requirements,
-            coverage: Coverage::Independent,
-            spread: Stream::new(variant.task().name(), seed, "coverage"),
+            sequence: Sequence::Independent,
+            sequence_stream: Stream::new(variant.task().name(), seed, "coverage"),
             seeds: Stream::new(variant.task().name(), seed, "seed"),
             maps: None,
-            ground: None,
+            free_space: None,
             start_varies: false,
         };
-        sampler.settle_ground();
+        sampler.settle_free_space();
         sampler
     }
 
     /// Spreads the randomized parameters over many worlds.
     #[must_use]
-    pub fn with_coverage(mut self, coverage: Coverage) -> Self {
-        self.coverage = coverage;
+    pub fn with_sequence(mut self, sequence: Sequence) -> Self {
+        self.sequence = sequence;
         self
     }
 
@@ -93,12 +93,12 @@ impl Sampler {
     #[must_use]
     pub fn with_maps(mut self, maps: Arc<MapLibrary>) -> Self {
         self.maps = Some(maps);
-        self.settle_ground();
+        self.settle_free_space();
         self
     }
 
-    /// Prepares the map and the ground once, if no world can have another.
-    fn settle_ground(&mut self) {
+    /// Prepares the map and the free space once, if no world can have another.
+    fn settle_free_space(&mut self) {
         let shapes = ["/environment_params/predefined_map", "/environment_params/map_size"];
         let varies = self
             .compiled
@@ -117,7 +117,7 @@ impl Sampler {
             if let Some(maps) = &self.maps {
                 maps.apply(&mut self.compiled.world.base);
             }
-            self.ground = Some(Ground::new(&self.compiled.world.base.environment_params));
+            self.free_space = Some(FreeSpace::new(&self.compiled.world.base.environment_params));
         }
     }
 
@@ -135,7 +135,7 @@ impl Sampler {
     ///
     /// # Errors
     /// [`GeneratorError::Requirement`] if the task's requirements hold in none of the tries, [`GeneratorError::NoStart`] if the
-    /// agent's start is free ground in none, [`GeneratorError::OutOfRange`] for a draw that cannot stand in the world.
+    /// agent's start lies in free space in none, [`GeneratorError::OutOfRange`] for a draw that cannot stand in the world.
     pub fn values(&self, index: u64) -> Result<Vec<(&str, Value)>, GeneratorError> {
         let names = self.compiled.parameters.iter().map(|parameter| parameter.name.as_str());
         Ok(names.zip(self.empty_world(index)?.1).collect())
@@ -147,7 +147,7 @@ impl Sampler {
         for attempt in first..ATTEMPTS {
             let parameters = self.compiled.parameters.iter();
             let values: Vec<Value> = parameters
-                .map(|parameter| parameter.value(self.coverage, &self.spread, index, attempt))
+                .map(|parameter| parameter.value(self.sequence, &self.sequence_stream, index, attempt))
                 .collect();
             if self.requirements.is_empty() {
                 return Ok((values, attempt));
@@ -184,9 +184,9 @@ impl Sampler {
         unreachable!("callers begin below the last attempt, which returns")
     }
 
-    /// The world but for its objects, with the ground it stands on where that is its own. The agent's start is free ground: a
+    /// The world but for its objects, with its free space where that is its own. The agent's start lies in free space: a
     /// start that is drawn is drawn again, together with the parameters, until it is.
-    fn empty_world(&self, index: u64) -> Result<(World, Vec<Value>, Option<Ground>), GeneratorError> {
+    fn empty_world(&self, index: u64) -> Result<(World, Vec<Value>, Option<FreeSpace>), GeneratorError> {
         let mut first = 0;
         loop {
             let (values, attempt) = self.draw_values(index, first)?;
@@ -199,21 +199,21 @@ impl Sampler {
                 },
                 &values,
             )?;
-            let mut own_ground = None;
-            if self.ground.is_none() {
+            let mut own_free_space = None;
+            if self.free_space.is_none() {
                 if let Some(maps) = &self.maps {
                     maps.apply(&mut world);
                 }
-                own_ground = Some(Ground::new(&world.environment_params));
+                own_free_space = Some(FreeSpace::new(&world.environment_params));
             }
-            let ground = self
-                .ground
+            let free_space = self
+                .free_space
                 .as_ref()
-                .or(own_ground.as_ref())
+                .or(own_free_space.as_ref())
                 .expect("one of the two is there");
             let start = world.agent_params.coordinates;
-            if ground.clearance(start, 0.0) > 0.0 {
-                return Ok((world, values, own_ground));
+            if free_space.clearance(start, 0.0) > 0.0 {
+                return Ok((world, values, own_free_space));
             }
             let tries = attempt + 1;
             if !self.start_varies || tries == ATTEMPTS {
@@ -236,14 +236,14 @@ impl Sampler {
     /// [`GeneratorError`] if an object or the agent finds no place, a draw falls out of its range, a requirement never holds, or there are
     /// too many objects.
     pub fn world(&self, index: u64) -> Result<World, GeneratorError> {
-        let (mut world, values, own_ground) = self.empty_world(index)?;
+        let (mut world, values, own_free_space) = self.empty_world(index)?;
         world.seed = Some(self.seeds.seed(index));
-        let ground = self
-            .ground
+        let free_space = self
+            .free_space
             .as_ref()
-            .or(own_ground.as_ref())
+            .or(own_free_space.as_ref())
             .expect("one of the two is there");
-        let mut plot = Plot::new(ground, world.agent_params.coordinates, self.compiled.groups.len());
+        let mut context = PlacementContext::new(free_space, world.agent_params.coordinates, self.compiled.groups.len());
         world.objects.reserve_exact(self.compiled.room);
         for (number, fixture) in self.compiled.fixtures.iter().enumerate() {
             let object = self.fill(
@@ -255,7 +255,7 @@ impl Sampler {
                 },
                 &values,
             )?;
-            plot.occupy(object.coordinates);
+            context.occupy(object.coordinates);
             world.objects.push(object);
         }
         // For each group, where its objects stand in the world's list.
@@ -265,7 +265,7 @@ impl Sampler {
             let mut draft = Draft {
                 index,
                 values: &values,
-                plot: &mut plot,
+                context: &mut context,
                 world: &mut world,
             };
             match group.around {
@@ -337,7 +337,7 @@ impl Sampler {
             if let Some(seeds) = &group.seeds {
                 object.seed = object.seed.or_else(|| Some(seeds.seed(first + turn)));
             }
-            let mut chance = group.placement.stream.at(index, first + turn, 0);
+            let mut rng = group.placement.stream.at(index, first + turn, 0);
             let placement = &group.placement.distribution;
             let request = Request {
                 placement,
@@ -347,8 +347,8 @@ impl Sampler {
                 number: turn,
             };
             let place = draft
-                .plot
-                .find(&request, turns.as_mut(), &mut chance)
+                .context
+                .find(&request, turns.as_mut(), &mut rng)
                 .map_err(|(tries, reason)| GeneratorError::NoPlace {
                     variant: self.variant.id(),
                     seed: self.seed,
@@ -378,7 +378,7 @@ impl Sampler {
                 Some(Look::Agent) => Some(draft.world.agent_params.coordinates),
                 Some(Look::Middle) => Some(anchor.at),
                 Some(Look::Point(point)) => Some(*point),
-                Some(Look::Group(group)) => draft.plot.group(*group).nearest(place),
+                Some(Look::Group(group)) => draft.context.group(*group).nearest(place),
             };
             if let Some(to) = towards.filter(|to| *to != place) {
                 object.heading = heading(place, to);
@@ -442,7 +442,7 @@ impl Sampler {
 struct Draft<'a, 'g> {
     index: u64,
     values: &'a [Value],
-    plot: &'a mut Plot<'g>,
+    context: &'a mut PlacementContext<'g>,
     world: &'a mut World,
 }
 

@@ -1,4 +1,4 @@
-//! Streams of chance: every source of numbers has one of its own, addressed by world and object. What is drawn from them is in `draw.rs`.
+//! Random streams: every source of numbers has one of its own, addressed by world and object. What is drawn from them is in `draw.rs`.
 
 use std::convert::Infallible;
 
@@ -33,8 +33,8 @@ impl Stream {
     }
 
     /// The numbers of one object in one world; `attempt` counts how often the world was drawn again.
-    pub(crate) fn at(&self, index: u64, object: u64, attempt: u32) -> Chance {
-        Chance {
+    pub(crate) fn at(&self, index: u64, object: u64, attempt: u32) -> Rng {
+        Rng {
             key: self.key,
             counter: [index, object, 0, u64::from(attempt)],
             numbers: [0; 4],
@@ -53,15 +53,15 @@ impl Stream {
     }
 }
 
-/// A source of numbers at one place.
-pub(crate) struct Chance {
+/// The random numbers of one object in one world.
+pub(crate) struct Rng {
     key: [u64; 2],
     counter: [u64; 4],
     numbers: [u64; 4],
     used: usize,
 }
 
-impl Chance {
+impl Rng {
     fn next(&mut self) -> u64 {
         if self.used == self.numbers.len() {
             self.numbers = philox(self.key, self.counter);
@@ -72,7 +72,7 @@ impl Chance {
         self.numbers[self.used - 1]
     }
 
-    /// A number above 0 and below 1, 52 bits of it chance.
+    /// A number above 0 and below 1, 52 bits of it random.
     pub(crate) fn unit(&mut self) -> f64 {
         unit(self.next())
     }
@@ -84,7 +84,7 @@ pub(crate) fn unit(bits: u64) -> f64 {
 }
 
 /// So that the distributions of `rand_distr` can draw from it.
-impl TryRng for Chance {
+impl TryRng for Rng {
     type Error = Infallible;
 
     fn try_next_u32(&mut self) -> Result<u32, Infallible> {

@@ -1,9 +1,9 @@
-//! Colours out of a continuum are drawn as declared: channel by channel, under every coverage, on the way of a drift, and in groups.
+//! Colours out of a continuum are drawn as declared: channel by channel, under every sequence, on the way of a drift, and in groups.
 //! The laws themselves are tested in the spec.
 
 use std::sync::Arc;
 
-use driftworld_generator::{Coverage, Sampler, drift};
+use driftworld_generator::{Sampler, Sequence, drift};
 use driftworld_spec::{ChannelSpread, Channels, Color, Distribution, TaskSpec, Value, Variant};
 
 /// Draws of each law.
@@ -184,8 +184,8 @@ fn two_variants_under_one_seed_share_their_chance_channel_by_channel() {
         let variant = of(name);
         let channels = law(&variant).color_channels().expect("channels with laws");
         let drawn = colors(&Sampler::new(&variant, 1), 50);
-        let chance = move |color: [f64; 3]| [0, 1, 2].map(|k| channels[k].cdf(color[k]).expect("a number"));
-        drawn.into_iter().map(chance).collect::<Vec<_>>()
+        let units = move |color: [f64; 3]| [0, 1, 2].map(|k| channels[k].cdf(color[k]).expect("a number"));
+        drawn.into_iter().map(units).collect::<Vec<_>>()
     };
     for (a, b) in chances("default").into_iter().zip(chances("other")) {
         assert!((0..3).all(|k| (a[k] - b[k]).abs() < 1e-9), "{a:?} and {b:?}");
@@ -203,13 +203,13 @@ fn coverages_give_each_channel_one_world_in_every_share() {
     let beside = r#""n": { "role": "randomized", "type": "number", "affects": ["S"], "distribution": { "uniform": { "low": 0, "high": 1 } } },"#;
     let variant = default(&task(&format!("{beside}{own}"), ""));
     let count = 64;
-    for coverage in [Coverage::Sobol, Coverage::LatinHypercube { first: 0, count }] {
-        let drawn = colors(&Sampler::new(&variant, 9).with_coverage(coverage), count);
+    for sequence in [Sequence::Sobol, Sequence::LatinHypercube { first: 0, count }] {
+        let drawn = colors(&Sampler::new(&variant, 9).with_sequence(sequence), count);
         for k in 0..3 {
             let mut shares: Vec<u64> = drawn.iter().map(|color| (color[k] * count as f64) as u64).collect();
             assert!(!shares.is_sorted());
             shares.sort_unstable();
-            assert_eq!(shares, (0..count).collect::<Vec<_>>(), "{coverage:?}, channel {k}");
+            assert_eq!(shares, (0..count).collect::<Vec<_>>(), "{sequence:?}, channel {k}");
         }
     }
 }

@@ -1,11 +1,11 @@
-//! Groups around each other, what they keep clear of and where they look; requirements, coverage, and maps from files. How
+//! Groups around each other, what they keep clear of and where they look; requirements, sequence, and maps from files. How
 //! places scatter is tested by statistics of their own.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
 use std::sync::Arc;
 
-use driftworld_generator::{Coverage, GeneratorError, Sampler, sample};
+use driftworld_generator::{GeneratorError, Sampler, Sequence, sample};
 use driftworld_spec::maps::MapLibrary;
 use driftworld_spec::{Object, TaskSpec, Value, World};
 
@@ -152,7 +152,7 @@ fn a_requirement_that_never_holds_is_an_error_with_the_last_values() {
     let task = load(SIZES);
     let impossible = task
         .variant("impossible")
-        .expect("chance has a part in it, so loading cannot know");
+        .expect("it is random, so loading cannot know");
     let error = sample(&impossible, 7, 0).expect_err("the gap is wider than the range");
     assert!(matches!(error, GeneratorError::Requirement { .. }));
     insta::assert_snapshot!(error);
@@ -186,28 +186,28 @@ fn coverage_spreads_numbers_and_points_evenly_and_stays_random_access() {
         Value::Point([x, y]) => (x as usize / 4) * 4 + y as usize / 4,
         _ => usize::MAX,
     };
-    let sobol = sampler(&task, 3).with_coverage(Coverage::Sobol);
+    let sobol = sampler(&task, 3).with_sequence(Sequence::Sobol);
     assert_eq!(shares(&sobol, 64..128, light, 64), vec![1; 64]);
     assert_eq!(
         shares(&sobol, 0..64, cell, 16),
         vec![4; 16],
         "points cover the square, not only its sides"
     );
-    let cube = sampler(&task, 3).with_coverage(Coverage::LatinHypercube { first: 10, count: 64 });
+    let cube = sampler(&task, 3).with_sequence(Sequence::LatinHypercube { first: 10, count: 64 });
     assert_eq!(shares(&cube, 10..74, light, 64), vec![1; 64]);
     let independent = sampler(&task, 3);
     assert_ne!(shares(&independent, 64..128, light, 64), vec![1; 64]);
     // Choices are no scalars: they are drawn as ever.
     let model = |sampler: &Sampler, index| sampler.values(index).expect("nothing is required")[3].1.clone();
     assert!((0..64).all(|index| model(&sobol, index) == model(&independent, index)));
-    let again = sampler(&task, 3).with_coverage(Coverage::Sobol);
+    let again = sampler(&task, 3).with_sequence(Sequence::Sobol);
     assert_eq!(
         again.values(100).expect("any world"),
         sobol.values(100).expect("any world")
     );
     assert_ne!(
         sampler(&task, 4)
-            .with_coverage(Coverage::Sobol)
+            .with_sequence(Sequence::Sobol)
             .values(100)
             .expect("any world"),
         sobol.values(100).expect("any world")

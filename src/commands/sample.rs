@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::columns::Format;
 #[cfg(feature = "parquet")]
 use crate::columns::{Row, WorldTable};
-use crate::generator::{Coverage, Drift, GeneratorError, Sampler, Schedule, Switch};
+use crate::generator::{Drift, GeneratorError, Sampler, Schedule, Sequence, Switch};
 use crate::spec::{Variant, World, maps::MapLibrary};
 use crate::tasks;
 use clap::{Args, ValueEnum};
@@ -35,7 +35,7 @@ const OBJECTS: u64 = 100_000;
   driftworld sample find_objects#red --seed 7 --index 12345 -o -
   driftworld sample find_objects#red --seed 7 --count 1000 --jsonl -o worlds.jsonl
   driftworld sample find_objects#red --count 100000 --shard 2/8 -o worlds-2.parquet
-  driftworld sample find_objects#red --count 256 --sampler sobol -o worlds/
+  driftworld sample find_objects#red --count 256 --sequence sobol -o worlds/
   driftworld sample find_objects#blue --drift-to red --schedule cosine --count 50 -o drift/
   driftworld sample my_task.json#night --maps my_maps.json --count 10 -o worlds/")]
 pub(crate) struct Sample {
@@ -53,9 +53,9 @@ pub(crate) struct Sample {
     /// Only the I-th of N equal parts of the worlds, as 1/4 to 4/4: together the parts give what one run gives.
     #[arg(long, value_name = "I/N", requires = "count")]
     shard: Option<Shard>,
-    /// How randomized parameters spread over the worlds.
-    #[arg(long, value_enum, default_value_t = Spread::Independent)]
-    sampler: Spread,
+    /// How the random numbers of randomized parameters are spread over the worlds.
+    #[arg(long, alias = "sampler", value_enum, default_value_t = SequenceName::Independent)]
+    sequence: SequenceName,
     /// Drift over the worlds to this variant of the task: the first world is of the one, the last of the other.
     #[arg(long, value_name = "VARIANT", requires = "count")]
     drift_to: Option<String>,
@@ -76,9 +76,9 @@ pub(crate) struct Sample {
     output: PathBuf,
 }
 
-/// How randomized parameters spread over the worlds.
+/// The names of [`Sequence`].
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Spread {
+enum SequenceName {
     /// Each world draws on its own.
     Independent,
     /// Sobol's sequence over the world's numbers, scrambled by the seed.
@@ -138,7 +138,7 @@ enum Source {
         first: u64,
         count: u64,
         maps: Option<Arc<MapLibrary>>,
-        coverage: Coverage,
+        sequence: Sequence,
         seed: u64,
     },
 }
@@ -153,12 +153,12 @@ impl Source {
                 first,
                 count,
                 maps,
-                coverage,
+                sequence,
                 seed,
             } => {
                 let progress = (index - first) as f64 / (count.saturating_sub(1).max(1)) as f64;
                 let variant = drift.at(progress, index)?;
-                let mut sampler = Sampler::new(&variant, *seed).with_coverage(*coverage);
+                let mut sampler = Sampler::new(&variant, *seed).with_sequence(*sequence);
                 if let Some(maps) = maps {
                     sampler = sampler.with_maps(Arc::clone(maps));
                 }
@@ -206,17 +206,17 @@ impl Sample {
     }
 
     fn source(&self, variant: &Variant, count: u64) -> Result<Source, Failure> {
-        let coverage = match self.sampler {
-            Spread::Independent => Coverage::Independent,
-            Spread::Sobol => Coverage::Sobol,
-            Spread::Lhs => Coverage::LatinHypercube {
+        let sequence = match self.sequence {
+            SequenceName::Independent => Sequence::Independent,
+            SequenceName::Sobol => Sequence::Sobol,
+            SequenceName::Lhs => Sequence::LatinHypercube {
                 first: self.index,
                 count,
             },
         };
         let maps = self.maps.as_deref().map(worlds::maps).transpose()?.map(Arc::new);
         let Some(name) = &self.drift_to else {
-            let mut sampler = Sampler::new(variant, self.seed).with_coverage(coverage);
+            let mut sampler = Sampler::new(variant, self.seed).with_sequence(sequence);
             if let Some(maps) = maps {
                 sampler = sampler.with_maps(maps);
             }
@@ -243,7 +243,7 @@ impl Sample {
             first: self.index,
             count,
             maps,
-            coverage,
+            sequence,
             seed: self.seed,
         })
     }

@@ -1,4 +1,4 @@
-//! [`Crowd`]: places that are taken, and how near the nearest of them is. Which places are free is decided in `placement.rs`.
+//! [`SpatialHash`]: places that are taken, and the distance to the nearest of them. Which places are free is decided in `placement.rs`.
 
 /// Up to so many places are looked at one by one; more are sorted into cells.
 const FEW: usize = 48;
@@ -14,13 +14,13 @@ const NONE: u32 = u32::MAX;
 
 /// Places on the ground.
 #[derive(Default)]
-pub(crate) struct Crowd {
+pub(crate) struct SpatialHash {
     places: Vec<[f64; 2]>,
     /// For each cell the last place in it, for each place the one before it in its cell.
     cells: Option<(Vec<u32>, Vec<u32>)>,
 }
 
-impl Crowd {
+impl SpatialHash {
     pub(crate) fn push(&mut self, place: [f64; 2]) {
         self.places.push(place);
         if self.cells.is_some() {
@@ -106,17 +106,17 @@ mod tests {
             at in [-200.0..200.0_f64, -200.0..200.0_f64],
             reach in 0.0..40.0_f64,
         ) {
-            let mut crowd = Crowd::default();
+            let mut hash = SpatialHash::default();
             for place in &places {
-                crowd.push(*place);
+                hash.push(*place);
             }
             let distance = |other: &[f64; 2]| {
                 let (dx, dy) = (at[0] - other[0], at[1] - other[1]);
                 (dx * dx + dy * dy).sqrt()
             };
             let least = places.iter().map(distance).min_by(f64::total_cmp);
-            prop_assert_eq!(crowd.within(at, reach), least.filter(|metres| *metres < reach));
-            prop_assert_eq!(crowd.nearest(at).map(|other| distance(&other)), least);
+            prop_assert_eq!(hash.within(at, reach), least.filter(|metres| *metres < reach));
+            prop_assert_eq!(hash.nearest(at).map(|other| distance(&other)), least);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! How the numbers of chance behind randomized parameters are spread over many worlds. What is drawn with them is in `draw.rs`.
+//! [`Sequence`]: how the random numbers behind randomized parameters are spread over many worlds. What is drawn with them is in `draw.rs`.
 
 use std::sync::OnceLock;
 
@@ -9,11 +9,11 @@ pub(crate) const MAX_DIMENSIONS: usize = 100;
 
 /// How randomized parameters cover what they can be, over the worlds of a variant.
 ///
-/// Randomized parameters that up to three numbers of chance decide take part, colours with one for each channel, in the order in which the task declares them, so
-/// that one declared before another shifts its dimension. Choices, mixtures, Dirichlet shares and what is drawn inside groups
+/// Randomized parameters that up to three random numbers decide take part, colours with one for each channel. They take
+/// dimensions in the order in which the task declares them, so that one declared before another shifts its dimension. Choices, mixtures, Dirichlet shares and what is drawn inside groups
 /// stay independent draws, as do parameters beyond 100 dimensions and worlds that a requirement has drawn again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Coverage {
+pub enum Sequence {
     /// Each world draws on its own.
     #[default]
     Independent,
@@ -30,7 +30,7 @@ pub enum Coverage {
     },
 }
 
-impl Coverage {
+impl Sequence {
     /// The number in 0..1 of a dimension for a world; `None` if it is to be drawn.
     pub(crate) fn unit(self, stream: &Stream, dimension: usize, index: u64) -> Option<f64> {
         match self {
@@ -129,7 +129,7 @@ mod tests {
         let stream = Stream::new("t", 7, "coverage");
         for dimension in [0, 1, 17, 99] {
             let mut shares: Vec<u64> = (256..512)
-                .map(|index| (Coverage::Sobol.unit(&stream, dimension, index).unwrap() * 256.0) as u64)
+                .map(|index| (Sequence::Sobol.unit(&stream, dimension, index).unwrap() * 256.0) as u64)
                 .collect();
             shares.sort_unstable();
             assert_eq!(shares, (0..256).collect::<Vec<_>>());
@@ -140,7 +140,7 @@ mod tests {
     fn a_latin_hypercube_has_one_world_in_each_share() {
         for count in [1, 2, 3, 100, 1000] {
             let stream = Stream::new("t", 7, "coverage");
-            let cube = Coverage::LatinHypercube { first: 50, count };
+            let cube = Sequence::LatinHypercube { first: 50, count };
             let mut shares: Vec<u64> = (50..50 + count)
                 .map(|index| (cube.unit(&stream, 3, index).unwrap() * count as f64) as u64)
                 .collect();

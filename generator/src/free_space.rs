@@ -1,10 +1,10 @@
-//! Where objects may not stand: outside the arena, and inside polygons. Where they do stand is found in `placement.rs`.
+//! [`FreeSpace`]: how far a place is from walls and regions. Where objects stand is found in `placement.rs`.
 
 use driftworld_spec::EnvironmentParams;
 
-/// The ground that is free to stand on, as far as walls go.
+/// The free space of an arena, as far as walls and regions go.
 #[derive(Debug)]
-pub(crate) struct Ground {
+pub(crate) struct FreeSpace {
     half: [f64; 2],
     regions: Vec<Region>,
 }
@@ -16,7 +16,7 @@ struct Region {
     high: [f64; 2],
 }
 
-impl Ground {
+impl FreeSpace {
     pub(crate) fn new(environment: &EnvironmentParams) -> Self {
         let map = environment.regions().into_iter().map(<[[f64; 2]]>::to_vec);
         let walls = environment.walls.iter().map(|wall| wall.polygon.clone());
