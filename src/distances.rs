@@ -145,7 +145,7 @@ enum Comparison {
 /// let named = |name: &str| Ok::<_, tasks::TaskError>((name.to_owned(), tasks::variant(name)?));
 /// let variants = [named("find_objects#blue")?, named("find_objects#dusk")?];
 /// let matrix = distances::variant_matrix(&variants, Ok)?;
-/// assert!(matrix.get(0, 1) > 0.0 && matrix.nature().is_metric());
+/// assert!(matrix.get(0, 1) > 0.0 && matrix.properties().is_metric());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn variant_matrix(
@@ -203,7 +203,7 @@ pub fn variant_matrix_while(
                 asked()?;
                 Ok::<_, DistancesError>(measure.between(&variants[a].1, &variants[b].1)?.total)
             };
-            Ok(DistanceMatrix::measure(labels, apart)?.with_nature(measure.nature()))
+            Ok(DistanceMatrix::measure(labels, apart)?.with_properties(measure.properties()))
         }
         Comparison::Drawn(worlds) => {
             let count = NUM_WORLDS as usize;
@@ -249,7 +249,7 @@ mod tests {
     #[test]
     fn variants_of_one_task_are_compared_by_what_it_declares() {
         let found = matrix(&["find_objects#blue", "find_objects#red", "find_objects#penalty"]);
-        assert!(found.nature().is_metric());
+        assert!(found.properties().is_metric());
         assert!(found.get(0, 1) > 0.0 && found.get(0, 2) > found.get(0, 1));
     }
 
@@ -292,7 +292,7 @@ mod tests {
     #[test]
     fn variants_of_several_tasks_are_compared_by_their_worlds() {
         let found = matrix(&["find_objects#blue", "find_objects#red", "get_to_goal#plain"]);
-        assert!(!found.nature().is_metric());
+        assert!(!found.properties().is_metric());
         assert!(found.get(0, 1) < found.get(0, 2));
         assert_eq!(matrix(&[]).len(), 0);
     }

@@ -3,7 +3,7 @@
 
 use driftworld_env::{Camera, Catalogue, CpuRenderer, EnvError, Environment, Target};
 use driftworld_similarity::picture::{Picture, PictureMeasure, views_distance};
-use driftworld_similarity::{DistanceMatrix, Nature, SimilarityError};
+use driftworld_similarity::{DistanceMatrix, MetricProperties, SimilarityError};
 use driftworld_spec::World;
 
 /// The most places along each side of the arena.
@@ -150,7 +150,7 @@ pub fn picture_matrix(
         .map(|world| Views::new(world, &poses, options))
         .collect::<Result<Vec<_>, _>>()?;
     let matrix = DistanceMatrix::measure(labels, |a, b| views[a].distance(&views[b], options.measure));
-    Ok::<_, PictureDistanceError>(matrix?.with_nature(Views::nature(options.measure)))
+    Ok::<_, PictureDistanceError>(matrix?.with_properties(Views::properties(options.measure)))
 }
 
 /// The same places and directions for all of these worlds.
@@ -277,8 +277,8 @@ impl Views {
     }
 
     /// Which laws [`Views::distance`] keeps among worlds seen from one set of poses, worlds that look alike taken as equal.
-    pub fn nature(measure: PictureMeasure) -> Nature {
-        measure.nature()
+    pub fn properties(measure: PictureMeasure) -> MetricProperties {
+        measure.properties()
     }
 }
 

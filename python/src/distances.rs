@@ -145,7 +145,7 @@ impl PyMatrix {
     /// Whether the triangle inequality holds, by what is known of the measure.
     #[getter]
     fn is_metric(&self) -> bool {
-        self.0.nature().is_metric()
+        self.0.properties().is_metric()
     }
 
     /// The items as points of a plane, ``(items, 2)``, and how much of the matrix the plane shows.

@@ -11,7 +11,7 @@ mod correlation;
 pub mod distribution;
 mod error;
 mod matrix;
-mod nature;
+mod metric_properties;
 mod occupancy;
 mod order;
 pub mod picture;
@@ -40,7 +40,7 @@ pub use error::SimilarityError;
 pub use matrix::{
     DistanceMatrix, Embedding, MAX_DISTANCE, MAX_FEATURES, MAX_ITEMS, PlanarMap, Triangles, Violation, classical_map,
 };
-pub use nature::Nature;
+pub use metric_properties::MetricProperties;
 pub use occupancy::{
     BitGrid, Classes, Extent, Grid, GridShape, MAX_CELLS, Ospa, Raster, grid_chamfer_distance, grid_dice_distance,
     grid_earth_movers_distance, grid_earth_movers_hat, grid_hamming_distance, grid_hausdorff_95,

@@ -2,7 +2,7 @@
 //! with quadrature beside the code.
 
 use driftworld_similarity::distribution::{
-    How, Measured, SortedSamples, bures_wasserstein, circular_wasserstein_1, energy, hellinger, jensen_shannon,
+    Measured, Method, SortedSamples, bures_wasserstein, circular_wasserstein_1, energy, hellinger, jensen_shannon,
     kullback_leibler, maximum_mean_discrepancy, planar_wasserstein_1, planar_wasserstein_2, total_variation,
     wasserstein_1, wasserstein_2,
 };
@@ -57,8 +57,8 @@ fn measure(name: &str) -> Measure {
 }
 
 fn tolerance(found: Measured) -> f64 {
-    match found.how {
-        How::Quadrature { tolerance } => tolerance,
+    match found.method {
+        Method::Quadrature { tolerance } => tolerance,
         _ => 0.0,
     }
 }
@@ -281,9 +281,9 @@ proptest! {
         let (first, second) = (of(planar_wasserstein_1), of(planar_wasserstein_2));
         let least = bures_wasserstein(&a, &b).expect("both draw points");
         // Samples stand for either within some percent.
-        let slack = if matches!(second.how, How::Samples { .. }) { 0.1 } else { 1e-6 };
+        let slack = if matches!(second.method, Method::Samples { .. }) { 0.1 } else { 1e-6 };
         prop_assert!(second.value >= least * (1.0 - slack) - slack, "{second:?}, at least {least}");
-        let slack = if first.how == second.how { 1e-6 } else { 0.1 };
+        let slack = if first.method == second.method { 1e-6 } else { 0.1 };
         prop_assert!(first.value <= second.value * (1.0 + slack) + slack, "{first:?}, {second:?}");
         for measure in [planar_wasserstein_1, planar_wasserstein_2] {
             prop_assert_eq!(measure(&a, &a).map(|found| found.value), Some(0.0));

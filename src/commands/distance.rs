@@ -122,8 +122,8 @@ fn parts(distance: &Measured) -> String {
             part.name.clone(),
             part.element.letter().to_owned(),
             part.measure.to_string(),
-            part.how
-                .map_or_else(|| "of the values".to_owned(), |how| how.to_string()),
+            part.method
+                .map_or_else(|| "of the values".to_owned(), |method| method.to_string()),
             format!("{:.4}", part.raw),
             format!("{:.4}", part.normalised),
             format!("{}", part.weight),

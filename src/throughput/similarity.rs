@@ -8,8 +8,9 @@ use std::time::Duration;
 use crate::generator::Sampler;
 use crate::similarity::distribution::SortedSamples;
 use crate::similarity::{
-    BitGrid, DistanceMatrix, Grid, GridShape, Lab, LabTable, Method, Nature, OrderOptions, SimilarityError, Weights,
-    Worlds, ciede2000_to_each, earth_movers_distance, grid_earth_movers_distance, grid_jaccard_distance, order,
+    BitGrid, DistanceMatrix, Grid, GridShape, Lab, LabTable, Method, MetricProperties, OrderOptions, SimilarityError,
+    Weights, Worlds, ciede2000_to_each, earth_movers_distance, grid_earth_movers_distance, grid_jaccard_distance,
+    order,
 };
 use crate::spec::World;
 use crate::tasks;
@@ -183,7 +184,7 @@ fn ordering() -> Result<f64, Failure> {
     let points: Vec<[f64; 2]> = (0..NUM_ITEMS).map(|_| [numbers.next(), numbers.next()]).collect();
     let labels = (0..NUM_ITEMS).map(|index| format!("{index:04}")).collect();
     let apart = |a: usize, b: usize| (points[a][0] - points[b][0]).hypot(points[a][1] - points[b][1]);
-    let matrix =
-        DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>(apart(a, b)))?.with_nature(Nature::Metric);
+    let matrix = DistanceMatrix::measure(labels, |a, b| Ok::<_, SimilarityError>(apart(a, b)))?
+        .with_properties(MetricProperties::Metric);
     best_of_three(|| order(&matrix, Method::TwoOpt, &OrderOptions::default()).map(drop))
 }

@@ -9,7 +9,7 @@ use crate::color::ciede2000::{CIEDE2000_DIAMETER, ciede2000};
 use crate::color::hyab::hyab;
 use crate::color::lab::Lab;
 use crate::color::srgb::srgb_distance;
-use crate::{Nature, Oklab};
+use crate::{MetricProperties, Oklab};
 
 /// A way to say how far two colours are apart.
 ///
@@ -76,10 +76,10 @@ impl ColorMeasure {
     }
 
     /// Which laws it keeps.
-    pub fn nature(self) -> Nature {
+    pub fn properties(self) -> MetricProperties {
         match self {
-            Self::Ciede2000 => Nature::Distance,
-            Self::Srgb | Self::Cie76 | Self::Oklab | Self::Hyab => Nature::Metric,
+            Self::Ciede2000 => MetricProperties::Distance,
+            Self::Srgb | Self::Cie76 | Self::Oklab | Self::Hyab => MetricProperties::Metric,
         }
     }
 
@@ -170,7 +170,7 @@ mod tests {
                 if a != b {
                     prop_assert!(d(a, b) > 0.0);
                 }
-                if measure.nature().is_metric() {
+                if measure.properties().is_metric() {
                     prop_assert!(d(a, c) <= d(a, b) + d(b, c) + 1e-12, "{}", measure.name());
                 }
             }

@@ -89,7 +89,7 @@ mod tests {
                 prop_assert!(d(&a, &turned).abs() < 1e-12);
                 prop_assert!((d(&a, &b) - d(&b, &a)).abs() < 1e-9);
                 prop_assert!((0.0..=1.0).contains(&d(&a, &b)));
-                if measure.nature().is_metric() {
+                if measure.properties().is_metric() {
                     prop_assert!(d(&a, &c) <= d(&a, &b) + d(&b, &c) + 1e-9);
                 }
             }

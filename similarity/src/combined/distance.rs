@@ -4,7 +4,7 @@ use driftworld_spec::{Element, TaskSpec};
 use serde::Serialize;
 
 use crate::SimilarityError;
-use crate::distribution::How;
+use crate::distribution::Method;
 
 /// The most that an element can weigh: what a task spec may say, too.
 pub const MAX_WEIGHT: f64 = 1e6;
@@ -74,8 +74,8 @@ pub struct Part {
     /// The measure, and what its number is divided by.
     pub measure: &'static str,
     /// For distributions: how the number was found. Values are compared as they are.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub how: Option<How>,
+    #[serde(rename = "how", skip_serializing_if = "Option::is_none")]
+    pub method: Option<Method>,
     /// The measure's own number, in its own units.
     pub raw: f64,
     /// The number that counts, in 0..=1.
@@ -166,7 +166,7 @@ mod tests {
             name: "p".to_owned(),
             element,
             measure: "same or not",
-            how: None,
+            method: None,
             raw: normalised,
             normalised,
             weight,

@@ -8,8 +8,8 @@ use driftworld_spec::{Distribution, MeasureName, Parameter, ParameterType};
 use crate::ColorMeasure;
 use crate::combined::value::share;
 use crate::distribution::{
-    How, Measured, circular_wasserstein_1, color_wasserstein_1, color_wasserstein_2, draws_headings, extent, hellinger,
-    jensen_shannon, planar_wasserstein_2, total_variation, wasserstein_1, wasserstein_2,
+    Measured, Method, circular_wasserstein_1, color_wasserstein_1, color_wasserstein_2, draws_headings, extent,
+    hellinger, jensen_shannon, planar_wasserstein_2, total_variation, wasserstein_1, wasserstein_2,
 };
 use crate::scalar::choice_mismatch;
 
@@ -27,7 +27,7 @@ pub(super) struct DrawnMeasure {
 }
 
 /// A comparison: the measure's name, how its number was found, the number, and the one that counts, which may be above 1.
-pub(super) type Found = (&'static str, Option<How>, f64, f64);
+pub(super) type Found = (&'static str, Option<Method>, f64, f64);
 
 impl DrawnMeasure {
     /// What the parameter asks for, or what its type has; `all` are its distributions in the declared variants.
@@ -61,7 +61,7 @@ impl DrawnMeasure {
 
     /// Whether the triangle inequality holds. Between points of different families it may fail by what samples are off.
     pub(super) fn is_metric(&self) -> bool {
-        !self.mixed && self.colors.is_none_or(|colors| colors.nature().is_metric())
+        !self.mixed && self.colors.is_none_or(|colors| colors.properties().is_metric())
     }
 
     /// How far two distributions are apart.
@@ -71,7 +71,7 @@ impl DrawnMeasure {
         let half_turn = |measured: Measured| measured.value / 180.0;
         let found = |name, measured: Option<Measured>, normalise: &dyn Fn(Measured) -> f64| -> Option<Found> {
             let measured = measured?;
-            Some((name, Some(measured.how), measured.value, normalise(measured)))
+            Some((name, Some(measured.method), measured.value, normalise(measured)))
         };
         let same_or_not = || {
             let raw = choice_mismatch(a, b);
@@ -137,7 +137,12 @@ fn between_colors(a: &Distribution, b: &Distribution, by: ColorMeasure, asked: O
         };
         (name, color_wasserstein_1(a, b, by)?)
     };
-    Some((name, Some(measured.how), measured.value, measured.value / by.diameter()))
+    Some((
+        name,
+        Some(measured.method),
+        measured.value,
+        measured.value / by.diameter(),
+    ))
 }
 
 /// The corners between which nearly all of a distribution's numbers or points lie; numbers have the second coordinate 0.
@@ -156,6 +161,6 @@ fn shares(a: &Distribution, b: &Distribution) -> Option<Measured> {
     let (a, b) = (a.mean_shares()?, b.mean_shares()?);
     (a.len() == b.len()).then(|| Measured {
         value: a.iter().zip(&b).map(|(a, b)| (a - b).abs()).sum::<f64>() / 2.0,
-        how: How::Closed,
+        method: Method::Closed,
     })
 }

@@ -50,7 +50,7 @@ impl Sink for Parts {
             name: kind.name.to_owned(),
             element: kind.element,
             measure: kind.measure,
-            how: None,
+            method: None,
             raw,
             normalised: normalised.clamp(0.0, 1.0),
             weight: 1.0,

@@ -82,8 +82,8 @@ impl ValueMeasure {
     /// Whether the triangle inequality holds.
     pub(super) fn is_metric(&self) -> bool {
         match self {
-            Self::Color { of, .. } => of.nature().is_metric(),
-            Self::Costs(table) => table.nature().is_metric(),
+            Self::Color { of, .. } => of.properties().is_metric(),
+            Self::Costs(table) => table.properties().is_metric(),
             _ => true,
         }
     }

@@ -7,7 +7,7 @@ use driftworld_spec::{Element, ParameterType, Role, TaskSpec, Variant};
 use crate::combined::distance::{Distance, Part, Weights};
 use crate::combined::drawn::DrawnMeasure;
 use crate::combined::value::ValueMeasure;
-use crate::{Nature, SimilarityError};
+use crate::{MetricProperties, SimilarityError};
 
 /// How far apart two variants of one task are.
 ///
@@ -21,7 +21,7 @@ use crate::{Nature, SimilarityError};
 /// parameters cannot differ and are left out.
 ///
 /// What a number is divided by depends on the task alone, so the whole is a metric if each measure in it is one:
-/// [`VariantMeasure::nature`] says so. To compare many variants, make a [`VariantMeasure`] once.
+/// [`VariantMeasure::properties`] says so. To compare many variants, make a [`VariantMeasure`] once.
 ///
 /// # Errors
 /// As [`VariantMeasure::between`].
@@ -33,14 +33,14 @@ pub fn variant_distance(a: &Variant, b: &Variant, weights: &Weights) -> Result<D
 ///
 /// # Example
 /// ```
-/// use driftworld_similarity::{Nature, VariantMeasure, Weights};
+/// use driftworld_similarity::{MetricProperties, VariantMeasure, Weights};
 /// use driftworld_spec::{Element, TaskSpec};
 /// let task = TaskSpec::from_json("inline", r#"{ "name": "t", "parameters": {
 ///     "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0, 4], "default": 2 } },
 ///   "variants": { "day": {}, "dusk": { "light": 1 } } }"#)?;
 /// let measure = VariantMeasure::new(&task, Weights::of_task(&task));
 /// let distance = measure.between(&task.variant("day")?, &task.variant("dusk")?)?;
-/// assert_eq!((distance.element(Element::O), measure.nature()), (Some(0.25), Nature::Metric));
+/// assert_eq!((distance.element(Element::O), measure.properties()), (Some(0.25), MetricProperties::Metric));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -123,7 +123,7 @@ impl VariantMeasure {
                     .zip(b.distribution(name))
                     .map(|(a, b)| measure.between(&a, &b)),
             };
-            let Some((measure, how, raw, normalised)) = found else {
+            let Some((measure, method, raw, normalised)) = found else {
                 continue;
             };
             if !raw.is_finite() || !normalised.is_finite() {
@@ -134,7 +134,7 @@ impl VariantMeasure {
                 name: name.clone(),
                 element: *element,
                 measure,
-                how,
+                method,
                 raw,
                 normalised: normalised.clamp(0.0, 1.0),
                 weight: compared.weight,
@@ -151,7 +151,7 @@ impl VariantMeasure {
 
     /// Whether the whole distance is a metric, up to variants that have all values alike: it is unless a measure that counts
     /// is none.
-    pub fn nature(&self) -> Nature {
+    pub fn properties(&self) -> MetricProperties {
         let metric = |compared: &Compared| match &compared.by {
             By::Value(measure) => measure.is_metric(),
             By::Drawn(measure) => measure.is_metric(),
@@ -162,9 +162,9 @@ impl VariantMeasure {
             .filter(|compared| compared.weight > 0.0)
             .all(metric)
         {
-            Nature::Metric
+            MetricProperties::Metric
         } else {
-            Nature::Distance
+            MetricProperties::Distance
         }
     }
 }
@@ -351,23 +351,23 @@ mod tests {
 
     #[test]
     fn a_measure_that_is_no_metric_makes_the_whole_none() {
-        let nature = |compare: &str| {
+        let properties = |compare: &str| {
             let text = format!(
                 r#"{{ "name": "t", "parameters": {{ "p": {{ "role": "variant", "affects": ["O"], {compare} }} }} }}"#
             );
             let task = TaskSpec::from_json("t.json", &text).unwrap();
-            VariantMeasure::new(&task, Weights::default()).nature()
+            VariantMeasure::new(&task, Weights::default()).properties()
         };
         let color = r#""type": "color", "choices": ["red", "blue"], "default": "red""#;
-        assert_eq!(nature(color), Nature::Metric);
+        assert_eq!(properties(color), MetricProperties::Metric);
         assert_eq!(
-            nature(&format!(r#"{color}, "compare": {{ "measure": "ciede2000" }}"#)),
-            Nature::Distance
+            properties(&format!(r#"{color}, "compare": {{ "measure": "ciede2000" }}"#)),
+            MetricProperties::Distance
         );
         let word = r#""type": "string", "choices": ["a", "b", "c"], "default": "a""#;
         let costs = |c: f64| format!(r#"{word}, "compare": {{ "costs": [[0, 1, {c}], [1, 0, 1], [{c}, 1, 0]] }}"#);
-        assert_eq!(nature(&costs(2.0)), Nature::Metric);
-        assert_eq!(nature(&costs(2.5)), Nature::Distance);
+        assert_eq!(properties(&costs(2.0)), MetricProperties::Metric);
+        assert_eq!(properties(&costs(2.5)), MetricProperties::Distance);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::SimilarityError;
 use crate::combined::distance::{Distance, Weights};
 use crate::combined::parts::{Parts, Sums, compare};
 use crate::combined::sketch::{Sketch, Sketcher};
-use crate::distribution::How;
+use crate::distribution::Method;
 
 /// Side of the cells in which places are compared, in metres: what the original's placement grid has.
 const CELL: f64 = 2.0;
@@ -40,7 +40,7 @@ pub fn world_distance(a: &World, b: &World, weights: &Weights) -> Distance {
 /// How far apart two sets of worlds are: the mean over pairs, the first with the first and so on; worlds without a partner are left
 /// out. Each part's numbers are means, too.
 ///
-/// Draw both sets under the same seed and indices: then pairs share their chance, and what differs is what differs between
+/// Draw both sets under the same seed and indices: then pairs share their random numbers, and what differs is what differs between
 /// the variants.
 ///
 /// # Errors
@@ -65,7 +65,7 @@ pub fn world_sets_distance(a: &[World], b: &[World], weights: &Weights) -> Resul
     }
     for part in &mut sums.0 {
         (part.raw, part.normalised) = (part.raw / count as f64, part.normalised / count as f64);
-        part.how = Some(How::Samples { count });
+        part.method = Some(Method::Samples { count });
     }
     Ok(Distance::new(sums.0, weights))
 }

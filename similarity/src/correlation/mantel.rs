@@ -1,4 +1,4 @@
-//! The Mantel test: how seldom chance makes two measures of the same pairs go together as they do. The correlations
+//! The Mantel test: how rarely two unrelated measures of the same pairs correlate as strongly as these do. The correlations
 //! themselves are in `spearman.rs` and `pearson.rs`.
 
 use rayon::prelude::*;
@@ -57,7 +57,7 @@ pub struct MantelTest {
     pub p_greater: f64,
     /// How many relabellings were gone through.
     pub relabellings: u64,
-    /// Whether these were all there are, so that the shares are exact; otherwise they were drawn by chance.
+    /// Whether these were all there are, so that the shares are exact; otherwise they were drawn at random.
     pub exact: bool,
     /// How many items changed labels: those with at least one value.
     pub items: usize,
@@ -65,7 +65,7 @@ pub struct MantelTest {
     pub pairs: usize,
 }
 
-/// Whether distances and another measure of the same pairs go together, and how seldom chance brings that about.
+/// How distances correlate with another measure of the same pairs, and how rarely that happens at random.
 ///
 /// The correlation is taken over the pairs that have a value. Then the items change their labels in the matrix, and with
 /// them all their distances, and the correlation is taken again: a share of `p` of the relabellings goes together at least as

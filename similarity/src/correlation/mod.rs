@@ -1,4 +1,4 @@
-//! Whether two measures of the same pairs go together: correlations, and how seldom chance brings one about. What is
+//! Correlations between two measures of the same pairs, and how rarely one arises at random. What is
 //! correlated is handed in; distances themselves are measured in the other folders.
 
 mod mantel;

@@ -1,4 +1,4 @@
-//! Relabellings of items: all of them, or some drawn by chance. What is compared under them is in `mantel.rs`.
+//! Relabellings of items: all of them, or some drawn at random. What is compared under them is in `mantel.rs`.
 
 use crate::split_mix::SplitMix64;
 
@@ -11,7 +11,7 @@ pub(super) enum Relabellings {
         /// `items!`.
         count: u64,
     },
-    /// Some by chance, with repetitions.
+    /// Some at random, with repetitions.
     Drawn {
         /// How many.
         count: u64,

@@ -2,7 +2,7 @@
 
 use driftworld_spec::{Color, Distribution, ParameterType, Value};
 
-use super::measured::{How, Measured};
+use super::measured::{Measured, Method};
 use super::scatter::chosen;
 use super::values;
 use super::wasserstein_2::wasserstein_2;
@@ -45,7 +45,7 @@ pub fn color_wasserstein_2(a: &Distribution, b: &Distribution, measure: ColorMea
         for (a, b) in a.iter().zip(&b) {
             let channel = wasserstein_2(a, b)?;
             square += channel.value * channel.value;
-            if let How::Quadrature { tolerance: error } = channel.how {
+            if let Method::Quadrature { tolerance: error } = channel.method {
                 tolerance += error;
             }
         }
@@ -100,14 +100,14 @@ fn is_a_point(moments: driftworld_spec::ColorMoments) -> bool {
 
 /// Colours that each stand for the same share, always the same; `None` if it draws anything but colours.
 ///
-/// Those of two distributions are drawn from the same chances, so that equal ones get equal colours.
+/// Those of two distributions are drawn from the same random numbers, so that equal ones get equal colours.
 fn strewn(distribution: &Distribution) -> Option<Vec<Color>> {
     // Hammersley's points: even along one axis, digits reversed along the others.
-    let chances = (0..STAND_INS as u32).map(|k| {
+    let units = (0..STAND_INS as u32).map(|k| {
         let even = (f64::from(k) + 0.5) / STAND_INS as f64;
         [even, reversed(k, 2), reversed(k, 3)]
     });
-    chances.map(|chance| color(distribution, chance)).collect()
+    units.map(|unit| color(distribution, unit)).collect()
 }
 
 /// The digits of a number to a base behind the point, in reverse, moved off 0.
@@ -121,7 +121,7 @@ fn reversed(mut number: u32, base: u32) -> f64 {
     sum.min(1.0 - 1e-9)
 }
 
-/// The colour that three numbers of chance decide.
+/// The colour that three random numbers decide.
 fn color(distribution: &Distribution, [u, v, w]: [f64; 3]) -> Option<Color> {
     match distribution {
         Distribution::Choice { values, weights } => color_of(&values[chosen(values.len(), weights.as_deref(), u).0]),
@@ -229,7 +229,7 @@ mod tests {
         let a = law(r#"{"choice": {"values": ["black", "white"], "weights": [3, 1]}}"#);
         let b = law(r#"{"choice": {"values": ["white", "black"]}}"#);
         let found = color_wasserstein_1(&a, &b, ColorMeasure::Srgb).unwrap();
-        assert_eq!(found.how, How::Atoms);
+        assert_eq!(found.method, Method::Atoms);
         assert!((found.value - 0.25 * 3.0_f64.sqrt()).abs() < 1e-12, "{found:?}");
     }
 

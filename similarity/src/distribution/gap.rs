@@ -2,7 +2,7 @@
 
 use super::law::{Law, rising};
 use super::measured::Measured;
-use super::quadrature::{Spot, integrate, split_at_signs};
+use super::quadrature::{Node, integrate, split_at_signs};
 
 /// What of the difference is integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,7 +64,7 @@ pub(super) fn integral(a: &Law, b: &Law, power: Power) -> Measured {
                 integrate(
                     [ends[0], ends[1]],
                     1e-13 * width,
-                    |spot: Spot| [power.of(gap(spot.x()))],
+                    |node: Node| [power.of(gap(node.x()))],
                 );
             sum += value;
             tolerance += error;

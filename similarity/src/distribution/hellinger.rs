@@ -108,7 +108,7 @@ fn log_coefficient(a: &Distribution, b: &Distribution) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::distribution::How;
+    use crate::distribution::Method;
     use Distribution::{Beta, Exponential, Gaussian, Geometric, LogNormal, Normal, Poisson, TruncatedNormal};
     use driftworld_spec::Spread;
 
@@ -116,7 +116,7 @@ mod tests {
     #[track_caller]
     fn check(a: &Distribution, b: &Distribution) {
         let found = hellinger(a, b).unwrap();
-        assert_eq!(found.how, How::Closed);
+        assert_eq!(found.method, Method::Closed);
         let gap = |p: f64, q: f64| libm::exp(p / 2.0) - libm::exp(q / 2.0);
         let expected = overlap::sum(a, b, |p, q| gap(p, q) * gap(p, q) / 2.0)
             .unwrap()

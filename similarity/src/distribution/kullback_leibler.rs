@@ -156,14 +156,14 @@ fn digamma(mut x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::distribution::How;
+    use crate::distribution::Method;
     use Distribution::{Beta, Exponential, Geometric, LogNormal, Normal, Poisson, Triangular, Uniform};
 
     /// The closed form against the sum or the quadrature.
     #[track_caller]
     fn check(a: &Distribution, b: &Distribution) {
         let found = kullback_leibler(a, b).unwrap();
-        assert_eq!(found.how, How::Closed);
+        assert_eq!(found.method, Method::Closed);
         let expected = overlap::sum(a, b, |p, q| if p < -700.0 { 0.0 } else { libm::exp(p) * (p - q) }).unwrap();
         assert!(
             (found.value - expected.value).abs() < 1e-8 * found.value.max(1.0),

@@ -5,7 +5,7 @@
 use driftworld_spec::Distribution;
 
 use super::part::Part;
-use super::quadrature::Spot;
+use super::quadrature::Node;
 use super::values::share;
 
 /// More single numbers than this, and a distribution of counts is not taken apart.
@@ -211,8 +211,8 @@ impl Law {
     }
 
     /// Logarithm of the density.
-    pub(super) fn log_density(&self, spot: Spot) -> f64 {
-        let log = |part: &Part| libm::log(part.share) + part.log_density(spot);
+    pub(super) fn log_density(&self, node: Node) -> f64 {
+        let log = |part: &Part| libm::log(part.share) + part.log_density(node);
         if let [part] = &self.parts[..] {
             return log(part);
         }

@@ -170,10 +170,10 @@ fn pieces(law: &Law, bandwidth: f64, steps: usize) -> Vec<Piece> {
                 let width = (ends[1] - ends[0]) / count;
                 for k in 0..count as u32 {
                     let low = ends[0] + width * f64::from(k);
-                    for (spot, weight) in rule([low, low + width], steps) {
-                        let mass = part.share * weight * libm::exp(part.log_density(spot));
+                    for (node, weight) in rule([low, low + width], steps) {
+                        let mass = part.share * weight * libm::exp(part.log_density(node));
                         if mass > 1e-15 {
-                            pieces.push(single(spot.x(), mass));
+                            pieces.push(single(node.x(), mass));
                         }
                     }
                 }
@@ -200,7 +200,7 @@ impl Piece {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::distribution::How;
+    use crate::distribution::Method;
     use Distribution::{Beta, Mixture, Normal, TruncatedNormal, Uniform};
 
     #[track_caller]
@@ -219,7 +219,7 @@ mod tests {
         let uniform = Uniform { low: 0.0, high: 2.0 };
         let normal = Normal { mean: 1.0, std: 0.5 };
         let exact = maximum_mean_discrepancy(&uniform, &normal, 0.7).unwrap();
-        assert_eq!(exact.how, How::Closed);
+        assert_eq!(exact.method, Method::Closed);
         let fine = Mixture {
             parts: (0..100)
                 .map(|k| {

@@ -8,24 +8,25 @@ use serde::{Deserialize, Serialize};
 ///
 /// # Example
 /// ```
-/// use driftworld_similarity::distribution::{How, wasserstein_1};
+/// use driftworld_similarity::distribution::{Method, wasserstein_1};
 /// use driftworld_spec::Distribution::Normal;
 /// let apart = wasserstein_1(&Normal { mean: 0.0, std: 1.0 }, &Normal { mean: 3.0, std: 1.0 }).unwrap();
-/// assert_eq!((apart.value, apart.how), (3.0, How::Closed));
-/// assert_eq!(apart.how.to_string(), "by closed form");
+/// assert_eq!((apart.value, apart.method), (3.0, Method::Closed));
+/// assert_eq!(apart.method.to_string(), "by closed form");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// The number, in the unit of the measure.
     pub value: f64,
     /// How it was found.
-    pub how: How,
+    #[serde(rename = "how")]
+    pub method: Method,
 }
 
 /// How a number was found.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum How {
+pub enum Method {
     /// By a formula, exact but for rounding.
     Closed,
     /// By a sum over the values that can occur, exact but for rounding and for values less likely than 1e-15.
@@ -46,29 +47,32 @@ impl Measured {
     pub(crate) fn closed(value: f64) -> Self {
         Self {
             value,
-            how: How::Closed,
+            method: Method::Closed,
         }
     }
 
     pub(crate) fn atoms(value: f64) -> Self {
-        Self { value, how: How::Atoms }
+        Self {
+            value,
+            method: Method::Atoms,
+        }
     }
 
     pub(crate) fn quadrature(value: f64, tolerance: f64) -> Self {
-        let how = How::Quadrature { tolerance };
-        Self { value, how }
+        let method = Method::Quadrature { tolerance };
+        Self { value, method }
     }
 
     pub(crate) fn samples(value: f64, count: usize) -> Self {
-        let how = How::Samples { count };
-        Self { value, how }
+        let method = Method::Samples { count };
+        Self { value, method }
     }
 
     /// The root, with the error that is left of the square's.
     pub(crate) fn root(self) -> Self {
         let value = self.value.max(0.0).sqrt();
-        let how = match self.how {
-            How::Quadrature { tolerance } => How::Quadrature {
+        let method = match self.method {
+            Method::Quadrature { tolerance } => Method::Quadrature {
                 tolerance: if tolerance == 0.0 {
                     0.0
                 } else {
@@ -77,23 +81,23 @@ impl Measured {
             },
             other => other,
         };
-        Self { value, how }
+        Self { value, method }
     }
 
     /// The number and its error times a factor.
     pub(crate) fn times(self, factor: f64) -> Self {
-        let how = match self.how {
-            How::Quadrature { tolerance } => How::Quadrature {
+        let method = match self.method {
+            Method::Quadrature { tolerance } => Method::Quadrature {
                 tolerance: tolerance * factor,
             },
             other => other,
         };
         let value = self.value * factor;
-        Self { value, how }
+        Self { value, method }
     }
 }
 
-impl Display for How {
+impl Display for Method {
     fn fmt(&self, f: &mut Formatter) -> Result {
         match self {
             Self::Closed => f.write_str("by closed form"),
@@ -111,9 +115,9 @@ mod tests {
 
     #[test]
     fn a_small_square_leaves_its_root_a_larger_error() {
-        let root = |value| Measured::quadrature(value, 1e-10).root().how;
-        assert_eq!(root(0.25), How::Quadrature { tolerance: 2e-10 });
-        assert_eq!(root(0.0), How::Quadrature { tolerance: 1e-5 });
+        let root = |value| Measured::quadrature(value, 1e-10).root().method;
+        assert_eq!(root(0.25), Method::Quadrature { tolerance: 2e-10 });
+        assert_eq!(root(0.0), Method::Quadrature { tolerance: 1e-5 });
         assert_eq!(root(0.25).to_string(), "by quadrature within 2e-10");
     }
 }

@@ -34,7 +34,7 @@ pub use jensen_shannon::{jensen_shannon, jensen_shannon_divergence};
 pub use kullback_leibler::kullback_leibler;
 pub(crate) use law::draws_headings;
 pub use maximum_mean_discrepancy::maximum_mean_discrepancy;
-pub use measured::{How, Measured};
+pub use measured::{Measured, Method};
 pub use planar::bures_wasserstein;
 pub use planar_transport::{planar_wasserstein_1, planar_wasserstein_2};
 pub use samples::SortedSamples;

@@ -4,7 +4,7 @@ use driftworld_spec::Distribution;
 
 use super::law::{self, Law, Run, draws_headings, rising};
 use super::measured::Measured;
-use super::quadrature::{Spot, integrate, split_at_signs};
+use super::quadrature::{Node, integrate, split_at_signs};
 use super::values;
 
 /// Σ term(ln p, ln q) over single values and ∫ term(ln f, ln g) dx over densities, on the circle where either draws headings.
@@ -77,11 +77,11 @@ fn over_stretch(a: &Law, b: &Law, [low, high]: [f64; 2], term: &impl Fn(f64, f64
                 return (0.0, 1e-17);
             }
             let crossings = split_at_signs(&[low, high], |x| {
-                a.log_density(Spot::at(x)) - b.log_density(Spot::at(x))
+                a.log_density(Node::at(x)) - b.log_density(Node::at(x))
             });
             for ends in crossings.windows(2) {
-                let ([value, p, q], [miss, ..]) = integrate([ends[0], ends[1]], 1e-11, |spot| {
-                    let (p, q) = (a.log_density(spot), b.log_density(spot));
+                let ([value, p, q], [miss, ..]) = integrate([ends[0], ends[1]], 1e-11, |node| {
+                    let (p, q) = (a.log_density(node), b.log_density(node));
                     if p == f64::NEG_INFINITY && q == f64::NEG_INFINITY {
                         return [0.0; 3];
                     }

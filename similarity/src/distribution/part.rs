@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use driftworld_spec::Distribution;
 
-use super::quadrature::{Spot, integrate};
+use super::quadrature::{Node, integrate};
 
 /// Standard deviations from the mean outside which a normal number lies with a probability below 1e-18.
 const REACH: f64 = 9.0;
@@ -40,7 +40,7 @@ impl Part {
                 log_beta(*alpha, *beta) + libm::log(high.unwrap_or(1.0) - low.unwrap_or(0.0))
             }
             Distribution::VonMises { kappa, .. } => {
-                let shape = |spot: Spot| [libm::exp(log_bell_of_headings(spot.x(), *kappa))];
+                let shape = |node: Node| [libm::exp(log_bell_of_headings(node.x(), *kappa))];
                 let deviation = (deviation_of_headings(*kappa) * 3.0).min(180.0);
                 let [near] = integrate([0.0, deviation], 1e-12, shape).0;
                 let [far] = integrate([deviation, 180.0], 1e-12, shape).0;
@@ -81,13 +81,13 @@ impl Part {
     }
 
     /// Logarithm of the density, without the share; −∞ outside the ends.
-    pub(super) fn log_density(&self, spot: Spot) -> f64 {
-        let spot = spot.lowered(self.shift);
+    pub(super) fn log_density(&self, node: Node) -> f64 {
+        let node = node.lowered(self.shift);
         let bell = |z: f64| -0.5 * z * z;
         // A place on the very end may have been rounded past it.
         let inside = |low: f64, high: f64, log: f64| {
             let slack = 1e-12 * (high - low).min(1e6);
-            if spot.above(low) >= -slack && spot.above(high) <= slack {
+            if node.above(low) >= -slack && node.above(high) <= slack {
                 log
             } else {
                 f64::NEG_INFINITY
@@ -95,22 +95,22 @@ impl Part {
         };
         let shape = match &self.family {
             Distribution::Uniform { low, high } => inside(*low, *high, 0.0),
-            Distribution::Normal { mean, std } => bell(spot.above(*mean) / std),
+            Distribution::Normal { mean, std } => bell(node.above(*mean) / std),
             Distribution::TruncatedNormal { mean, std, low, high } => {
-                inside(*low, *high, bell(spot.above(*mean) / std))
+                inside(*low, *high, bell(node.above(*mean) / std))
             }
             Distribution::LogNormal { mu, sigma } => {
-                let log = libm::log(spot.above(0.0).max(0.0));
+                let log = libm::log(node.above(0.0).max(0.0));
                 if log == f64::NEG_INFINITY {
                     return log;
                 }
                 bell((log - mu) / sigma) - log
             }
-            Distribution::Exponential { rate } => inside(0.0, f64::INFINITY, -rate * spot.above(0.0)),
+            Distribution::Exponential { rate } => inside(0.0, f64::INFINITY, -rate * node.above(0.0)),
             Distribution::Beta { alpha, beta, low, high } => {
                 let (low, high) = (low.unwrap_or(0.0), high.unwrap_or(1.0));
                 let width = high - low;
-                let [left, right] = [spot.above(low), -spot.above(high)].map(|x| {
+                let [left, right] = [node.above(low), -node.above(high)].map(|x| {
                     // Only a part that was moved can be off by rounding.
                     if self.shift != 0.0 && x <= 0.0 && x > -1e-12 * width {
                         1e-12
@@ -124,7 +124,7 @@ impl Part {
                 (alpha - 1.0) * libm::log(left) + (beta - 1.0) * libm::log(right)
             }
             Distribution::Triangular { low, mode, high } => {
-                let (left, right) = (spot.above(*low), -spot.above(*high));
+                let (left, right) = (node.above(*low), -node.above(*high));
                 let height = if left < mode - low || mode == high {
                     left / (mode - low)
                 } else {
@@ -132,7 +132,7 @@ impl Part {
                 };
                 inside(*low, *high, libm::log((2.0 * height / (high - low)).max(0.0)))
             }
-            Distribution::VonMises { mean, kappa } => log_bell_of_headings(spot.above(*mean), *kappa),
+            Distribution::VonMises { mean, kappa } => log_bell_of_headings(node.above(*mean), *kappa),
             _ => f64::NEG_INFINITY,
         };
         shape - self.log_scale
@@ -263,7 +263,7 @@ mod tests {
         knots.sort_by(f64::total_cmp);
         let mut total = 0.0;
         for ends in knots.windows(2).filter(|ends| ends[0] < ends[1]) {
-            let ([mass], _) = integrate([ends[0], ends[1]], 1e-12, |spot| [libm::exp(part.log_density(spot))]);
+            let ([mass], _) = integrate([ends[0], ends[1]], 1e-12, |node| [libm::exp(part.log_density(node))]);
             let expected = part.cumulative(ends[1]) - part.cumulative(ends[0]);
             assert!(
                 (mass - expected).abs() < 1e-10,

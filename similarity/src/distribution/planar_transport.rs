@@ -2,7 +2,7 @@
 
 use driftworld_spec::{Distribution, Value};
 
-use super::measured::{How, Measured};
+use super::measured::{Measured, Method};
 use super::planar::bures_wasserstein;
 use super::quadrature::integrate;
 use super::scatter::scatter;
@@ -73,8 +73,8 @@ pub fn planar_wasserstein_2(a: &Distribution, b: &Distribution) -> Option<Measur
     if let (Some([a_x, a_y]), Some([b_x, b_y])) = (axes(a), axes(b)) {
         let (x, y) = (wasserstein_2(&a_x, &b_x)?, wasserstein_2(&a_y, &b_y)?);
         let value = libm::hypot(x.value, y.value);
-        let error = |found: Measured| match found.how {
-            How::Quadrature { tolerance } => tolerance,
+        let error = |found: Measured| match found.method {
+            Method::Quadrature { tolerance } => tolerance,
             _ => 0.0,
         };
         return Some(match error(x) + error(y) {
@@ -162,7 +162,7 @@ impl Radii {
         let knots = super::quadrature::split_at_signs(&[0.0, 0.01, 0.5, 1.0], gap);
         let (mut sum, mut tolerance) = (0.0, 1e-12);
         for ends in knots.windows(2) {
-            let ([value], [error]) = integrate([ends[0], ends[1]], 1e-12, |spot| [of(gap(spot.x()))]);
+            let ([value], [error]) = integrate([ends[0], ends[1]], 1e-12, |node| [of(gap(node.x()))]);
             sum += value;
             tolerance += error;
         }
@@ -312,7 +312,7 @@ mod tests {
         };
         check(planar_wasserstein_2(&square, &cells(3.0)), 0.0, 1e-9);
         let found = planar_wasserstein_1(&square, &cells(3.0)).unwrap();
-        assert_eq!(found.how, How::Samples { count: 256 });
+        assert_eq!(found.method, Method::Samples { count: 256 });
         assert!(found.value < 0.06, "{found:?}");
         let cost = |x: [f64; 2], y: [f64; 2]| (x[0] - y[0]).powi(2) + (x[1] - y[1]).powi(2);
         let by_pairs = paired(&square, &disc(5.0, 2.0), cost).unwrap().root().value;

@@ -8,12 +8,12 @@ use std::sync::OnceLock;
 
 /// A place on the line as a base and an offset from it, so that its distance from a nearby end keeps all digits.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Spot {
+pub(crate) struct Node {
     base: f64,
     offset: f64,
 }
 
-impl Spot {
+impl Node {
     /// The place of a plain number.
     pub(crate) fn at(x: f64) -> Self {
         Self { base: x, offset: 0.0 }
@@ -65,7 +65,7 @@ fn nodes() -> &'static [(f64, f64)] {
 pub(crate) fn integrate<const N: usize>(
     [low, high]: [f64; 2],
     enough: f64,
-    mut f: impl FnMut(Spot) -> [f64; N],
+    mut f: impl FnMut(Node) -> [f64; N],
 ) -> ([f64; N], [f64; N]) {
     let width = high - low;
     let mut sums = [0.0; N];
@@ -78,15 +78,15 @@ pub(crate) fn integrate<const N: usize>(
         for (k, (share, weight)) in nodes().iter().enumerate().skip(from).step_by(step) {
             let offset = width * share;
             let mut small = *share < 1e-9;
-            let ends: &[Spot] = &[
-                Spot { base: low, offset },
-                Spot {
+            let ends: &[Node] = &[
+                Node { base: low, offset },
+                Node {
                     base: high,
                     offset: -offset,
                 },
             ];
-            for spot in &ends[usize::from(k == 0)..] {
-                let values = f(*spot);
+            for node in &ends[usize::from(k == 0)..] {
+                let values = f(*node);
                 for (sum, value) in sums.iter_mut().zip(values) {
                     *sum += weight * value;
                     small &= (weight * value).abs() <= 1e-17 * sum.abs();
@@ -111,7 +111,7 @@ pub(crate) fn integrate<const N: usize>(
 }
 
 /// The places and weights of the rule between two ends, with so many steps per unit: up to 64, a power of 2.
-pub(crate) fn rule([low, high]: [f64; 2], steps: usize) -> Vec<(Spot, f64)> {
+pub(crate) fn rule([low, high]: [f64; 2], steps: usize) -> Vec<(Node, f64)> {
     let (width, stride) = (high - low, FINEST / steps);
     let each = nodes()
         .iter()
@@ -120,8 +120,8 @@ pub(crate) fn rule([low, high]: [f64; 2], steps: usize) -> Vec<(Spot, f64)> {
         .flat_map(|(k, (share, weight))| {
             let offset = width * share;
             let weight = width * weight / steps as f64;
-            let left = Spot { base: low, offset };
-            let right = Spot {
+            let left = Node { base: low, offset };
+            let right = Node {
                 base: high,
                 offset: -offset,
             };
@@ -193,8 +193,8 @@ mod tests {
     use super::*;
 
     #[track_caller]
-    fn check(ends: [f64; 2], f: impl Fn(Spot) -> f64, expected: f64) {
-        let ([value], [error]) = integrate(ends, 1e-10, |spot| [f(spot)]);
+    fn check(ends: [f64; 2], f: impl Fn(Node) -> f64, expected: f64) {
+        let ([value], [error]) = integrate(ends, 1e-10, |node| [f(node)]);
         assert!(
             (value - expected).abs() <= 1e-12 * expected.abs(),
             "{value}, expected {expected}"
@@ -204,16 +204,16 @@ mod tests {
 
     #[test]
     fn smooth_functions_and_steep_ends_are_integrated() {
-        check([0.0, 1.0], |spot| libm::exp(spot.x()), libm::exp(1.0_f64) - 1.0);
-        check([3.0, 4.0], |spot| libm::pow(spot.above(3.0), -0.9), 10.0);
+        check([0.0, 1.0], |node| libm::exp(node.x()), libm::exp(1.0_f64) - 1.0);
+        check([3.0, 4.0], |node| libm::pow(node.above(3.0), -0.9), 10.0);
         check(
             [0.0, 2.0],
-            |spot| libm::pow(-spot.above(2.0), -0.5),
+            |node| libm::pow(-node.above(2.0), -0.5),
             2.0 * 2.0_f64.sqrt(),
         );
         check(
             [-9.0, 9.0],
-            |spot| libm::exp(-spot.x() * spot.x() / 2.0),
+            |node| libm::exp(-node.x() * node.x() / 2.0),
             std::f64::consts::TAU.sqrt(),
         );
     }

@@ -1,22 +1,22 @@
 //! Points that stand for a distribution of the plane, evenly strewn and always the same. What is reckoned from them is in
-//! `planar.rs`; worlds are drawn elsewhere, by chance.
+//! `planar.rs`; worlds are drawn by `generator`.
 
 use driftworld_spec::{Distribution, Value};
 
 /// So many points that each stands for the same share; `None` if it draws no points.
 ///
-/// Those of two distributions are drawn from the same chances, so that equal ones get equal points.
+/// Those of two distributions are drawn from the same random numbers, so that equal ones get equal points.
 pub(super) fn scatter(distribution: &Distribution, count: usize) -> Option<Vec<[f64; 2]>> {
     // Hammersley's points: even along one axis, bits reversed along the other.
-    let chances = (0..count as u32).map(|k| {
+    let units = (0..count as u32).map(|k| {
         let u = (f64::from(k) + 0.5) / count as f64;
         let v = f64::from(k.reverse_bits()) / (f64::from(u32::MAX) + 1.0) + 0.5 / count as f64;
         [u, v]
     });
-    chances.map(|chance| point(distribution, chance)).collect()
+    units.map(|unit| point(distribution, unit)).collect()
 }
 
-/// The point that two numbers of chance decide. `poisson_disc` is taken without its distance.
+/// The point that two random numbers decide. `poisson_disc` is taken without its distance.
 fn point(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
     let among = |count: usize| {
         let at = u * count as f64;
@@ -36,8 +36,8 @@ fn point(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
             let (columns, rows) = (*columns as usize, *rows as usize);
             let (cell, within) = among(columns * rows);
             let jitter = jitter.unwrap_or(0.0);
-            let along = |axis: usize, cell: usize, count: usize, chance: f64| {
-                let place = cell as f64 + 0.5 + jitter * (chance - 0.5);
+            let along = |axis: usize, cell: usize, count: usize, unit: f64| {
+                let place = cell as f64 + 0.5 + jitter * (unit - 0.5);
                 low[axis] + (high[axis] - low[axis]) * place / count as f64
             };
             [
@@ -64,7 +64,7 @@ fn point(distribution: &Distribution, [u, v]: [f64; 2]) -> Option<[f64; 2]> {
     })
 }
 
-/// Which of so many is chosen, and the chance that is left in 0..1.
+/// Which of so many is chosen, and the random number that is left in 0..1.
 pub(super) fn chosen(count: usize, weights: Option<&[f64]>, u: f64) -> (usize, f64) {
     let weight = |k: usize| weights.map_or(1.0, |weights| weights[k]);
     let mut left = u * (0..count).map(weight).sum::<f64>();

@@ -82,7 +82,7 @@ fn normals(m: f64, s: f64, n: f64, t: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::distribution::How;
+    use crate::distribution::Method;
     use Distribution::{Beta, Choice, Exponential, IntegerUniform, LogNormal, Normal, Poisson, Uniform, VonMises};
     use driftworld_spec::Value;
 
@@ -103,7 +103,7 @@ mod tests {
         ];
         for (a, b) in pairs {
             let sum = overlap::sum(&a, &b, |p, q| (libm::exp(p) - libm::exp(q)).abs() / 2.0).unwrap();
-            assert!(matches!(sum.how, How::Quadrature { .. }));
+            assert!(matches!(sum.method, Method::Quadrature { .. }));
             check(&a, &b, sum.value);
         }
     }

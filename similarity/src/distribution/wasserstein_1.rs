@@ -88,7 +88,7 @@ fn log_normals([m, s]: [f64; 2], [n, t]: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::distribution::How;
+    use crate::distribution::Method;
     use Distribution::{
         Bernoulli, Beta, Binomial, Constant, Exponential, Geometric, IntegerUniform, LogNormal, Normal, Poisson,
         Triangular, TruncatedNormal, Uniform,
@@ -169,7 +169,7 @@ mod tests {
             (Binomial { n: 9.0, p: 0.2 }, Binomial { n: 30.0, p: 0.3 }),
         ] {
             let found = wasserstein_1(&a, &b).unwrap();
-            assert_eq!(found.how, How::Closed, "{a:?} to {b:?}");
+            assert_eq!(found.method, Method::Closed, "{a:?} to {b:?}");
             let area = gap::integral(&Law::of(&a).unwrap(), &Law::of(&b).unwrap(), Power::Absolute);
             check(&a, &b, area.value);
         }
@@ -195,7 +195,7 @@ mod tests {
         );
         let Measured {
             value,
-            how: How::Quadrature { tolerance },
+            method: Method::Quadrature { tolerance },
         } = found.unwrap()
         else {
             panic!("{found:?}");

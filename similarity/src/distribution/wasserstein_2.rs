@@ -141,8 +141,8 @@ fn over_quantiles(a: &Distribution, p: &Law, b: &Distribution, q: &Law) -> Optio
     let (mut sum, mut tolerance, mut squares) = (0.0, 0.0, [0.0; 2]);
     for ends in rising(chances).windows(2) {
         let enough = 1e-12 * (a.variance()? + b.variance()?);
-        let ([value, x, y], [error, ..]) = integrate([ends[0], ends[1]], enough, |spot| {
-            let u = spot.x().clamp(1e-300, 1.0 - f64::EPSILON / 2.0);
+        let ([value, x, y], [error, ..]) = integrate([ends[0], ends[1]], enough, |node| {
+            let u = node.x().clamp(1e-300, 1.0 - f64::EPSILON / 2.0);
             let (x, y) = (a.quantile(u).unwrap_or(0.0), b.quantile(u).unwrap_or(0.0));
             [(x - y) * (x - y), (x - of_a) * (x - of_a), (y - of_b) * (y - of_b)]
         });
@@ -159,7 +159,7 @@ fn over_quantiles(a: &Distribution, p: &Law, b: &Distribution, q: &Law) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::distribution::{How, wasserstein_1};
+    use crate::distribution::{Method, wasserstein_1};
     use Distribution::{Bernoulli, Constant, Exponential, LogNormal, Normal, Perturb, Poisson, Triangular, Uniform};
     use driftworld_spec::Value;
 
@@ -200,11 +200,11 @@ mod tests {
         ] {
             let (p, q) = (Law::of(&a).unwrap(), Law::of(&b).unwrap());
             let found = over_quantiles(&a, &p, &b, &q).unwrap().root();
-            let How::Quadrature { tolerance } = found.how else {
+            let Method::Quadrature { tolerance } = found.method else {
                 panic!()
             };
             assert!(tolerance < 1e-6, "{a:?} to {b:?}: {found:?}");
-            assert_eq!(wasserstein_2(&a, &b).unwrap().how, How::Closed);
+            assert_eq!(wasserstein_2(&a, &b).unwrap().method, Method::Closed);
             assert!((wasserstein_2(&a, &b).unwrap().value - found.value).abs() < 1e-8);
         }
     }

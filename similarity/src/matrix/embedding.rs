@@ -5,7 +5,7 @@ use ndarray::{Array1, Array2, ArrayView1, Axis, s};
 use rayon::prelude::*;
 
 use super::DistanceMatrix;
-use crate::{Nature, SimilarityError};
+use crate::{MetricProperties, SimilarityError};
 
 /// The most numbers that an item may have.
 pub const MAX_FEATURES: usize = 4_096;
@@ -94,7 +94,7 @@ impl Embedding {
                     }
                 }
             });
-        DistanceMatrix::mirrored(self.labels.clone(), values).with_nature(Nature::Metric)
+        DistanceMatrix::mirrored(self.labels.clone(), values).with_properties(MetricProperties::Metric)
     }
 
     /// The squared distance of two items whose product is known.
@@ -227,7 +227,7 @@ mod tests {
                     prop_assert!((matrix.get(a, b) - expected).abs() <= rounding, "{} for {}", matrix.get(a, b), expected);
                 }
             }
-            prop_assert_eq!(matrix.nature(), Nature::Metric);
+            prop_assert_eq!(matrix.properties(), MetricProperties::Metric);
         }
 
         #[test]

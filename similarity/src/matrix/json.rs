@@ -4,14 +4,14 @@ use ndarray::Array2;
 use serde::Deserialize;
 
 use super::DistanceMatrix;
-use crate::{Nature, SimilarityError};
+use crate::{MetricProperties, SimilarityError};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Document {
     labels: Vec<String>,
-    #[serde(default)]
-    nature: Nature,
+    #[serde(default, rename = "nature")]
+    properties: MetricProperties,
     values: Vec<Vec<f64>>,
 }
 
@@ -28,10 +28,10 @@ impl DistanceMatrix {
     ///
     /// # Example
     /// ```
-    /// use driftworld_similarity::{DistanceMatrix, Nature};
+    /// use driftworld_similarity::{DistanceMatrix, MetricProperties};
     /// let text = r#"{"labels": ["a", "b"], "nature": "metric", "values": [[0, 2.5], [2.5, 0]]}"#;
     /// let matrix = DistanceMatrix::from_json(text)?;
-    /// assert_eq!((matrix.get(0, 1), matrix.nature()), (2.5, Nature::Metric));
+    /// assert_eq!((matrix.get(0, 1), matrix.properties()), (2.5, MetricProperties::Metric));
     /// # Ok::<(), driftworld_similarity::SimilarityError>(())
     /// ```
     pub fn from_json(text: &str) -> Result<Self, SimilarityError> {
@@ -53,7 +53,7 @@ impl DistanceMatrix {
             return Err(bad(format!("length of row {}", index + 1), row.len()));
         }
         let values = Array2::from_shape_fn((n, n), |(a, b)| document.values[a][b]);
-        Ok(Self::from_values(document.labels, values)?.with_nature(document.nature))
+        Ok(Self::from_values(document.labels, values)?.with_properties(document.properties))
     }
 }
 
@@ -82,7 +82,7 @@ mod tests {
         let measure = |a: usize, b: usize| Ok::<_, SimilarityError>(((a + 3 * b) as f64).sqrt());
         let matrix = DistanceMatrix::measure(names, measure)
             .unwrap()
-            .with_nature(Nature::Metric);
+            .with_properties(MetricProperties::Metric);
         assert_eq!(DistanceMatrix::from_json(&matrix.to_json()).unwrap(), matrix);
     }
 

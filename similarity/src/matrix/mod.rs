@@ -14,7 +14,7 @@ use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::{Nature, SimilarityError};
+use crate::{MetricProperties, SimilarityError};
 
 pub use embedding::{Embedding, MAX_FEATURES};
 pub use mds::{PlanarMap, classical_map};
@@ -30,7 +30,8 @@ pub const MAX_DISTANCE: f64 = 1e100;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DistanceMatrix {
     labels: Vec<String>,
-    nature: Nature,
+    #[serde(rename = "nature")]
+    properties: MetricProperties,
     #[serde(serialize_with = "rows")]
     values: Array2<f64>,
 }
@@ -42,8 +43,8 @@ fn rows<S: serde::Serializer>(values: &Array2<f64>, serializer: S) -> Result<S::
 impl DistanceMatrix {
     /// Measures every pair once, in parallel; `measure` takes two indices, the first below the second.
     ///
-    /// What the measure is, nobody has said yet: the matrix counts as one of a [`Nature::Distance`] until
-    /// [`DistanceMatrix::with_nature`] says more.
+    /// What the measure is, nobody has said yet: the matrix counts as one of a [`MetricProperties::Distance`] until
+    /// [`DistanceMatrix::with_properties`] says more.
     ///
     /// # Errors
     /// Whatever `measure` says of the first pair, in row order, that it fails on; [`SimilarityError::NotADistance`] for a
@@ -154,7 +155,7 @@ impl DistanceMatrix {
         }
         Self {
             labels,
-            nature: Nature::default(),
+            properties: MetricProperties::default(),
             values,
         }
     }
@@ -162,13 +163,13 @@ impl DistanceMatrix {
     /// The same matrix, of a measure that is known to keep these laws. Nothing is checked: a matrix that claims to be one of a
     /// metric is trusted by the methods that need one; [`DistanceMatrix::triangle_violations`] measures it.
     #[must_use]
-    pub fn with_nature(self, nature: Nature) -> Self {
-        Self { nature, ..self }
+    pub fn with_properties(self, properties: MetricProperties) -> Self {
+        Self { properties, ..self }
     }
 
     /// Which laws the measure behind it keeps, as far as anyone has said.
-    pub fn nature(&self) -> Nature {
-        self.nature
+    pub fn properties(&self) -> MetricProperties {
+        self.properties
     }
 
     /// The items' names, in order.

@@ -31,7 +31,7 @@ pub enum Method {
     TypicalLast,
     /// Each time what is farthest from everything met so far: as new as can be (farthest-first traversal).
     FarthestFirst,
-    /// By chance, from a seed: a control.
+    /// At random, from a seed: a control.
     Random,
     /// The largest step as small as can be, and then the path as short. Exact for up to 15 items.
     Bottleneck,

@@ -1,4 +1,4 @@
-//! Orders of items by their distances: paths that are short, even, long on purpose, or left to chance. One method per file;
+//! Orders of items by their distances: paths that are short, even, long on purpose, or random. One method per file;
 //! measuring the distances is not done here.
 
 mod bottleneck;

@@ -251,7 +251,14 @@ fn what_cannot_be_ordered_says_why() {
     );
     // The advice of the last one, and a claim, which is trusted.
     assert!(order(&squared, Method::TwoOpt, &free).is_ok());
-    assert!(order(&squared.with_nature(crate::Nature::Metric), Method::Tree, &free).is_ok());
+    assert!(
+        order(
+            &squared.with_properties(crate::MetricProperties::Metric),
+            Method::Tree,
+            &free
+        )
+        .is_ok()
+    );
 }
 
 /// Points of the unit square, as `tests/oracle/make_orders.py` makes them.

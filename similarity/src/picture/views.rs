@@ -1,7 +1,7 @@
 //! Distance between two sets of pictures, pose by pose. The poses are chosen, and the pictures made, by whoever calls.
 
 use super::{Picture, picture_oklab, structural_similarity};
-use crate::{Nature, SimilarityError};
+use crate::{MetricProperties, SimilarityError};
 
 /// How two pictures are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,10 +23,10 @@ impl PictureMeasure {
     }
 
     /// Which laws it keeps.
-    pub fn nature(self) -> Nature {
+    pub fn properties(self) -> MetricProperties {
         match self {
-            Self::Oklab => Nature::Metric,
-            Self::Structure => Nature::Distance,
+            Self::Oklab => MetricProperties::Metric,
+            Self::Structure => MetricProperties::Distance,
         }
     }
 
@@ -105,7 +105,7 @@ mod tests {
                 prop_assert!(d(a, a) < 1e-12);
                 prop_assert_eq!(d(a, b), d(b, a));
                 prop_assert!((0.0..=1.0).contains(&d(a, b)));
-                if measure.nature().is_metric() {
+                if measure.properties().is_metric() {
                     prop_assert!(d(a, c) <= d(a, b) + d(b, c) + 1e-12);
                 }
             }

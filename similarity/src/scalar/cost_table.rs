@@ -2,30 +2,30 @@
 
 use std::collections::BTreeMap;
 
-use crate::{Nature, SimilarityError};
+use crate::{MetricProperties, SimilarityError};
 
 /// Most choices of a table.
 pub const MAX_CHOICES: usize = 1000;
 
 /// A table of how far choices are apart, checked: costs are finite and at least 0, 0 for equals, and the same there and back.
 ///
-/// [`CostTable::nature`] says whether it is a metric: whether no two choices are 0 apart and no detour is cheaper than the straight way.
+/// [`CostTable::properties`] says whether it is a metric: whether no two choices are 0 apart and no detour is cheaper than the straight way.
 /// In `0..=`[`CostTable::largest`], in the unit of its author. Making it takes `O(n³)` for n choices, a look-up two searches by name.
 ///
 /// # Example
 /// ```
-/// use driftworld_similarity::{Nature, scalar::CostTable};
+/// use driftworld_similarity::{MetricProperties, scalar::CostTable};
 /// let names = ["walk", "run", "fly"].map(str::to_owned).to_vec();
 /// let table = CostTable::new(names, &[0.0, 1.0, 5.0, 1.0, 0.0, 4.0, 5.0, 4.0, 0.0])?;
 /// assert_eq!(table.between("fly", "run")?, 4.0);
-/// assert_eq!(table.nature(), Nature::Metric);
+/// assert_eq!(table.properties(), MetricProperties::Metric);
 /// # Ok::<(), driftworld_similarity::SimilarityError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct CostTable {
     choices: BTreeMap<String, usize>,
     costs: Vec<f64>,
-    nature: Nature,
+    properties: MetricProperties,
 }
 
 impl CostTable {
@@ -51,7 +51,7 @@ impl CostTable {
             });
         }
         check(&names, costs)?;
-        let nature = nature(count, costs);
+        let properties = properties(count, costs);
         let mut choices = BTreeMap::new();
         for (index, name) in names.into_iter().enumerate() {
             if choices.contains_key(&name) {
@@ -62,7 +62,7 @@ impl CostTable {
         Ok(Self {
             choices,
             costs: costs.to_vec(),
-            nature,
+            properties,
         })
     }
 
@@ -80,8 +80,8 @@ impl CostTable {
     }
 
     /// Which laws it keeps.
-    pub fn nature(&self) -> Nature {
-        self.nature
+    pub fn properties(&self) -> MetricProperties {
+        self.properties
     }
 
     fn index(&self, name: &str) -> Result<usize, SimilarityError> {
@@ -119,7 +119,7 @@ fn check(names: &[String], costs: &[f64]) -> Result<(), SimilarityError> {
     Ok(())
 }
 
-fn nature(count: usize, costs: &[f64]) -> Nature {
+fn properties(count: usize, costs: &[f64]) -> MetricProperties {
     let cost = |a: usize, b: usize| costs[a * count + b];
     let kept = (0..count).all(|a| {
         (0..count).filter(|&b| b != a).all(|b| {
@@ -128,7 +128,11 @@ fn nature(count: usize, costs: &[f64]) -> Nature {
             straight > 0.0 && (0..count).all(|via| straight <= cost(a, via) + cost(via, b))
         })
     });
-    if kept { Nature::Metric } else { Nature::Distance }
+    if kept {
+        MetricProperties::Metric
+    } else {
+        MetricProperties::Distance
+    }
 }
 
 #[cfg(test)]
@@ -172,10 +176,18 @@ mod tests {
 
     #[test]
     fn a_shorter_detour_makes_it_a_distance() {
-        let nature = |ac: f64| table(&[0.0, 0.1, ac, 0.1, 0.0, 0.2, ac, 0.2, 0.0]).unwrap().nature();
-        assert_eq!(nature(0.3), Nature::Metric);
-        assert_eq!(nature(0.31), Nature::Distance);
-        assert_eq!(nature(0.0), Nature::Distance, "two choices that are 0 apart");
+        let properties = |ac: f64| {
+            table(&[0.0, 0.1, ac, 0.1, 0.0, 0.2, ac, 0.2, 0.0])
+                .unwrap()
+                .properties()
+        };
+        assert_eq!(properties(0.3), MetricProperties::Metric);
+        assert_eq!(properties(0.31), MetricProperties::Distance);
+        assert_eq!(
+            properties(0.0),
+            MetricProperties::Distance,
+            "two choices that are 0 apart"
+        );
     }
 
     proptest! {
@@ -185,7 +197,7 @@ mod tests {
             let table = table(&[0.0, ab, ac, ab, 0.0, bc, ac, bc, 0.0]).unwrap();
             let triangles = ab <= ac + bc && ac <= ab + bc && bc <= ab + ac;
             let apart = costs.iter().all(|&cost| cost > 0.0);
-            prop_assert_eq!(table.nature().is_metric(), triangles && apart);
+            prop_assert_eq!(table.properties().is_metric(), triangles && apart);
             for (a, b, expected) in [("a", "b", ab), ("c", "a", ac), ("b", "c", bc), ("b", "b", 0.0)] {
                 prop_assert_eq!(table.between(a, b).unwrap(), expected);
                 prop_assert_eq!(table.between(b, a).unwrap(), expected);

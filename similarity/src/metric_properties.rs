@@ -1,4 +1,4 @@
-//! [`Nature`]: which laws a measure keeps, so that a method that needs them can refuse one that does not.
+//! [`MetricProperties`]: which laws a measure keeps, so that a method that needs them can refuse one that does not.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 ///
 /// # Example
 /// ```
-/// use driftworld_similarity::Nature;
-/// assert!(Nature::Metric.is_metric());
-/// assert!(!Nature::Distance.is_metric());
+/// use driftworld_similarity::MetricProperties;
+/// assert!(MetricProperties::Metric.is_metric());
+/// assert!(!MetricProperties::Distance.is_metric());
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Nature {
+pub enum MetricProperties {
     /// 0 for equals, as far there as back, and no detour is shorter than the straight way.
     Metric,
     /// 0 for equals and as far there as back; a detour may be shorter.
@@ -22,7 +22,7 @@ pub enum Nature {
     Divergence,
 }
 
-impl Nature {
+impl MetricProperties {
     /// Whether the triangle inequality holds.
     pub fn is_metric(self) -> bool {
         self == Self::Metric
