@@ -39,7 +39,7 @@ pub fn write_log_table<W: Write + Send>(table: &LogTable, writer: W, format: For
     let dictionaries: Vec<Option<Arc<StringArray>>> = columns
         .iter()
         .map(|(_, column)| match column {
-            LogColumn::Words(words) => Some(Arc::new(words.values().map(Some).collect())),
+            LogColumn::Dictionary(words) => Some(Arc::new(words.values().map(Some).collect())),
             _ => None,
         })
         .collect();
@@ -71,7 +71,7 @@ fn schema(columns: &[(&str, LogColumn<'_>)]) -> SchemaRef {
     let field = |(name, column): &(&str, LogColumn<'_>)| {
         let (kind, nullable) = match column {
             LogColumn::Integers(_) => (DataType::Int64, false),
-            LogColumn::Words(_) => {
+            LogColumn::Dictionary(_) => {
                 let (keys, words) = (Box::new(DataType::Int32), Box::new(DataType::Utf8));
                 (DataType::Dictionary(keys, words), false)
             }
@@ -97,7 +97,7 @@ fn array(
             let signed = numbers[rows].iter().map(|&number| number as i64);
             Arc::new(Int64Array::from_iter_values(signed))
         }
-        LogColumn::Words(words) => {
+        LogColumn::Dictionary(words) => {
             // A dictionary has at most as many words as there are rows, of which there are fewer than 2³¹.
             let keys = words.keys()[rows].iter().map(|&key| key as i32);
             let values = dictionary

@@ -7,12 +7,13 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use driftworld_text::Cells;
-use indexmap::IndexSet;
 
 use super::columns::delimited;
+use super::custom_column::{CustomColumn, number_text};
+use super::dictionary_column::{DictionaryColumn, Keys};
+use super::log_column::LogColumn;
 use super::record::ExpStatus;
 use super::rows::Row;
-use super::shared_column::SharedColumn;
 use super::table::{MAX_CELLS, MAX_RECORDS};
 use super::text_column::TextColumn;
 use super::timestamp::Timestamp;
@@ -54,47 +55,18 @@ pub enum Delimiter {
 pub struct LogTable {
     kept: KeptRows,
     num_logs: usize,
-    run_ids: Words,
+    run_ids: DictionaryColumn,
     block_nums: Vec<u64>,
     regime_nums: Vec<u64>,
     exp_nums: Vec<u64>,
-    workers: Words,
-    block_types: Words,
-    block_subtypes: Words,
-    task_names: Words,
-    task_params: Words,
-    exp_statuses: Words,
+    workers: DictionaryColumn,
+    block_types: DictionaryColumn,
+    block_subtypes: DictionaryColumn,
+    task_names: DictionaryColumn,
+    task_params: DictionaryColumn,
+    exp_statuses: DictionaryColumn,
     timestamps: Vec<Timestamp>,
-    own: BTreeMap<String, Own>,
-}
-
-/// A column that the logs name.
-#[derive(Debug, Clone)]
-enum Own {
-    Numbers(Vec<f64>),
-    Texts(TextColumn),
-}
-
-/// A column of words that repeat: each once, and for each row the position of its own.
-#[derive(Debug, Clone, Default)]
-pub struct Words {
-    values: IndexSet<String>,
-    keys: Vec<u32>,
-}
-
-/// A column of a [`LogTable`].
-#[derive(Debug, Clone, Copy)]
-pub enum LogColumn<'a> {
-    /// Whole numbers.
-    Integers(&'a [u64]),
-    /// Words that repeat.
-    Words(&'a Words),
-    /// Time stamps.
-    Times(&'a [Timestamp]),
-    /// Numbers, NaN where there is none.
-    Numbers(&'a [f64]),
-    /// Texts, empty where there is none.
-    Texts(&'a TextColumn),
+    custom: BTreeMap<String, CustomColumn>,
 }
 
 impl LogTable {
@@ -126,7 +98,7 @@ impl LogTable {
         let mut params = Keys::new(log.rows.task_params());
         for row in &kept {
             let index = row.index();
-            self.run_ids.keys.push(run);
+            self.run_ids.push_key(run);
             self.block_nums.push(row.block_num());
             self.exp_nums.push(row.exp_num());
             workers.push(&mut self.workers, index, String::clone);
@@ -154,24 +126,24 @@ impl LogTable {
 
     /// All columns with their names, in order.
     pub fn columns(&self) -> Vec<(&str, LogColumn<'_>)> {
-        let run_ids = (self.num_logs > 1).then_some(("run_id", LogColumn::Words(&self.run_ids)));
+        let run_ids = (self.num_logs > 1).then_some(("run_id", LogColumn::Dictionary(&self.run_ids)));
         let standard = [
             ("block_num", LogColumn::Integers(&self.block_nums)),
             ("regime_num", LogColumn::Integers(&self.regime_nums)),
             ("exp_num", LogColumn::Integers(&self.exp_nums)),
-            ("worker_id", LogColumn::Words(&self.workers)),
-            ("block_type", LogColumn::Words(&self.block_types)),
-            ("block_subtype", LogColumn::Words(&self.block_subtypes)),
-            ("task_name", LogColumn::Words(&self.task_names)),
-            ("task_params", LogColumn::Words(&self.task_params)),
-            ("exp_status", LogColumn::Words(&self.exp_statuses)),
+            ("worker_id", LogColumn::Dictionary(&self.workers)),
+            ("block_type", LogColumn::Dictionary(&self.block_types)),
+            ("block_subtype", LogColumn::Dictionary(&self.block_subtypes)),
+            ("task_name", LogColumn::Dictionary(&self.task_names)),
+            ("task_params", LogColumn::Dictionary(&self.task_params)),
+            ("exp_status", LogColumn::Dictionary(&self.exp_statuses)),
             ("timestamp", LogColumn::Times(&self.timestamps)),
         ];
-        let own = self.own.iter().map(|(name, own)| match own {
-            Own::Numbers(numbers) => (name.as_str(), LogColumn::Numbers(numbers)),
-            Own::Texts(texts) => (name.as_str(), LogColumn::Texts(texts)),
+        let custom = self.custom.iter().map(|(name, column)| match column {
+            CustomColumn::Numbers(numbers) => (name.as_str(), LogColumn::Numbers(numbers)),
+            CustomColumn::Texts(texts) => (name.as_str(), LogColumn::Texts(texts)),
         });
-        run_ids.into_iter().chain(standard).chain(own).collect()
+        run_ids.into_iter().chain(standard).chain(custom).collect()
     }
 
     /// Writes the table as text with a header line; lines end with `\n`, cells are quoted where they must be, and texts
@@ -212,8 +184,8 @@ impl LogTable {
             });
         }
         let rows = (self.len() + num_rows) as u64;
-        let new = names().filter(|name| !self.own.contains_key(*name)).count();
-        let cells = rows * (self.own.len() + new) as u64;
+        let new = names().filter(|name| !self.custom.contains_key(*name)).count();
+        let cells = rows * (self.custom.len() + new) as u64;
         for (what, found, limit) in [("rows", rows, MAX_RECORDS as u64), ("cells", cells, MAX_CELLS)] {
             if found > limit {
                 return Err(MetricsError::TooLarge {
@@ -231,7 +203,7 @@ impl LogTable {
     fn push_regime(&mut self, first: usize) {
         let row = self.regime_nums.len();
         let regime = |row: usize| {
-            let words = [&self.block_types, &self.block_subtypes, &self.task_names].map(|words| words.keys[row]);
+            let words = [&self.block_types, &self.block_subtypes, &self.task_names].map(|words| words.keys()[row]);
             (self.block_nums[row], words)
         };
         let regime_num = match row.checked_sub(1).filter(|before| *before >= first) {
@@ -246,15 +218,15 @@ impl LogTable {
         for name in log.rows.metric_names() {
             let numbers = log.rows.metric(name).unwrap_or_default();
             match self
-                .own
+                .custom
                 .entry(name.to_owned())
-                .or_insert_with(|| Own::Numbers(Vec::new()))
+                .or_insert_with(|| CustomColumn::Numbers(Vec::new()))
             {
-                Own::Numbers(column) => {
+                CustomColumn::Numbers(column) => {
                     column.resize(before, f64::NAN);
                     column.extend(kept.iter().map(|row| numbers[row.index()]));
                 }
-                Own::Texts(column) => {
+                CustomColumn::Texts(column) => {
                     column.pad(before);
                     for row in kept {
                         column.push(&number_text(numbers[row.index()]));
@@ -263,110 +235,23 @@ impl LogTable {
             }
         }
         for name in log.rows.text_names() {
-            let own = self
-                .own
+            let column = self
+                .custom
                 .entry(name.to_owned())
-                .or_insert_with(|| Own::Texts(TextColumn::default()));
-            let column = own.as_texts();
+                .or_insert_with(|| CustomColumn::Texts(TextColumn::default()));
+            let column = column.as_texts();
             column.pad(before);
             for row in kept {
                 column.push(row.text(name).unwrap_or_default());
             }
         }
         let num_rows = self.block_nums.len();
-        for own in self.own.values_mut() {
-            match own {
-                Own::Numbers(column) => column.resize(num_rows, f64::NAN),
-                Own::Texts(column) => column.pad(num_rows),
+        for column in self.custom.values_mut() {
+            match column {
+                CustomColumn::Numbers(column) => column.resize(num_rows, f64::NAN),
+                CustomColumn::Texts(column) => column.pad(num_rows),
             }
         }
-    }
-}
-
-impl Own {
-    /// The column as texts, which it becomes if it is none yet.
-    fn as_texts(&mut self) -> &mut TextColumn {
-        if let Self::Numbers(numbers) = self {
-            let mut texts = TextColumn::default();
-            for number in numbers {
-                texts.push(&number_text(*number));
-            }
-            *self = Self::Texts(texts);
-        }
-        match self {
-            Self::Texts(texts) => texts,
-            Self::Numbers(_) => unreachable!("it was made texts just now"),
-        }
-    }
-}
-
-impl Words {
-    /// The words, in the order of their first rows.
-    pub fn values(&self) -> impl ExactSizeIterator<Item = &str> {
-        self.values.iter().map(String::as_str)
-    }
-
-    /// For each row, the position of its word among the values.
-    pub fn keys(&self) -> &[u32] {
-        &self.keys
-    }
-
-    fn key(&mut self, word: &str) -> u32 {
-        // There are no more words than rows, which a u32 counts.
-        self.values
-            .get_index_of(word)
-            .unwrap_or_else(|| self.values.insert_full(word.to_owned()).0) as u32
-    }
-
-    fn push(&mut self, word: &str) {
-        let key = self.key(word);
-        self.keys.push(key);
-    }
-}
-
-/// The positions in the table's words that a log's shared values have; found once for each.
-struct Keys<'a, T> {
-    column: &'a SharedColumn<T>,
-    keys: Vec<Option<u32>>,
-}
-
-impl<'a, T> Keys<'a, T> {
-    fn new(column: &'a SharedColumn<T>) -> Self {
-        Self {
-            column,
-            keys: vec![None; column.values().len()],
-        }
-    }
-
-    fn push(&mut self, words: &mut Words, row: usize, text: impl Fn(&T) -> String) {
-        let id = self.column.ids()[row] as usize;
-        let key = *self.keys[id].get_or_insert_with(|| words.key(&text(&self.column.values()[id])));
-        words.keys.push(key);
-    }
-}
-
-impl LogColumn<'_> {
-    /// Appends the cell of a row.
-    fn write(&self, row: usize, cell: &mut String) {
-        use std::fmt::Write as _;
-        let written = match self {
-            Self::Integers(numbers) => write!(cell, "{}", numbers[row]),
-            Self::Words(words) => cell.write_str(&words.values[words.keys[row] as usize]),
-            Self::Times(stamps) => write!(cell, "{}", stamps[row]),
-            Self::Numbers(numbers) if numbers[row].is_nan() => Ok(()),
-            Self::Numbers(numbers) => write!(cell, "{:?}", numbers[row]),
-            Self::Texts(texts) => cell.write_str(texts.get(row).unwrap_or_default()),
-        };
-        written.expect("memory takes every text");
-    }
-}
-
-/// The shortest text that reads back as the same number; none where there is none.
-fn number_text(number: f64) -> String {
-    if number.is_nan() {
-        String::new()
-    } else {
-        format!("{number:?}")
     }
 }
 

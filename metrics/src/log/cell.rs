@@ -171,11 +171,11 @@ mod tests {
         assert!(cell("").params().unwrap().is_empty());
         assert_eq!(cell(r#"{"a": 1}"#).params().unwrap()["a"], 1);
         assert!(cell("[1]").params().is_err());
-        let check = |text: &str, told: bool| {
+        let check = |text: &str, expected: bool| {
             let message = cell(text).params().unwrap_err().to_string();
             assert_eq!(
                 message.ends_with("which has null and no NaN or Infinity"),
-                told,
+                expected,
                 "{message}"
             );
         };

@@ -12,14 +12,14 @@ use crate::MetricsError;
 /// Refuses what is there, but is no regular file; links are followed. Where there is nothing, opening it says so.
 pub(super) fn check(path: &Path) -> Result<(), MetricsError> {
     match driftworld_files::check(path) {
-        Err(error @ FileError::NotAFile { .. }) => Err(told(error)),
+        Err(error @ FileError::NotAFile { .. }) => Err(as_metrics_error(error)),
         _ => Ok(()),
     }
 }
 
 /// Opens a file of at most `limit` bytes.
 pub(super) fn open(path: &Path, limit: u64) -> Result<Opened, MetricsError> {
-    driftworld_files::open(path, limit).map_err(told)
+    driftworld_files::open(path, limit).map_err(as_metrics_error)
 }
 
 /// The bytes of a file of at most `limit`; `None` where there is nothing.
@@ -27,11 +27,11 @@ pub(super) fn read(path: &Path, limit: u64) -> Result<Option<Vec<u8>>, MetricsEr
     match driftworld_files::read(path, limit) {
         Ok(bytes) => Ok(Some(bytes)),
         Err(error) if error.missing().is_some() => Ok(None),
-        Err(error) => Err(told(error)),
+        Err(error) => Err(as_metrics_error(error)),
     }
 }
 
-fn told(error: FileError) -> MetricsError {
+fn as_metrics_error(error: FileError) -> MetricsError {
     match error {
         FileError::Unreadable { path, source } => MetricsError::io(&path, "read this file")(source),
         FileError::NotAFile { path, found } => MetricsError::NotAFile {

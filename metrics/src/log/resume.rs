@@ -30,7 +30,7 @@ impl LogWriter {
     /// one with columns of its own.
     pub fn resume(dir: impl AsRef<Path>) -> Result<Self, MetricsError> {
         let dir = dir.as_ref();
-        // What may not be a directory is told first.
+        // What may not be a directory is reported first.
         data_files::find(dir)?;
         let folder = LogFolder::lock(dir)?;
         let files = data_files::find(dir)?;

@@ -98,8 +98,8 @@ impl ScenarioInfo {
     /// Warns of each of the three words that is not there.
     pub(super) fn warn_of_missing(&self, warnings: &mut Vec<LogWarning>) {
         let mut warn = |field: &'static str, is_missing: bool, expected: fn() -> String| {
-            let told = |warning: &LogWarning| matches!(warning, LogWarning::ScenarioInfo { field: other, .. } if *other == field);
-            if is_missing && !warnings.iter().any(told) {
+            let reported = |warning: &LogWarning| matches!(warning, LogWarning::ScenarioInfo { field: other, .. } if *other == field);
+            if is_missing && !warnings.iter().any(reported) {
                 warnings.push(LogWarning::ScenarioInfo {
                     field,
                     found: "nothing".to_owned(),

@@ -182,7 +182,7 @@ impl Check {
     fn order_in_files(&mut self, table: &Table<'_>, files: &[PathBuf]) {
         let rows = &table.rows;
         for (file, path) in files.iter().enumerate().take(table.num_files()) {
-            let mut told = false;
+            let mut reported = false;
             let mut range = table.rows_of_file(file);
             let Some(mut before) = range.next() else { continue };
             for row in range {
@@ -198,7 +198,7 @@ impl Check {
                     }
                 }
                 let stamps = rows.timestamps();
-                if stamps[row] < stamps[before] && !std::mem::replace(&mut told, true) {
+                if stamps[row] < stamps[before] && !std::mem::replace(&mut reported, true) {
                     self.warnings.add(LogWarning::TimeRunsBack {
                         path: path.clone(),
                         line: table.place(row).1,

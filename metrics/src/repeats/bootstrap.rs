@@ -86,7 +86,7 @@ impl BootstrapOptions {
     }
 
     /// The stream that the draws come from: `ChaCha` with 8 rounds, which is the same on every machine.
-    pub(super) fn chance(&self) -> ChaCha8Rng {
+    pub(super) fn rng(&self) -> ChaCha8Rng {
         ChaCha8Rng::seed_from_u64(self.seed)
     }
 

@@ -37,9 +37,9 @@ impl Contests {
     pub(super) fn intervals(&mut self, options: &BootstrapOptions) -> Vec<Option<Interval>> {
         let resamples = options.resamples as usize;
         let mut drawn = vec![Vec::with_capacity(resamples); self.strata.len() + 1];
-        let mut chance = options.chance();
+        let mut rng = options.rng();
         while drawn[self.strata.len()].len() < resamples {
-            self.draw(options.resampling, &mut chance);
+            self.draw(options.resampling, &mut rng);
             let (mut sum, mut num_strata) = (0.0, 0);
             for (contest, drawn) in self.strata.iter().zip(&mut drawn) {
                 if let Some(probability) = contest.probability() {
@@ -116,17 +116,17 @@ impl Contests {
         }
     }
 
-    fn draw(&mut self, resampling: Resampling, chance: &mut ChaCha8Rng) {
+    fn draw(&mut self, resampling: Resampling, rng: &mut ChaCha8Rng) {
         match resampling {
             Resampling::Strata => {
                 for contest in &mut self.strata {
-                    contest.a.draw(chance);
-                    contest.b.draw(chance);
+                    contest.a.draw(rng);
+                    contest.b.draw(rng);
                 }
             }
             Resampling::Runs => {
-                draw_whole_runs(&mut self.runs_of_a, chance);
-                draw_whole_runs(&mut self.runs_of_b, chance);
+                draw_whole_runs(&mut self.runs_of_a, rng);
+                draw_whole_runs(&mut self.runs_of_b, rng);
                 self.take_runs();
             }
         }
@@ -196,11 +196,11 @@ impl Side {
     }
 
     /// As many runs as there are, with replacement.
-    fn draw(&mut self, chance: &mut ChaCha8Rng) {
+    fn draw(&mut self, rng: &mut ChaCha8Rng) {
         self.counts.fill(0);
         let num_runs = self.runs.len() as u32;
         for _ in 0..num_runs {
-            let (rank, _) = self.runs[chance.random_range(0..num_runs) as usize];
+            let (rank, _) = self.runs[rng.random_range(0..num_runs) as usize];
             self.counts[rank as usize] += 1;
         }
     }
@@ -228,10 +228,10 @@ mod tests {
         // Of A, run 1 always wins in both strata and run 2 always loses.
         let a = ScoreTable::from_runs([("1", [("x", 9.0), ("y", 9.0)]), ("2", [("x", 0.0), ("y", 0.0)])]).unwrap();
         let b = ScoreTable::from_runs([("1", [("x", 5.0), ("y", 6.0)]), ("2", [("x", 6.0), ("y", 5.0)])]).unwrap();
-        let (mut contests, mut chance) = (Contests::new(&a, &b, &["x", "y"]), ChaCha8Rng::seed_from_u64(0));
+        let (mut contests, mut rng) = (Contests::new(&a, &b, &["x", "y"]), ChaCha8Rng::seed_from_u64(0));
         let mut seen = [0_u32; 3];
         for _ in 0..400 {
-            contests.draw(Resampling::Runs, &mut chance);
+            contests.draw(Resampling::Runs, &mut rng);
             let [x, y] = contests.probabilities()[..] else {
                 panic!("two strata")
             };

@@ -94,9 +94,9 @@ pub(super) fn estimate_each(
         return estimates;
     }
     let mut drawn = vec![Vec::with_capacity(options.resamples as usize); num_values];
-    let mut chance = options.chance();
+    let mut rng = options.rng();
     for _ in 0..options.resamples {
-        resample.draw(options.resampling, &mut chance);
+        resample.draw(options.resampling, &mut rng);
         of(&resample, &mut values);
         drawn
             .iter_mut()

@@ -62,12 +62,12 @@ pub(super) fn shared_out(
             }
         }
     } else {
-        let mut chance = ChaCha8Rng::seed_from_u64(options.seed);
+        let mut rng = ChaCha8Rng::seed_from_u64(options.seed);
         // Not the draws of the intervals.
-        chance.set_stream(1);
+        rng.set_stream(1);
         let mut as_much = 1;
         for _ in 0..options.resamples {
-            shuffle(&mut of_a, &mut chance);
+            shuffle(&mut of_a, &mut rng);
             as_much += u64::from(is_as_much(pool.difference(&of_a)));
         }
         (as_much, u64::from(options.resamples) + 1)
@@ -101,9 +101,9 @@ fn next_way(of_a: &mut [bool]) -> bool {
     true
 }
 
-fn shuffle(of_a: &mut [bool], chance: &mut ChaCha8Rng) {
+fn shuffle(of_a: &mut [bool], rng: &mut ChaCha8Rng) {
     for last in (1..of_a.len()).rev() {
-        of_a.swap(last, chance.random_range(0..=last as u32) as usize);
+        of_a.swap(last, rng.random_range(0..=last as u32) as usize);
     }
 }
 

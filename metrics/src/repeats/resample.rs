@@ -58,20 +58,20 @@ impl Resample {
     }
 
     /// Draws anew.
-    pub(super) fn draw(&mut self, resampling: Resampling, chance: &mut ChaCha8Rng) {
+    pub(super) fn draw(&mut self, resampling: Resampling, rng: &mut ChaCha8Rng) {
         match resampling {
-            Resampling::Strata => self.draw_strata(chance),
-            Resampling::Runs => self.draw_runs(chance),
+            Resampling::Strata => self.draw_strata(rng),
+            Resampling::Runs => self.draw_runs(rng),
         }
     }
 
     /// From each stratum as many scores as it has, with replacement.
-    fn draw_strata(&mut self, chance: &mut ChaCha8Rng) {
+    fn draw_strata(&mut self, rng: &mut ChaCha8Rng) {
         self.counts.fill(0);
         for slots in &self.strata {
             let num_slots = slots.len() as u32;
             for _ in slots {
-                let slot = slots[chance.random_range(0..num_slots) as usize];
+                let slot = slots[rng.random_range(0..num_slots) as usize];
                 self.counts[slot.position as usize] += 1;
             }
         }
@@ -79,10 +79,10 @@ impl Resample {
 
     /// As many whole runs as there are, with replacement. Where runs lack scores, none at all may have been drawn: such draws
     /// are made again, which ends, since some run has a score.
-    fn draw_runs(&mut self, chance: &mut ChaCha8Rng) {
+    fn draw_runs(&mut self, rng: &mut ChaCha8Rng) {
         let mut runs = vec![0; self.num_runs];
         loop {
-            draw_whole_runs(&mut runs, chance);
+            draw_whole_runs(&mut runs, rng);
             for slot in self.strata.iter().flatten() {
                 self.counts[slot.position as usize] = runs[slot.run as usize];
             }
@@ -112,10 +112,10 @@ impl Resample {
 }
 
 /// Draws as many runs as there are, with replacement: how often each was drawn.
-pub(super) fn draw_whole_runs(counts: &mut [u32], chance: &mut ChaCha8Rng) {
+pub(super) fn draw_whole_runs(counts: &mut [u32], rng: &mut ChaCha8Rng) {
     counts.fill(0);
     for _ in 0..counts.len() {
-        counts[chance.random_range(0..counts.len() as u32) as usize] += 1;
+        counts[rng.random_range(0..counts.len() as u32) as usize] += 1;
     }
 }
 
@@ -144,10 +144,10 @@ mod tests {
 
     #[test]
     fn each_stratum_keeps_its_size() {
-        let (mut resample, mut chance) = (Resample::new(&table()), ChaCha8Rng::seed_from_u64(0));
+        let (mut resample, mut rng) = (Resample::new(&table()), ChaCha8Rng::seed_from_u64(0));
         let mut drawn = [0; 5];
         for _ in 0..3_000 {
-            resample.draw(Resampling::Strata, &mut chance);
+            resample.draw(Resampling::Strata, &mut rng);
             let of_a = resample.counts[1] + resample.counts[3] + resample.counts[4];
             assert_eq!((of_a, resample.num_drawn()), (3, 5));
             drawn
@@ -161,9 +161,9 @@ mod tests {
 
     #[test]
     fn whole_runs_are_drawn_together() {
-        let (mut resample, mut chance) = (Resample::new(&table()), ChaCha8Rng::seed_from_u64(0));
+        let (mut resample, mut rng) = (Resample::new(&table()), ChaCha8Rng::seed_from_u64(0));
         for _ in 0..100 {
-            resample.draw(Resampling::Runs, &mut chance);
+            resample.draw(Resampling::Runs, &mut rng);
             // Positions by score: 1 (run 1, b), 2 (run 2, a), 2 (run 2, b), 5 (run 1, a), 9 (run 3, a).
             let counts = &resample.counts;
             assert_eq!((counts[0], counts[1]), (counts[3], counts[2]));

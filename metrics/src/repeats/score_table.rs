@@ -132,7 +132,7 @@ impl ScoreTable {
         self.strata.get(stratum).map_or(&[], Vec::as_slice)
     }
 
-    /// What a reader of an interval must be told: that there is none, or that it does not show how much some strata vary,
+    /// What a reader of an interval must be warned of: that there is none, or that it does not show how much some strata vary,
     /// because only one run scored them.
     pub fn caution(&self, resampling: Resampling) -> Option<String> {
         if !self.varies(resampling) {

@@ -34,7 +34,7 @@ pub(super) type Told<'a> = (Channel, Result<&'a str, String>);
 impl Session {
     /// Takes the settings among the messages, and hands back the others.
     pub(super) fn take_settings<'a>(&mut self, bytes: &'a [u8]) -> Vec<Told<'a>> {
-        let mut told = Vec::new();
+        let mut responses = Vec::new();
         let mut values = MOST_VALUES;
         for (number, record) in records(bytes).enumerate() {
             if number == MOST_MESSAGES {
@@ -57,14 +57,14 @@ impl Session {
                 if let Some(SideChannel::L2Explorer(channel)) = side_channel {
                     let reason =
                         format!("found more than {MOST_MESSAGES} in one go, expected the others with later steps");
-                    told.push((channel, Err(reason)));
+                    responses.push((channel, Err(reason)));
                 }
                 continue;
             }
             match side_channel {
                 Some(SideChannel::L2Explorer(channel)) => {
                     let text = Payload::new(record.payload).text();
-                    told.push((channel, text.and_then(|text| bounded(text, &mut values))));
+                    responses.push((channel, text.and_then(|text| bounded(text, &mut values))));
                 }
                 Some(SideChannel::Engine) => self.take_engine_setting(record.payload),
                 Some(SideChannel::Parameters) => {
@@ -78,7 +78,7 @@ impl Session {
                 }
             }
         }
-        told
+        responses
     }
 
     fn take_engine_setting(&mut self, payload: &[u8]) {
