@@ -69,7 +69,7 @@ impl Randomized {
 
 /// A template whose settled holes are filled.
 #[derive(Debug)]
-pub(crate) struct Filled<T: 'static> {
+pub(crate) struct Filled<T> {
     pub(crate) base: T,
     /// Where the template stands, for messages: `group/trees/object`.
     pub(crate) place: String,

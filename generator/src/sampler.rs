@@ -99,13 +99,14 @@ impl Sampler {
 
     /// Prepares the map and the free space once, if no world can have another.
     fn settle_free_space(&mut self) {
-        let shapes = ["/environment_params/predefined_map", "/environment_params/map_size"];
+        let shapes =
+            ["predefined_map", "map_size", "map_regions", "walls"].map(|key| format!("/environment_params/{key}"));
         let varies = self
             .compiled
             .world
             .holes
             .iter()
-            .any(|(hole, _)| shapes.iter().any(|shape| hole.pointer.starts_with(shape)));
+            .any(|(hole, _)| shapes.iter().any(|shape| hole.pointer.starts_with(shape.as_str())));
         self.start_varies = varies
             || self
                 .compiled

@@ -7,6 +7,7 @@ mod classes;
 mod color;
 mod distribution;
 mod document;
+mod element;
 mod error;
 mod l2explorer;
 pub mod maps;
@@ -15,6 +16,7 @@ mod oklab;
 mod scenario;
 pub mod schema;
 mod task;
+mod value;
 mod version;
 mod warning;
 mod world;
@@ -26,6 +28,7 @@ pub use distribution::{
     PlanarMoments, Spread, Turns,
 };
 pub use document::{MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_VALUES, MAX_WORLD_VALUES};
+pub use element::Element;
 pub use error::{MAX_PROBLEMS, Problem, SpecError, nearest};
 pub use names::sound_name;
 pub use oklab::{Oklab, linear_from_srgb};
@@ -34,14 +37,15 @@ pub use scenario::{
     ScenarioComplexity, ScenarioDifficulty, ScenarioForm, TaskLabel,
 };
 pub use task::{
-    Compare, Count, DEFAULT_VARIANT, Domain, Element, ElementWeights, Facing, Group, Hole, KeepOut, MeasureName,
-    Parameter, ParameterType, PlacedGroup, Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template,
-    Value, Variant, VariantSpec,
+    Compare, Count, DEFAULT_VARIANT, Domain, ElementWeights, Facing, Group, Hole, KeepOut, MeasureName, Parameter,
+    PlacedGroup, Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template, Variant, VariantSpec,
 };
+pub use value::{ParameterType, Value};
 pub use version::{SCENARIO_VERSION, TASK_VERSION, WORLD_VERSION};
 pub use warning::Warning;
 pub use world::{
-    ActionModel, ActionSpace, AgentParams, Enclosure, EndCondition, EnvironmentParams, GameMode, ImageParams,
-    LastEvent, MAX_OBJECTS, MAX_POINTS, MAX_SEED, Modality, Model, MotionModel, Object, ObjectProgress, Origin,
-    Progress, Pushable, RailsProgress, Region, Respawn, Rules, Shaping, StateFeature, Stimulus, Wall, World,
+    ActionModel, ActionSpace, AgentParams, Compared, Comparison, Enclosure, EndCondition, EnvironmentParams, Field,
+    FieldPlace, GameMode, ImageParams, LastEvent, MAX_OBJECTS, MAX_POINTS, MAX_SEED, Modality, Model, MotionModel,
+    Object, ObjectProgress, Origin, Progress, Pushable, RailsProgress, Region, Respawn, Rules, SameTexts, Shaping,
+    StateFeature, Stimulus, Wall, World,
 };

@@ -2,7 +2,7 @@
 
 use super::{ChannelChance, Distribution};
 use crate::Color;
-use crate::task::{ParameterType, Value};
+use crate::value::{ParameterType, Value};
 
 /// Mean and covariance of a distribution of colours.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -26,7 +26,7 @@ pub use planar::PlanarMoments;
 pub use reference::{Number, ParamRef};
 pub use turn::Turns;
 
-use crate::task::Value;
+use crate::value::Value;
 
 /// How values scatter. `N` is [`Number`] in a spec, where numbers may be references, and `f64` once a variant has settled them.
 ///

@@ -2,7 +2,7 @@
 
 use super::special::{normal_cdf, normal_density};
 use super::{Distribution, von_mises};
-use crate::task::Value;
+use crate::value::Value;
 
 impl Distribution<f64> {
     /// The mean of what it draws; of a Bernoulli its `p`, of headings the mean direction in degrees.

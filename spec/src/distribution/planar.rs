@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use super::{Distribution, Spread};
-use crate::task::Value;
+use crate::value::Value;
 
 /// Mean and covariance of a distribution of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

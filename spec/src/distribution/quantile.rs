@@ -3,7 +3,7 @@
 use super::moments::ends;
 use super::special::{beta_quantile, normal_cdf, normal_quantile};
 use super::{Distribution, discrete, von_mises};
-use crate::task::{ParameterType, Value};
+use crate::value::{ParameterType, Value};
 
 impl Distribution<f64> {
     /// The least number up to which it draws with a probability of at least `p`, which lies in `0..=1`.

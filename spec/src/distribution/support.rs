@@ -1,7 +1,7 @@
 //! Which values a distribution can draw, and of what type. How likely they are is said in `cumulative.rs`.
 
 use super::Distribution;
-use crate::task::{ParameterType, Value};
+use crate::value::{ParameterType, Value};
 
 impl<N> Distribution<N> {
     /// Whether all it draws can stand where this type is wanted.

@@ -15,6 +15,8 @@ impl Reader {
             Json::Array(items) => items.iter_mut().for_each(|item| found.extend(to_number(item))),
             other => found.extend(to_number(other)),
         }
+        // Two items that say the same are one remark.
+        found.dedup();
         for text in found {
             self.warn(format!("{at}/{key}"), format!("the text {text:?} is read as a number"));
         }

@@ -13,129 +13,89 @@ mod read;
 mod scenario;
 mod write;
 
-use crate::world::MotionModel;
+use std::sync::LazyLock;
 
-/// The keys of one part of a reset file, as we write them.
-struct Keys {
-    /// Those of the original, in the order in which they are written.
-    original: &'static [&'static str],
+use serde::Serialize;
+use serde_json::{Map, Value as Json};
+
+use crate::schema;
+use crate::world::{AgentParams, EnvironmentParams, Fields, ImageParams, MotionModel, Object, Rules, World};
+use mend::Entry;
+
+/// What the table of fields says of one part of a reset file.
+struct Part {
+    /// The keys of the original, in the order of the table.
+    original: Vec<&'static str>,
     /// Those that only our worlds have. The reader takes them, the writer leaves them out.
-    ours: &'static [&'static str],
+    ours: Vec<&'static str>,
     /// Those of early files, which the reader turns into others.
     old: &'static [&'static str],
+    /// What the values of the original's keys must be; lists and parts are read by themselves.
+    entries: Vec<(&'static str, Entry)>,
+    /// What entries are where nothing is said, by key.
+    defaults: Map<String, Json>,
 }
 
-impl Keys {
-    fn all(&self) -> impl Iterator<Item = &'static str> {
-        self.original.iter().chain(self.ours).chain(self.old).copied()
+impl Part {
+    /// The part that is made as a `T`, and whose schema this is.
+    fn of<T: Fields + Serialize>(default: &T, schema: &Json, old: &'static [&'static str]) -> Self {
+        let fields = || {
+            T::ROWS
+                .iter()
+                .map(|row| row.field)
+                .filter(|field| field.key != "$schema")
+        };
+        let original: Vec<&str> = fields()
+            .filter(|field| field.is_original)
+            .map(|field| field.key)
+            .collect();
+        let ours = fields().filter(|field| !field.is_original).map(|field| field.key);
+        let entry = |key: &&'static str| Some((*key, Entry::of(&schema["properties"][*key])?));
+        Self {
+            entries: original.iter().filter_map(entry).collect(),
+            original,
+            ours: ours.collect(),
+            old,
+            defaults: map_of(default),
+        }
+    }
+
+    fn keys(&self) -> impl Iterator<Item = &'static str> {
+        self.original.iter().chain(&self.ours).chain(self.old).copied()
     }
 }
 
-const WORLD: Keys = Keys {
-    original: &[
-        "game_mode",
-        "max_steps",
-        "environment_params",
-        "agent_params",
-        "image_params",
-        "objects",
-    ],
-    ours: &["version", "seed", "max_seconds", "rules", "progress"],
-    old: &[],
-};
+/// The parts of a reset file.
+struct Parts {
+    world: Part,
+    environment: Part,
+    agent: Part,
+    image: Part,
+    /// Nothing of the rules is known to the original.
+    rules: Part,
+    object: Part,
+}
 
-const ENVIRONMENT: Keys = Keys {
-    original: &["bounding_wall_color", "light_intensity", "predefined_map", "map_size"],
-    ours: &[
-        "map_regions",
-        "wall_height",
-        "walls",
-        "sun_direction",
-        "light_color",
-        "ambient_light",
-        "sky_color",
-        "ground_color",
-        "fog_distance",
-    ],
-    old: &[],
-};
+static PARTS: LazyLock<Parts> = LazyLock::new(|| {
+    let world = schema::world().json();
+    let of = |name: &str| &world["$defs"][name];
+    let old_of_objects = &["collectible", "reward_on", "interaction_distance"];
+    Parts {
+        world: Part::of(&World::default(), world, &[]),
+        environment: Part::of(&EnvironmentParams::default(), of("EnvironmentParams"), &[]),
+        agent: Part::of(&AgentParams::default(), of("AgentParams"), &["pickup_range"]),
+        image: Part::of(&ImageParams::default(), of("ImageParams"), &[]),
+        rules: Part::of(&Rules::default(), of("Rules"), &[]),
+        object: Part::of(&Object::new("", [0.0, 0.0]), of("Object"), old_of_objects),
+    }
+});
 
-const AGENT: Keys = Keys {
-    original: &[
-        "action_model",
-        "agent_height",
-        "agent_width",
-        "max_linear_speed",
-        "max_angular_speed",
-        "observation_size",
-        "coordinates",
-        "heading",
-    ],
-    ours: &[
-        "observation_width",
-        "supersampling",
-        "time_step",
-        "field_of_view",
-        "frame_skip",
-        "modalities",
-        "state_features",
-        "actions",
-        "interact",
-    ],
-    old: &["pickup_range"],
-};
-
-const IMAGE: Keys = Keys {
-    original: &["zoom", "yaw_subdivisions", "vertical_subdivisions"],
-    ours: &[],
-    old: &[],
-};
-
-/// Nothing of the rules is known to the original.
-const RULES: Keys = Keys {
-    original: &[],
-    ours: &[
-        "step_reward",
-        "reward_per_second",
-        "order_penalty",
-        "shaping",
-        "success",
-        "failure",
-    ],
-    old: &[],
-};
-
-const OBJECT: Keys = Keys {
-    original: &[
-        "class",
-        "model",
-        "coordinates",
-        "color",
-        "motion_model",
-        "reward",
-        "reward_stimulus",
-        "reward_once_stimulus",
-        "destroy_stimulus",
-        "range_stimulus_distance",
-        "unique_name",
-    ],
-    ours: &[
-        "heading",
-        "scale",
-        "solid",
-        "pushable",
-        "reward_probability",
-        "speed",
-        "turn_rate",
-        "sight_range",
-        "waypoints",
-        "order",
-        "respawn",
-        "seed",
-        "tag",
-    ],
-    old: &["collectible", "reward_on", "interaction_distance"],
-};
+fn map_of(value: &impl Serialize) -> Map<String, Json> {
+    match serde_json::to_value(value) {
+        Ok(Json::Object(map)) => map,
+        other => unreachable!("the parts of a world serialise as objects with string keys, not as {other:?}"),
+    }
+}
 
 /// How fast an object of the original moves, in metres per second: its documents do not say. It is what the balls of the
 /// built-in `moving_object` do, a fifth of what the agent can.
@@ -150,39 +110,4 @@ fn moves(model: MotionModel) -> bool {
 /// colours.
 fn black_is_chosen(class: &str) -> bool {
     matches!(class, "geometric" | "cube" | "icosphere")
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-
-    use super::*;
-
-    fn check(part: &str, keys: &Keys) {
-        let schema = crate::schema::world().json();
-        let properties = match part {
-            "World" => &schema["properties"],
-            part => &schema["$defs"][part]["properties"],
-        };
-        let fields: BTreeSet<&str> = properties
-            .as_object()
-            .expect("every part has fields")
-            .keys()
-            .map(String::as_str)
-            .filter(|key| *key != "$schema")
-            .collect();
-        let known: BTreeSet<&str> = keys.original.iter().chain(keys.ours).copied().collect();
-        assert_eq!(known, fields, "{part}");
-        assert_eq!(known.len(), keys.original.len() + keys.ours.len(), "{part}");
-    }
-
-    #[test]
-    fn every_field_of_a_world_is_either_the_originals_or_ours() {
-        check("World", &WORLD);
-        check("EnvironmentParams", &ENVIRONMENT);
-        check("AgentParams", &AGENT);
-        check("ImageParams", &IMAGE);
-        check("Rules", &RULES);
-        check("Object", &OBJECT);
-    }
 }

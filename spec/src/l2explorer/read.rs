@@ -2,20 +2,18 @@
 //! How a single value may be written is in `lenient.rs`; our own form of a world is read, strictly, in `world/mod.rs`.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::LazyLock;
 
-use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
 use super::lenient::{drop_decimal_point, stimulus, word};
-use super::mend::{self, Entry};
-use super::{AGENT, ASSUMED_SPEED, ENVIRONMENT, IMAGE, Keys, OBJECT, RULES, WORLD, black_is_chosen};
+use super::mend::Entry;
+use super::{ASSUMED_SPEED, PARTS, Part, black_is_chosen};
 use crate::document::{Document, MAX_VALUES, MAX_WORLD_VALUES, describe, escape};
 use crate::error::{Listed, Problem, SpecError};
 use crate::maps::MapLibrary;
 use crate::schema;
 use crate::warning::{Remarks, Warning};
-use crate::world::{AgentParams, EnvironmentParams, ImageParams, MAX_OBJECTS, Object, World};
+use crate::world::{MAX_OBJECTS, Object, World};
 
 impl World {
     /// Reads a reset file of the original: words in any case, numbers as strings, colours in 0..255, old keys.
@@ -122,30 +120,6 @@ fn as_spelled(pointer: String, spelled: &BTreeMap<String, String>) -> String {
     }
 }
 
-/// What entries are where nothing is said, by key.
-struct Defaults {
-    world: Map<String, Json>,
-    environment: Map<String, Json>,
-    agent: Map<String, Json>,
-    image: Map<String, Json>,
-    object: Map<String, Json>,
-}
-
-static DEFAULTS: LazyLock<Defaults> = LazyLock::new(|| Defaults {
-    world: map_of(&World::default()),
-    environment: map_of(&EnvironmentParams::default()),
-    agent: map_of(&AgentParams::default()),
-    image: map_of(&ImageParams::default()),
-    object: map_of(&Object::new("", [0.0, 0.0])),
-});
-
-fn map_of(value: &impl Serialize) -> Map<String, Json> {
-    match serde_json::to_value(value) {
-        Ok(Json::Object(map)) => map,
-        other => unreachable!("the parts of a world serialise as objects with string keys, not as {other:?}"),
-    }
-}
-
 #[derive(Default)]
 pub(super) struct Reader {
     warnings: Remarks,
@@ -165,10 +139,9 @@ impl Reader {
         let Json::Object(map) = json else {
             return json;
         };
-        let mut world = self.keys("", map, &WORLD);
-        word(&mut world, "game_mode");
-        self.whole("", &mut world, "max_steps");
-        self.mend("", &mut world, &mend::WORLD, &DEFAULTS.world);
+        let mut world = self.keys("", map, &PARTS.world);
+        self.entries("", &mut world, &PARTS.world);
+        self.mend("", &mut world, &PARTS.world.entries, &PARTS.world.defaults);
         if let Some(map) = self.part(&mut world, "environment_params") {
             world.insert("environment_params".into(), Json::Object(self.environment(map)));
         }
@@ -177,15 +150,13 @@ impl Reader {
         }
         if let Some(map) = self.part(&mut world, "image_params") {
             let at = "/image_params";
-            let mut image = self.keys(at, map, &IMAGE);
-            self.number(at, &mut image, "zoom");
-            self.whole(at, &mut image, "yaw_subdivisions");
-            self.whole(at, &mut image, "vertical_subdivisions");
-            self.mend(at, &mut image, &mend::IMAGE, &DEFAULTS.image);
+            let mut image = self.keys(at, map, &PARTS.image);
+            self.entries(at, &mut image, &PARTS.image);
+            self.mend(at, &mut image, &PARTS.image.entries, &PARTS.image.defaults);
             world.insert("image_params".into(), Json::Object(image));
         }
         if let Some(Json::Object(map)) = world.get("rules").cloned() {
-            let mut rules = self.keys("/rules", map, &RULES);
+            let mut rules = self.keys("/rules", map, &PARTS.rules);
             word(&mut rules, "success");
             word(&mut rules, "failure");
             world.insert("rules".into(), Json::Object(rules));
@@ -209,7 +180,7 @@ impl Reader {
     }
 
     /// The entries with their keys as we write them; keys that are not known are left out with a warning.
-    fn keys(&mut self, pointer: &str, map: Map<String, Json>, known: &Keys) -> Map<String, Json> {
+    fn keys(&mut self, pointer: &str, map: Map<String, Json>, known: &Part) -> Map<String, Json> {
         let plain = |key: &str| key.replace('_', "").to_lowercase();
         let mut renamed = Map::new();
         let mut seen = BTreeSet::new();
@@ -220,7 +191,7 @@ impl Reader {
                 _ => None,
             };
             let place = format!("{pointer}/{}", escape(&key));
-            let Some(name) = old.or_else(|| known.all().find(|name| plain(name) == plain(&key))) else {
+            let Some(name) = old.or_else(|| known.keys().find(|name| plain(name) == plain(&key))) else {
                 self.warn(place, format!("the key {key:?} has no meaning here and is left out"));
                 continue;
             };
@@ -239,22 +210,39 @@ impl Reader {
         renamed
     }
 
+    /// Values of the original's keys in any of the forms that they may have.
+    fn entries(&mut self, at: &str, map: &mut Map<String, Json>, part: &Part) {
+        for (key, entry) in &part.entries {
+            match entry {
+                Entry::Number(..) | Entry::Pair(..) => self.number(at, map, key),
+                Entry::Whole(..) => self.whole(at, map, key),
+                Entry::Word(_) => word(map, key),
+                Entry::Color => self.color(at, map, key),
+                Entry::Model => drop_decimal_point(map, key),
+                Entry::Text => {}
+            }
+        }
+    }
+
     fn environment(&mut self, map: Map<String, Json>) -> Map<String, Json> {
         let at = "/environment_params";
-        let mut environment = self.keys(at, map, &ENVIRONMENT);
-        for key in ["light_intensity", "map_size", "wall_height"] {
-            self.number(at, &mut environment, key);
-        }
-        self.whole(at, &mut environment, "predefined_map");
-        self.color(at, &mut environment, "bounding_wall_color");
-        self.mend(at, &mut environment, &mend::ENVIRONMENT, &DEFAULTS.environment);
+        let mut environment = self.keys(at, map, &PARTS.environment);
+        self.entries(at, &mut environment, &PARTS.environment);
+        self.number(at, &mut environment, "wall_height");
+        self.mend(
+            at,
+            &mut environment,
+            &PARTS.environment.entries,
+            &PARTS.environment.defaults,
+        );
         environment
     }
 
     fn agent(&mut self, map: Map<String, Json>) -> Map<String, Json> {
         let at = "/agent_params";
-        let mut agent = self.keys(at, map, &AGENT);
-        for key in ["action_model", "modalities", "actions"] {
+        let mut agent = self.keys(at, map, &PARTS.agent);
+        self.entries(at, &mut agent, &PARTS.agent);
+        for key in ["modalities", "actions"] {
             word(&mut agent, key);
         }
         if agent.shift_remove("pickup_range").is_some() {
@@ -263,20 +251,8 @@ impl Reader {
                 "pickup_range is an old key; interacting reaches 1 m ahead, and it is left out",
             );
         }
-        let numbers = [
-            "agent_height",
-            "agent_width",
-            "max_linear_speed",
-            "max_angular_speed",
-            "coordinates",
-            "heading",
-        ];
-        for key in numbers {
-            self.number(at, &mut agent, key);
-        }
-        self.whole(at, &mut agent, "observation_size");
         self.heading(at, &mut agent);
-        self.mend(at, &mut agent, &mend::AGENT, &DEFAULTS.agent);
+        self.mend(at, &mut agent, &PARTS.agent.entries, &PARTS.agent.defaults);
         agent
     }
 
@@ -320,24 +296,16 @@ impl Reader {
     }
 
     fn object(&mut self, at: &str, map: Map<String, Json>) -> Map<String, Json> {
-        let mut object = self.keys(at, map, &OBJECT);
+        let mut object = self.keys(at, map, &PARTS.object);
+        self.entries(at, &mut object, &PARTS.object);
         word(&mut object, "class");
-        drop_decimal_point(&mut object, "model");
-        word(&mut object, "motion_model");
         if object
             .get("motion_model")
             .is_some_and(|model| model == "random_waypoints")
         {
             object.insert("motion_model".into(), json!("random_waypoint"));
         }
-        for key in [
-            "coordinates",
-            "heading",
-            "scale",
-            "reward",
-            "range_stimulus_distance",
-            "interaction_distance",
-        ] {
+        for key in ["heading", "scale", "interaction_distance"] {
             self.number(at, &mut object, key);
         }
         for key in ["reward_stimulus", "reward_once_stimulus", "destroy_stimulus"] {
@@ -345,13 +313,12 @@ impl Reader {
         }
         self.heading(at, &mut object);
         self.old_reward(at, &mut object);
-        self.color(at, &mut object, "color");
         if !object.contains_key("coordinates") {
             self.warn(at, "an object without coordinates is put at (0, 0)");
             self.spelled.insert(format!("{at}/coordinates"), at.to_owned());
             object.insert("coordinates".into(), json!([0.0, 0.0]));
         }
-        self.mend(at, &mut object, &mend::OBJECT, &DEFAULTS.object);
+        self.mend(at, &mut object, &PARTS.object.entries, &PARTS.object.defaults);
         object.entry("coordinates").or_insert_with(|| json!([0.0, 0.0]));
         self.own_speed(at, &mut object);
         let class = object.get("class").and_then(Json::as_str).unwrap_or_default();

@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
-use super::{AGENT, ASSUMED_SPEED, ENVIRONMENT, Keys, OBJECT, RULES, WORLD, black_is_chosen, moves};
+use super::{ASSUMED_SPEED, PARTS, Part, black_is_chosen, map_of, moves};
 use crate::document::describe;
 use crate::warning::Warning;
 use crate::world::{MotionModel, Object, World};
@@ -71,24 +71,26 @@ impl Writer {
     fn world(&mut self, world: &World) -> Json {
         let full = map_of(world);
         let mut payload = Map::new();
-        for key in WORLD.original {
+        for key in &PARTS.world.original {
             let value = match *key {
-                "environment_params" => Some(self.part("/environment_params", &ENVIRONMENT, &world.environment_params)),
-                "agent_params" => Some(self.part("/agent_params", &AGENT, &world.agent_params)),
+                "environment_params" => {
+                    Some(self.part("/environment_params", &PARTS.environment, &world.environment_params))
+                }
+                "agent_params" => Some(self.part("/agent_params", &PARTS.agent, &world.agent_params)),
                 "objects" => Some(self.objects(&world.objects)),
                 "max_steps" => Some(json!(self.max_steps(world))),
                 key => full.get(key).cloned(),
             };
             payload.extend(value.map(|value| ((*key).to_owned(), value)));
         }
-        self.part("/rules", &RULES, &world.rules);
-        if let Some(seed) = world.seed {
-            let text = format!("seed ({seed}): {LEFT_OUT}");
-            self.warnings.push(warning("/seed".to_owned(), text));
-        }
-        if world.progress.is_some() {
-            let text = format!("progress: {LEFT_OUT}; the file is a start from where things are now");
-            self.warnings.push(warning("/progress".to_owned(), text));
+        self.part("/rules", &PARTS.rules, &world.rules);
+        for (key, value) in changed(&PARTS.world, &full) {
+            let text = match key {
+                "rules" | "max_seconds" => continue,
+                "progress" => format!("progress: {LEFT_OUT}; the file is a start from where things are now"),
+                key => format!("{key} ({}): {LEFT_OUT}", describe(value)),
+            };
+            self.warnings.push(warning(format!("/{key}"), text));
         }
         Json::Object(payload)
     }
@@ -112,23 +114,22 @@ impl Writer {
     }
 
     /// The original's keys of a part of the world; each of ours that is not at its default gets a warning.
-    fn part<T: Serialize + Default>(&mut self, at: &str, keys: &Keys, part: &T) -> Json {
+    fn part(&mut self, at: &str, known: &Part, part: &impl Serialize) -> Json {
         let full = map_of(part);
-        for (key, value) in changed(keys, &full, &map_of(&T::default())) {
+        for (key, value) in changed(known, &full) {
             self.warnings.push(warning(
                 format!("{at}/{key}"),
                 format!("{key} ({}): {LEFT_OUT}", describe(value)),
             ));
         }
-        let known = keys.original.iter().filter_map(|key| Some((*key, full.get(*key)?)));
-        known.map(|(key, value)| (key.to_owned(), value.clone())).collect()
+        let original = known.original.iter().filter_map(|key| Some((*key, full.get(*key)?)));
+        original.map(|(key, value)| (key.to_owned(), value.clone())).collect()
     }
 
     fn objects(&mut self, objects: &[Object]) -> Json {
-        let default = map_of(&Object::new("", [0.0, 0.0]));
         let written = objects.iter().enumerate().map(|(index, object)| {
             let full = map_of(object);
-            for (key, _) in changed(&OBJECT, &full, &default) {
+            for (key, _) in changed(&PARTS.object, &full) {
                 if key != "speed" || !moves(object.motion_model) {
                     self.lose(index, key, key, LEFT_OUT);
                 }
@@ -138,14 +139,14 @@ impl Writer {
                 let becomes = "left out, L2Explorer has no such key; it reads back as 2 m/s";
                 self.lose(index, "motion_model", "speed", becomes);
             }
-            let known = OBJECT.original.iter().filter_map(|key| {
-                let value = match *key {
+            let known = objects_keys().filter_map(|key| {
+                let value = match key {
                     "class" => Some(self.class(index, &object.class)),
                     "color" => self.color(index, object),
                     "motion_model" => Some(self.motion_model(index, object.motion_model)),
                     key => full.get(key).cloned(),
                 };
-                Some(((*key).to_owned(), value?))
+                Some((key.to_owned(), value?))
             });
             known.collect()
         });
@@ -213,20 +214,20 @@ impl Writer {
 }
 
 /// Our own keys whose value is not the default; a key that the default does not write has a value only where it differs.
-fn changed<'a>(
-    keys: &Keys,
-    full: &'a Map<String, Json>,
-    default: &Map<String, Json>,
-) -> impl Iterator<Item = (&'static str, &'a Json)> {
-    let ours = keys.ours.iter().filter_map(|key| Some((*key, full.get(*key)?)));
-    ours.filter(|(key, value)| default.get(*key) != Some(*value))
+fn changed<'a>(part: &'a Part, full: &'a Map<String, Json>) -> impl Iterator<Item = (&'static str, &'a Json)> {
+    let ours = part.ours.iter().filter_map(|key| Some((*key, full.get(*key)?)));
+    ours.filter(|(key, value)| part.defaults.get(*key) != Some(*value))
 }
 
-fn map_of(value: &impl Serialize) -> Map<String, Json> {
-    match serde_json::to_value(value) {
-        Ok(Json::Object(map)) => map,
-        other => unreachable!("the parts of a world serialise as objects with string keys, not as {other:?}"),
-    }
+/// The original's keys of an object in the order in which its files have them: the motion model in front of the reward.
+fn objects_keys() -> impl Iterator<Item = &'static str> {
+    let others = PARTS
+        .object
+        .original
+        .iter()
+        .copied()
+        .filter(|key| *key != "motion_model");
+    others.flat_map(|key| (key == "reward").then_some("motion_model").into_iter().chain([key]))
 }
 
 fn warning(pointer: String, text: String) -> Warning {

@@ -8,7 +8,8 @@ use indexmap::IndexMap;
 use super::{Phase, Regime, Scenario};
 use crate::error::{MAX_PROBLEMS, Problem, SpecError, first_of, nearest};
 use crate::names;
-use crate::task::{TaskSpec, Value};
+use crate::task::TaskSpec;
+use crate::value::Value;
 
 /// Each regime with the pointer to it.
 fn regimes(scenario: &Scenario) -> impl Iterator<Item = (String, &Regime)> {

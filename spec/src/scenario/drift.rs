@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::task::Value;
+use crate::value::Value;
 
 /// A drift from a regime's variant to another of the same task.
 ///

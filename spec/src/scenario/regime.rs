@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::RegimeDrift;
 use crate::error::SpecError;
-use crate::task::{TaskSpec, Value, Variant};
+use crate::task::{TaskSpec, Variant};
+use crate::value::Value;
 
 /// A stretch of experiences (episodes) of one variant, or of the way from it to another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

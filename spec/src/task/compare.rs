@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::parameter::{Domain, Parameter, Role};
 use super::template::Source;
-use super::value::{ParameterType, Value};
 use crate::error::Problem;
+use crate::value::{ParameterType, Value};
 
 /// How two values of a parameter are compared, and how much that counts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -265,7 +265,7 @@ impl Default for ElementWeights {
 }
 
 impl ElementWeights {
-    /// In the order of [`Element::ALL`](super::Element::ALL).
+    /// In the order of [`Element::ALL`](crate::Element::ALL).
     pub fn to_array(self) -> [f64; 5] {
         [self.state, self.action, self.transition, self.reward, self.observation]
     }

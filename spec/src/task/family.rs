@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::TaskDocument;
 use super::parameter::{Parameter, Role};
-use super::value::{ParameterType, Value};
 use super::variant::VariantSpec;
 use crate::document::escape;
 use crate::error::Problem;
 use crate::names;
+use crate::value::{ParameterType, Value};
 
 /// The most variants that one task may declare, families unfolded.
 const MAX_VARIANTS: usize = 10_000;

@@ -7,9 +7,7 @@ mod family;
 mod group;
 mod parameter;
 mod require;
-mod slots;
 mod template;
-mod value;
 mod variant;
 
 use std::sync::Arc;
@@ -23,16 +21,16 @@ use serde_json::Value as Json;
 pub use compare::{Compare, ElementWeights, MeasureName};
 pub use family::{Spacing, Sweep};
 pub use group::{Facing, Group, KeepOut};
-pub use parameter::{Domain, Element, Parameter, Role};
+pub use parameter::{Domain, Parameter, Role};
 pub use require::Requirement;
 pub use template::{Hole, Source, Template};
-pub use value::{ParameterType, Value};
 pub use variant::{DEFAULT_VARIANT, Resolved, Variant, VariantSpec};
 
 use crate::classes::Classes;
 use crate::distribution::Number;
 use crate::document::{Document, MAX_VALUES};
 use crate::error::{Listed, Problem, SpecError};
+use crate::value::Value;
 use crate::world::{Object, World};
 use crate::{schema, version};
 

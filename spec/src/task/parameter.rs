@@ -6,51 +6,10 @@ use serde_json::json;
 
 use super::compare::Compare;
 use super::template::Source;
-use super::value::{ParameterType, Value};
 use crate::document::escape;
+use crate::element::Element;
 use crate::error::{Problem, cut};
-
-/// An element of the decision process that a parameter touches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
-pub enum Element {
-    /// The states: what is where.
-    S,
-    /// The actions that the agent has.
-    A,
-    /// The transitions: how the world answers an action.
-    T,
-    /// The rewards.
-    R,
-    /// The observations: what the agent sees of a state.
-    O,
-}
-
-impl Element {
-    /// All elements, in the order in which tables show them.
-    pub const ALL: [Self; 5] = [Self::S, Self::A, Self::T, Self::R, Self::O];
-
-    /// The element in a word.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::S => "state",
-            Self::A => "action",
-            Self::T => "transition",
-            Self::R => "reward",
-            Self::O => "observation",
-        }
-    }
-
-    /// The letter by which documents name the element.
-    pub fn letter(self) -> &'static str {
-        match self {
-            Self::S => "S",
-            Self::A => "A",
-            Self::T => "T",
-            Self::R => "R",
-            Self::O => "O",
-        }
-    }
-}
+use crate::value::{ParameterType, Value};
 
 /// Who settles a parameter's value, and when.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

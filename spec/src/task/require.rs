@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::expression::{Expression, Term};
-use super::value::Value;
+use crate::value::Value;
 
 /// A condition over parameters, such as `min_size < max_size and (count <= 5 or light >= 1)`.
 ///

@@ -6,11 +6,10 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
 
-use super::slots::{self, Slot};
-use super::value::{ParameterType, Value};
 use crate::distribution::{Distribution, Number, ParamRef};
 use crate::schema;
-use crate::world::{Object, World};
+use crate::value::{ParameterType, Value};
+use crate::world::{FieldPlace, Object, Place, World, places_of};
 
 /// Where a value comes from: a parameter, or a draw.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -37,7 +36,7 @@ impl Source {
 }
 
 /// A place to be filled, and with what.
-pub struct Hole<T: 'static> {
+pub struct Hole<T> {
     /// JSON pointer from the template.
     pub pointer: String,
     /// What fills it.
@@ -46,8 +45,9 @@ pub struct Hole<T: 'static> {
     pub kind: ParameterType,
     /// The numbers that may stand there, both ends included.
     pub range: [f64; 2],
-    index: usize,
-    slot: &'static Slot<T>,
+    /// The way to it in a `T`.
+    steps: Vec<usize>,
+    set: fn(&mut T, &[usize], &Value) -> Option<()>,
 }
 
 impl<T> Clone for Hole<T> {
@@ -55,6 +55,7 @@ impl<T> Clone for Hole<T> {
         Self {
             pointer: self.pointer.clone(),
             source: self.source.clone(),
+            steps: self.steps.clone(),
             ..*self
         }
     }
@@ -69,13 +70,13 @@ impl<T> std::fmt::Debug for Hole<T> {
 impl<T> Hole<T> {
     /// Puts a value there. `None` if a value of its type cannot stand there, as a text that names nothing.
     pub fn fill(&self, target: &mut T, value: &Value) -> Option<()> {
-        (self.slot.set)(target, self.index, value)
+        (self.set)(target, &self.steps, value)
     }
 }
 
 /// A `T` with holes.
 #[derive(Clone, Debug)]
-pub struct Template<T: 'static> {
+pub struct Template<T> {
     /// The `T` with an example in each hole.
     pub base: T,
     /// The holes, in the order of the text.
@@ -116,60 +117,43 @@ fn walk(json: &Json, pointer: &mut String, found: &mut Vec<Opening>) {
 
 impl Template<World> {
     /// The hole of a world's template at a pointer, if a world can vary there.
-    pub(crate) fn hole((pointer, source): &Opening) -> Option<Hole<World>> {
-        let (slot, index) = Slot::find(slots::WORLD, pointer)?;
-        Some(Hole {
-            pointer: pointer.clone(),
-            source: source.clone(),
-            kind: slot.kind,
-            range: range_of(schema::world().json(), None, slot.pointer),
-            index,
-            slot,
-        })
+    pub(crate) fn hole(opening: &Opening) -> Option<Hole<World>> {
+        hole(opening, schema::world().json())
     }
 }
 
 impl Template<Object> {
     /// The hole of an object's template at a pointer, if an object can vary there.
-    pub(crate) fn hole((pointer, source): &Opening) -> Option<Hole<Object>> {
-        let (slot, index) = Slot::find(slots::OBJECT, pointer)?;
-        Some(Hole {
-            pointer: pointer.clone(),
-            source: source.clone(),
-            kind: slot.kind,
-            range: range_of(schema::world().json(), Some("Object"), slot.pointer),
-            index,
-            slot,
-        })
+    pub(crate) fn hole(opening: &Opening) -> Option<Hole<Object>> {
+        hole(opening, &schema::world().json()["$defs"]["Object"])
     }
 }
 
-/// The least and greatest number that a schema allows at a pointer.
-fn range_of(schema: &Json, definition: Option<&str>, pointer: &str) -> [f64; 2] {
-    let root = definition.map_or(schema, |name| &schema["$defs"][name]);
-    let leaf = pointer.split('/').skip(1).fold(root, |node, key| {
-        let node = resolve(schema, node);
-        if key == "*" {
-            &node["items"]
-        } else {
-            &node["properties"][key]
-        }
-    });
-    let leaf = resolve(schema, leaf);
+/// The hole at a pointer into a `T`, whose schema this is.
+fn hole<T: Place>((pointer, source): &Opening, schema: &Json) -> Option<Hole<T>> {
+    let words: Vec<&str> = pointer.split('/').skip(1).collect();
+    let mut steps = Vec::new();
+    let kind = T::find(&words, &mut steps)?;
+    Some(Hole {
+        pointer: pointer.clone(),
+        source: source.clone(),
+        kind,
+        range: range_at(schema, pointer),
+        steps,
+        set: T::set,
+    })
+}
+
+/// The least and greatest number that the schema of a part of a world allows at a pointer into it.
+fn range_at(part: &Json, pointer: &str) -> [f64; 2] {
+    let Some(mut leaf) = schema::at(schema::world().json(), part, pointer) else {
+        return [f64::MIN, f64::MAX];
+    };
+    if let Some(items) = leaf.get("items") {
+        leaf = items;
+    }
     let end = |key: &str, otherwise| leaf[key].as_f64().unwrap_or(otherwise);
-    let items = |key: &str, otherwise| leaf["items"][key].as_f64().unwrap_or(otherwise);
-    if leaf.get("items").is_some() {
-        [items("minimum", f64::MIN), items("maximum", f64::MAX)]
-    } else {
-        [end("minimum", f64::MIN), end("maximum", f64::MAX)]
-    }
-}
-
-fn resolve<'a>(schema: &'a Json, node: &'a Json) -> &'a Json {
-    match node.get("$ref").and_then(Json::as_str) {
-        Some(reference) => schema.pointer(reference.trim_start_matches('#')).unwrap_or(node),
-        None => node,
-    }
+    [end("minimum", f64::MIN), end("maximum", f64::MAX)]
 }
 
 /// The schemas of the two kinds of template, made from those of the concrete documents: at each slot the value may also
@@ -183,18 +167,12 @@ struct TemplateSchemas {
 static SCHEMAS: LazyLock<TemplateSchemas> = LazyLock::new(|| {
     let world_schema = schema::of_type::<World>("world-template", "World template");
     let mut object = inline(&world_schema, &world_schema["$defs"]["Object"]);
-    open(
-        &mut object,
-        &slots::OBJECT.iter().map(|slot| slot.pointer).collect::<Vec<_>>(),
-    );
+    open(&mut object, &places_of::<Object>());
     let mut world = inline(
         &world_schema,
         &json!({ "type": "object", "properties": world_schema["properties"] }),
     );
-    open(
-        &mut world,
-        &slots::WORLD.iter().map(|slot| slot.pointer).collect::<Vec<_>>(),
-    );
+    open(&mut world, &places_of::<World>());
     world["additionalProperties"] = json!(false);
     world["properties"]["objects"]["items"] = object.clone();
     world["description"] =
@@ -212,18 +190,19 @@ static SCHEMAS: LazyLock<TemplateSchemas> = LazyLock::new(|| {
     }
 });
 
-/// A copy of a schema in which references to objects are replaced by what they refer to, so that it can be changed.
+/// A copy of a schema in which references to what has parts are replaced by what they refer to, so that it can be
+/// changed.
 fn inline(schema: &Json, node: &Json) -> Json {
-    let target = resolve(schema, node);
-    let mut copy = if target.get("properties").is_some() {
-        let mut copy = target.clone();
-        if let Some(description) = node.get("description") {
-            copy["description"] = description.clone();
-        }
-        copy
-    } else {
-        node.clone()
-    };
+    let target = schema::resolve(schema, node);
+    let is_part = |form: &Json| form.get("properties").is_some() || form["type"] == "array";
+    let has_parts = is_part(target)
+        || target["oneOf"]
+            .as_array()
+            .is_some_and(|forms| forms.iter().any(is_part));
+    let mut copy = if has_parts { target.clone() } else { node.clone() };
+    if let (true, Some(description)) = (has_parts, node.get("description")) {
+        copy["description"] = description.clone();
+    }
     // An example of the whole says nothing of a template, and would be repeated at every place.
     if let Some(map) = copy.as_object_mut() {
         map.shift_remove("examples");
@@ -233,10 +212,15 @@ fn inline(schema: &Json, node: &Json) -> Json {
             *property = inline(schema, &strip_default(property));
         }
     }
-    if let Some(forms) = copy.get_mut("anyOf").and_then(Json::as_array_mut) {
-        for form in forms {
-            *form = inline(schema, form);
+    for forms in ["anyOf", "oneOf"] {
+        if let Some(forms) = copy.get_mut(forms).and_then(Json::as_array_mut) {
+            for form in forms {
+                *form = inline(schema, form);
+            }
         }
+    }
+    if let Some(items) = copy.get_mut("items") {
+        *items = inline(schema, items);
     }
     copy
 }
@@ -252,29 +236,36 @@ fn strip_default(property: &Json) -> Json {
     property
 }
 
-/// Lets each of the pointers' places also be a parameter or a distribution.
-fn open(schema: &mut Json, pointers: &[&str]) {
-    // Places inside a list first, so that the list is opened around its opened items.
-    let (inner, outer): (Vec<&str>, Vec<&str>) = pointers.iter().partition(|pointer| pointer.ends_with("/*"));
-    for pointer in inner.into_iter().chain(outer) {
-        let mut node = &mut *schema;
-        for key in pointer.split('/').skip(1) {
-            // An optional struct is `anyOf: [struct, null]`: the struct comes first.
-            if node.get("anyOf").is_some() {
-                node = &mut node["anyOf"][0];
-            }
-            node = if key == "*" {
-                &mut node["items"]
-            } else {
-                &mut node["properties"][key]
-            };
-        }
+/// Lets each of the places that a value can be set at also be a parameter or a distribution.
+fn open(schema: &mut Json, places: &[FieldPlace]) {
+    let open = places.iter().filter(|place| place.kind.is_some());
+    // What is in a place stands behind it: it is opened first, and the place around it.
+    for place in open.rev().filter(|place| !place.pointer.starts_with("/objects/")) {
+        let node = place.pointer.split('/').skip(1).fold(&mut *schema, inner);
         let value = node.take();
         let description = value.get("description").cloned();
         *node = json!({ "anyOf": [value, { "$ref": "#/$defs/ParamRef" }, { "$ref": "#/$defs/Distribution" }] });
         if let Some(description) = description {
             node["description"] = description;
         }
+    }
+}
+
+/// The schema of a key of an object, or of the items of a list.
+fn inner<'a>(node: &'a mut Json, key: &str) -> &'a mut Json {
+    // An optional struct is `anyOf: [struct, null]`: the struct comes first.
+    let node = if node.get("anyOf").is_some() {
+        &mut node["anyOf"][0]
+    } else {
+        node
+    };
+    if key == "*" {
+        return &mut node["items"];
+    }
+    let forms = node.get("oneOf").and_then(Json::as_array);
+    match forms.and_then(|forms| forms.iter().position(|form| form["properties"].get(key).is_some())) {
+        Some(form) => &mut node["oneOf"][form]["properties"][key],
+        None => &mut node["properties"][key],
     }
 }
 

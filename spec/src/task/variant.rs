@@ -15,10 +15,10 @@ use super::family::{Sweep, Variants};
 use super::parameter::{Parameter, Role};
 use super::require::Requirement;
 use super::template::Source;
-use super::value::Value;
 use crate::distribution::{Distribution, Number, ParamRef};
 use crate::document::escape;
 use crate::error::{MAX_PROBLEMS, Problem, SpecError, first_of, nearest};
+use crate::value::Value;
 
 /// The name of the variant in which every parameter has its default, unless the task declares one of this name.
 pub const DEFAULT_VARIANT: &str = "default";

@@ -4,88 +4,74 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::StateFeature;
+use super::fields::{Field, FieldPlace, Place, fields};
+use crate::value::{ParameterType, Value};
 
-/// The agent: where it starts, how it moves, what it observes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct AgentParams {
-    /// What the numbers of an action mean.
-    pub action_model: ActionModel,
-    /// Height of the camera above the ground in metres.
-    #[schemars(range(min = 0.1, max = 10.0))]
-    pub agent_height: f64,
-    /// Width (diameter) of the agent's collider in metres.
-    #[schemars(range(min = 0.05, max = 10.0))]
-    pub agent_width: f64,
-    /// Largest speed in metres per second.
-    #[schemars(range(min = 0.0, max = 100.0))]
-    pub max_linear_speed: f64,
-    /// Largest turn rate in degrees per second.
-    #[schemars(range(min = 0.0, max = 3600.0))]
-    pub max_angular_speed: f64,
-    /// Height of the observations in pixels, and their width unless `observation_width` says otherwise.
-    #[schemars(range(min = 1, max = 4096))]
-    pub observation_size: u32,
-    /// Width of the observations in pixels; as high as wide if absent.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1, max = 4096))]
-    pub observation_width: Option<u32>,
-    /// Points per pixel along each side that colours are the mean of: 1 is fast, 2 and more are smooth.
-    #[serde(skip_serializing_if = "is_one")]
-    #[schemars(range(min = 1, max = 4))]
-    pub supersampling: u32,
-    /// Start position in metres.
-    #[schemars(inner(range(min = -300.0, max = 300.0)))]
-    pub coordinates: [f64; 2],
-    /// Start heading in degrees: 0 looks along +y, growing clockwise.
-    #[schemars(range(min = 0.0, max = 360.0))]
-    pub heading: f64,
-    /// Simulated seconds per time step.
-    #[schemars(range(min = 0.001, max = 10.0))]
-    pub time_step: f64,
-    /// Time steps for which each action is held: a step of the environment lasts this many.
-    #[serde(skip_serializing_if = "is_one")]
-    #[schemars(range(min = 1, max = 1000))]
-    pub frame_skip: u32,
-    /// Vertical field of view in degrees.
-    #[schemars(range(min = 1.0, max = 170.0))]
-    pub field_of_view: f64,
-    /// Which images an observation holds.
-    #[schemars(length(max = 5))]
-    pub modalities: Vec<Modality>,
-    /// What the state vector holds, in this order.
-    #[serde(skip_serializing_if = "is_classic")]
-    #[schemars(length(max = 20))]
-    pub state_features: Vec<StateFeature>,
-    /// How actions are given.
-    pub actions: ActionSpace,
-    /// Whether the agent can interact: without, the third number of an action by velocity is ignored, and the default table of
-    /// actions has no row for it.
-    #[serde(skip_serializing_if = "is_true")]
-    pub interact: bool,
-}
-
-impl Default for AgentParams {
-    fn default() -> Self {
-        Self {
-            action_model: ActionModel::ByVelocity,
-            agent_height: 1.0,
-            agent_width: 1.0,
-            max_linear_speed: 10.0,
-            max_angular_speed: 90.0,
-            observation_size: 84,
-            observation_width: None,
-            supersampling: 1,
-            coordinates: [0.0, 0.0],
-            heading: 0.0,
-            time_step: 0.1,
-            frame_skip: 1,
-            field_of_view: 60.0,
-            modalities: vec![Modality::Rgb, Modality::Depth, Modality::Segmentation],
-            state_features: StateFeature::CLASSIC.to_vec(),
-            actions: ActionSpace::Continuous,
-            interact: true,
-        }
+fields! {
+    /// The agent: where it starts, how it moves, what it observes.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct AgentParams {
+        /// What the numbers of an action mean.
+        pub action_model: ActionModel = ActionModel::ByVelocity => Field::original(Same(ModelOfActions)),
+        /// Height of the camera above the ground in metres.
+        #[schemars(range(min = 0.1, max = 10.0))]
+        pub agent_height: f64 = 1.0 => Field::original(Same(CameraAndWeather)).unit("m"),
+        /// Width (diameter) of the agent's collider in metres.
+        #[schemars(range(min = 0.05, max = 10.0))]
+        pub agent_width: f64 = 1.0 => Field::original(Measured(&[Width])).unit("m"),
+        /// Largest speed in metres per second.
+        #[schemars(range(min = 0.0, max = 100.0))]
+        pub max_linear_speed: f64 = 10.0 => Field::original(Measured(&[LargestSpeed])).unit("m/s"),
+        /// Largest turn rate in degrees per second.
+        #[schemars(range(min = 0.0, max = 3600.0))]
+        pub max_angular_speed: f64 = 90.0
+            => Field::original(Measured(&[LargestTurnRate])).unit("degrees/s"),
+        /// Height of the observations in pixels, and their width unless `observation_width` says otherwise.
+        #[schemars(range(min = 1, max = 4096))]
+        pub observation_size: u32 = 84 => Field::original(Measured(&[CameraAndWeather])).unit("pixels"),
+        /// Width of the observations in pixels; as high as wide if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 1, max = 4096))]
+        pub observation_width: Option<u32> = None
+            => Field::ours(Measured(&[CameraAndWeather])).unit("pixels"),
+        /// Points per pixel along each side that colours are the mean of: 1 is fast, 2 and more are smooth.
+        #[serde(skip_serializing_if = "is_one")]
+        #[schemars(range(min = 1, max = 4))]
+        pub supersampling: u32 = 1 => Field::ours(Same(CameraAndWeather)),
+        /// Start position in metres.
+        #[schemars(inner(range(min = -300.0, max = 300.0)))]
+        pub coordinates: [f64; 2] = [0.0, 0.0] => Field::original(Measured(&[Start])).unit("m"),
+        /// Start heading in degrees: 0 looks along +y, growing clockwise.
+        #[schemars(range(min = 0.0, max = 360.0))]
+        pub heading: f64 = 0.0 => Field::original(Measured(&[Heading])).heading(),
+        /// Simulated seconds per time step.
+        #[schemars(range(min = 0.001, max = 10.0))]
+        pub time_step: f64 = 0.1
+            => Field::ours(Measured(&[TimeStep, StepReward, Limit])).unit("s"),
+        /// Time steps for which each action is held: a step of the environment lasts this many.
+        #[serde(skip_serializing_if = "is_one")]
+        #[schemars(range(min = 1, max = 1000))]
+        pub frame_skip: u32 = 1
+            => Field::ours(Measured(&[TimeStep, StepReward, Limit])),
+        /// Vertical field of view in degrees.
+        #[schemars(range(min = 1.0, max = 170.0))]
+        pub field_of_view: f64 = 60.0 => Field::ours(Same(CameraAndWeather)).unit("degrees"),
+        /// Which images an observation holds.
+        #[schemars(length(max = 5))]
+        pub modalities: Vec<Modality> = vec![Modality::Rgb, Modality::Depth, Modality::Segmentation]
+            => Field::ours(Same(CameraAndWeather)),
+        /// What the state vector holds, in this order.
+        #[serde(skip_serializing_if = "is_classic")]
+        #[schemars(length(max = 20))]
+        pub state_features: Vec<StateFeature> = StateFeature::CLASSIC.to_vec()
+            => Field::ours(Same(CameraAndWeather)),
+        /// How actions are given.
+        pub actions: ActionSpace = ActionSpace::Continuous => Field::ours(Same(SpaceOfActions)),
+        /// Whether the agent can interact: without, the third number of an action by velocity is ignored, and the default table of
+        /// actions has no row for it.
+        #[serde(skip_serializing_if = "is_true")]
+        pub interact: bool = true => Field::ours(Same(SpaceOfActions)),
     }
 }
 
@@ -194,4 +180,31 @@ pub enum ActionSpace {
     DefaultDiscrete,
     /// The number of a row of this table; each row holds three numbers in the units of the action model.
     Discrete(#[schemars(length(min = 1, max = 1000))] Vec<[f64; 3]>),
+}
+
+impl Place for ActionSpace {
+    const KIND: Option<ParameterType> = Some(ParameterType::String);
+
+    fn from_value(value: &Value) -> Option<Self> {
+        serde_json::from_value(value.to_json()).ok()
+    }
+
+    fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
+        let ["discrete", row, number] = words else { return None };
+        steps.push(row.parse().ok()?);
+        steps.push(number.parse().ok()?);
+        Some(ParameterType::Number)
+    }
+
+    fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
+        let (Self::Discrete(table), [row, number]) = (self, steps) else {
+            return None;
+        };
+        *table.get_mut(*row)?.get_mut(*number)? = value.as_number()?;
+        Some(())
+    }
+
+    fn list_inside(pointer: &str, field: &Field, found: &mut Vec<FieldPlace>) {
+        f64::list(format!("{pointer}/discrete/*/*"), field, false, found);
+    }
 }

@@ -5,70 +5,57 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::fields::{Field, FieldPlace, Place, fields};
+use crate::value::{ParameterType, Value};
 use crate::{Color, maps};
 
-/// The arena and its light.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct EnvironmentParams {
-    /// Colour of the walls around the arena and of the regions that cannot be entered.
-    pub bounding_wall_color: Color,
-    /// Brightness of the sun: 2.3 to 3.5 reads as day, 0.2 as dusk.
-    #[schemars(range(min = 0.0, max = 100.0))]
-    pub light_intensity: f64,
-    /// Which arena: 0 is an empty one of `map_size`; 1 backslash, 2 village, 3 craters, 4 bisected are 200 × 200 m.
-    #[schemars(range(min = 0, max = 4))]
-    pub predefined_map: u8,
-    /// Regions of the predefined map that cannot be entered, from a maps file, in place of the built-in layout of that number:
-    /// polygons in metres, corners in order, the last joins the first.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(length(max = 1000))]
-    pub map_regions: Option<Vec<Region>>,
-    /// Side lengths of the arena along x and y in metres, centred on the origin; ignored when a map is chosen.
-    #[schemars(inner(range(min = 0.0, max = 300.0)))]
-    pub map_size: [f64; 2],
-    /// Height of the walls in metres.
-    #[schemars(range(min = 0.0, max = 50.0))]
-    pub wall_height: f64,
-    /// Regions that cannot be entered, beside those of the map.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schemars(length(max = 1000))]
-    pub walls: Vec<Wall>,
-    /// Direction towards the sun (x east, y north, z up); any length but 0.
-    #[schemars(inner(range(min = -1e6, max = 1e6)))]
-    pub sun_direction: [f64; 3],
-    /// Colour of the sunlight.
-    pub light_color: Color,
-    /// Share of the light that reaches every side of everything, 0..1.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub ambient_light: f64,
-    /// Colour of the sky at the zenith; it pales towards the horizon.
-    pub sky_color: Color,
-    /// Colour of the ground.
-    pub ground_color: Color,
-    /// Distance in metres at which half of what is seen is fog, in the colour of the horizon; no fog if absent.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.1, max = 10_000.0))]
-    pub fog_distance: Option<f64>,
-}
-
-impl Default for EnvironmentParams {
-    fn default() -> Self {
-        Self {
-            bounding_wall_color: Color([0.72, 0.68, 0.60]),
-            light_intensity: 2.3,
-            predefined_map: 0,
-            map_regions: None,
-            map_size: [100.0, 100.0],
-            wall_height: 4.0,
-            walls: Vec::new(),
-            sun_direction: [0.45, -0.35, 0.82],
-            light_color: Color([1.0, 0.97, 0.9]),
-            ambient_light: 0.35,
-            sky_color: Color([0.36, 0.62, 0.9]),
-            ground_color: Color([0.45, 0.56, 0.34]),
-            fog_distance: None,
-        }
+fields! {
+    /// The arena and its light.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct EnvironmentParams {
+        /// Colour of the walls around the arena and of the regions that cannot be entered.
+        pub bounding_wall_color: Color = Color([0.72, 0.68, 0.60])
+            => Field::original(Measured(&[ColorsOfSurroundings])),
+        /// Brightness of the sun: 2.3 to 3.5 reads as day, 0.2 as dusk.
+        #[schemars(range(min = 0.0, max = 100.0))]
+        pub light_intensity: f64 = 2.3 => Field::original(Measured(&[Light])),
+        /// Which arena: 0 is an empty one of `map_size`; 1 backslash, 2 village, 3 craters, 4 bisected are 200 × 200 m.
+        #[schemars(range(min = 0, max = 4))]
+        pub predefined_map: u8 = 0 => Field::original(Same(MapAndWalls)),
+        /// Regions of the predefined map that cannot be entered, from a maps file, in place of the built-in layout of that number:
+        /// polygons in metres, corners in order, the last joins the first.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(length(max = 1000))]
+        pub map_regions: Option<Vec<Region>> = None => Field::ours(Same(MapAndWalls)).unit("m"),
+        /// Side lengths of the arena along x and y in metres, centred on the origin; ignored when a map is chosen.
+        #[schemars(inner(range(min = 0.0, max = 300.0)))]
+        pub map_size: [f64; 2] = [100.0, 100.0] => Field::original(Measured(&[ArenaSize])).unit("m"),
+        /// Height of the walls in metres.
+        #[schemars(range(min = 0.0, max = 50.0))]
+        pub wall_height: f64 = 4.0 => Field::ours(Same(CameraAndWeather)).unit("m"),
+        /// Regions that cannot be entered, beside those of the map.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 1000))]
+        pub walls: Vec<Wall> = Vec::new() => Field::ours(Same(MapAndWalls)),
+        /// Direction towards the sun (x east, y north, z up); any length but 0.
+        #[schemars(inner(range(min = -1e6, max = 1e6)))]
+        pub sun_direction: [f64; 3] = [0.45, -0.35, 0.82] => Field::ours(Same(CameraAndWeather)),
+        /// Colour of the sunlight.
+        pub light_color: Color = Color([1.0, 0.97, 0.9])
+            => Field::ours(Measured(&[ColorsOfSurroundings])),
+        /// Share of the light that reaches every side of everything, 0..1.
+        #[schemars(range(min = 0.0, max = 1.0))]
+        pub ambient_light: f64 = 0.35 => Field::ours(Same(CameraAndWeather)),
+        /// Colour of the sky at the zenith; it pales towards the horizon.
+        pub sky_color: Color = Color([0.36, 0.62, 0.9]) => Field::ours(Measured(&[ColorsOfSurroundings])),
+        /// Colour of the ground.
+        pub ground_color: Color = Color([0.45, 0.56, 0.34])
+            => Field::ours(Measured(&[ColorsOfSurroundings])),
+        /// Distance in metres at which half of what is seen is fog, in the colour of the horizon; no fog if absent.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.1, max = 10_000.0))]
+        pub fog_distance: Option<f64> = None => Field::ours(Same(CameraAndWeather)).unit("m"),
     }
 }
 
@@ -176,18 +163,34 @@ pub struct Region(
     #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))] pub Vec<[f64; 2]>,
 );
 
-/// A region that cannot be entered: a polygon on the ground, standing up as a wall.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Wall {
-    /// Corners in metres, in order; the last joins the first.
-    #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
-    pub polygon: Vec<[f64; 2]>,
-    /// Height in metres; the arena's `wall_height` if absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0, max = 50.0))]
-    pub height: Option<f64>,
-    /// Colour; the arena's `bounding_wall_color` if absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub color: Option<Color>,
+impl Place for Region {
+    fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
+        Vec::<[f64; 2]>::find_inside(words, steps)
+    }
+
+    fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
+        self.0.set_inside(steps, value)
+    }
+
+    fn list_inside(pointer: &str, field: &Field, found: &mut Vec<FieldPlace>) {
+        Vec::<[f64; 2]>::list_inside(pointer, field, found);
+    }
+}
+
+fields! {
+    /// A region that cannot be entered: a polygon on the ground, standing up as a wall.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct Wall {
+        /// Corners in metres, in order; the last joins the first.
+        #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
+        pub polygon: Vec<[f64; 2]> => Field::ours(AsPart).unit("m"),
+        /// Height in metres; the arena's `wall_height` if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0, max = 50.0))]
+        pub height: Option<f64> => Field::ours(AsPart).unit("m"),
+        /// Colour; the arena's `bounding_wall_color` if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub color: Option<Color> => Field::ours(AsPart),
+    }
 }

@@ -4,6 +4,7 @@ mod agent;
 mod check;
 mod environment;
 mod features;
+mod fields;
 mod object;
 mod places;
 mod progress;
@@ -19,6 +20,9 @@ use sha2::{Digest, Sha256};
 pub use agent::{ActionModel, ActionSpace, AgentParams, Modality};
 pub use environment::{Enclosure, EnvironmentParams, Region, Wall};
 pub use features::StateFeature;
+use fields::fields;
+pub use fields::{Compared, Comparison, Field, FieldPlace, SameTexts};
+pub(crate) use fields::{Fields, Place, places_of};
 pub use object::{Model, MotionModel, Object, Pushable, Respawn, Stimulus};
 pub use progress::{LastEvent, ObjectProgress, Origin, Progress, RailsProgress};
 pub use rules::{EndCondition, Rules, Shaping};
@@ -38,76 +42,71 @@ pub const MAX_SEED: u64 = (1 << 53) - 1;
 /// The most points of one picture: 4096 × 4096 pixels with 2 × 2 points each.
 pub const MAX_POINTS: u64 = 1 << 26;
 
-/// One fully concrete world: what a reset takes.
-///
-/// A superset of L2Explorer's reset payload. Reading is strict: [`World::from_json`] names every unknown key, wrong type
-/// and value out of range at once, with its place.
-///
-/// # Example
-/// ```
-/// use driftworld_spec::World;
-/// let world = World::from_json("inline", r#"{ "max_steps": 50, "objects": [{ "class": "tree", "coordinates": [3, 4] }] }"#)?;
-/// assert_eq!(world.objects[0].coordinates, [3.0, 4.0]);
-/// # Ok::<(), driftworld_spec::SpecError>(())
-/// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct World {
-    /// Where the JSON Schema of this document is, for editors; not part of the world.
-    #[serde(rename = "$schema", skip_serializing)]
-    pub schema: Option<String>,
-    /// The version of this form of document. Older ones are read, newer ones refused; without it, it is taken to be 1.
-    #[schemars(range(min = 1, max = 1))]
-    pub version: u32,
-    /// What all chance in the running world grows from: where wanderers go, which pulls of a bandit arm pay, where objects come
-    /// back. A sampled world has one of its task, seed and number, so that all variants of the task share it. Without it
-    /// the places of things decide.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = MAX_SEED))]
-    pub seed: Option<u64>,
-    /// What the world is for.
-    pub game_mode: GameMode,
-    /// Steps until the episode is truncated; 0 is never.
-    #[schemars(range(min = 0, max = 1_000_000_000))]
-    pub max_steps: u32,
-    /// Seconds of the world's own time until the episode is truncated, be it in the midst of an action that is held; 0 is never.
-    /// Of two limits the earlier holds. Unlike `max_steps` it does not depend on how long a step lasts.
-    #[serde(skip_serializing_if = "is_zero")]
-    #[schemars(range(min = 0.0, max = 1e9))]
-    pub max_seconds: f64,
-    /// The arena and its light.
-    pub environment_params: EnvironmentParams,
-    /// The agent.
-    pub agent_params: AgentParams,
-    /// How objects are photographed in `collect_images`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub image_params: Option<ImageParams>,
-    /// Rewards and endings beside those of the objects.
-    pub rules: Rules,
-    /// What stands in the world.
-    #[schemars(length(max = 100_000))]
-    pub objects: Vec<Object>,
-    /// How far it has come, for a world that was written down while it ran.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub progress: Option<Progress>,
-}
-
-impl Default for World {
-    fn default() -> Self {
-        Self {
-            schema: None,
-            version: WORLD_VERSION,
-            seed: None,
-            game_mode: GameMode::default(),
-            max_steps: 0,
-            max_seconds: 0.0,
-            environment_params: EnvironmentParams::default(),
-            agent_params: AgentParams::default(),
-            image_params: None,
-            rules: Rules::default(),
-            objects: Vec::new(),
-            progress: None,
-        }
+fields! {
+    /// One fully concrete world: what a reset takes.
+    ///
+    /// A superset of L2Explorer's reset payload. Reading is strict: [`World::from_json`] names every unknown key, wrong type
+    /// and value out of range at once, with its place.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::World;
+    /// let world = World::from_json("inline", r#"{ "max_steps": 50, "objects": [{ "class": "tree", "coordinates": [3, 4] }] }"#)?;
+    /// assert_eq!(world.objects[0].coordinates, [3.0, 4.0]);
+    /// # Ok::<(), driftworld_spec::SpecError>(())
+    /// ```
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct World {
+        /// Where the JSON Schema of this document is, for editors; not part of the world.
+        #[serde(rename = "$schema", skip_serializing)]
+        pub schema: Option<String> = None
+            => Field::ours(Not("it names a schema for editors"))
+                .named("$schema")
+                .fixed("it names a schema for editors, and is no part of the world"),
+        /// The version of this form of document. Older ones are read, newer ones refused; without it, it is taken to be 1.
+        #[schemars(range(min = 1, max = 1))]
+        pub version: u32 = WORLD_VERSION
+            => Field::ours(Not("it is the form of the document"))
+                .fixed("it is the form of the document, which has one"),
+        /// What all chance in the running world grows from: where wanderers go, which pulls of a bandit arm pay, where objects come
+        /// back. A sampled world has one of its task, seed and number, so that all variants of the task share it. Without it
+        /// the places of things decide.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0, max = MAX_SEED))]
+        pub seed: Option<u64> = None
+            => Field::ours(Not("two worlds that differ in chance alone are two runs of one world"))
+                .fixed("a sampled world has that of its task, seed and number, so that all variants share it"),
+        /// What the world is for.
+        pub game_mode: GameMode = GameMode::default()
+            => Field::original(Not("photographing objects is no decision process")),
+        /// Steps until the episode is truncated; 0 is never.
+        #[schemars(range(min = 0, max = 1_000_000_000))]
+        pub max_steps: u32 = 0 => Field::original(Measured(&[Limit])),
+        /// Seconds of the world's own time until the episode is truncated, be it in the midst of an action that is held; 0 is never.
+        /// Of two limits the earlier holds. Unlike `max_steps` it does not depend on how long a step lasts.
+        #[serde(skip_serializing_if = "is_zero")]
+        #[schemars(range(min = 0.0, max = 1e9))]
+        pub max_seconds: f64 = 0.0 => Field::ours(Measured(&[Limit])).unit("s"),
+        /// The arena and its light.
+        pub environment_params: EnvironmentParams = EnvironmentParams::default() => Field::original(AsPart),
+        /// The agent.
+        pub agent_params: AgentParams = AgentParams::default() => Field::original(AsPart),
+        /// How objects are photographed in `collect_images`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub image_params: Option<ImageParams> = None
+            => Field::original(Not("photographing objects is no decision process")),
+        /// Rewards and endings beside those of the objects.
+        pub rules: Rules = Rules::default() => Field::ours(AsPart),
+        /// What stands in the world.
+        #[schemars(length(max = 100_000))]
+        pub objects: Vec<Object> = Vec::new()
+            => Field::original(Measured(&[NumbersOfObjects, PlacesOfObjects, CellsTaken])),
+        /// How far it has come, for a world that was written down while it ran.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub progress: Option<Progress> = None
+            => Field::ours(Not("it is how far a world has come, not which world it is"))
+                .fixed("a sampled world has not begun"),
     }
 }
 
@@ -122,28 +121,20 @@ pub enum GameMode {
     CollectImages,
 }
 
-/// How objects are photographed in `collect_images`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct ImageParams {
-    /// Distance of the camera as a factor on that from which the object just fits into the picture.
-    #[schemars(range(min = 0.1, max = 100.0))]
-    pub zoom: f64,
-    /// Views around each object.
-    #[schemars(range(min = 1, max = 360))]
-    pub yaw_subdivisions: u32,
-    /// Views from the side up to the top.
-    #[schemars(range(min = 1, max = 360))]
-    pub vertical_subdivisions: u32,
-}
-
-impl Default for ImageParams {
-    fn default() -> Self {
-        Self {
-            zoom: 2.0,
-            yaw_subdivisions: 8,
-            vertical_subdivisions: 1,
-        }
+fields! {
+    /// How objects are photographed in `collect_images`.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct ImageParams {
+        /// Distance of the camera as a factor on that from which the object just fits into the picture.
+        #[schemars(range(min = 0.1, max = 100.0))]
+        pub zoom: f64 = 2.0 => Field::original(AsPart),
+        /// Views around each object.
+        #[schemars(range(min = 1, max = 360))]
+        pub yaw_subdivisions: u32 = 8 => Field::original(AsPart),
+        /// Views from the side up to the top.
+        #[schemars(range(min = 1, max = 360))]
+        pub vertical_subdivisions: u32 = 1 => Field::original(AsPart),
     }
 }
 

@@ -6,105 +6,111 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::MAX_SEED;
+use super::fields::fields;
 use crate::Color;
 
-/// An object: its look, its place, what it is worth.
-///
-/// Every field but `class` and `coordinates` has a default.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Object {
-    /// Kind of asset: `geometric`, `tree`, `barrel`, …; a class that is not known draws a placeholder.
-    #[schemars(length(min = 1, max = 100))]
-    pub class: String,
-    /// Which asset of the class, counted from "1".
-    #[serde(default)]
-    pub model: Model,
-    /// Position on the ground in metres.
-    #[schemars(inner(range(min = -300.0, max = 300.0)))]
-    pub coordinates: [f64; 2],
-    /// Where the object faces, in degrees: 0 is +y, growing clockwise.
-    #[serde(default)]
-    #[schemars(range(min = 0.0, max = 360.0))]
-    pub heading: f64,
-    /// Factor on the asset's natural size.
-    #[serde(default = "one")]
-    #[schemars(range(min = 0.01, max = 100.0))]
-    pub scale: f64,
-    /// Main colour; the asset's own colours if absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub color: Option<Color>,
-    /// Whether the agent is stopped by it.
-    #[serde(default = "yes")]
-    pub solid: bool,
-    /// Makes it a body that the agent pushes along the ground; absent for one that stands fast. Only solid objects that do not
-    /// move by themselves are pushed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pushable: Option<Pushable>,
-    /// What one triggering is worth.
-    #[serde(default)]
-    #[schemars(range(min = -1e9, max = 1e9))]
-    pub reward: f64,
-    /// Chance that a triggering pays at all (a bandit arm), 0..1.
-    #[serde(default = "one", skip_serializing_if = "is_one")]
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub reward_probability: f64,
-    /// Stimuli of which each triggering pays `reward`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schemars(length(max = 3))]
-    pub reward_stimulus: Vec<Stimulus>,
-    /// Stimuli that pay `reward` once, after which the object's reward is 0.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schemars(length(max = 3))]
-    pub reward_once_stimulus: Vec<Stimulus>,
-    /// Stimuli that destroy the object.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schemars(length(max = 3))]
-    pub destroy_stimulus: Vec<Stimulus>,
-    /// Distance from centre to centre in metres below which `AgentInRange` holds.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(range(min = 0.0, max = 1000.0))]
-    pub range_stimulus_distance: f64,
-    /// How the object moves by itself.
-    #[serde(default)]
-    pub motion_model: MotionModel,
-    /// Speed of the object's own motion in metres per second.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    #[schemars(range(min = 0.0, max = 100.0))]
-    pub speed: f64,
-    /// Largest turn of the object's own motion in degrees per second; at once if absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0, max = 3600.0))]
-    pub turn_rate: Option<f64>,
-    /// How far a predator or prey sees the agent in metres, from centre to centre; everywhere if absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0.0, max = 1000.0))]
-    pub sight_range: Option<f64>,
-    /// Points in metres that the object walks along, in order, then back to the first.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schemars(length(max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
-    pub waypoints: Vec<[f64; 2]>,
-    /// Place in a scavenger sequence, from 1: it pays only when all lower places have been collected.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1, max = 100_000))]
-    pub order: Option<u32>,
-    /// How the object comes back after it was destroyed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub respawn: Option<Respawn>,
-    /// Which part of the world's chance is its own, whatever else stands in the world and in which order. Sampled objects
-    /// have one of their group's name and their number in it; without it the place where it starts decides. Objects
-    /// that share one are told apart by their order.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 0, max = MAX_SEED))]
-    pub seed: Option<u64>,
-    /// A free word that rules and logs refer to; the name of the group for sampled objects.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(length(min = 1, max = 100))]
-    pub tag: Option<String>,
-    /// A name that no other object of the world has.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(length(min = 1, max = 100))]
-    pub unique_name: Option<String>,
+fields! {
+    /// An object: its look, its place, what it is worth.
+    ///
+    /// Every field but `class` and `coordinates` has a default.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct Object {
+        /// Kind of asset: `geometric`, `tree`, `barrel`, …; a class that is not known draws a placeholder.
+        #[schemars(length(min = 1, max = 100))]
+        pub class: String => Field::original(Measured(&[NumbersOfObjects])),
+        /// Which asset of the class, counted from "1".
+        #[serde(default)]
+        pub model: Model => Field::original(Same(ModelsOfObjects)),
+        /// Position on the ground in metres.
+        #[schemars(inner(range(min = -300.0, max = 300.0)))]
+        pub coordinates: [f64; 2]
+            => Field::original(Measured(&[PlacesOfObjects, CellsTaken])).unit("m"),
+        /// Where the object faces, in degrees: 0 is +y, growing clockwise.
+        #[serde(default)]
+        #[schemars(range(min = 0.0, max = 360.0))]
+        pub heading: f64 => Field::ours(Measured(&[HeadingsOfObjects])).heading(),
+        /// Factor on the asset's natural size.
+        #[serde(default = "one")]
+        #[schemars(range(min = 0.01, max = 100.0))]
+        pub scale: f64 => Field::ours(Same(ModelsOfObjects)),
+        /// Main colour; the asset's own colours if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub color: Option<Color> => Field::original(Measured(&[ColorsOfObjects])),
+        /// Whether the agent is stopped by it.
+        #[serde(default = "yes")]
+        pub solid: bool => Field::ours(Same(Bodies)),
+        /// Makes it a body that the agent pushes along the ground; absent for one that stands fast. Only solid objects that do not
+        /// move by themselves are pushed.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub pushable: Option<Pushable> => Field::ours(Same(Bodies)),
+        /// What one triggering is worth.
+        #[serde(default)]
+        #[schemars(range(min = -1e9, max = 1e9))]
+        pub reward: f64 => Field::original(Measured(&[Rewards])),
+        /// Chance that a triggering pays at all (a bandit arm), 0..1.
+        #[serde(default = "one", skip_serializing_if = "is_one")]
+        #[schemars(range(min = 0.0, max = 1.0))]
+        pub reward_probability: f64 => Field::ours(Measured(&[RewardProbabilities])),
+        /// Stimuli of which each triggering pays `reward`.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 3))]
+        pub reward_stimulus: Vec<Stimulus> => Field::original(Same(PaidFor)),
+        /// Stimuli that pay `reward` once, after which the object's reward is 0.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 3))]
+        pub reward_once_stimulus: Vec<Stimulus> => Field::original(Same(PaidFor)),
+        /// Stimuli that destroy the object.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 3))]
+        pub destroy_stimulus: Vec<Stimulus> => Field::original(Same(Bodies)),
+        /// Distance from centre to centre in metres below which `AgentInRange` holds.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        #[schemars(range(min = 0.0, max = 1000.0))]
+        pub range_stimulus_distance: f64 => Field::original(Same(PaidFor)).unit("m"),
+        /// How the object moves by itself.
+        #[serde(default)]
+        pub motion_model: MotionModel => Field::original(Same(Motion)),
+        /// Speed of the object's own motion in metres per second.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        #[schemars(range(min = 0.0, max = 100.0))]
+        pub speed: f64 => Field::ours(Same(Motion)).unit("m/s"),
+        /// Largest turn of the object's own motion in degrees per second; at once if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0, max = 3600.0))]
+        pub turn_rate: Option<f64> => Field::ours(Same(Motion)).unit("degrees/s"),
+        /// How far a predator or prey sees the agent in metres, from centre to centre; everywhere if absent.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0.0, max = 1000.0))]
+        pub sight_range: Option<f64> => Field::ours(Same(Motion)).unit("m"),
+        /// Points in metres that the object walks along, in order, then back to the first.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
+        pub waypoints: Vec<[f64; 2]> => Field::ours(Same(Motion)).unit("m"),
+        /// Place in a scavenger sequence, from 1: it pays only when all lower places have been collected.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 1, max = 100_000))]
+        pub order: Option<u32> => Field::ours(Same(PaidFor)),
+        /// How the object comes back after it was destroyed.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub respawn: Option<Respawn> => Field::ours(Same(Bodies)),
+        /// Which part of the world's chance is its own, whatever else stands in the world and in which order. Sampled objects
+        /// have one of their group's name and their number in it; without it the place where it starts decides. Objects
+        /// that share one are told apart by their order.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0, max = MAX_SEED))]
+        pub seed: Option<u64> => Field::ours(Not("two worlds that differ in chance alone are two runs of one world")),
+        /// A free word that rules and logs refer to; the name of the group for sampled objects.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(length(min = 1, max = 100))]
+        pub tag: Option<String> => Field::ours(Not("it is a name: what rules make of it is compared")),
+        /// A name that no other object of the world has.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(length(min = 1, max = 100))]
+        pub unique_name: Option<String>
+            => Field::original(Not("it is a name"))
+                .fixed("no two objects of a world may have the same; objects are named together by their tag"),
+    }
 }
 
 impl Object {
@@ -244,30 +250,34 @@ pub enum MotionModel {
     Patrol,
 }
 
-/// How an object comes back.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Respawn {
-    /// Seconds between its destruction and its return.
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub delay: f64,
-    /// Radius in metres around its first place within which it returns; 0 is the same place.
-    #[serde(default)]
-    #[schemars(range(min = 0.0, max = 300.0))]
-    pub radius: f64,
+fields! {
+    /// How an object comes back.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct Respawn {
+        /// Seconds between its destruction and its return.
+        #[schemars(range(min = 0.0, max = 1e6))]
+        pub delay: f64 => Field::ours(AsPart).unit("s"),
+        /// Radius in metres around its first place within which it returns; 0 is the same place.
+        #[serde(default)]
+        #[schemars(range(min = 0.0, max = 300.0))]
+        pub radius: f64 => Field::ours(AsPart).unit("m"),
+    }
 }
 
-/// A body that slides and turns on the ground when it is pushed. It never topples.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Pushable {
-    /// Mass in kilograms; the agent weighs 80.
-    #[schemars(range(min = 0.01, max = 1e6))]
-    pub mass: f64,
-    /// Friction with the ground and with other bodies: 0 is ice, 0.5 wood on stone.
-    #[serde(default = "half")]
-    #[schemars(range(min = 0.0, max = 10.0))]
-    pub friction: f64,
+fields! {
+    /// A body that slides and turns on the ground when it is pushed. It never topples.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct Pushable {
+        /// Mass in kilograms; the agent weighs 80.
+        #[schemars(range(min = 0.01, max = 1e6))]
+        pub mass: f64 => Field::ours(AsPart).unit("kg"),
+        /// Friction with the ground and with other bodies: 0 is ice, 0.5 wood on stone.
+        #[serde(default = "half")]
+        #[schemars(range(min = 0.0, max = 10.0))]
+        pub friction: f64 => Field::ours(AsPart),
+    }
 }
 
 fn half() -> f64 {

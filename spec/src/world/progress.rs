@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::World;
+use super::fields::Place;
 use crate::error::Problem;
 
 /// The course of a running world; absent at its start.
@@ -58,6 +59,9 @@ pub struct Progress {
     #[schemars(length(max = 100_000))]
     pub objects: Vec<ObjectProgress>,
 }
+
+/// No parameter sets it.
+impl Place for Progress {}
 
 /// The largest whole number that every reader of JSON keeps: 2⁵³ − 1.
 const MOST: u64 = (1 << 53) - 1;

@@ -3,57 +3,64 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Rewards and endings that belong to the world as a whole.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct Rules {
-    /// Paid at every step; a small negative number makes haste worth while.
-    #[schemars(range(min = -1e9, max = 1e9))]
-    pub step_reward: f64,
-    /// Paid for every second of the world's own time, in each time step its share. Unlike `step_reward` it does not depend on how
-    /// long a step lasts.
-    #[serde(skip_serializing_if = "is_zero")]
-    #[schemars(range(min = -1e9, max = 1e9))]
-    pub reward_per_second: f64,
-    /// Paid, in place of its reward, for setting off an object before its turn in a sequence; at most 0 makes it a penalty.
-    #[serde(skip_serializing_if = "is_zero")]
-    #[schemars(range(min = -1e9, max = 1e9))]
-    pub order_penalty: f64,
-    /// A soft reward for coming closer.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub shaping: Option<Shaping>,
-    /// Any of these ends the episode as a success.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schemars(length(max = 100))]
-    pub success: Vec<EndCondition>,
-    /// Any of these ends the episode as a failure.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[schemars(length(max = 100))]
-    pub failure: Vec<EndCondition>,
+use super::fields::{Field, FieldPlace, Place, fields};
+use crate::value::{ParameterType, Value};
+
+fields! {
+    /// Rewards and endings that belong to the world as a whole.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    pub struct Rules {
+        /// Paid at every step; a small negative number makes haste worth while.
+        #[schemars(range(min = -1e9, max = 1e9))]
+        pub step_reward: f64 = 0.0 => Field::ours(Measured(&[StepReward])),
+        /// Paid for every second of the world's own time, in each time step its share. Unlike `step_reward` it does not depend on how
+        /// long a step lasts.
+        #[serde(skip_serializing_if = "is_zero")]
+        #[schemars(range(min = -1e9, max = 1e9))]
+        pub reward_per_second: f64 = 0.0 => Field::ours(Measured(&[StepReward])),
+        /// Paid, in place of its reward, for setting off an object before its turn in a sequence; at most 0 makes it a penalty.
+        #[serde(skip_serializing_if = "is_zero")]
+        #[schemars(range(min = -1e9, max = 1e9))]
+        pub order_penalty: f64 = 0.0 => Field::ours(Same(ShapingAndEndings)),
+        /// A soft reward for coming closer.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub shaping: Option<Shaping> = None => Field::ours(Same(ShapingAndEndings)),
+        /// Any of these ends the episode as a success.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 100))]
+        pub success: Vec<EndCondition> = Vec::new() => Field::ours(Same(ShapingAndEndings)),
+        /// Any of these ends the episode as a failure.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        #[schemars(length(max = 100))]
+        pub failure: Vec<EndCondition> = Vec::new() => Field::ours(Same(ShapingAndEndings)),
+    }
 }
 
-/// Potential-based shaping: each step pays `discount × potential after − potential before`.
-///
-/// The potential is `−scale ×` the distance in metres to the nearest object that draws the agent; it is 0 where there is none,
-/// and at the end of an episode that ends by itself. So the best policy of a learner with this discount stays the best (Ng, Harada
-/// and Russell 1999): with discount 1, all episodes that end by themselves are paid the same in all, `scale ×` the first
-/// distance. When the nearest object is taken away the potential falls to that of the next: the step that collects pays less by
-/// that. Conditions on the return do not count what shaping pays.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Shaping {
-    /// Tag of the objects that draw the agent; if absent, all objects that pay a positive reward
-    /// now, their turn in a sequence included.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(length(min = 1, max = 100))]
-    pub toward: Option<String>,
-    /// Reward per metre.
-    #[schemars(range(min = -1e6, max = 1e6))]
-    pub scale: f64,
-    /// The learner's discount, 0..1.
-    #[serde(default = "one", skip_serializing_if = "is_one")]
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub discount: f64,
+fields! {
+    /// Potential-based shaping: each step pays `discount × potential after − potential before`.
+    ///
+    /// The potential is `−scale ×` the distance in metres to the nearest object that draws the agent; it is 0 where there is none,
+    /// and at the end of an episode that ends by itself. So the best policy of a learner with this discount stays the best (Ng, Harada
+    /// and Russell 1999): with discount 1, all episodes that end by themselves are paid the same in all, `scale ×` the first
+    /// distance. When the nearest object is taken away the potential falls to that of the next: the step that collects pays less by
+    /// that. Conditions on the return do not count what shaping pays.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct Shaping {
+        /// Tag of the objects that draw the agent; if absent, all objects that pay a positive reward
+        /// now, their turn in a sequence included.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(length(min = 1, max = 100))]
+        pub toward: Option<String> => Field::ours(AsPart),
+        /// Reward per metre.
+        #[schemars(range(min = -1e6, max = 1e6))]
+        pub scale: f64 => Field::ours(AsPart).unit("1/m"),
+        /// The learner's discount, 0..1.
+        #[serde(default = "one", skip_serializing_if = "is_one")]
+        #[schemars(range(min = 0.0, max = 1.0))]
+        pub discount: f64 => Field::ours(AsPart),
+    }
 }
 
 fn one() -> f64 {
@@ -82,4 +89,29 @@ pub enum EndCondition {
     ReturnAtLeast(f64),
     /// The return of the episode, without shaping, falls to this.
     ReturnAtMost(f64),
+}
+
+/// Which condition it is, is the task's to say; what it waits for can be a parameter.
+impl Place for EndCondition {
+    fn find_inside(words: &[&str], _: &mut Vec<usize>) -> Option<ParameterType> {
+        match words {
+            ["touch"] => Some(ParameterType::String),
+            ["return_at_least" | "return_at_most"] => Some(ParameterType::Number),
+            _ => None,
+        }
+    }
+
+    fn set(&mut self, _: &[usize], value: &Value) -> Option<()> {
+        match self {
+            Self::AllCollected => None,
+            Self::Touch(tag) => tag.set(&[], value),
+            Self::ReturnAtLeast(reward) | Self::ReturnAtMost(reward) => reward.set(&[], value),
+        }
+    }
+
+    fn list_inside(pointer: &str, field: &Field, found: &mut Vec<FieldPlace>) {
+        String::list(format!("{pointer}/touch"), field, true, found);
+        f64::list(format!("{pointer}/return_at_least"), field, true, found);
+        f64::list(format!("{pointer}/return_at_most"), field, true, found);
+    }
 }

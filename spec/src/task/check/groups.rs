@@ -5,13 +5,13 @@ use serde_json::{Value as Json, json};
 
 use super::super::group::{Facing, Group};
 use super::super::template::Source;
-use super::super::value::{ParameterType, Value};
 use super::super::{Count, PlacedGroup, variant};
 use super::Check;
 use crate::MAX_OBJECTS;
 use crate::distribution::{Distribution, Number};
 use crate::document::{describe, escape, plain_number};
 use crate::error::{Problem, first_of, nearest};
+use crate::value::{ParameterType, Value};
 
 /// The most placements of a group that are looked at for room: families have thousands of variants.
 const MOST_CASES: usize = 64;

@@ -13,13 +13,13 @@ use super::family::{self, Variants};
 use super::parameter::{Parameter, Role};
 use super::require::Requirement;
 use super::template::Source;
-use super::value::{ParameterType, Value};
 use super::variant::{self, DEFAULT_VARIANT};
 use super::{PlacedGroup, TaskDocument, TaskSpec};
 use crate::classes::Classes;
 use crate::distribution::{Distribution, Number};
 use crate::document::escape;
 use crate::error::Problem;
+use crate::value::{ParameterType, Value};
 pub(super) use partial::Unsound;
 
 /// The checked task, or everything that is wrong with it; `classes` are those that objects may be of, where they are known.

@@ -2,12 +2,12 @@
 
 use super::super::parameter::{Domain, Parameter, Role};
 use super::super::template::Source;
-use super::super::value::{ParameterType, Value};
 use super::super::variant;
 use super::Check;
 use crate::distribution::{Distribution, Number, ParamRef};
 use crate::document::plain_number;
 use crate::error::{Problem, first_of, nearest};
+use crate::value::{ParameterType, Value};
 
 impl Check<'_> {
     /// Whether a distribution's references name numbers, and whether every variant can draw from it.

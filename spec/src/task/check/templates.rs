@@ -3,10 +3,10 @@
 use serde_json::Value as Json;
 
 use super::super::template::{Hole, Opening, Template, openings};
-use super::super::value::Value;
 use super::Check;
 use crate::document::{describe, pointer_of};
 use crate::error::Problem;
+use crate::value::Value;
 use crate::world::{Object, World};
 
 impl Check<'_> {

@@ -5,8 +5,8 @@
 
 mod token;
 
-use super::value::Value;
 use crate::Color;
+use crate::value::Value;
 use token::{Token, tokens};
 
 /// The longest text, in characters.

@@ -1,4 +1,4 @@
-//! Values of parameters and their types. Where a value may stand in a world is in `slots.rs`.
+//! Values of parameters and their types. Where a value may stand in a world is in `world/fields/`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

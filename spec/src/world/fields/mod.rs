@@ -1,0 +1,274 @@
+//! The table of fields: [`fields!`] declares a part of a world once, and beside each field stands what else there is to
+//! say of it: its unit, whether the original has it, how it is compared, whether it can be a parameter. The setters of
+//! templates, the keys of the L2Explorer dialect, the comparison of worlds and `docs/reference/` come from it. Types,
+//! ranges and defaults are read from the schema that is made of the same declaration.
+
+mod comparison;
+mod place;
+
+use std::sync::LazyLock;
+
+use serde::Serialize;
+
+use super::{Object, World};
+use crate::value::{ParameterType, Value};
+pub use comparison::Comparison;
+pub(crate) use place::Place;
+
+/// What the table says of a field.
+#[derive(Clone, Copy, Debug)]
+pub struct Field {
+    /// Its key.
+    pub key: &'static str,
+    /// The unit of its numbers, as people write it; `None` for what has none.
+    pub unit: Option<&'static str>,
+    /// Whether L2Explorer's reset files have it.
+    pub is_original: bool,
+    /// How two worlds are compared in it.
+    pub compared: Compared,
+    /// Why no parameter can set it; `None` if one can, or what is in it.
+    pub fixed: Option<&'static str>,
+    is_heading: bool,
+}
+
+/// How two worlds are compared in a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compared {
+    /// By whether all fields of a comparison are the same.
+    Same(Comparison),
+    /// By numbers that `similarity` finds for these.
+    Measured(&'static [Comparison]),
+    /// As the field that it stands in, or each of its own fields by itself.
+    AsPart,
+    /// Not at all, for this reason.
+    Not(&'static str),
+}
+
+impl Compared {
+    /// The comparisons that look at the field.
+    pub fn comparisons(&self) -> &[Comparison] {
+        match self {
+            Self::Same(comparison) => std::slice::from_ref(comparison),
+            Self::Measured(comparisons) => comparisons,
+            Self::AsPart | Self::Not(_) => &[],
+        }
+    }
+}
+
+impl Field {
+    /// A field that only our worlds have.
+    pub(crate) const fn ours(compared: Compared) -> Self {
+        Self {
+            key: "",
+            unit: None,
+            is_original: false,
+            compared,
+            fixed: None,
+            is_heading: false,
+        }
+    }
+
+    /// A field that L2Explorer's reset files have under the same key.
+    pub(crate) const fn original(compared: Compared) -> Self {
+        Self {
+            is_original: true,
+            ..Self::ours(compared)
+        }
+    }
+
+    pub(crate) const fn unit(self, unit: &'static str) -> Self {
+        Self {
+            unit: Some(unit),
+            ..self
+        }
+    }
+
+    /// Its numbers are headings in degrees.
+    pub(crate) const fn heading(self) -> Self {
+        Self {
+            is_heading: true,
+            ..self.unit("degrees")
+        }
+    }
+
+    /// No parameter can set it, for this reason.
+    pub(crate) const fn fixed(self, reason: &'static str) -> Self {
+        Self {
+            fixed: Some(reason),
+            ..self
+        }
+    }
+
+    pub(crate) const fn named(self, key: &'static str) -> Self {
+        Self { key, ..self }
+    }
+
+    /// The name of the Rust field, unless it was given another.
+    pub(crate) const fn or_named(self, key: &'static str) -> Self {
+        if self.key.is_empty() { self.named(key) } else { self }
+    }
+
+    /// The type of parameter that a place of the field takes, given that of its Rust type.
+    fn kind(&self, kind: ParameterType) -> ParameterType {
+        match kind {
+            ParameterType::Number if self.is_heading => ParameterType::Heading,
+            kind => kind,
+        }
+    }
+
+    /// What is not said of it is as with the whole that it belongs to.
+    fn inherit(&self, whole: &Self) -> Self {
+        Self {
+            compared: match self.compared {
+                Compared::AsPart => whole.compared,
+                own => own,
+            },
+            fixed: self.fixed.or(whole.fixed),
+            ..*self
+        }
+    }
+}
+
+/// A row of the table: a field, and how it is got at in a `T`.
+pub(crate) struct Row<T> {
+    pub(crate) field: Field,
+    /// Writes its value as JSON.
+    pub(crate) write: fn(&T, &mut Vec<u8>),
+    /// Puts a value at a place in it.
+    pub(crate) set: fn(&mut T, &[usize], &Value) -> Option<()>,
+    pub(crate) find: fn(&[&str], &mut Vec<usize>) -> Option<ParameterType>,
+    pub(crate) list: fn(String, &Field, bool, &mut Vec<FieldPlace>),
+}
+
+/// A part of a world whose fields are in the table.
+pub(crate) trait Fields: Sized + 'static {
+    /// In the order of the declaration.
+    const ROWS: &'static [Row<Self>];
+}
+
+pub(crate) fn write(value: &impl Serialize, out: &mut Vec<u8>) {
+    serde_json::to_writer(out, value).expect("parts of a world always serialise, and memory takes them");
+}
+
+/// What rows of the table are written with.
+#[expect(clippy::enum_glob_use, reason = "rows are read as a table")]
+pub(crate) mod rows {
+    pub(crate) use super::Compared::*;
+    pub(crate) use super::Comparison::*;
+    pub(crate) use super::{Field, Place, Row, write};
+}
+
+/// Declares a part of a world: a struct with, behind each field, its default and its row of the table. A struct whose
+/// fields have no defaults here has them where it is built.
+macro_rules! fields {
+    (
+        $(#[$meta:meta])*
+        pub struct $name:ident {
+            $($(#[$field_meta:meta])* pub $field:ident: $type:ty = $default:expr => $row:expr,)+
+        }
+    ) => {
+        fields! {
+            $(#[$meta])*
+            pub struct $name { $($(#[$field_meta])* pub $field: $type => $row,)+ }
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $($field: $default,)+ }
+            }
+        }
+    };
+    (
+        $(#[$meta:meta])*
+        pub struct $name:ident { $($(#[$field_meta:meta])* pub $field:ident: $type:ty => $row:expr,)+ }
+    ) => {
+        $(#[$meta])*
+        pub struct $name { $($(#[$field_meta])* pub $field: $type,)+ }
+
+        impl $crate::world::fields::Fields for $name {
+            const ROWS: &'static [$crate::world::fields::Row<Self>] = {
+                use $crate::world::fields::rows::*;
+                &[$(Row {
+                    field: $row.or_named(stringify!($field)),
+                    write: |part, out| write(&part.$field, out),
+                    set: |part, steps, value| Place::set(&mut part.$field, steps, value),
+                    find: <$type as Place>::find,
+                    list: <$type as Place>::list,
+                }),+]
+            };
+        }
+    };
+}
+pub(crate) use fields;
+
+/// A place in a world that has a name: a key, or an item of a list.
+#[derive(Clone, Debug)]
+pub struct FieldPlace {
+    /// JSON pointer from the world; `*` stands for the number of an item.
+    pub pointer: String,
+    /// The type of parameter that sets the whole of it; `None` if none can.
+    pub kind: Option<ParameterType>,
+    /// What the table says of it, or of what it stands in where it says nothing.
+    pub field: Field,
+    /// Whether it is a key; else it is an item of a list.
+    pub is_key: bool,
+}
+
+impl World {
+    /// Every place of a world, in the order of the table; those of its objects once.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::{ParameterType, World};
+    /// let heading = World::places().iter().find(|place| place.pointer == "/objects/*/heading").expect("objects have one");
+    /// assert_eq!((heading.kind, heading.field.unit), (Some(ParameterType::Heading), Some("degrees")));
+    /// ```
+    pub fn places() -> &'static [FieldPlace] {
+        static PLACES: LazyLock<Vec<FieldPlace>> = LazyLock::new(places_of::<World>);
+        &PLACES
+    }
+}
+
+/// Every place of a part of a world.
+pub(crate) fn places_of<T: Fields>() -> Vec<FieldPlace> {
+    let mut found = Vec::new();
+    T::list_inside("", &Field::ours(Compared::AsPart), &mut found);
+    found
+}
+
+/// The fields of a world or an object that are compared by whether they are the same: for each comparison a text, equal
+/// for equal fields.
+#[derive(Debug, Default)]
+pub struct SameTexts([Vec<u8>; Comparison::ALL.len()]);
+
+impl SameTexts {
+    /// The texts of a world, but for its objects, in place of those before.
+    pub fn read_world(&mut self, world: &World) {
+        self.0.iter_mut().for_each(Vec::clear);
+        self.add(world);
+        self.add(&world.environment_params);
+        self.add(&world.agent_params);
+        self.add(&world.rules);
+    }
+
+    /// The texts of an object in place of those before.
+    pub fn read_object(&mut self, object: &Object) {
+        self.0.iter_mut().for_each(Vec::clear);
+        self.add(object);
+    }
+
+    fn add<T: Fields>(&mut self, part: &T) {
+        for row in T::ROWS {
+            if let Compared::Same(comparison) = row.field.compared {
+                let text = &mut self.0[comparison as usize];
+                (row.write)(part, text);
+                text.push(b'\n');
+            }
+        }
+    }
+
+    /// The text of a comparison.
+    pub fn of(&self, comparison: Comparison) -> &[u8] {
+        &self.0[comparison as usize]
+    }
+}

@@ -1,0 +1,212 @@
+//! [`Place`]: where in a world a value may stand, by the types of its fields. Which fields there are is said beside the
+//! fields themselves.
+
+use super::{Field, FieldPlace, Fields};
+use crate::color::Color;
+use crate::value::{ParameterType, Value};
+use crate::world::{ActionModel, GameMode, Modality, Model, MotionModel, StateFeature, Stimulus};
+
+/// What stands at a place of a world: it can be set from the value of a parameter, or what is in it can.
+pub(crate) trait Place: Sized {
+    /// The type of parameter that the whole of it can be; `None` if only what is in it can.
+    const KIND: Option<ParameterType> = None;
+
+    /// The whole of it from a value of that type. `None` if the value cannot stand here.
+    fn from_value(_: &Value) -> Option<Self> {
+        None
+    }
+
+    /// The type of value that goes to a place in it; adds the steps that lead there. `None` if nothing can vary there.
+    fn find_inside(_words: &[&str], _steps: &mut Vec<usize>) -> Option<ParameterType> {
+        None
+    }
+
+    /// Puts a value at a place in it.
+    fn set_inside(&mut self, _steps: &[usize], _value: &Value) -> Option<()> {
+        None
+    }
+
+    /// Adds the places in it; what a field in it does not say is as with `field`, which it belongs to.
+    fn list_inside(_pointer: &str, _field: &Field, _found: &mut Vec<FieldPlace>) {}
+
+    fn find(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
+        if words.is_empty() {
+            Self::KIND
+        } else {
+            Self::find_inside(words, steps)
+        }
+    }
+
+    #[inline]
+    fn set(&mut self, steps: &[usize], value: &Value) -> Option<()> {
+        if !steps.is_empty() {
+            return self.set_inside(steps, value);
+        }
+        *self = Self::from_value(value)?;
+        Some(())
+    }
+
+    fn list(pointer: String, field: &Field, is_key: bool, found: &mut Vec<FieldPlace>) {
+        let kind = Self::KIND.filter(|_| field.fixed.is_none());
+        found.push(FieldPlace {
+            pointer: pointer.clone(),
+            kind: kind.map(|kind| field.kind(kind)),
+            field: *field,
+            is_key,
+        });
+        Self::list_inside(&pointer, field, found);
+    }
+}
+
+/// A part of a world whose fields are in the table.
+impl<T: Fields> Place for T {
+    fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
+        let (word, rest) = words.split_first()?;
+        let number = T::ROWS.iter().position(|row| row.field.key == *word)?;
+        let row = &T::ROWS[number];
+        steps.push(number);
+        let kind = (row.find)(rest, steps).filter(|_| row.field.fixed.is_none())?;
+        Some(row.field.kind(kind))
+    }
+
+    #[inline]
+    fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
+        let (number, rest) = steps.split_first()?;
+        (T::ROWS.get(*number)?.set)(self, rest, value)
+    }
+
+    fn list_inside(pointer: &str, whole: &Field, found: &mut Vec<FieldPlace>) {
+        for row in T::ROWS {
+            let field = row.field.inherit(whole);
+            (row.list)(format!("{pointer}/{}", field.key), &field, true, found);
+        }
+    }
+}
+
+impl<T: Place> Place for Vec<T> {
+    fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
+        let (index, rest) = words.split_first()?;
+        steps.push(index.parse().ok()?);
+        T::find(rest, steps)
+    }
+
+    fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
+        let (index, rest) = steps.split_first()?;
+        self.get_mut(*index)?.set(rest, value)
+    }
+
+    fn list_inside(pointer: &str, field: &Field, found: &mut Vec<FieldPlace>) {
+        T::list(format!("{pointer}/*"), field, false, found);
+    }
+}
+
+impl<T: Place> Place for Option<T> {
+    const KIND: Option<ParameterType> = T::KIND;
+
+    fn from_value(value: &Value) -> Option<Self> {
+        T::from_value(value).map(Some)
+    }
+
+    fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
+        T::find_inside(words, steps)
+    }
+
+    fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
+        self.as_mut()?.set_inside(steps, value)
+    }
+
+    fn list_inside(pointer: &str, field: &Field, found: &mut Vec<FieldPlace>) {
+        T::list_inside(pointer, field, found);
+    }
+}
+
+/// Points and directions: whole, or number by number.
+macro_rules! numbers {
+    ($length:literal, $kind:ident, $is_sound:expr) => {
+        impl Place for [f64; $length] {
+            const KIND: Option<ParameterType> = Some(ParameterType::$kind);
+
+            fn from_value(value: &Value) -> Option<Self> {
+                value.as_vector()?.try_into().ok().filter($is_sound)
+            }
+
+            fn find_inside(words: &[&str], steps: &mut Vec<usize>) -> Option<ParameterType> {
+                let [index] = words else { return None };
+                steps.push(index.parse().ok()?);
+                Some(ParameterType::Number)
+            }
+
+            fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
+                let [index] = steps else { return None };
+                *self.get_mut(*index)? = value.as_number()?;
+                Some(())
+            }
+
+            fn list_inside(pointer: &str, field: &Field, found: &mut Vec<FieldPlace>) {
+                f64::list(format!("{pointer}/*"), field, false, found);
+            }
+        }
+    };
+}
+
+numbers!(2, Point, |_| true);
+// A direction of no length is none.
+numbers!(3, Vector, |direction| *direction != [0.0; 3]);
+
+/// A type that is a value as a whole, and how it is read.
+macro_rules! leaf {
+    ($type:ty, $kind:ident, $read:expr) => {
+        impl Place for $type {
+            const KIND: Option<ParameterType> = Some(ParameterType::$kind);
+
+            #[inline]
+            fn from_value(value: &Value) -> Option<Self> {
+                $read(value)
+            }
+        }
+    };
+}
+
+leaf!(f64, Number, Value::as_number);
+leaf!(u8, Integer, whole);
+leaf!(u32, Integer, whole);
+leaf!(u64, Integer, whole);
+leaf!(bool, Boolean, truth);
+leaf!(Color, Color, color);
+leaf!(String, String, text);
+leaf!(Model, String, |value| text(value).map(Model));
+leaf!(GameMode, String, word);
+leaf!(ActionModel, String, word);
+leaf!(Modality, String, word);
+leaf!(StateFeature, String, word);
+leaf!(Stimulus, String, word);
+leaf!(MotionModel, String, word);
+
+fn whole<T: TryFrom<i64>>(value: &Value) -> Option<T> {
+    value.as_integer().and_then(|whole| T::try_from(whole).ok())
+}
+
+fn truth(value: &Value) -> Option<bool> {
+    match value {
+        Value::Boolean(truth) => Some(*truth),
+        _ => None,
+    }
+}
+
+fn color(value: &Value) -> Option<Color> {
+    match value.cast(ParameterType::Color)? {
+        Value::Color(color) => Some(color),
+        _ => None,
+    }
+}
+
+fn text(value: &Value) -> Option<String> {
+    match value {
+        Value::Text(text) if (1..=100).contains(&text.chars().count()) => Some(text.clone()),
+        _ => None,
+    }
+}
+
+fn word<T: serde::de::DeserializeOwned>(value: &Value) -> Option<T> {
+    serde_json::from_value(value.to_json()).ok()
+}
