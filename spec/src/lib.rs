@@ -13,6 +13,7 @@ mod l2explorer;
 pub mod maps;
 mod names;
 mod oklab;
+pub mod reference;
 mod scenario;
 pub mod schema;
 mod task;

@@ -1,6 +1,6 @@
 //! The schemas themselves: valid as schemas, equal to the committed files, and in agreement with the types.
 
-use driftworld_spec::{Object, World, schema};
+use driftworld_spec::{Object, World, reference, schema};
 use serde_json::Value;
 
 #[test]
@@ -17,6 +17,15 @@ fn the_committed_schemas_are_those_of_the_code() {
         let committed = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
         let current = serde_json::to_string_pretty(schema.json()).expect("a schema serialises") + "\n";
         assert!(committed == current, "{path} is stale; run: cargo xtask schemas");
+    }
+}
+
+#[test]
+fn the_committed_reference_is_that_of_the_code() {
+    for (name, page) in reference::pages() {
+        let path = format!("{}/../docs/reference/{name}", env!("CARGO_MANIFEST_DIR"));
+        let committed = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+        assert!(committed == page, "{path} is stale; run: cargo xtask schemas");
     }
 }
 

@@ -1,8 +1,8 @@
-//! `driftworld schema`: the JSON Schemas of the documents, as the code has them.
+//! `driftworld schema`: the JSON Schemas of the documents and the reference of the keys of a world, as the code has them.
 
 use std::path::PathBuf;
 
-use crate::spec::schema;
+use crate::spec::{reference, schema};
 use clap::Args;
 use driftworld_text::ShownPath;
 
@@ -15,8 +15,11 @@ use super::output;
 #[command(after_help = "Example:\n  driftworld schema task > task.schema.json\n  driftworld schema -o schemas")]
 pub(crate) struct Schema {
     /// Which schema to print: world, task or scenario.
-    #[arg(value_parser = ["world", "task", "scenario"], conflicts_with_all = ["output", "check"])]
+    #[arg(value_parser = ["world", "task", "scenario"], conflicts_with_all = ["output", "check", "reference"])]
     document: Option<String>,
+    /// Take the reference pages of the keys of a world, in Markdown, in place of the schemas.
+    #[arg(long)]
+    reference: bool,
     /// Write all schemas into this folder.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
@@ -29,13 +32,13 @@ impl Schema {
     pub(crate) fn run(self) -> Result<(), Failure> {
         if let Some(document) = &self.document {
             let file = format!("{document}.schema.json");
-            return texts()?
+            return schemas()?
                 .into_iter()
                 .filter(|(name, _)| *name == file)
                 .try_for_each(|(_, text)| output::print(&text));
         }
         if let Some(folder) = &self.check {
-            for (name, expected) in texts()? {
+            for (name, expected) in self.texts()? {
                 let path = folder.join(name);
                 if documents::text(&path)? != expected {
                     let text = format!("{}: is stale; run: cargo xtask schemas", path.shown());
@@ -49,16 +52,24 @@ impl Schema {
                 "name a document (world, task, scenario), a folder with -o, or one with --check",
             ));
         };
-        for (name, text) in texts()? {
+        for (name, text) in self.texts()? {
             let path = folder.join(name);
             output::write(&path, text.as_bytes())?;
             output::line(path.shown().to_string())?;
         }
         Ok(())
     }
+
+    fn texts(&self) -> Result<Vec<(&'static str, String)>, Failure> {
+        if self.reference {
+            Ok(reference::pages())
+        } else {
+            schemas()
+        }
+    }
 }
 
-fn texts() -> Result<Vec<(&'static str, String)>, Failure> {
+fn schemas() -> Result<Vec<(&'static str, String)>, Failure> {
     let text = |json| serde_json::to_string_pretty(json).map(|text| text + "\n");
     schema::all()
         .into_iter()

@@ -53,7 +53,7 @@ Usage:
   cargo xtask test --only STAGE     one stage (may be given several times)
   cargo xtask test --list           the stages and what each holds
   cargo xtask STAGE                 the same as `test --only STAGE`, but for `schemas` and `protocol`
-  cargo xtask schemas               rewrite schemas/*.json from the Rust types
+  cargo xtask schemas               rewrite schemas/*.json and docs/reference/*.md from the Rust types
   cargo xtask protocol              rewrite unity/src/protocol.rs from unity/proto/*.proto
   cargo xtask advisories            check advisories, and write xtask/advisories-checked.txt
   cargo xtask fuzz SECONDS [TARGET]...

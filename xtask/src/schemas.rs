@@ -1,4 +1,4 @@
-//! The `schemas` stage and `cargo xtask schemas`: the committed schema files against the Rust types. How a schema is
+//! The `schemas` stage and `cargo xtask schemas`: the committed schema files and reference pages against the Rust types. How a schema is
 //! made is the business of `driftworld-spec`; the command `driftworld schema` writes and compares it.
 
 use std::process::Command;
@@ -8,18 +8,20 @@ use crate::process::AS_TESTED;
 use crate::process::{cargo, run};
 use crate::workspace::Workspace;
 
-/// Fails when a file in `schemas/` is stale or missing.
+/// Fails when a file in `schemas/` or `docs/reference/` is stale or missing.
 pub(crate) fn check(workspace: &Workspace) -> Result<(), XtaskError> {
-    let checked = driftworld_schema(workspace, &["--check", "schemas"]);
+    let checked = driftworld_schema(workspace, &["--check", "schemas"])
+        .and_then(|()| driftworld_schema(workspace, &["--reference", "--check", "docs/reference"]));
     if checked.is_err() {
-        eprintln!("schemas/: if the Rust types changed on purpose, rewrite the files: cargo xtask schemas");
+        eprintln!("if the Rust types changed on purpose, rewrite the files: cargo xtask schemas");
     }
     checked
 }
 
-/// Writes every schema anew.
+/// Writes every schema and every page of the reference anew.
 pub(crate) fn rewrite(workspace: &Workspace) -> Result<(), XtaskError> {
-    driftworld_schema(workspace, &["-o", "schemas"])
+    driftworld_schema(workspace, &["-o", "schemas"])?;
+    driftworld_schema(workspace, &["--reference", "-o", "docs/reference"])
 }
 
 fn driftworld_schema(workspace: &Workspace, arguments: &[&str]) -> Result<(), XtaskError> {

@@ -104,7 +104,7 @@ impl Stage {
             Self::Docs => "the documentation builds without a warning",
             Self::Examples => "every program in examples/ ends well in an empty folder",
             Self::Benches => "every bench runs once",
-            Self::Schemas => "schemas/*.json equal what the Rust types generate",
+            Self::Schemas => "schemas/*.json and docs/reference/*.md equal what the Rust types generate",
             Self::Documents => "a second validator, in Python, judges tests/documents by the schemas as ours does",
             Self::Wheel => "`pip install ./python` does what the README says",
             Self::Protocol => "unity/src/protocol.rs equals what unity/proto/*.proto make",

@@ -3,7 +3,7 @@
 
 use std::cell::RefCell;
 
-use driftworld_spec::Element;
+use driftworld_spec::Comparison;
 
 use crate::assignment::Assignment;
 use crate::combined::distance::{Part, position};
@@ -16,40 +16,20 @@ const CUT_OFF: f64 = 10.0;
 /// Starts this far apart, in metres, are half of the way to the greatest distance.
 const HALF_WAY: f64 = 10.0;
 
-/// A kind of part that worlds are compared by.
-pub(super) struct Kind {
-    name: &'static str,
-    element: Element,
-    measure: &'static str,
-}
-
-/// A kind of part, made once.
-macro_rules! part {
-    ($name:literal, $element:ident, $measure:literal) => {
-        const {
-            &Kind {
-                name: $name,
-                element: Element::$element,
-                measure: $measure,
-            }
-        }
-    };
-}
-
-/// Takes the parts as they are found: a kind, the measure's own number, and the one that counts.
+/// Takes the parts as they are found: the comparison, the measure's own number, and the one that counts.
 pub(super) trait Sink {
-    fn add(&mut self, kind: &'static Kind, raw: f64, normalised: f64);
+    fn add(&mut self, comparison: Comparison, raw: f64, normalised: f64);
 }
 
 /// Keeps every part.
 pub(super) struct Parts(pub(super) Vec<Part>);
 
 impl Sink for Parts {
-    fn add(&mut self, kind: &'static Kind, raw: f64, normalised: f64) {
+    fn add(&mut self, comparison: Comparison, raw: f64, normalised: f64) {
         self.0.push(Part {
-            name: kind.name.to_owned(),
-            element: kind.element,
-            measure: kind.measure,
+            name: comparison.name().to_owned(),
+            element: comparison.element(),
+            measure: comparison.measure(),
             method: None,
             raw,
             normalised: normalised.clamp(0.0, 1.0),
@@ -64,8 +44,8 @@ impl Sink for Parts {
 pub(super) struct Sums(pub(super) [(f64, f64); 5]);
 
 impl Sink for Sums {
-    fn add(&mut self, kind: &'static Kind, _: f64, normalised: f64) {
-        let (sum, count) = &mut self.0[position(kind.element)];
+    fn add(&mut self, comparison: Comparison, _: f64, normalised: f64) {
+        let (sum, count) = &mut self.0[position(comparison.element())];
         *sum += normalised.clamp(0.0, 1.0);
         *count += 1.0;
     }
@@ -168,112 +148,61 @@ fn matched_metres(a: &[Thing], b: &[Thing]) -> f64 {
 
 fn state(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
     let places = share(objects.metres, objects.most);
-    sink.add(part!("places of objects", S, "ospa / 10 m"), places, places / CUT_OFF);
+    sink.add(Comparison::PlacesOfObjects, places, places / CUT_OFF);
     let cells = jaccard(&a.cells, &b.cells);
-    sink.add(part!("cells taken", S, "jaccard"), cells, cells);
+    sink.add(Comparison::CellsTaken, cells, cells);
     let numbers = share(objects.more - objects.fewer, objects.more);
-    sink.add(part!("numbers of objects", S, "jaccard of counts"), numbers, numbers);
+    sink.add(Comparison::NumbersOfObjects, numbers, numbers);
     let metres = length(a.start, b.start);
-    sink.add(
-        part!("agent's start", S, "euclidean, 10 m is a half"),
-        metres,
-        metres / (metres + HALF_WAY),
-    );
+    sink.add(Comparison::Start, metres, metres / (metres + HALF_WAY));
     let turns = objects.mean(objects.turn);
-    sink.add(
-        part!("headings of objects", S, "turn / 180 degrees"),
-        turns,
-        turns / 180.0,
-    );
+    sink.add(Comparison::HeadingsOfObjects, turns, turns / 180.0);
     let turn = circular_difference(a.heading, b.heading);
-    sink.add(part!("agent's heading", S, "turn / 180 degrees"), turn, turn / 180.0);
+    sink.add(Comparison::Heading, turn, turn / 180.0);
 }
 
 fn action(a: &Sketch, b: &Sketch, sink: &mut impl Sink) {
-    same(
-        part!("action model", A, "same or not"),
-        a.action_model,
-        b.action_model,
-        sink,
-    );
-    same(
-        part!("action space", A, "same or not"),
-        a.action_space,
-        b.action_space,
-        sink,
-    );
-    relative(
-        part!("largest speed", A, "difference / larger"),
-        a.linear_speed,
-        b.linear_speed,
-        sink,
-    );
-    relative(
-        part!("largest turn rate", A, "difference / larger"),
-        a.angular_speed,
-        b.angular_speed,
-        sink,
-    );
+    same(Comparison::ModelOfActions, a.action_model, b.action_model, sink);
+    same(Comparison::SpaceOfActions, a.action_space, b.action_space, sink);
+    relative(Comparison::LargestSpeed, a.linear_speed, b.linear_speed, sink);
+    relative(Comparison::LargestTurnRate, a.angular_speed, b.angular_speed, sink);
 }
 
 fn transition(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
     let moves = objects.mean(objects.motion);
-    sink.add(part!("motion of objects", T, "share that differs"), moves, moves);
+    sink.add(Comparison::Motion, moves, moves);
     let bodies = objects.mean(objects.body);
-    sink.add(part!("bodies of objects", T, "share that differs"), bodies, bodies);
-    relative(
-        part!("time step", T, "difference / larger"),
-        a.time_step,
-        b.time_step,
-        sink,
-    );
-    relative(
-        part!("agent's width", T, "difference / larger"),
-        a.agent_width,
-        b.agent_width,
-        sink,
-    );
-    same(part!("map and walls", T, "same or not"), a.walls, b.walls, sink);
-    relative(
-        part!("size of the arena", T, "difference / larger"),
-        a.area,
-        b.area,
-        sink,
-    );
+    sink.add(Comparison::Bodies, bodies, bodies);
+    relative(Comparison::TimeStep, a.time_step, b.time_step, sink);
+    relative(Comparison::Width, a.agent_width, b.agent_width, sink);
+    same(Comparison::MapAndWalls, a.walls, b.walls, sink);
+    relative(Comparison::ArenaSize, a.area, b.area, sink);
 }
 
 fn reward(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
     let rewards = (objects.mean(objects.reward), objects.mean(objects.reward_relative));
-    sink.add(
-        part!("rewards of objects", R, "difference / twice the larger"),
-        rewards.0,
-        rewards.1,
-    );
+    sink.add(Comparison::Rewards, rewards.0, rewards.1);
     let paid_for = objects.mean(objects.paid_for);
-    sink.add(part!("what is paid for", R, "share that differs"), paid_for, paid_for);
+    sink.add(Comparison::PaidFor, paid_for, paid_for);
     let odds = objects.mean(objects.odds);
-    sink.add(part!("odds of reward", R, "difference"), odds, odds);
+    sink.add(Comparison::RewardProbabilities, odds, odds);
     let raw = (a.step_reward - b.step_reward).abs();
     let larger = a.step_reward.abs().max(b.step_reward.abs());
-    sink.add(
-        part!("step reward", R, "difference / twice the larger"),
-        raw,
-        share(raw, 2.0 * larger),
-    );
-    same(part!("shaping and endings", R, "same or not"), a.rules, b.rules, sink);
-    same(part!("limit of steps", R, "same or not"), a.limit, b.limit, sink);
+    sink.add(Comparison::StepReward, raw, share(raw, 2.0 * larger));
+    same(Comparison::ShapingAndEndings, a.rules, b.rules, sink);
+    same(Comparison::Limit, a.limit, b.limit, sink);
 }
 
 fn observation(a: &Sketch, b: &Sketch, objects: &Objects, sink: &mut impl Sink) {
     let colors = objects.mean(objects.color);
-    sink.add(part!("colours of objects", O, "oklab"), colors, colors);
+    sink.add(Comparison::ColorsOfObjects, colors, colors);
     let looks = objects.mean(objects.look);
-    sink.add(part!("models of objects", O, "share that differs"), looks, looks);
-    relative(part!("light", O, "difference / larger"), a.light, b.light, sink);
+    sink.add(Comparison::ModelsOfObjects, looks, looks);
+    relative(Comparison::Light, a.light, b.light, sink);
     let apart = a.surroundings.iter().zip(&b.surroundings).map(|(a, b)| a.distance(*b));
     let around = apart.sum::<f64>() / 4.0;
-    sink.add(part!("colours of surroundings", O, "oklab"), around, around);
-    same(part!("camera and weather", O, "same or not"), a.camera, b.camera, sink);
+    sink.add(Comparison::ColorsOfSurroundings, around, around);
+    same(Comparison::CameraAndWeather, a.camera, b.camera, sink);
 }
 
 /// Share of the cells taken in either that are not taken in both; both in rising order.
@@ -292,15 +221,15 @@ fn jaccard(a: &[(i32, i32)], b: &[(i32, i32)]) -> f64 {
     share((all - common) as f64, all as f64)
 }
 
-fn same(kind: &'static Kind, a: u32, b: u32, sink: &mut impl Sink) {
+fn same(comparison: Comparison, a: u32, b: u32, sink: &mut impl Sink) {
     let raw = differs(a, b);
-    sink.add(kind, raw, raw);
+    sink.add(comparison, raw, raw);
 }
 
 /// Difference of two numbers of at least 0, and its share of the larger one: a metric.
-fn relative(kind: &'static Kind, a: f64, b: f64, sink: &mut impl Sink) {
+fn relative(comparison: Comparison, a: f64, b: f64, sink: &mut impl Sink) {
     let raw = (a - b).abs();
-    sink.add(kind, raw, relative_difference(a, b));
+    sink.add(comparison, raw, relative_difference(a, b));
 }
 
 fn share(raw: f64, whole: f64) -> f64 {

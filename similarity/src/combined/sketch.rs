@@ -3,15 +3,17 @@
 
 use std::collections::BTreeMap;
 
-use driftworld_spec::{Object, World};
+use driftworld_spec::{Comparison, Object, SameTexts, World};
 use serde::Serialize;
 
 use crate::Oklab;
 
 /// Worlds reduced alike: what is the same thing has the same number in each.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Sketcher {
-    numbers: BTreeMap<String, u32>,
+    numbers: BTreeMap<Vec<u8>, u32>,
+    same: SameTexts,
+    key: Vec<u8>,
 }
 
 /// A world as it is compared.
@@ -60,18 +62,27 @@ pub(super) struct Thing {
 }
 
 impl Sketcher {
-    /// The number of a thing: the same for equal things, another for others.
-    fn number(&mut self, thing: impl Serialize) -> u32 {
-        let text = serde_json::to_string(&thing).expect("documents and parts of them serialise");
+    /// The number of what a comparison finds the same or not in the world or object that was read last: that of equal
+    /// fields and of equal `more`, which are not in the table as they are compared.
+    fn number(&mut self, comparison: Comparison, more: impl Serialize) -> u32 {
+        self.key.clear();
+        self.key.push(comparison as u8);
+        self.key.extend_from_slice(self.same.of(comparison));
+        serde_json::to_writer(&mut self.key, &more).expect("parts of documents serialise, and memory takes them");
+        if let Some(number) = self.numbers.get(&self.key) {
+            return *number;
+        }
         let next = u32::try_from(self.numbers.len()).unwrap_or(u32::MAX);
-        *self.numbers.entry(text).or_insert(next)
+        self.numbers.insert(self.key.clone(), next);
+        next
     }
 
     /// The sketch of a world, with cells of `cell` metres.
     pub(super) fn sketch(&mut self, world: &World, cell: f64) -> Sketch {
         let mut by_class: BTreeMap<u32, Vec<Thing>> = BTreeMap::new();
         for object in &world.objects {
-            let class = self.number(("class", object.class.to_lowercase()));
+            self.same.read_object(object);
+            let class = self.number(Comparison::NumbersOfObjects, object.class.to_lowercase());
             let thing = self.thing(object);
             by_class.entry(class).or_default().push(thing);
         }
@@ -95,29 +106,24 @@ impl Sketcher {
         let least = limits.into_iter().filter(|seconds| *seconds > 0.0).reduce(f64::min);
         // To the microsecond: 100 steps of 0.3 s are 300 of 0.1 s.
         let limit = least.map(|seconds| (seconds * 1e6).round() as u64);
+        self.same.read_world(world);
         Sketch {
             objects,
             classes,
             cells,
             start: agent.coordinates,
             heading: agent.heading,
-            action_model: self.number(("action model", agent.action_model)),
-            action_space: self.number(("action space", &agent.actions, agent.interact)),
+            action_model: self.number(Comparison::ModelOfActions, ()),
+            action_space: self.number(Comparison::SpaceOfActions, ()),
             linear_speed: agent.max_linear_speed,
             angular_speed: agent.max_angular_speed,
             time_step: step_seconds,
             agent_width: agent.agent_width,
-            walls: self.number(("walls", around.predefined_map, &around.map_regions, &around.walls)),
+            walls: self.number(Comparison::MapAndWalls, around.predefined_map),
             area: width * depth,
             step_reward: rules.step_reward / step_seconds + rules.reward_per_second,
-            rules: self.number((
-                "rules",
-                &rules.success,
-                &rules.failure,
-                rules.order_penalty,
-                &rules.shaping,
-            )),
-            limit: self.number(("limit", limit)),
+            rules: self.number(Comparison::ShapingAndEndings, ()),
+            limit: self.number(Comparison::Limit, limit),
             light: around.light_intensity,
             surroundings: [
                 around.bounding_wall_color,
@@ -126,55 +132,22 @@ impl Sketcher {
                 around.light_color,
             ]
             .map(Oklab::from),
-            camera: self.number((
-                "camera",
-                (
-                    agent.agent_height,
-                    agent.field_of_view,
-                    agent.picture_size(),
-                    agent.supersampling,
-                ),
-                (
-                    around.fog_distance,
-                    around.sun_direction,
-                    around.ambient_light,
-                    around.wall_height,
-                ),
-                (&agent.modalities, &agent.state_features),
-            )),
+            camera: self.number(Comparison::CameraAndWeather, agent.picture_size()),
         }
     }
 
+    /// An object that was read last.
     fn thing(&mut self, object: &Object) -> Thing {
-        let motion = (
-            object.motion_model,
-            object.speed,
-            object.turn_rate,
-            object.sight_range,
-            &object.waypoints,
-        );
-        let body = (
-            &object.solid,
-            &object.pushable,
-            &object.respawn,
-            &object.destroy_stimulus,
-        );
-        let paid_for = (
-            &object.reward_stimulus,
-            &object.reward_once_stimulus,
-            object.order,
-            object.range_stimulus_distance,
-        );
         Thing {
             place: object.coordinates,
             heading: object.heading,
-            motion: self.number(("motion", motion)),
-            body: self.number(("body", body)),
+            motion: self.number(Comparison::Motion, ()),
+            body: self.number(Comparison::Bodies, ()),
             reward: object.reward,
-            paid_for: self.number(("paid for", paid_for)),
+            paid_for: self.number(Comparison::PaidFor, ()),
             odds: object.reward_probability,
             color: object.color.map(Oklab::from),
-            look: self.number(("look", &object.model, object.scale)),
+            look: self.number(Comparison::ModelsOfObjects, ()),
         }
     }
 }

@@ -97,14 +97,18 @@ pub(crate) fn resolve<'a>(schema: &'a Value, part: &'a Value) -> &'a Value {
 /// The part of a schema that a pointer into the values of another part of it leads to; any number, or `*`, is that of an
 /// item.
 pub(crate) fn at<'a>(schema: &'a Value, part: &'a Value, pointer: &str) -> Option<&'a Value> {
-    let found = pointer.split('/').skip(1).try_fold(part, |part, key| {
+    property(schema, part, pointer).map(|property| whole(schema, property))
+}
+
+/// The same as it is declared there, with its default, and references not resolved.
+pub(crate) fn property<'a>(schema: &'a Value, part: &'a Value, pointer: &str) -> Option<&'a Value> {
+    pointer.split('/').skip(1).try_fold(part, |part, key| {
         let part = whole(schema, part);
         let of_key = |part: &'a Value| part.get("properties")?.get(key);
         let forms = part["oneOf"].as_array().into_iter().flatten();
         let own = of_key(part).or_else(|| part.get("items"));
         own.or_else(|| forms.filter_map(of_key).next())
-    })?;
-    Some(whole(schema, found))
+    })
 }
 
 /// A part that may be absent without its `null`, references resolved.

@@ -22,7 +22,7 @@ fields! {
         pub light_intensity: f64 = 2.3 => Field::original(Measured(&[Light])),
         /// Which arena: 0 is an empty one of `map_size`; 1 backslash, 2 village, 3 craters, 4 bisected are 200 × 200 m.
         #[schemars(range(min = 0, max = 4))]
-        pub predefined_map: u8 = 0 => Field::original(Same(MapAndWalls)),
+        pub predefined_map: u8 = 0 => Field::original(Measured(&[MapAndWalls, ArenaSize])),
         /// Regions of the predefined map that cannot be entered, from a maps file, in place of the built-in layout of that number:
         /// polygons in metres, corners in order, the last joins the first.
         #[serde(skip_serializing_if = "Option::is_none")]

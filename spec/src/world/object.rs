@@ -18,7 +18,7 @@ fields! {
     pub struct Object {
         /// Kind of asset: `geometric`, `tree`, `barrel`, …; a class that is not known draws a placeholder.
         #[schemars(length(min = 1, max = 100))]
-        pub class: String => Field::original(Measured(&[NumbersOfObjects])),
+        pub class: String => Field::original(Measured(&[NumbersOfObjects, PlacesOfObjects])),
         /// Which asset of the class, counted from "1".
         #[serde(default)]
         pub model: Model => Field::original(Same(ModelsOfObjects)),

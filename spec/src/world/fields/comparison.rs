@@ -3,144 +3,97 @@
 
 use crate::element::Element;
 
-/// A part of the distance of two worlds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Comparison {
-    /// Where objects stand, matched within each class.
-    PlacesOfObjects,
-    /// The cells of 2 m in which something stands.
-    CellsTaken,
-    /// How many objects of each class there are.
-    NumbersOfObjects,
-    /// Where the agent starts.
-    Start,
-    /// Where objects face.
-    HeadingsOfObjects,
-    /// Where the agent looks at the start.
-    Heading,
-    /// What the numbers of an action mean.
-    ModelOfActions,
-    /// How actions are given.
-    SpaceOfActions,
-    /// The agent's largest speed.
-    LargestSpeed,
-    /// The agent's largest turn rate.
-    LargestTurnRate,
-    /// How objects move by themselves.
-    Motion,
-    /// How solid objects are, and what becomes of them.
-    Bodies,
-    /// Seconds of a step.
-    TimeStep,
-    /// The agent's width.
-    Width,
-    /// The map and its walls.
-    MapAndWalls,
-    /// The area of the arena.
-    ArenaSize,
-    /// What objects pay.
-    Rewards,
-    /// For what objects pay.
-    PaidFor,
-    /// How probable it is that an object pays.
-    RewardProbabilities,
-    /// What a second pays.
-    StepReward,
-    /// Shaping, and what ends an episode.
-    ShapingAndEndings,
-    /// How long an episode may last.
-    Limit,
-    /// The colours of objects.
-    ColorsOfObjects,
-    /// The models and sizes of objects.
-    ModelsOfObjects,
-    /// How bright the sun is.
-    Light,
-    /// The colours of walls, sky, ground and sunlight.
-    ColorsOfSurroundings,
-    /// What else decides what the agent sees.
-    CameraAndWeather,
+/// Declares the parts: for each what it looks at, the element of the decision process that it counts for, what tables
+/// call it, and its measure with what that is divided by.
+macro_rules! comparisons {
+    ($($(#[$doc:meta])* $part:ident: $element:ident, $name:literal, $measure:literal,)+) => {
+        /// A part of the distance of two worlds.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Comparison {
+            $($(#[$doc])* $part,)+
+        }
+
+        impl Comparison {
+            /// All of them, in the order in which tables show them.
+            pub const ALL: &[Self] = &[$(Self::$part),+];
+
+            /// What tables call it.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$part => $name,)+
+                }
+            }
+
+            /// The element of the decision process that it counts for.
+            pub const fn element(self) -> Element {
+                match self {
+                    $(Self::$part => Element::$element,)+
+                }
+            }
+
+            /// The measure, and what its number is divided by.
+            pub const fn measure(self) -> &'static str {
+                match self {
+                    $(Self::$part => $measure,)+
+                }
+            }
+        }
+    };
 }
 
-impl Comparison {
-    /// All of them, in the order in which tables show them.
-    pub const ALL: [Self; 27] = [
-        Self::PlacesOfObjects,
-        Self::CellsTaken,
-        Self::NumbersOfObjects,
-        Self::Start,
-        Self::HeadingsOfObjects,
-        Self::Heading,
-        Self::ModelOfActions,
-        Self::SpaceOfActions,
-        Self::LargestSpeed,
-        Self::LargestTurnRate,
-        Self::Motion,
-        Self::Bodies,
-        Self::TimeStep,
-        Self::Width,
-        Self::MapAndWalls,
-        Self::ArenaSize,
-        Self::Rewards,
-        Self::PaidFor,
-        Self::RewardProbabilities,
-        Self::StepReward,
-        Self::ShapingAndEndings,
-        Self::Limit,
-        Self::ColorsOfObjects,
-        Self::ModelsOfObjects,
-        Self::Light,
-        Self::ColorsOfSurroundings,
-        Self::CameraAndWeather,
-    ];
-
-    /// Its name in tables, the element of the decision process that it counts for, and its measure with what that is
-    /// divided by.
-    const fn row(self) -> (&'static str, Element, &'static str) {
-        use Element::{A, O, R, S, T};
-        match self {
-            Self::PlacesOfObjects => ("places of objects", S, "ospa / 10 m"),
-            Self::CellsTaken => ("cells taken", S, "jaccard"),
-            Self::NumbersOfObjects => ("numbers of objects", S, "jaccard of counts"),
-            Self::Start => ("agent's start", S, "euclidean, 10 m is a half"),
-            Self::HeadingsOfObjects => ("headings of objects", S, "turn / 180 degrees"),
-            Self::Heading => ("agent's heading", S, "turn / 180 degrees"),
-            Self::ModelOfActions => ("action model", A, "same or not"),
-            Self::SpaceOfActions => ("action space", A, "same or not"),
-            Self::LargestSpeed => ("largest speed", A, "difference / larger"),
-            Self::LargestTurnRate => ("largest turn rate", A, "difference / larger"),
-            Self::Motion => ("motion of objects", T, "share that differs"),
-            Self::Bodies => ("bodies of objects", T, "share that differs"),
-            Self::TimeStep => ("time step", T, "difference / larger"),
-            Self::Width => ("agent's width", T, "difference / larger"),
-            Self::MapAndWalls => ("map and walls", T, "same or not"),
-            Self::ArenaSize => ("size of the arena", T, "difference / larger"),
-            Self::Rewards => ("rewards of objects", R, "difference / twice the larger"),
-            Self::PaidFor => ("what is paid for", R, "share that differs"),
-            Self::RewardProbabilities => ("odds of reward", R, "difference"),
-            Self::StepReward => ("step reward", R, "difference / twice the larger"),
-            Self::ShapingAndEndings => ("shaping and endings", R, "same or not"),
-            Self::Limit => ("limit of steps", R, "same or not"),
-            Self::ColorsOfObjects => ("colours of objects", O, "oklab"),
-            Self::ModelsOfObjects => ("models of objects", O, "share that differs"),
-            Self::Light => ("light", O, "difference / larger"),
-            Self::ColorsOfSurroundings => ("colours of surroundings", O, "oklab"),
-            Self::CameraAndWeather => ("camera and weather", O, "same or not"),
-        }
-    }
-
-    /// What tables call it.
-    pub const fn name(self) -> &'static str {
-        self.row().0
-    }
-
-    /// The element of the decision process that it counts for.
-    pub const fn element(self) -> Element {
-        self.row().1
-    }
-
-    /// The measure, and what its number is divided by.
-    pub const fn measure(self) -> &'static str {
-        self.row().2
-    }
+comparisons! {
+    /// Where objects stand, matched within each class.
+    PlacesOfObjects: S, "places of objects", "ospa / 10 m",
+    /// The cells of 2 m in which something stands.
+    CellsTaken: S, "cells taken", "jaccard",
+    /// How many objects of each class there are.
+    NumbersOfObjects: S, "numbers of objects", "jaccard of counts",
+    /// Where the agent starts.
+    Start: S, "agent's start", "euclidean, 10 m is a half",
+    /// Where objects face.
+    HeadingsOfObjects: S, "headings of objects", "turn / 180 degrees",
+    /// Where the agent looks at the start.
+    Heading: S, "agent's heading", "turn / 180 degrees",
+    /// What the numbers of an action mean.
+    ModelOfActions: A, "action model", "same or not",
+    /// How actions are given.
+    SpaceOfActions: A, "action space", "same or not",
+    /// The agent's largest speed.
+    LargestSpeed: A, "largest speed", "difference / larger",
+    /// The agent's largest turn rate.
+    LargestTurnRate: A, "largest turn rate", "difference / larger",
+    /// How objects move by themselves.
+    Motion: T, "motion of objects", "share that differs",
+    /// How solid objects are, and what becomes of them.
+    Bodies: T, "bodies of objects", "share that differs",
+    /// Seconds of a step.
+    TimeStep: T, "time step", "difference / larger",
+    /// The agent's width.
+    Width: T, "agent's width", "difference / larger",
+    /// The map and its walls.
+    MapAndWalls: T, "map and walls", "same or not",
+    /// The area of the arena.
+    ArenaSize: T, "size of the arena", "difference / larger",
+    /// What objects pay.
+    Rewards: R, "rewards of objects", "difference / twice the larger",
+    /// For what objects pay.
+    PaidFor: R, "what is paid for", "share that differs",
+    /// How probable it is that an object pays.
+    RewardProbabilities: R, "odds of reward", "difference",
+    /// What a second pays.
+    StepReward: R, "step reward", "difference / twice the larger",
+    /// Shaping, and what ends an episode.
+    ShapingAndEndings: R, "shaping and endings", "same or not",
+    /// How long an episode may last.
+    Limit: R, "limit of steps", "same or not",
+    /// The colours of objects.
+    ColorsOfObjects: O, "colours of objects", "oklab",
+    /// The models and sizes of objects.
+    ModelsOfObjects: O, "models of objects", "share that differs",
+    /// How bright the sun is.
+    Light: O, "light", "difference / larger",
+    /// The colours of walls, sky, ground and sunlight.
+    ColorsOfSurroundings: O, "colours of surroundings", "oklab",
+    /// What else decides what the agent sees.
+    CameraAndWeather: O, "camera and weather", "same or not",
 }

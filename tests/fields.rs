@@ -1,0 +1,188 @@
+//! What the table of fields says of each place of a world holds: a parameter can set it, and arrives in the drawn world;
+//! worlds that differ in it alone differ in the comparisons that it names, and in no other.
+
+use driftworld::generator::Sampler;
+use driftworld::similarity::{Weights, world_distance};
+use driftworld::spec::{Compared, FieldPlace, ParameterType, TaskSpec, World};
+use serde_json::{Value as Json, json};
+
+/// A world in which there is something at every place, as the documents for the schemas have it.
+fn full() -> Json {
+    let read = |name: &str| -> Json {
+        let path = format!("{}/tests/documents/good/task/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+        serde_json::from_str::<Json>(&text).expect("it is JSON")["world"].take()
+    };
+    let mut world = read("world_with_every_key");
+    world["environment_params"]["walls"] =
+        json!([{ "polygon": [[10, 10], [12, 10], [11, 14]], "height": 2, "color": "grey" }]);
+    // Out of the way of what the tests move, and other than the defaults.
+    world["agent_params"]["coordinates"] = json!([-20, 20]);
+    world["agent_params"]["interact"] = json!(true);
+    // The limit that holds is that of steps, on which how long they last has a part.
+    world["max_steps"] = json!(100);
+    world["agent_params"]["modalities"] = json!(["rgb", "depth"]);
+    world["objects"] = read("fixtures_with_every_key")["objects"].take();
+    world["objects"].as_array_mut().expect("it is a list").truncate(1);
+    world
+}
+
+/// Another value than the one that stands at a place.
+fn other(place: &FieldPlace, now: &Json) -> Json {
+    let words: Vec<&str> = place.pointer.split('/').collect();
+    let key = words
+        .iter()
+        .rfind(|word| **word != "*")
+        .expect("a place is at or below a key");
+    match place.kind.expect("it can be a parameter") {
+        ParameterType::Number if ["map_size", "field_of_view"].contains(key) => json!(62.5),
+        ParameterType::Point if *key == "map_size" => json!([62.5, 61.5]),
+        ParameterType::Number | ParameterType::Heading if *now == 0.5 => json!(0.75),
+        ParameterType::Number | ParameterType::Heading => json!(0.5),
+        ParameterType::Integer => json!(if *now == 3 { 2 } else { 3 }),
+        ParameterType::Boolean => json!(!now.as_bool().expect("it is true or false")),
+        ParameterType::Color => json!([0.125, 0.25, 0.5]),
+        ParameterType::Point => json!([11.5, 12.5]),
+        ParameterType::Vector => json!([0.5, 0.25, 2.0]),
+        ParameterType::String => json!(match *key {
+            "game_mode" => "collect_images",
+            "action_model" => "onrails",
+            "modalities" => "class",
+            "state_features" => "steps_left",
+            "actions" => "normalized",
+            "motion_model" => "prey",
+            "model" => "3",
+            key if key.ends_with("stimulus") => "AgentInteract",
+            _ => "word",
+        }),
+        ParameterType::Distribution => unreachable!("no place of a world holds a distribution"),
+    }
+}
+
+/// The value at a pointer.
+fn at<'a>(json: &'a mut Json, pointer: &str) -> &'a mut Json {
+    let keys = pointer.split('/').skip(1);
+    keys.fold(json, |json, key| match key.parse::<usize>() {
+        Ok(index) => &mut json[index],
+        Err(_) => &mut json[key],
+    })
+}
+
+/// The pointer to the first of a place: of the conditions of an ending, the first that has its key.
+fn first(place: &FieldPlace, full: &Json) -> String {
+    let pointer = &place.pointer;
+    let Some((list, key)) = pointer
+        .split_once("/*/")
+        .filter(|(list, _)| list.starts_with("/rules/"))
+    else {
+        return pointer.replace('*', "0");
+    };
+    let conditions = full
+        .pointer(list)
+        .and_then(Json::as_array)
+        .expect("there are conditions");
+    let index = conditions.iter().position(|condition| condition.get(key).is_some());
+    format!("{list}/{}/{key}", index.expect("there is a condition of each kind"))
+}
+
+#[test]
+fn every_place_takes_a_parameter_and_what_it_says_arrives() {
+    let full = full();
+    for place in World::places() {
+        let Some(kind) = place.kind else { continue };
+        let pointer = first(place, &full);
+        let mut world = full.clone();
+        let expected = other(place, at(&mut world, &pointer));
+        *at(&mut world, &pointer) = json!({ "param": "tried" });
+        let parameter = json!({ "role": "fixed", "type": kind.name(), "value": expected });
+        let task = json!({ "name": "t", "world": world, "parameters": { "tried": parameter } });
+        let task = TaskSpec::from_json(&place.pointer, &task.to_string()).unwrap_or_else(|error| panic!("{error}"));
+        let variant = task.variant("default").expect("it is always there");
+        let world = Sampler::new(&variant, 3).world(0);
+        let world = world.unwrap_or_else(|error| panic!("{}: {error}", place.pointer));
+        let mut written: Json = serde_json::from_str(&world.to_json()).expect("a world is JSON");
+        assert_eq!(*at(&mut written, &pointer), expected, "{}", place.pointer);
+    }
+}
+
+#[test]
+fn every_key_takes_a_parameter_or_holds_what_does_or_says_why_not() {
+    let places = World::places();
+    let is_silent = |place: &&FieldPlace| {
+        let inside = format!("{}/", place.pointer);
+        let holds = places
+            .iter()
+            .any(|other| other.kind.is_some() && other.pointer.starts_with(&inside));
+        place.kind.is_none() && place.field.fixed.is_none() && !holds
+    };
+    let silent: Vec<&str> = places
+        .iter()
+        .filter(is_silent)
+        .map(|place| place.pointer.as_str())
+        .collect();
+    assert!(
+        silent.is_empty(),
+        "no parameter can set {silent:?}, and the table of fields does not say why"
+    );
+}
+
+/// Changes what stands at a place; `false` where a world has but one value there.
+fn change(world: &mut Json, place: &FieldPlace, full: &Json) -> bool {
+    let pointer = first(place, full);
+    match place.pointer.as_str() {
+        "/$schema" | "/version" | "/objects/*" | "/environment_params/walls/*/polygon" => return false,
+        "/seed" => world["seed"] = json!(5),
+        "/progress" => world["progress"] = json!({ "steps": 3, "objects": [{}] }),
+        "/objects/*/unique_name" => world["objects"][0]["unique_name"] = json!("another"),
+        _ if place.kind.is_some() => {
+            let now = at(world, &pointer);
+            *now = other(place, now);
+        }
+        // Lists and parts: without them.
+        _ if place.is_key => {
+            let (parent, key) = pointer.rsplit_once('/').expect("a pointer begins with a slash");
+            let parent = if parent.is_empty() { world } else { at(world, parent) };
+            parent.as_object_mut().expect("keys are those of objects").remove(key);
+        }
+        _ => return false,
+    }
+    true
+}
+
+#[test]
+fn worlds_that_differ_in_one_place_differ_in_the_comparisons_that_it_names_and_in_no_other() {
+    let full = full();
+    let read =
+        |name: &str, json: &Json| World::from_json(name, &json.to_string()).unwrap_or_else(|error| panic!("{error}"));
+    let world = read("full", &full);
+    assert_eq!(world_distance(&world, &world, &Weights::default()).total, 0.0);
+    let mut wrong = Vec::new();
+    for place in World::places()
+        .iter()
+        .filter(|place| place.field.compared != Compared::AsPart)
+    {
+        let mut changed = full.clone();
+        if !change(&mut changed, place, &full) {
+            continue;
+        }
+        let distance = world_distance(&world, &read(&place.pointer, &changed), &Weights::default());
+        let differs = distance.parts.iter().filter(|part| part.normalised > 0.0);
+        let mut differs: Vec<&str> = differs.map(|part| part.name.as_str()).collect();
+        let mut expected: Vec<&str> = place
+            .field
+            .compared
+            .comparisons()
+            .iter()
+            .map(|part| part.name())
+            .collect();
+        differs.sort_unstable();
+        expected.sort_unstable();
+        if differs != expected || (distance.total > 0.0) == expected.is_empty() {
+            wrong.push(format!(
+                "{}: the table says {expected:?}, worlds differ in {differs:?}",
+                place.pointer
+            ));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
