@@ -102,7 +102,8 @@ impl JsonSchema for Color {
             "anyOf": [
                 { "type": "array", "items": { "type": "number", "minimum": 0, "maximum": 1 }, "minItems": 3, "maxItems": 3 },
                 { "type": "string", "enum": Self::names() }
-            ]
+            ],
+            "examples": ["red", [1, 0.5, 0]]
         })
     }
 }

@@ -48,6 +48,13 @@ use crate::value::Value;
     bound(serialize = "N: Channel + Serialize", deserialize = "N: Channel + Deserialize<'de>")
 )]
 #[schemars(rename = "Distribution", transform = gaussian_needs_one_spread)]
+#[schemars(extend("examples" = [
+    { "uniform": { "low": 0, "high": 360 } },
+    { "truncated_normal": { "mean": 2.3, "std": 0.5, "low": 0, "high": 4 } },
+    { "choice": { "values": ["1", "2", "5"], "weights": [2, 1, 1] } },
+    { "gaussian": { "mean": [0, 0], "std": { "param": "spread" } } },
+    { "mixture": { "parts": [{ "disc": { "center": [0, 0], "radius": 5 } }, { "disc": { "center": [20, 0], "radius": 5 } }] } },
+]))]
 pub enum Distribution<N = f64> {
     /// Always the same value, of any type.
     Constant {

@@ -22,6 +22,10 @@ impl From<f64> for Number {
 /// A reference to a parameter.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [
+    { "param": "light" },
+    { "param": "shares", "index": 0 },
+]))]
 pub struct ParamRef {
     /// The parameter's name.
     pub param: String,

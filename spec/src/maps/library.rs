@@ -14,6 +14,9 @@ use crate::world::{Region, World};
 /// A maps file as its document has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [
+    { "unit": "metre", "maps": [{ "id": 2, "name": "yard", "excluded_regions": [[[-5, -5], [5, -5], [5, 5], [-5, 5]]] }] },
+]))]
 pub(crate) struct MapsDocument {
     /// Where the JSON Schema of this document is, for editors.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
@@ -44,6 +47,9 @@ enum Unit {
 /// One layout: which number it stands for, and the regions that cannot be entered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [
+    { "id": 2, "name": "yard", "excluded_regions": [[[-5, -5], [5, -5], [5, 5], [-5, 5]]] },
+]))]
 pub struct MapLayout {
     /// The `predefined_map` that it is the layout of.
     #[schemars(range(min = 0, max = 4))]

@@ -12,6 +12,11 @@ use crate::value::Value;
 /// A drift crosses the border of a block where the next block's regime goes on from the progress at which the one before stopped.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [
+    { "to": "dusk" },
+    { "to": "dusk", "values": { "light": 1.2 }, "name": "dim" },
+    { "to": "dusk", "schedule": { "steps": 4 }, "switch": "mixture", "from": 0, "until": 0.5 },
+]))]
 pub struct RegimeDrift {
     /// The variant that it leads to.
     #[schemars(length(min = 1, max = 200))]
@@ -43,6 +48,10 @@ pub struct RegimeDrift {
 /// How far a drift has come, as a function of its progress.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
+#[schemars(extend("examples" = [
+    "linear",
+    { "sawtooth": 3 },
+]))]
 pub enum DriftSchedule {
     /// Evenly.
     #[default]

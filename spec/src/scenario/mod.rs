@@ -25,6 +25,11 @@ pub const MAX_EXPERIENCES: u32 = 10_000_000;
 /// A lifetime: blocks of learning and evaluation, in order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [
+    { "version": 1, "name": "two-colours", "blocks": [
+        { "type": "learning", "regimes": [{ "task": "find_objects", "variant": "blue", "count": 100, "seed": 2 }] },
+        { "type": "evaluation", "regimes": [{ "task": "find_objects", "variant": "red", "count": 10, "seed": 3 }] } ] },
+]))]
 pub struct Scenario {
     /// Where the JSON Schema of this document is, for editors.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
@@ -129,6 +134,9 @@ impl TaskLabel {
 /// A block: the agent either learns, or is frozen and evaluated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [
+    { "type": "learning", "regimes": [{ "task": "find_objects", "variant": "blue", "count": 100 }] },
+]))]
 pub struct Block {
     /// Whether the agent may learn.
     #[serde(rename = "type")]

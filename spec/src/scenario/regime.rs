@@ -15,6 +15,12 @@ use crate::value::Value;
 /// A stretch of experiences (episodes) of one variant, or of the way from it to another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [
+    { "task": "find_objects", "variant": "red", "count": 100, "seed": 7, "first_index": 0 },
+    { "task": "find_objects", "variant": "red", "values": { "light": 1.2 }, "name": "red-dim", "count": 100 },
+    { "task": "Task1", "variant": "yard", "world": "maps/yard.json", "max_steps": 200, "count": 10 },
+    { "task": "find_objects", "variant": "red", "count": 100, "drift": { "to": "dusk", "schedule": "cosine" } },
+]))]
 pub struct Regime {
     /// The task: a built-in name, or the path of a task spec.
     #[schemars(length(min = 1, max = 4096))]

@@ -3,7 +3,6 @@
 mod advice;
 mod color;
 mod counted;
-mod examples;
 mod explain;
 mod forms;
 mod wording;
@@ -82,8 +81,20 @@ pub(crate) fn of_type<T: JsonSchema>(id: &str, title: &str) -> Value {
     json["title"] = json!(title);
     drop_unused(&mut json);
     describe_forms(&mut json);
-    examples::add(&mut json, title);
+    put_examples_last(&mut json);
+    for (_, definition) in json["$defs"].as_object_mut().into_iter().flatten() {
+        put_examples_last(definition);
+    }
     json
+}
+
+/// The examples that a type has beside its declaration stand behind all else.
+fn put_examples_last(part: &mut Value) {
+    if let Some(map) = part.as_object_mut()
+        && let Some(examples) = map.shift_remove("examples")
+    {
+        map.insert("examples".to_owned(), examples);
+    }
 }
 
 /// What a part of a schema refers to, or the part itself.

@@ -13,6 +13,10 @@ use crate::value::{ParameterType, Value};
 /// How two values of a parameter are compared, and how much that counts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [
+    { "weight": 2, "measure": "log_ratio" },
+    { "costs": [[0, 0.2, 1], [0.2, 0, 1], [1, 1, 0]] },
+]))]
 pub struct Compare {
     /// What the parameter weighs among those that touch the same element; 1 if absent, 0 leaves it out.
     #[serde(default = "one")]
@@ -229,6 +233,7 @@ fn cost_problem(costs: &[Vec<f64>], parameter: &Parameter, pointer: &str) -> Opt
 /// What each element of the decision process weighs in a task's distances; 1 where nothing is said.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [{ "R": 2, "O": 0.5 }]))]
 pub struct ElementWeights {
     /// The states.
     #[serde(rename = "S", default = "one")]

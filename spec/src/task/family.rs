@@ -24,6 +24,7 @@ const MAX_NAME: usize = 100;
 /// Evenly spaced values of one number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [{ "from": 0.1, "to": 10, "steps": 5, "spacing": "logarithmic" }]))]
 pub struct Sweep {
     /// The first value.
     pub from: f64,

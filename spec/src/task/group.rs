@@ -12,6 +12,11 @@ use crate::distribution::Number;
 /// A group of objects: how many, what each is, and where they stand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [
+    { "name": "trees", "count": 8, "object": { "class": "tree" }, "placement": { "box": { "low": [-28, -28], "high": [28, 28] } }, "separation": 3 },
+    { "name": "fences", "count": { "poisson": { "mean": 3 } }, "around": "houses", "facing": "middle",
+        "object": { "class": "fence" }, "placement": { "annulus": { "center": [0, 0], "inner": 6, "outer": 9 } } },
+]))]
 pub struct Group {
     /// The group's name; its objects carry it as their `tag` unless the template gives another.
     #[schemars(length(min = 1, max = 100), regex(pattern = NAME_PATTERN))]
@@ -47,6 +52,7 @@ pub struct Group {
 /// Distances that a group's objects keep, in metres from centre to border or centre.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
+#[schemars(extend("examples" = [{ "walls": 1, "agent": 4, "groups": { "houses": 8 } }]))]
 pub struct KeepOut {
     /// Least distance to the arena's walls and to regions that cannot be entered.
     #[schemars(extend("minimum" = 0, "maximum" = 300))]
@@ -73,6 +79,11 @@ impl Default for KeepOut {
 /// Where an object looks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[schemars(extend("examples" = [
+    "random",
+    { "point": [0, 0] },
+    { "group": "houses" },
+]))]
 pub enum Facing {
     /// Anywhere, each heading alike.
     Random,

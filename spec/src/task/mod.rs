@@ -37,6 +37,12 @@ use crate::{schema, version};
 /// A task spec as its document has it, before anything but the schema has been checked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [
+    { "version": 2, "name": "light_and_dark",
+        "parameters": { "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0.2, 4], "default": 2.3 } },
+        "world": { "max_steps": 100, "environment_params": { "light_intensity": { "param": "light" } } },
+        "variants": { "day": {}, "dusk": { "light": 0.3 } } },
+]))]
 pub(crate) struct TaskDocument {
     /// Where the JSON Schema of this document is, for editors.
     #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]

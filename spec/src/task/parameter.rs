@@ -27,6 +27,12 @@ pub enum Role {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(transform = require_what_the_role_needs)]
+#[schemars(extend("examples" = [
+    { "role": "fixed", "type": "integer", "value": 5 },
+    { "role": "variant", "type": "color", "affects": ["O"], "choices": ["red", "blue"], "default": "red" },
+    { "role": "variant", "type": "number", "unit": "m", "affects": ["S"], "range": [2, 40], "default": 20 },
+    { "role": "randomized", "type": "heading", "unit": "deg", "affects": ["S"], "distribution": { "uniform": { "low": 0, "high": 360 } } },
+]))]
 pub struct Parameter {
     /// Who settles its value.
     pub role: Role,

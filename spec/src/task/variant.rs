@@ -202,6 +202,11 @@ fn accepted(parameters: &IndexMap<String, Parameter>, name: &str, value: &Value)
 /// A variant, or a family of them, as a document declares it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[schemars(transform = values_of_parameters)]
+#[schemars(extend("examples" = [
+    { "extends": "day", "description": "Red cubes at dusk.", "light": 0.6 },
+    { "grid": { "target_color": ["red", "green"], "light": [0.6, 2.3] } },
+    { "sweep": { "light": { "from": 0.2, "to": 4, "steps": 5 } } },
+]))]
 pub struct VariantSpec {
     /// The variant whose values it starts from; the defaults if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::StateFeature;
+use super::defaults::{is_classic, is_one, is_true};
 use super::fields::{Field, FieldPlace, Place, fields};
 use crate::value::{ParameterType, Value};
 
@@ -11,6 +12,9 @@ fields! {
     /// The agent: where it starts, how it moves, what it observes.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [
+        { "action_model": "byvelocity", "coordinates": [0, 0], "heading": 90, "observation_size": 84 },
+    ]))]
     pub struct AgentParams {
         /// What the numbers of an action mean.
         pub action_model: ActionModel = ActionModel::ByVelocity => Field::original(Same(ModelOfActions)),
@@ -121,20 +125,6 @@ impl AgentParams {
     }
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_true(value: &bool) -> bool {
-    *value
-}
-
-fn is_classic(features: &[StateFeature]) -> bool {
-    features == StateFeature::CLASSIC
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_one(value: &u32) -> bool {
-    *value == 1
-}
-
 /// What the three numbers of an action mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
@@ -169,6 +159,11 @@ pub enum Modality {
 /// How a learner hands in actions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[schemars(extend("examples" = [
+    "continuous",
+    "default_discrete",
+    { "discrete": [[5, 0, 0], [0, -90, 0], [0, 90, 0]] },
+]))]
 pub enum ActionSpace {
     /// Three numbers, in the units of the action model.
     Continuous,

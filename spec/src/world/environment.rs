@@ -13,6 +13,9 @@ fields! {
     /// The arena and its light.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [
+        { "map_size": [60, 60], "light_intensity": 2.3, "bounding_wall_color": [0.7, 0.7, 0.6] },
+    ]))]
     pub struct EnvironmentParams {
         /// Colour of the walls around the arena and of the regions that cannot be entered.
         pub bounding_wall_color: Color = Color([0.72, 0.68, 0.60])
@@ -181,6 +184,7 @@ fields! {
     /// A region that cannot be entered: a polygon on the ground, standing up as a wall.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "polygon": [[0, 0], [8, 0], [8, 1], [0, 1]], "height": 2 }]))]
     pub struct Wall {
         /// Corners in metres, in order; the last joins the first.
         #[schemars(length(min = 3, max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]

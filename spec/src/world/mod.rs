@@ -2,6 +2,7 @@
 
 mod agent;
 mod check;
+mod defaults;
 mod environment;
 mod features;
 mod fields;
@@ -32,6 +33,7 @@ use crate::document::{Document, MAX_WORLD_VALUES};
 use crate::error::{Problem, SpecError};
 use crate::version::WORLD_VERSION;
 use crate::{schema, version};
+use defaults::is_default;
 
 /// The most objects that one world may hold.
 pub const MAX_OBJECTS: usize = 100_000;
@@ -57,6 +59,9 @@ fields! {
     /// ```
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [
+        { "version": 1, "max_steps": 300, "objects": [{ "class": "tree", "model": "5", "coordinates": [3, 4] }] },
+    ]))]
     pub struct World {
         /// Where the JSON Schema of this document is, for editors; not part of the world.
         #[serde(rename = "$schema", skip_serializing)]
@@ -85,7 +90,7 @@ fields! {
         pub max_steps: u32 = 0 => Field::original(Measured(&[Limit])),
         /// Seconds of the world's own time until the episode is truncated, be it in the midst of an action that is held; 0 is never.
         /// Of two limits the earlier holds. Unlike `max_steps` it does not depend on how long a step lasts.
-        #[serde(skip_serializing_if = "is_zero")]
+        #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = 0.0, max = 1e9))]
         pub max_seconds: f64 = 0.0 => Field::ours(Measured(&[Limit])).unit("s"),
         /// The arena and its light.
@@ -125,6 +130,7 @@ fields! {
     /// How objects are photographed in `collect_images`.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "zoom": 2, "yaw_subdivisions": 8, "vertical_subdivisions": 1 }]))]
     pub struct ImageParams {
         /// Distance of the camera as a factor on that from which the object just fits into the picture.
         #[schemars(range(min = 0.1, max = 100.0))]
@@ -271,11 +277,6 @@ fn hexadecimal(bytes: &[u8]) -> String {
             write!(letters, "{byte:02x}").expect("writing to a String does not fail");
             letters
         })
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
 }
 
 fn duplicate_names(objects: &[Object]) -> impl Iterator<Item = Problem> {

@@ -6,6 +6,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::MAX_SEED;
+use super::defaults::{half, is_default, is_one, one, yes};
 use super::fields::fields;
 use crate::Color;
 
@@ -15,6 +16,10 @@ fields! {
     /// Every field but `class` and `coordinates` has a default.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
+    #[schemars(extend("examples" = [
+        { "class": "geometric", "model": "1", "coordinates": [0, 10], "color": "red", "reward": 100,
+            "reward_once_stimulus": ["AgentCollide"], "destroy_stimulus": ["AgentCollide"] },
+    ]))]
     pub struct Object {
         /// Kind of asset: `geometric`, `tree`, `barrel`, …; a class that is not known draws a placeholder.
         #[schemars(length(min = 1, max = 100))]
@@ -65,14 +70,14 @@ fields! {
         #[schemars(length(max = 3))]
         pub destroy_stimulus: Vec<Stimulus> => Field::original(Same(Bodies)),
         /// Distance from centre to centre in metres below which `AgentInRange` holds.
-        #[serde(default, skip_serializing_if = "is_zero")]
+        #[serde(default, skip_serializing_if = "is_default")]
         #[schemars(range(min = 0.0, max = 1000.0))]
         pub range_stimulus_distance: f64 => Field::original(Same(PaidFor)).unit("m"),
         /// How the object moves by itself.
         #[serde(default)]
         pub motion_model: MotionModel => Field::original(Same(Motion)),
         /// Speed of the object's own motion in metres per second.
-        #[serde(default, skip_serializing_if = "is_zero")]
+        #[serde(default, skip_serializing_if = "is_default")]
         #[schemars(range(min = 0.0, max = 100.0))]
         pub speed: f64 => Field::ours(Same(Motion)).unit("m/s"),
         /// Largest turn of the object's own motion in degrees per second; at once if absent.
@@ -153,24 +158,6 @@ impl Object {
     pub fn takes_chances(&self) -> bool {
         self.motion_model == MotionModel::RandomWaypoint || self.reward_probability < 1.0 || self.respawn.is_some()
     }
-}
-
-fn one() -> f64 {
-    1.0
-}
-
-fn yes() -> bool {
-    true
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_one(value: &f64) -> bool {
-    *value == 1.0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
 }
 
 /// The model within a class. Documents write `"3"` or `3`; it is kept as text.
@@ -254,6 +241,7 @@ fields! {
     /// How an object comes back.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "delay": 5, "radius": 10 }]))]
     pub struct Respawn {
         /// Seconds between its destruction and its return.
         #[schemars(range(min = 0.0, max = 1e6))]
@@ -269,6 +257,7 @@ fields! {
     /// A body that slides and turns on the ground when it is pushed. It never topples.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "mass": 20, "friction": 0.5 }]))]
     pub struct Pushable {
         /// Mass in kilograms; the agent weighs 80.
         #[schemars(range(min = 0.01, max = 1e6))]
@@ -278,8 +267,4 @@ fields! {
         #[schemars(range(min = 0.0, max = 10.0))]
         pub friction: f64 => Field::ours(AsPart),
     }
-}
-
-fn half() -> f64 {
-    0.5
 }

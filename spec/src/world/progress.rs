@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::World;
+use super::defaults::{is_default, is_true};
 use super::fields::Place;
 use crate::error::Problem;
 
@@ -14,6 +15,9 @@ use crate::error::Problem;
 /// destroyed ones are among them. `Environment::state` writes it, a reset to such a world goes on from there.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
+#[schemars(extend("examples" = [
+    { "steps": 2, "ticks": 2, "episode_return": 1, "unshaped_return": 1, "velocity": [0, 1], "objects": [{ "collected": true }] },
+]))]
 pub struct Progress {
     /// In a world without a `seed`, what its chance grows from: the hash of where things stood at the start, 64 hexadecimal
     /// letters. Absent if nothing depends on chance.
@@ -33,14 +37,14 @@ pub struct Progress {
     #[schemars(range(min = -1e15, max = 1e15))]
     pub unshaped_return: f64,
     /// What the last step paid.
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(skip_serializing_if = "is_default")]
     #[schemars(range(min = -1e15, max = 1e15))]
     pub last_reward: f64,
     /// The last event of the last step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub last_event: Option<LastEvent>,
     /// Whether the episode is over.
-    #[serde(skip_serializing_if = "is_false")]
+    #[serde(skip_serializing_if = "is_default")]
     pub ended: bool,
     /// The agent's velocity over the last time step in metres per second.
     #[schemars(inner(range(min = -1e6, max = 1e6)))]
@@ -75,6 +79,7 @@ const MOST_TICKS: u64 = 1 << 52;
 /// An event, as the state vector tells it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [{ "stimulus": "AgentCollide", "reward": 1, "destroyed": false }]))]
 pub struct LastEvent {
     /// What set it off.
     pub stimulus: super::Stimulus,
@@ -88,6 +93,7 @@ pub struct LastEvent {
 /// How something stood at the start.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [{ "coordinates": [3, 4], "heading": 90, "reward": 1 }]))]
 pub struct Origin {
     /// Its place in metres.
     #[schemars(inner(range(min = -300.0, max = 300.0)))]
@@ -96,7 +102,7 @@ pub struct Origin {
     #[schemars(range(min = 0.0, max = 360.0))]
     pub heading: f64,
     /// What one triggering was worth.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     #[schemars(range(min = -1e9, max = 1e9))]
     pub reward: f64,
 }
@@ -108,18 +114,19 @@ pub struct Origin {
     clippy::struct_excessive_bools,
     reason = "four facts that have nothing to do with each other"
 )]
+#[schemars(extend("examples" = [{ "present": false, "collected": true, "returns_at": 99 }]))]
 pub struct ObjectProgress {
     /// Whether it is there.
     #[serde(skip_serializing_if = "is_true")]
     pub present: bool,
     /// Whether it has paid, or was destroyed: places in a sequence count on it.
-    #[serde(skip_serializing_if = "is_false")]
+    #[serde(skip_serializing_if = "is_default")]
     pub collected: bool,
     /// Whether the agent touches it, so that it is no new contact.
-    #[serde(skip_serializing_if = "is_false")]
+    #[serde(skip_serializing_if = "is_default")]
     pub touched: bool,
     /// Whether the agent was in its range at the end of the last step.
-    #[serde(skip_serializing_if = "is_false")]
+    #[serde(skip_serializing_if = "is_default")]
     pub in_range: bool,
     /// How it stood at the start; absent if it still stands so.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -133,23 +140,23 @@ pub struct ObjectProgress {
     #[schemars(inner(inner(range(min = -300.0, max = 300.0))))]
     pub goal: Option<[f64; 2]>,
     /// Number of the next point of a patrol, from 0.
-    #[serde(skip_serializing_if = "is_first")]
+    #[serde(skip_serializing_if = "is_default")]
     #[schemars(range(min = 0, max = 999))]
     pub waypoint: u32,
     /// How many goals a wanderer has drawn.
-    #[serde(skip_serializing_if = "is_none_drawn")]
+    #[serde(skip_serializing_if = "is_default")]
     #[schemars(range(min = 0, max = MOST_DRAWN))]
     pub goals: u64,
     /// How often a bandit arm has been pulled: each pull is one draw, whatever it pays.
-    #[serde(skip_serializing_if = "is_none_drawn")]
+    #[serde(skip_serializing_if = "is_default")]
     #[schemars(range(min = 0, max = MOST_DRAWN))]
     pub pulls: u64,
     /// How often it has come back.
-    #[serde(skip_serializing_if = "is_none_drawn")]
+    #[serde(skip_serializing_if = "is_default")]
     #[schemars(range(min = 0, max = MOST_DRAWN))]
     pub returns: u64,
     /// Places that were tried for its next return.
-    #[serde(skip_serializing_if = "is_none_drawn")]
+    #[serde(skip_serializing_if = "is_default")]
     #[schemars(range(min = 0, max = MOST_DRAWN))]
     pub tries: u64,
     /// As `chance` of the whole: it is read, and means nothing.
@@ -161,7 +168,7 @@ pub struct ObjectProgress {
     #[schemars(inner(inner(range(min = -1e6, max = 1e6))))]
     pub velocity: Option<[f64; 2]>,
     /// How fast what was pushed turns, in degrees per second clockwise.
-    #[serde(skip_serializing_if = "is_zero")]
+    #[serde(skip_serializing_if = "is_default")]
     #[schemars(range(min = -1e9, max = 1e9))]
     pub spin: f64,
 }
@@ -191,6 +198,7 @@ impl Default for ObjectProgress {
 /// What an agent on rails is about to do.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
+#[schemars(extend("examples" = [{ "target": 0, "goal": [3, 4], "avoided": [1], "patience": 7 }]))]
 pub struct RailsProgress {
     /// Index of the object that it goes to.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -254,29 +262,4 @@ pub(super) fn problems(world: &World) -> Vec<Problem> {
         ));
     }
     problems
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_true(value: &bool) -> bool {
-    *value
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_false(value: &bool) -> bool {
-    !*value
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_first(value: &u32) -> bool {
-    *value == 0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_none_drawn(value: &u64) -> bool {
-    *value == 0
 }

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::defaults::{is_default, is_one, one};
 use super::fields::{Field, FieldPlace, Place, fields};
 use crate::value::{ParameterType, Value};
 
@@ -10,17 +11,20 @@ fields! {
     /// Rewards and endings that belong to the world as a whole.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [
+        { "step_reward": -0.1, "shaping": { "toward": "goal", "scale": 1 }, "success": ["all_collected"], "failure": [{ "return_at_most": -50 }] },
+    ]))]
     pub struct Rules {
         /// Paid at every step; a small negative number makes haste worth while.
         #[schemars(range(min = -1e9, max = 1e9))]
         pub step_reward: f64 = 0.0 => Field::ours(Measured(&[StepReward])),
         /// Paid for every second of the world's own time, in each time step its share. Unlike `step_reward` it does not depend on how
         /// long a step lasts.
-        #[serde(skip_serializing_if = "is_zero")]
+        #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
         pub reward_per_second: f64 = 0.0 => Field::ours(Measured(&[StepReward])),
         /// Paid, in place of its reward, for setting off an object before its turn in a sequence; at most 0 makes it a penalty.
-        #[serde(skip_serializing_if = "is_zero")]
+        #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
         pub order_penalty: f64 = 0.0 => Field::ours(Same(ShapingAndEndings)),
         /// A soft reward for coming closer.
@@ -47,6 +51,10 @@ fields! {
     /// that. Conditions on the return do not count what shaping pays.
     #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
+    #[schemars(extend("examples" = [
+        { "toward": "goal", "scale": 1 },
+        { "scale": 0.1, "discount": 0.99 },
+    ]))]
     pub struct Shaping {
         /// Tag of the objects that draw the agent; if absent, all objects that pay a positive reward
         /// now, their turn in a sequence included.
@@ -63,23 +71,14 @@ fields! {
     }
 }
 
-fn one() -> f64 {
-    1.0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_one(value: &f64) -> bool {
-    *value == 1.0
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
-}
-
 /// What ends an episode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[schemars(extend("examples" = [
+    "all_collected",
+    { "touch": "goal" },
+    { "return_at_least": 500 },
+]))]
 pub enum EndCondition {
     /// No object is left that pays a positive reward.
     AllCollected,
