@@ -1,7 +1,6 @@
 //! [`Classes`]: which classes of objects there are, as far as a reader of documents is told. Their models are `env`'s.
 
 use crate::error::{Problem, nearest};
-use crate::world::World;
 
 /// The most classes that a message lists.
 const LISTED: usize = 40;
@@ -69,16 +68,6 @@ impl Classes {
             (None, Some(advice)) => problem.advise(advice.clone()),
             (None, None) => problem,
         })
-    }
-}
-
-impl World {
-    /// Every object whose class is none of these.
-    pub fn unknown_classes(&self, classes: &Classes) -> Vec<Problem> {
-        let objects = self.objects.iter().enumerate();
-        objects
-            .filter_map(|(index, object)| classes.problem(format!("/objects/{index}/class"), &object.class))
-            .collect()
     }
 }
 

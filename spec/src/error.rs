@@ -1,8 +1,8 @@
-//! What can be wrong with a document, said so that its author can mend it. Where things stand in a text is found in `document.rs`.
+//! What can be wrong with a document, said so that its author can mend it. Where things stand in a text is found in `document/`.
 
 use std::fmt;
 
-use crate::document::MAX_KEY_BYTES;
+use crate::limits::MAX_KEY_BYTES;
 use driftworld_text::one_line;
 
 /// The most problems of a document that are listed; beyond them is only said that there are more.

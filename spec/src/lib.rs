@@ -5,11 +5,13 @@
 
 mod classes;
 mod color;
+mod describe;
 mod distribution;
 mod document;
 mod element;
 mod error;
 mod l2explorer;
+mod limits;
 pub mod maps;
 mod names;
 mod oklab;
@@ -28,9 +30,9 @@ pub use distribution::{
     Channel, ChannelChance, ChannelSpread, Channels, ColorMoments, Distribution, Number, Order, ParamRef,
     PlanarMoments, Spread, Turns,
 };
-pub use document::{MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_VALUES, MAX_WORLD_VALUES};
 pub use element::Element;
 pub use error::{MAX_PROBLEMS, Problem, SpecError, nearest};
+pub use limits::{MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_VALUES, MAX_WORLD_VALUES};
 pub use names::sound_name;
 pub use oklab::{Oklab, linear_from_srgb};
 pub use scenario::{

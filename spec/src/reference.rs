@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use serde_json::Value as Json;
 
-use crate::schema;
+use crate::schema::part;
 use crate::world::{Compared, Comparison, FieldPlace, World};
 
 /// A page for each part of a world: its file, its title, and the pointer to the part.
@@ -75,8 +75,8 @@ fn keys() -> Vec<FieldPlace> {
 
 /// The keys in a place that the table knows as a whole, as the schema has them.
 fn add_inside(place: &FieldPlace, keys: &mut Vec<FieldPlace>) {
-    let root = schema::world().json();
-    let part = schema::at(root, root, &place.pointer);
+    let root = World::schema().json();
+    let part = part::at(root, root, &place.pointer);
     let items = part.and_then(|part| part.get("items"));
     if items.is_some() {
         let item = FieldPlace {
@@ -101,9 +101,9 @@ fn add_inside(place: &FieldPlace, keys: &mut Vec<FieldPlace>) {
 }
 
 fn section(page: &mut String, key: &FieldPlace, part: &str) {
-    let root = schema::world().json();
-    let own = schema::property(root, root, &key.pointer).unwrap_or(&Json::Null);
-    let value = schema::at(root, root, &key.pointer).unwrap_or(&Json::Null);
+    let root = World::schema().json();
+    let own = part::property(root, root, &key.pointer).unwrap_or(&Json::Null);
+    let value = part::at(root, root, &key.pointer).unwrap_or(&Json::Null);
     put(page, format_args!("## `{}`\n\n", &key.pointer[part.len() + 1..]));
     let described = own.get("description").or_else(|| value.get("description"));
     paragraph(page, described.and_then(Json::as_str).unwrap_or_default());
@@ -131,9 +131,9 @@ fn section(page: &mut String, key: &FieldPlace, part: &str) {
 
 /// Whether a key has to be there wherever what it stands in is.
 fn is_required(pointer: &str) -> bool {
-    let root = schema::world().json();
+    let root = World::schema().json();
     let (part, key) = pointer.rsplit_once('/').unwrap_or_default();
-    let required = schema::at(root, root, part).and_then(|part| part["required"].as_array());
+    let required = part::at(root, root, part).and_then(|part| part["required"].as_array());
     required.into_iter().flatten().any(|required| *required == key)
 }
 

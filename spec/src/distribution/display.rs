@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::Value as Json;
 
 use super::{Channel, Distribution};
-use crate::document::plain_number;
+use crate::describe::plain_number;
 
 impl<N: Channel + Serialize> Display for Distribution<N> {
     fn fmt(&self, f: &mut Formatter) -> Result {

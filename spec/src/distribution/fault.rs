@@ -217,7 +217,7 @@ impl Distribution<f64> {
             Ok(*number)
         });
         drop(mapped);
-        far.map(|number| (crate::document::plain_number(number), "metres in -1000000..1000000"))
+        far.map(|number| (crate::describe::plain_number(number), "metres in -1000000..1000000"))
     }
 }
 

@@ -1,4 +1,4 @@
-//! A JSON text with a memory of where each value stands. What is wrong with a value is said by `schema.rs` and the
+//! A JSON text with a memory of where each value stands. What is wrong with a value is said by `schema/` and the
 //! types; how the value is built within limits by `value.rs`, where things stand in the text by `places.rs`.
 
 mod places;
@@ -7,30 +7,12 @@ mod value;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
+use crate::describe::{describe, pointer_of};
 use crate::error::{Listed, MAX_PROBLEMS, Problem, SpecError};
-use crate::schema::DocumentSchema;
+use crate::limits::{MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES};
 use crate::version::Format;
 use places::Wanted;
 use value::{Repeats, Stop};
-
-/// The longest text that is read, in bytes.
-pub const MAX_BYTES: usize = 64 << 20;
-
-/// The most values of a world, ours or the original's: numbers, texts, lists, objects and the like.
-pub const MAX_WORLD_VALUES: usize = 4_000_000;
-
-/// The most values of a scenario, ours or the original's: what 100,000 blocks of four regimes have.
-pub const MAX_SCENARIO_VALUES: usize = 2_000_000;
-
-/// The most values of a task spec, a maps file or an object alone.
-pub const MAX_VALUES: usize = 1_000_000;
-
-/// The longest key, in bytes. Longer ones would stand in every pointer to what is below them.
-pub const MAX_KEY_BYTES: usize = 400;
-
-/// How deep lists and objects may stand in each other: `serde_json`'s limit, which keeps a hostile text from taking the
-/// whole stack.
-pub const MAX_DEPTH: usize = 127;
 
 /// A parsed JSON text.
 pub(crate) struct Document<'a> {
@@ -104,11 +86,6 @@ impl<'a> Document<'a> {
         self.fail_on(Vec::from_iter(problem))
     }
 
-    /// Fails with every violation of the schema.
-    pub(crate) fn check_schema(&self, schema: &DocumentSchema) -> Result<(), SpecError> {
-        self.fail_on(schema.problems(&self.value))
-    }
-
     /// The typed value; a value that the schema lets pass and the type does not is a problem like any other.
     pub(crate) fn deserialize<T: DeserializeOwned>(&self) -> Result<T, SpecError> {
         // The plain way is twice as fast as the one that knows where it fails.
@@ -174,59 +151,6 @@ impl<'a> Document<'a> {
     }
 }
 
-/// A value in the few words that a message has room for.
-pub(crate) fn describe(value: &Value) -> String {
-    match value {
-        Value::String(text) if text.chars().count() > 40 => {
-            format!("{:?}…", text.chars().take(40).collect::<String>())
-        }
-        Value::Array(items) if items.len() > 4 => format!("a list of {} values", items.len()),
-        Value::Object(map) if map.len() > 2 => format!("an object with {} keys", map.len()),
-        Value::Object(_) if !fits(value, &mut 60) => "an object".to_owned(),
-        Value::Array(_) if !fits(value, &mut 60) => "a list".to_owned(),
-        other => other.to_string(),
-    }
-}
-
-/// Whether a value takes at most so many characters; whatever it holds beyond them is not looked at.
-fn fits(value: &Value, room: &mut usize) -> bool {
-    let mut take = |characters: usize| {
-        let fits = characters <= *room;
-        *room = room.saturating_sub(characters);
-        fits
-    };
-    match value {
-        Value::Array(items) => take(2 + items.len().saturating_sub(1)) && items.iter().all(|item| fits(item, room)),
-        Value::Object(map) => {
-            let commas = map.len().saturating_sub(1);
-            take(2 + commas + map.len()) && map.iter().all(|(key, value)| fits_text(key, room) && fits(value, room))
-        }
-        Value::String(text) => fits_text(text, room),
-        other => take(other.to_string().len()),
-    }
-}
-
-fn fits_text(text: &str, room: &mut usize) -> bool {
-    // Escapes make it longer than it is.
-    let fits = text.len() <= 4 * *room && Value::from(text).to_string().chars().count() <= *room;
-    *room = room.saturating_sub(text.chars().count() + 2);
-    fits
-}
-
-/// A number as people read it: very large and very small ones with an exponent.
-pub(crate) fn plain_number(number: f64) -> String {
-    if number != 0.0 && !(1e-6..1e15).contains(&number.abs()) {
-        format!("{number:e}")
-    } else {
-        number.to_string()
-    }
-}
-
-/// Escapes a key for a JSON pointer.
-pub(crate) fn escape(key: &str) -> String {
-    key.replace('~', "~0").replace('/', "~1")
-}
-
 fn syntax_error(name: &str, text: &str, error: &serde_json::Error) -> SpecError {
     let message = error.to_string();
     let mut reason = message.split(" at line ").next().unwrap_or_default().to_owned();
@@ -275,19 +199,10 @@ fn lines_and_columns(text: &str, offsets: &[usize]) -> Vec<(usize, usize)> {
     places
 }
 
-pub(crate) fn pointer_of(path: &serde_path_to_error::Path) -> String {
-    use serde_path_to_error::Segment;
-    path.iter().fold(String::new(), |pointer, segment| match segment {
-        Segment::Seq { index } => format!("{pointer}/{index}"),
-        Segment::Map { key } => format!("{pointer}/{}", escape(key)),
-        Segment::Enum { variant } => format!("{pointer}/{}", escape(variant)),
-        Segment::Unknown => pointer,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::limits::MAX_VALUES;
 
     fn check(text: &str, expected: &str) {
         let error = Document::parse("d.json", text, 999)

@@ -8,7 +8,7 @@ use std::fmt::Write;
 use jsonc_parser::tokens::Token;
 use jsonc_parser::{Scanner, ScannerOptions};
 
-use super::escape;
+use crate::describe::escape;
 
 /// A pointer whose place is wanted.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@
 use serde_json::{Map, Value as Json, json};
 
 use super::read::Reader;
-use crate::document::describe;
+use crate::describe::describe;
 
 impl Reader {
     /// Numbers that were written as text, alone or in a list.

@@ -6,8 +6,9 @@ use serde_json::{Map, Value as Json, json};
 
 use super::read::Reader;
 use crate::color::Color;
-use crate::document::describe;
-use crate::schema;
+use crate::describe::describe;
+use crate::schema::part;
+use crate::world::World;
 
 /// What an entry must be.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +44,7 @@ impl Entry {
             Some("Model") => return Some(Self::Model),
             _ => {}
         }
-        let value = schema::at(schema::world().json(), property, "")?;
+        let value = part::at(World::schema().json(), property, "")?;
         let limits = |value: &Json| Some((value["minimum"].as_f64()?, value["maximum"].as_f64()?));
         let is = |name: &str| value["type"] == name || value["type"][0] == name;
         if is("number") {

@@ -18,7 +18,6 @@ use std::sync::LazyLock;
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
-use crate::schema;
 use crate::world::{AgentParams, EnvironmentParams, Fields, ImageParams, MotionModel, Object, Rules, World};
 use mend::Entry;
 
@@ -77,7 +76,7 @@ struct Parts {
 }
 
 static PARTS: LazyLock<Parts> = LazyLock::new(|| {
-    let world = schema::world().json();
+    let world = World::schema().json();
     let of = |name: &str| &world["$defs"][name];
     let old_of_objects = &["collectible", "reward_on", "interaction_distance"];
     Parts {

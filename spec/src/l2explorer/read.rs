@@ -8,10 +8,11 @@ use serde_json::{Map, Value as Json, json};
 use super::lenient::{drop_decimal_point, stimulus, word};
 use super::mend::Entry;
 use super::{ASSUMED_SPEED, PARTS, Part, black_is_chosen};
-use crate::document::{Document, MAX_VALUES, MAX_WORLD_VALUES, describe, escape};
+use crate::describe::{describe, escape};
+use crate::document::Document;
 use crate::error::{Listed, Problem, SpecError};
+use crate::limits::{MAX_VALUES, MAX_WORLD_VALUES};
 use crate::maps::MapLibrary;
-use crate::schema;
 use crate::warning::{Remarks, Warning};
 use crate::world::{MAX_OBJECTS, Object, World};
 
@@ -52,7 +53,7 @@ impl World {
             problem.pointer = as_spelled(original_pointer(&problem.pointer, &kept), &spelled);
             problem
         };
-        let Listed { problems, more } = schema::world().problems(&document.value);
+        let Listed { problems, more } = World::schema().problems(&document.value);
         let problems = problems.into_iter().map(original).collect();
         document.fail_on(Listed { problems, more })?;
         let mut world: Self = document.deserialize()?;
@@ -90,7 +91,7 @@ impl Object {
             Json::Object(map) => Json::Object(reader.object("", map)),
             other => other,
         };
-        document.check_schema(schema::object())?;
+        document.fail_on(Object::schema().problems(&document.value))?;
         let object = document.deserialize()?;
         Ok((object, document.warnings(reader.warnings)))
     }

@@ -10,8 +10,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use driftworld_text::check_name;
 use serde_json::{Map, Value as Json, json};
 
-use crate::document::{Document, MAX_SCENARIO_VALUES, describe, escape};
+use crate::describe::{describe, escape};
+use crate::document::Document;
 use crate::error::{MAX_PROBLEMS, Problem, SpecError, cut};
+use crate::limits::MAX_SCENARIO_VALUES;
 use crate::scenario::{Block, BlockKind, MAX_EXPERIENCES, Phase, Regime, Scenario, ScenarioForm, TaskLabel};
 use crate::warning::{Remarks, Warning};
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
 use super::{ASSUMED_SPEED, PARTS, Part, black_is_chosen, map_of, moves};
-use crate::document::describe;
+use crate::describe::describe;
 use crate::warning::Warning;
 use crate::world::{MotionModel, Object, World};
 

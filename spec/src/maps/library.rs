@@ -1,14 +1,17 @@
 //! [`MapLibrary`]: layouts read from files, in place of the built-in ones. Finding the files is the command line's job.
 
+use std::sync::LazyLock;
+
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::name;
-use crate::document::{Document, MAX_VALUES};
+use crate::document::Document;
 use crate::error::{Problem, SpecError};
-use crate::schema;
+use crate::limits::MAX_VALUES;
+use crate::schema::document::DocumentSchema;
 use crate::world::{Region, World};
 
 /// A maps file as its document has it.
@@ -33,6 +36,15 @@ pub(crate) struct MapsDocument {
     /// The layouts.
     #[schemars(length(min = 1, max = 100))]
     maps: Vec<MapLayout>,
+}
+
+impl MapsDocument {
+    /// The schema of a maps file.
+    pub(crate) fn schema() -> &'static DocumentSchema {
+        static SCHEMA: LazyLock<DocumentSchema> =
+            LazyLock::new(|| DocumentSchema::of::<MapsDocument>("maps", "Driftworld maps file"));
+        &SCHEMA
+    }
 }
 
 /// The unit of a maps file.
@@ -96,7 +108,7 @@ impl MapLibrary {
     /// ```
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
         let document = Document::parse(name, text, MAX_VALUES)?;
-        document.check_schema(schema::maps())?;
+        document.fail_on(MapsDocument::schema().problems(&document.value))?;
         let file: MapsDocument = document.deserialize()?;
         document.fail_on(problems(&file.maps))?;
         Ok(Self {

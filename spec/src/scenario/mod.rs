@@ -4,7 +4,7 @@ mod check;
 mod drift;
 mod regime;
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use driftworld_text::NAME_PATTERN;
 use schemars::JsonSchema;
@@ -13,11 +13,13 @@ use serde::{Deserialize, Serialize};
 pub use drift::{DriftSchedule, DriftSwitch, RegimeDrift};
 pub use regime::Regime;
 
-use crate::document::{Document, MAX_SCENARIO_VALUES};
+use crate::document::Document;
 use crate::error::SpecError;
+use crate::limits::MAX_SCENARIO_VALUES;
+use crate::schema::document::DocumentSchema;
 use crate::task::TaskSpec;
+use crate::version;
 use crate::version::SCENARIO_VERSION;
-use crate::{schema, version};
 
 /// The most experiences that one regime may hold.
 pub const MAX_EXPERIENCES: u32 = 10_000_000;
@@ -194,6 +196,13 @@ impl Block {
 }
 
 impl Scenario {
+    /// The schema of a scenario.
+    pub fn schema() -> &'static DocumentSchema {
+        static SCHEMA: LazyLock<DocumentSchema> =
+            LazyLock::new(|| DocumentSchema::of::<Scenario>("scenario", "Driftworld scenario"));
+        &SCHEMA
+    }
+
     /// A scenario of the current version that says nothing but its name and blocks.
     pub fn new(name: impl Into<String>, blocks: Vec<Block>) -> Self {
         Self {
@@ -241,7 +250,7 @@ impl Scenario {
     ) -> Result<Self, SpecError> {
         let mut document = Document::parse(name, text, MAX_SCENARIO_VALUES)?;
         document.upgrade(&version::SCENARIO)?;
-        document.check_schema(schema::scenario())?;
+        document.fail_on(Self::schema().problems(&document.value))?;
         let scenario: Self = document.deserialize()?;
         let mut problems = check::alone(&scenario);
         problems.extend(check::against_tasks(&scenario, task));

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::Color;
-use crate::document::describe;
+use crate::describe::describe;
 use crate::error::Problem;
 
 /// What messages call a colour.

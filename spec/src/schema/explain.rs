@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::advice;
 use super::wording::{code_of, either, expected};
-use crate::document::{describe, escape};
+use crate::describe::{describe, escape};
 use crate::error::{MAX_PROBLEMS, Problem};
 
 /// A problem, and how sure it is that nothing narrower can be said.

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use super::explain::{Explainer, Finding, missing_key};
 use super::wording::{article, both, either, object};
 use super::{advice, color};
-use crate::document::describe;
+use crate::describe::describe;
 use crate::error::{Problem, nearest};
 
 /// The definitions that messages call by a name of their own rather than by what they consist of.

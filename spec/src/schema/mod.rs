@@ -3,234 +3,25 @@
 mod advice;
 mod color;
 mod counted;
+pub(crate) mod document;
 mod explain;
 mod forms;
+pub(crate) mod part;
 mod wording;
 
-use std::collections::BTreeSet;
-use std::sync::{LazyLock, OnceLock};
+pub use document::DocumentSchema;
 
-use jsonschema::Validator;
-use schemars::generate::SchemaSettings;
-use schemars::{JsonSchema, Schema};
-use serde_json::{Value, json};
-
-use crate::error::Listed;
 use crate::maps::MapsDocument;
 use crate::scenario::Scenario;
 use crate::task::TaskDocument;
-use crate::world::{Object, World};
-use counted::{Counted, Counting, Tally};
-
-/// One document type's schema, ready to check values.
-pub struct DocumentSchema {
-    json: Value,
-    validator: Validator,
-    /// The same for values that count their errors: only for documents that have some.
-    listing: OnceLock<Validator<Counting>>,
-}
-
-impl DocumentSchema {
-    pub(crate) fn new(json: Value) -> Self {
-        let validator = jsonschema::validator_for(&json).expect("the schema is made from our own types and is tested");
-        Self {
-            json,
-            validator,
-            listing: OnceLock::new(),
-        }
-    }
-
-    /// The schema as JSON.
-    pub fn json(&self) -> &Value {
-        &self.json
-    }
-
-    /// Whether the schema allows a value.
-    pub(crate) fn allows(&self, value: &Value) -> bool {
-        self.validator.is_valid(value)
-    }
-
-    /// What in a value the schema does not allow; of any one list or object about [`MAX_PROBLEMS`](crate::MAX_PROBLEMS)
-    /// of it.
-    pub(crate) fn problems(&self, value: &Value) -> Listed {
-        // Nearly every document is sound, and the short answer is much faster than the list.
-        if self.allows(value) {
-            return Listed::default();
-        }
-        let listing = self.listing.get_or_init(|| {
-            jsonschema::options_for::<Counting>()
-                .build(&self.json)
-                .expect("the other validator was built of it")
-        });
-        let tally = Tally::default();
-        let problems = explain::problems(&self.json, value, listing.iter_errors(Counted::new(value, &tally)));
-        Listed {
-            problems,
-            more: tally.has_stopped(),
-        }
-    }
-}
-
-/// The schema of a Rust type under a title and an identifier of its own.
-pub(crate) fn of_type<T: JsonSchema>(id: &str, title: &str) -> Value {
-    let schema: Schema = SchemaSettings::draft2020_12()
-        .into_generator()
-        .into_root_schema_for::<T>();
-    let mut json = Value::from(schema);
-    json["$id"] = json!(format!("urn:driftworld:{id}"));
-    json["title"] = json!(title);
-    drop_unused(&mut json);
-    describe_forms(&mut json);
-    put_examples_last(&mut json);
-    for (_, definition) in json["$defs"].as_object_mut().into_iter().flatten() {
-        put_examples_last(definition);
-    }
-    json
-}
-
-/// The examples that a type has beside its declaration stand behind all else.
-fn put_examples_last(part: &mut Value) {
-    if let Some(map) = part.as_object_mut()
-        && let Some(examples) = map.shift_remove("examples")
-    {
-        map.insert("examples".to_owned(), examples);
-    }
-}
-
-/// What a part of a schema refers to, or the part itself.
-pub(crate) fn resolve<'a>(schema: &'a Value, part: &'a Value) -> &'a Value {
-    match part.get("$ref").and_then(Value::as_str) {
-        Some(reference) => schema.pointer(reference.trim_start_matches('#')).unwrap_or(part),
-        None => part,
-    }
-}
-
-/// The part of a schema that a pointer into the values of another part of it leads to; any number, or `*`, is that of an
-/// item.
-pub(crate) fn at<'a>(schema: &'a Value, part: &'a Value, pointer: &str) -> Option<&'a Value> {
-    property(schema, part, pointer).map(|property| whole(schema, property))
-}
-
-/// The same as it is declared there, with its default, and references not resolved.
-pub(crate) fn property<'a>(schema: &'a Value, part: &'a Value, pointer: &str) -> Option<&'a Value> {
-    pointer.split('/').skip(1).try_fold(part, |part, key| {
-        let part = whole(schema, part);
-        let of_key = |part: &'a Value| part.get("properties")?.get(key);
-        let forms = part["oneOf"].as_array().into_iter().flatten();
-        let own = of_key(part).or_else(|| part.get("items"));
-        own.or_else(|| forms.filter_map(of_key).next())
-    })
-}
-
-/// A part that may be absent without its `null`, references resolved.
-fn whole<'a>(schema: &'a Value, part: &'a Value) -> &'a Value {
-    let part = resolve(schema, part);
-    match part["anyOf"].as_array().map(Vec::as_slice) {
-        Some([only, null]) if null["type"] == "null" => resolve(schema, only),
-        _ => part,
-    }
-}
-
-/// Takes out definitions that nothing refers to: those that templates have opened and written out.
-fn drop_unused(schema: &mut Value) {
-    let mut used = BTreeSet::new();
-    let mut next = schema.clone();
-    if let Some(map) = next.as_object_mut() {
-        map.remove("$defs");
-    }
-    let mut open = vec![next];
-    while let Some(part) = open.pop() {
-        for name in references(&part) {
-            if used.insert(name.clone()) {
-                open.push(schema["$defs"][&name].clone());
-            }
-        }
-    }
-    if let Some(definitions) = schema.get_mut("$defs").and_then(Value::as_object_mut) {
-        definitions.retain(|name, _| used.contains(name));
-    }
-}
-
-/// The definitions that a part of a schema refers to.
-fn references(part: &Value) -> Vec<String> {
-    match part {
-        Value::Object(map) => {
-            let own = map
-                .get("$ref")
-                .and_then(Value::as_str)
-                .and_then(|text| text.strip_prefix("#/$defs/"));
-            own.map(str::to_owned)
-                .into_iter()
-                .chain(map.values().flat_map(references))
-                .collect()
-        }
-        Value::Array(items) => items.iter().flat_map(references).collect(),
-        _ => Vec::new(),
-    }
-}
-
-/// A form that is one key says what it is beside the form; editors look for it beside the key.
-fn describe_forms(part: &mut Value) {
-    match part {
-        Value::Object(map) => {
-            let said = map.get("description").cloned();
-            if let (Some(said), Some(properties)) = (said, map.get_mut("properties").and_then(Value::as_object_mut))
-                && properties.len() == 1
-            {
-                for (_, property) in properties {
-                    if let Some(property) = property.as_object_mut() {
-                        property.entry("description").or_insert_with(|| said.clone());
-                    }
-                }
-            }
-            map.values_mut().for_each(describe_forms);
-        }
-        Value::Array(items) => items.iter_mut().for_each(describe_forms),
-        _ => {}
-    }
-}
-
-/// The schema of [`World`].
-pub fn world() -> &'static DocumentSchema {
-    static SCHEMA: LazyLock<DocumentSchema> =
-        LazyLock::new(|| DocumentSchema::new(of_type::<World>("world", "Driftworld world")));
-    &SCHEMA
-}
-
-/// The schema of one [`Object`], which a world may be given while it runs.
-pub(crate) fn object() -> &'static DocumentSchema {
-    static SCHEMA: LazyLock<DocumentSchema> =
-        LazyLock::new(|| DocumentSchema::new(of_type::<Object>("object", "Driftworld object")));
-    &SCHEMA
-}
-
-/// The schema of [`TaskSpec`](crate::TaskSpec).
-pub fn task() -> &'static DocumentSchema {
-    static SCHEMA: LazyLock<DocumentSchema> =
-        LazyLock::new(|| DocumentSchema::new(of_type::<TaskDocument>("task", "Driftworld task spec")));
-    &SCHEMA
-}
-
-/// The schema of [`Scenario`].
-pub fn scenario() -> &'static DocumentSchema {
-    static SCHEMA: LazyLock<DocumentSchema> =
-        LazyLock::new(|| DocumentSchema::new(of_type::<Scenario>("scenario", "Driftworld scenario")));
-    &SCHEMA
-}
-
-/// The schema of a maps file, as [`MapLibrary`](crate::maps::MapLibrary) reads it.
-pub fn maps() -> &'static DocumentSchema {
-    static SCHEMA: LazyLock<DocumentSchema> =
-        LazyLock::new(|| DocumentSchema::new(of_type::<MapsDocument>("maps", "Driftworld maps file")));
-    &SCHEMA
-}
+use crate::world::World;
 
 /// The schemas of all document types with their file names.
 pub fn all() -> [(&'static str, &'static DocumentSchema); 4] {
     [
-        ("world.schema.json", world()),
-        ("task.schema.json", task()),
-        ("scenario.schema.json", scenario()),
-        ("maps.schema.json", maps()),
+        ("world.schema.json", World::schema()),
+        ("task.schema.json", TaskDocument::schema()),
+        ("scenario.schema.json", Scenario::schema()),
+        ("maps.schema.json", MapsDocument::schema()),
     ]
 }

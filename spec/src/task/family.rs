@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::TaskDocument;
 use super::parameter::{Parameter, Role};
 use super::variant::VariantSpec;
-use crate::document::escape;
+use crate::describe::escape;
 use crate::error::Problem;
 use crate::names;
 use crate::value::{ParameterType, Value};

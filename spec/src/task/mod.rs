@@ -10,7 +10,7 @@ mod require;
 mod template;
 mod variant;
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use driftworld_text::{IDENTIFIER_PATTERN, NAME_PATTERN};
 use indexmap::IndexMap;
@@ -28,11 +28,13 @@ pub use variant::{DEFAULT_VARIANT, Resolved, Variant, VariantSpec};
 
 use crate::classes::Classes;
 use crate::distribution::Number;
-use crate::document::{Document, MAX_VALUES};
+use crate::document::Document;
 use crate::error::{Listed, Problem, SpecError};
+use crate::limits::MAX_VALUES;
+use crate::schema::document::DocumentSchema;
 use crate::value::Value;
+use crate::version;
 use crate::world::{Object, World};
-use crate::{schema, version};
 
 /// A task spec as its document has it, before anything but the schema has been checked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -82,6 +84,15 @@ pub(crate) struct TaskDocument {
     #[serde(default)]
     #[schemars(schema_with = "variants_schema")]
     pub(crate) variants: IndexMap<String, VariantSpec>,
+}
+
+impl TaskDocument {
+    /// The schema of a task spec.
+    pub(crate) fn schema() -> &'static DocumentSchema {
+        static SCHEMA: LazyLock<DocumentSchema> =
+            LazyLock::new(|| DocumentSchema::of::<TaskDocument>("task", "Driftworld task spec"));
+        &SCHEMA
+    }
 }
 
 fn parameters_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
@@ -175,7 +186,7 @@ impl TaskSpec {
     pub fn from_json_with(name: &str, text: &str, classes: Option<&Classes>) -> Result<Arc<Self>, SpecError> {
         let mut document = Document::parse(name, text, MAX_VALUES)?;
         document.upgrade(&version::TASK)?;
-        let refused = schema::task().problems(&document.value);
+        let refused = TaskDocument::schema().problems(&document.value);
         if !refused.problems.is_empty() {
             // What else is wrong is looked for in a copy, of which a large document takes too much.
             let Listed { mut problems, more } = refused;

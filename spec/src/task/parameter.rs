@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::compare::Compare;
 use super::template::Source;
-use crate::document::escape;
+use crate::describe::escape;
 use crate::element::Element;
 use crate::error::{Problem, cut};
 use crate::value::{ParameterType, Value};

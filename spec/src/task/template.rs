@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value as Json, json};
 
 use crate::distribution::{Distribution, Number, ParamRef};
-use crate::schema;
+use crate::schema::document::of_type;
+use crate::schema::part;
 use crate::value::{ParameterType, Value};
 use crate::world::{FieldPlace, Object, Place, World, places_of};
 
@@ -101,7 +102,7 @@ fn walk(json: &Json, pointer: &mut String, found: &mut Vec<Opening>) {
     let length = pointer.len();
     let mut visit = |key: &str, child: &Json| {
         pointer.push('/');
-        pointer.push_str(&crate::document::escape(key));
+        pointer.push_str(&crate::describe::escape(key));
         walk(child, pointer, found);
         pointer.truncate(length);
     };
@@ -118,14 +119,14 @@ fn walk(json: &Json, pointer: &mut String, found: &mut Vec<Opening>) {
 impl Template<World> {
     /// The hole of a world's template at a pointer, if a world can vary there.
     pub(crate) fn hole(opening: &Opening) -> Option<Hole<World>> {
-        hole(opening, schema::world().json())
+        hole(opening, World::schema().json())
     }
 }
 
 impl Template<Object> {
     /// The hole of an object's template at a pointer, if an object can vary there.
     pub(crate) fn hole(opening: &Opening) -> Option<Hole<Object>> {
-        hole(opening, &schema::world().json()["$defs"]["Object"])
+        hole(opening, &World::schema().json()["$defs"]["Object"])
     }
 }
 
@@ -146,7 +147,7 @@ fn hole<T: Place>((pointer, source): &Opening, schema: &Json) -> Option<Hole<T>>
 
 /// The least and greatest number that the schema of a part of a world allows at a pointer into it.
 fn range_at(part: &Json, pointer: &str) -> [f64; 2] {
-    let Some(mut leaf) = schema::at(schema::world().json(), part, pointer) else {
+    let Some(mut leaf) = part::at(World::schema().json(), part, pointer) else {
         return [f64::MIN, f64::MAX];
     };
     if let Some(items) = leaf.get("items") {
@@ -165,7 +166,7 @@ struct TemplateSchemas {
 }
 
 static SCHEMAS: LazyLock<TemplateSchemas> = LazyLock::new(|| {
-    let world_schema = schema::of_type::<World>("world-template", "World template");
+    let world_schema = of_type::<World>("world-template", "World template");
     let mut object = inline(&world_schema, &world_schema["$defs"]["Object"]);
     open(&mut object, &places_of::<Object>());
     let mut world = inline(
@@ -193,7 +194,7 @@ static SCHEMAS: LazyLock<TemplateSchemas> = LazyLock::new(|| {
 /// A copy of a schema in which references to what has parts are replaced by what they refer to, so that it can be
 /// changed.
 fn inline(schema: &Json, node: &Json) -> Json {
-    let target = schema::resolve(schema, node);
+    let target = part::resolve(schema, node);
     let is_part = |form: &Json| form.get("properties").is_some() || form["type"] == "array";
     let has_parts = is_part(target)
         || target["oneOf"]

@@ -15,8 +15,8 @@ use super::family::{Sweep, Variants};
 use super::parameter::{Parameter, Role};
 use super::require::Requirement;
 use super::template::Source;
+use crate::describe::escape;
 use crate::distribution::{Distribution, Number, ParamRef};
-use crate::document::escape;
 use crate::error::{MAX_PROBLEMS, Problem, SpecError, first_of, nearest};
 use crate::value::Value;
 

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::StateFeature;
 use super::defaults::{is_classic, is_one, is_true};
-use super::fields::{Field, FieldPlace, Place, fields};
+use super::fields::{Field, FieldPlace, Place, fields, word};
 use crate::value::{ParameterType, Value};
 
 fields! {
@@ -203,3 +203,6 @@ impl Place for ActionSpace {
         f64::list(format!("{pointer}/discrete/*/*"), field, false, found);
     }
 }
+
+word!(ActionModel);
+word!(Modality);

@@ -1,18 +1,28 @@
 //! One object without a world: read from a text, or built in code and checked by the same rules. Reading worlds is in `mod.rs`.
 
+use std::sync::LazyLock;
+
 use super::Object;
-use crate::document::{Document, MAX_VALUES};
+use crate::document::Document;
 use crate::error::SpecError;
-use crate::schema;
+use crate::limits::MAX_VALUES;
+use crate::schema::document::DocumentSchema;
 
 impl Object {
+    /// The schema of one object, which a world may be given while it runs.
+    pub(crate) fn schema() -> &'static DocumentSchema {
+        static SCHEMA: LazyLock<DocumentSchema> =
+            LazyLock::new(|| DocumentSchema::of::<Object>("object", "Driftworld object"));
+        &SCHEMA
+    }
+
     /// Reads one object, strictly. `name` is what messages call the text.
     ///
     /// # Errors
     /// [`SpecError`] with every problem of the text at once, sorted by place.
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
         let document = Document::parse(name, text, MAX_VALUES)?;
-        document.check_schema(schema::object())?;
+        document.fail_on(Object::schema().problems(&document.value))?;
         document.deserialize()
     }
 
@@ -32,7 +42,8 @@ impl Object {
     /// ```
     pub fn check(&self) -> Result<(), SpecError> {
         let text = serde_json::to_string(self).expect("an object has string keys only, which always serialise");
-        Document::parse("object", &text, MAX_VALUES)?.check_schema(schema::object())
+        let document = Document::parse("object", &text, MAX_VALUES)?;
+        document.fail_on(Object::schema().problems(&document.value))
     }
 }
 

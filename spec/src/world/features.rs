@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::fields::word;
+
 /// One named part of the state vector.
 ///
 /// "Ahead" and "right" are the agent's own axes; a *target* is an object that pays a positive reward now, its turn in a sequence included; a *goal* is an object
@@ -48,3 +50,5 @@ impl StateFeature {
         }
     }
 }
+
+word!(StateFeature);

@@ -11,6 +11,9 @@ mod places;
 mod progress;
 mod remarks;
 mod rules;
+mod table;
+
+use std::sync::LazyLock;
 
 use std::fmt::Write;
 
@@ -21,18 +24,21 @@ use sha2::{Digest, Sha256};
 pub use agent::{ActionModel, ActionSpace, AgentParams, Modality};
 pub use environment::{Enclosure, EnvironmentParams, Region, Wall};
 pub use features::StateFeature;
-use fields::fields;
-pub use fields::{Compared, Comparison, Field, FieldPlace, SameTexts};
+pub use fields::{Compared, Comparison, Field, FieldPlace};
 pub(crate) use fields::{Fields, Place, places_of};
+use fields::{fields, word};
 pub use object::{Model, MotionModel, Object, Pushable, Respawn, Stimulus};
 pub use progress::{LastEvent, ObjectProgress, Origin, Progress, RailsProgress};
 pub use rules::{EndCondition, Rules, Shaping};
+pub use table::SameTexts;
 
 use crate::classes::Classes;
-use crate::document::{Document, MAX_WORLD_VALUES};
+use crate::document::Document;
 use crate::error::{Problem, SpecError};
+use crate::limits::MAX_WORLD_VALUES;
+use crate::schema::document::DocumentSchema;
+use crate::version;
 use crate::version::WORLD_VERSION;
-use crate::{schema, version};
 use defaults::is_default;
 
 /// The most objects that one world may hold.
@@ -145,6 +151,13 @@ fields! {
 }
 
 impl World {
+    /// The schema of a world.
+    pub fn schema() -> &'static DocumentSchema {
+        static SCHEMA: LazyLock<DocumentSchema> =
+            LazyLock::new(|| DocumentSchema::of::<World>("world", "Driftworld world"));
+        &SCHEMA
+    }
+
     /// Reads a world, strictly. `name` is what messages call the document, usually its path.
     ///
     /// # Errors
@@ -160,7 +173,7 @@ impl World {
     pub fn from_json_with(name: &str, text: &str, classes: Option<&Classes>) -> Result<Self, SpecError> {
         let mut document = Document::parse(name, text, MAX_WORLD_VALUES)?;
         document.upgrade(&version::WORLD)?;
-        document.check_schema(schema::world())?;
+        document.fail_on(World::schema().problems(&document.value))?;
         let world: Self = document.deserialize()?;
         let mut problems = world.problems();
         problems.extend(classes.into_iter().flat_map(|classes| world.unknown_classes(classes)));
@@ -217,6 +230,14 @@ impl World {
     /// Sets a limit of steps, 0 for never, in place of all limits that the world has.
     pub fn limit_steps(&mut self, max_steps: u32) {
         (self.max_steps, self.max_seconds) = (max_steps, 0.0);
+    }
+
+    /// Every object whose class is none of these.
+    pub fn unknown_classes(&self, classes: &Classes) -> Vec<Problem> {
+        let objects = self.objects.iter().enumerate();
+        objects
+            .filter_map(|(index, object)| classes.problem(format!("/objects/{index}/class"), &object.class))
+            .collect()
     }
 
     /// What the schema cannot say: checks that look at several values at once.
@@ -294,3 +315,5 @@ fn duplicate_names(objects: &[Object]) -> impl Iterator<Item = Problem> {
         })
     })
 }
+
+word!(GameMode);

@@ -7,8 +7,9 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::MAX_SEED;
 use super::defaults::{half, is_default, is_one, one, yes};
-use super::fields::fields;
+use super::fields::{Place, fields, word};
 use crate::Color;
+use crate::value::{ParameterType, Value};
 
 fields! {
     /// An object: its look, its place, what it is worth.
@@ -266,5 +267,16 @@ fields! {
         #[serde(default = "half")]
         #[schemars(range(min = 0.0, max = 10.0))]
         pub friction: f64 => Field::ours(AsPart),
+    }
+}
+
+word!(Stimulus);
+word!(MotionModel);
+
+impl Place for Model {
+    const KIND: Option<ParameterType> = Some(ParameterType::String);
+
+    fn from_value(value: &Value) -> Option<Self> {
+        String::from_value(value).map(Self)
     }
 }

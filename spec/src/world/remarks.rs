@@ -2,8 +2,9 @@
 //! one is said by the schema and in `mod.rs`.
 
 use super::{MotionModel, Object, World};
-use crate::document::{Document, MAX_WORLD_VALUES};
+use crate::document::Document;
 use crate::error::SpecError;
+use crate::limits::MAX_WORLD_VALUES;
 use crate::warning::{Remarks, Warning};
 
 impl Object {

@@ -8,8 +8,8 @@ use super::super::template::Source;
 use super::super::{Count, PlacedGroup, variant};
 use super::Check;
 use crate::MAX_OBJECTS;
+use crate::describe::{describe, escape, plain_number};
 use crate::distribution::{Distribution, Number};
-use crate::document::{describe, escape, plain_number};
 use crate::error::{Problem, first_of, nearest};
 use crate::value::{ParameterType, Value};
 

@@ -8,9 +8,8 @@ use serde_json::{Value as Json, json};
 use super::super::TaskDocument;
 use super::compile;
 use crate::classes::Classes;
-use crate::document::escape;
+use crate::describe::escape;
 use crate::error::Problem;
-use crate::schema;
 
 /// Parts of a document that something is wrong with already.
 #[derive(Clone, Debug, Default)]
@@ -29,7 +28,7 @@ pub(in crate::task) fn problems(document: &Json, refused: Vec<Problem>, classes:
         silent: Vec::new(),
     };
     let is_known = refused.iter().all(|problem| rest.leave_out(problem).is_some());
-    if !is_known || !schema::task().allows(&rest.json) {
+    if !is_known || !TaskDocument::schema().allows(&rest.json) {
         return refused;
     }
     let Ok(document) = serde_json::from_value::<TaskDocument>(rest.json) else {

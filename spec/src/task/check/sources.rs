@@ -4,8 +4,8 @@ use super::super::parameter::{Domain, Parameter, Role};
 use super::super::template::Source;
 use super::super::variant;
 use super::Check;
+use crate::describe::plain_number;
 use crate::distribution::{Distribution, Number, ParamRef};
-use crate::document::plain_number;
 use crate::error::{Problem, first_of, nearest};
 use crate::value::{ParameterType, Value};
 

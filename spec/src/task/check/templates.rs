@@ -4,7 +4,7 @@ use serde_json::Value as Json;
 
 use super::super::template::{Hole, Opening, Template, openings};
 use super::Check;
-use crate::document::{describe, pointer_of};
+use crate::describe::{describe, pointer_of};
 use crate::error::Problem;
 use crate::value::Value;
 use crate::world::{Object, World};

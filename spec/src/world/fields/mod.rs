@@ -6,14 +6,11 @@
 mod comparison;
 mod place;
 
-use std::sync::LazyLock;
-
 use serde::Serialize;
 
-use super::{Object, World};
 use crate::value::{ParameterType, Value};
 pub use comparison::Comparison;
-pub(crate) use place::Place;
+pub(crate) use place::{Place, word};
 
 /// What the table says of a field.
 #[derive(Clone, Copy, Debug)]
@@ -214,61 +211,9 @@ pub struct FieldPlace {
     pub is_key: bool,
 }
 
-impl World {
-    /// Every place of a world, in the order of the table; those of its objects once.
-    ///
-    /// # Example
-    /// ```
-    /// use driftworld_spec::{ParameterType, World};
-    /// let heading = World::places().iter().find(|place| place.pointer == "/objects/*/heading").expect("objects have one");
-    /// assert_eq!((heading.kind, heading.field.unit), (Some(ParameterType::Heading), Some("degrees")));
-    /// ```
-    pub fn places() -> &'static [FieldPlace] {
-        static PLACES: LazyLock<Vec<FieldPlace>> = LazyLock::new(places_of::<World>);
-        &PLACES
-    }
-}
-
 /// Every place of a part of a world.
 pub(crate) fn places_of<T: Fields>() -> Vec<FieldPlace> {
     let mut found = Vec::new();
     T::list_inside("", &Field::ours(Compared::AsPart), &mut found);
     found
-}
-
-/// The fields of a world or an object that are compared by whether they are the same: for each comparison a text, equal
-/// for equal fields.
-#[derive(Debug, Default)]
-pub struct SameTexts([Vec<u8>; Comparison::ALL.len()]);
-
-impl SameTexts {
-    /// The texts of a world, but for its objects, in place of those before.
-    pub fn read_world(&mut self, world: &World) {
-        self.0.iter_mut().for_each(Vec::clear);
-        self.add(world);
-        self.add(&world.environment_params);
-        self.add(&world.agent_params);
-        self.add(&world.rules);
-    }
-
-    /// The texts of an object in place of those before.
-    pub fn read_object(&mut self, object: &Object) {
-        self.0.iter_mut().for_each(Vec::clear);
-        self.add(object);
-    }
-
-    fn add<T: Fields>(&mut self, part: &T) {
-        for row in T::ROWS {
-            if let Compared::Same(comparison) = row.field.compared {
-                let text = &mut self.0[comparison as usize];
-                (row.write)(part, text);
-                text.push(b'\n');
-            }
-        }
-    }
-
-    /// The text of a comparison.
-    pub fn of(&self, comparison: Comparison) -> &[u8] {
-        &self.0[comparison as usize]
-    }
 }

@@ -4,7 +4,6 @@
 use super::{Field, FieldPlace, Fields};
 use crate::color::Color;
 use crate::value::{ParameterType, Value};
-use crate::world::{ActionModel, GameMode, Modality, Model, MotionModel, StateFeature, Stimulus};
 
 /// What stands at a place of a world: it can be set from the value of a parameter, or what is in it can.
 pub(crate) trait Place: Sized {
@@ -167,6 +166,20 @@ macro_rules! leaf {
     };
 }
 
+/// Lets a type that documents write as a word be set by a text.
+macro_rules! word {
+    ($type:ty) => {
+        impl $crate::world::fields::Place for $type {
+            const KIND: Option<$crate::value::ParameterType> = Some($crate::value::ParameterType::String);
+
+            fn from_value(value: &$crate::value::Value) -> Option<Self> {
+                serde_json::from_value(value.to_json()).ok()
+            }
+        }
+    };
+}
+pub(crate) use word;
+
 leaf!(f64, Number, Value::as_number);
 leaf!(u8, Integer, whole);
 leaf!(u32, Integer, whole);
@@ -174,13 +187,6 @@ leaf!(u64, Integer, whole);
 leaf!(bool, Boolean, truth);
 leaf!(Color, Color, color);
 leaf!(String, String, text);
-leaf!(Model, String, |value| text(value).map(Model));
-leaf!(GameMode, String, word);
-leaf!(ActionModel, String, word);
-leaf!(Modality, String, word);
-leaf!(StateFeature, String, word);
-leaf!(Stimulus, String, word);
-leaf!(MotionModel, String, word);
 
 fn whole<T: TryFrom<i64>>(value: &Value) -> Option<T> {
     value.as_integer().and_then(|whole| T::try_from(whole).ok())
@@ -205,8 +211,4 @@ fn text(value: &Value) -> Option<String> {
         Value::Text(text) if (1..=100).contains(&text.chars().count()) => Some(text.clone()),
         _ => None,
     }
-}
-
-fn word<T: serde::de::DeserializeOwned>(value: &Value) -> Option<T> {
-    serde_json::from_value(value.to_json()).ok()
 }

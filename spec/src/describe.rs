@@ -1,0 +1,66 @@
+//! Values, numbers and places as messages show them.
+
+use serde_json::Value;
+
+/// A value in the few words that a message has room for.
+pub(crate) fn describe(value: &Value) -> String {
+    match value {
+        Value::String(text) if text.chars().count() > 40 => {
+            format!("{:?}…", text.chars().take(40).collect::<String>())
+        }
+        Value::Array(items) if items.len() > 4 => format!("a list of {} values", items.len()),
+        Value::Object(map) if map.len() > 2 => format!("an object with {} keys", map.len()),
+        Value::Object(_) if !fits(value, &mut 60) => "an object".to_owned(),
+        Value::Array(_) if !fits(value, &mut 60) => "a list".to_owned(),
+        other => other.to_string(),
+    }
+}
+
+/// Whether a value takes at most so many characters; whatever it holds beyond them is not looked at.
+fn fits(value: &Value, room: &mut usize) -> bool {
+    let mut take = |characters: usize| {
+        let fits = characters <= *room;
+        *room = room.saturating_sub(characters);
+        fits
+    };
+    match value {
+        Value::Array(items) => take(2 + items.len().saturating_sub(1)) && items.iter().all(|item| fits(item, room)),
+        Value::Object(map) => {
+            let commas = map.len().saturating_sub(1);
+            take(2 + commas + map.len()) && map.iter().all(|(key, value)| fits_text(key, room) && fits(value, room))
+        }
+        Value::String(text) => fits_text(text, room),
+        other => take(other.to_string().len()),
+    }
+}
+
+fn fits_text(text: &str, room: &mut usize) -> bool {
+    // Escapes make it longer than it is.
+    let fits = text.len() <= 4 * *room && Value::from(text).to_string().chars().count() <= *room;
+    *room = room.saturating_sub(text.chars().count() + 2);
+    fits
+}
+
+/// A number as people read it: very large and very small ones with an exponent.
+pub(crate) fn plain_number(number: f64) -> String {
+    if number != 0.0 && !(1e-6..1e15).contains(&number.abs()) {
+        format!("{number:e}")
+    } else {
+        number.to_string()
+    }
+}
+
+/// Escapes a key for a JSON pointer.
+pub(crate) fn escape(key: &str) -> String {
+    key.replace('~', "~0").replace('/', "~1")
+}
+
+pub(crate) fn pointer_of(path: &serde_path_to_error::Path) -> String {
+    use serde_path_to_error::Segment;
+    path.iter().fold(String::new(), |pointer, segment| match segment {
+        Segment::Seq { index } => format!("{pointer}/{index}"),
+        Segment::Map { key } => format!("{pointer}/{}", escape(key)),
+        Segment::Enum { variant } => format!("{pointer}/{}", escape(variant)),
+        Segment::Unknown => pointer,
+    })
+}

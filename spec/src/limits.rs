@@ -1,0 +1,20 @@
+//! How large the documents are that are read. Limits of what they hold stand beside it.
+
+/// The longest text that is read, in bytes.
+pub const MAX_BYTES: usize = 64 << 20;
+
+/// The most values of a world, ours or the original's: numbers, texts, lists, objects and the like.
+pub const MAX_WORLD_VALUES: usize = 4_000_000;
+
+/// The most values of a scenario, ours or the original's: what 100,000 blocks of four regimes have.
+pub const MAX_SCENARIO_VALUES: usize = 2_000_000;
+
+/// The most values of a task spec, a maps file or an object alone.
+pub const MAX_VALUES: usize = 1_000_000;
+
+/// The longest key, in bytes. Longer ones would stand in every pointer to what is below them.
+pub const MAX_KEY_BYTES: usize = 400;
+
+/// How deep lists and objects may stand in each other: `serde_json`'s limit, which keeps a hostile text from taking the
+/// whole stack.
+pub const MAX_DEPTH: usize = 127;
