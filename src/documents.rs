@@ -168,8 +168,10 @@ pub fn check(
             Err(error) => Some(error),
         },
         Kind::World => told(
-            World::from_json_with(name, text, Some(classes))
-                .and_then(|world| world.remarks(name, text).map(|odd| (world, odd))),
+            World::from_json_with(name, text, Some(classes)).map(|world| {
+                let odd = world.remarks(name, text);
+                (world, odd)
+            }),
             &mut warnings,
         ),
         Kind::Maps => MapLibrary::from_json(name, text).err(),

@@ -184,6 +184,17 @@ impl SpecError {
         }
     }
 
+    /// What is wrong with a document or a value, sorted by place.
+    pub(crate) fn of_document(name: &str, found: impl Into<Listed>) -> Self {
+        let Listed { mut problems, more } = found.into();
+        let more = more || problems.len() > MAX_PROBLEMS;
+        problems.sort_by(|a, b| (a.line, a.column, &a.pointer).cmp(&(b.line, b.column, &b.pointer)));
+        problems.dedup();
+        problems.truncate(MAX_PROBLEMS);
+        let name = name.to_owned();
+        Self::Document { name, problems, more }
+    }
+
     /// Whether a document has more problems than are listed.
     pub fn has_more(&self) -> bool {
         matches!(self, Self::Document { more: true, .. })

@@ -5,7 +5,7 @@ use std::fmt;
 
 use driftworld_text::one_line;
 
-use crate::document::Document;
+use crate::document::places_in;
 use crate::error::MAX_PROBLEMS;
 
 /// Something that did not pass between a file of the original and a world as it stands.
@@ -51,31 +51,22 @@ impl Remarks {
     }
 }
 
-impl Document<'_> {
-    /// What the reader remarked, in the order of the text.
-    pub(crate) fn warnings(&self, remarks: Remarks) -> Vec<Warning> {
-        let Remarks { first: remarks, more } = remarks;
-        let pointers: Vec<&str> = remarks.iter().map(|(pointer, _)| pointer.as_str()).collect();
-        let places = self.places(&pointers);
-        let warning = |((pointer, text), (line, column))| {
-            let name = self.name.to_owned();
-            Warning {
-                name,
-                pointer,
-                line,
-                column,
-                text,
-            }
+impl Remarks {
+    /// The remarks in the order of the text that they are about; `name` is what messages call it.
+    pub(crate) fn in_text(self, name: &str, text: &str) -> Vec<Warning> {
+        let pointers: Vec<&str> = self.first.iter().map(|(pointer, _)| pointer.as_str()).collect();
+        let places = places_in(text, &pointers);
+        let warning = |((pointer, text), (line, column))| Warning {
+            name: name.to_owned(),
+            pointer,
+            line,
+            column,
+            text,
         };
-        let mut warnings: Vec<Warning> = remarks.into_iter().zip(places).map(warning).collect();
+        let mut warnings: Vec<Warning> = self.first.into_iter().zip(places).map(warning).collect();
         warnings.sort_by_key(|warning| (warning.line, warning.column));
-        warnings.extend((more > 0).then(|| Warning {
-            name: self.name.to_owned(),
-            pointer: String::new(),
-            line: 0,
-            column: 0,
-            text: format!("there are {more} more remarks like these"),
-        }));
+        let more = format!("there are {} more remarks like these", self.more);
+        warnings.extend((self.more > 0).then(|| warning(((String::new(), more), (0, 0)))));
         warnings
     }
 }

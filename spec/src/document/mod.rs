@@ -46,8 +46,7 @@ impl<'a> Document<'a> {
     }
 
     fn parse_with_repeats(name: &'a str, text: &'a str, most: usize) -> Result<(Self, Vec<String>), SpecError> {
-        // A byte order mark, which some editors put in front, is no part of the document.
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let text = without_mark(text);
         if text.len() > MAX_BYTES {
             return Err(SpecError::TooLarge {
                 name: name.to_owned(),
@@ -130,25 +129,24 @@ impl<'a> Document<'a> {
         for (problem, place) in problems.iter_mut().zip(places) {
             (problem.line, problem.column) = place;
         }
-        problems.sort_by(|a, b| (a.line, a.column, &a.pointer).cmp(&(b.line, b.column, &b.pointer)));
-        problems.dedup();
-        problems.truncate(MAX_PROBLEMS);
-        SpecError::Document {
-            name: self.name.to_owned(),
-            problems,
-            more,
-        }
-    }
-
-    /// Lines and columns of the values of pointers, or of their nearest parents that are there.
-    pub(crate) fn places(&self, pointers: &[&str]) -> Vec<(usize, usize)> {
-        let wanted = pointers.iter().map(|pointer| Wanted { pointer, at_key: false });
-        self.found(&wanted.collect::<Vec<_>>())
+        SpecError::of_document(self.name, Listed { problems, more })
     }
 
     fn found(&self, wanted: &[Wanted]) -> Vec<(usize, usize)> {
         lines_and_columns(self.text, &places::offsets(self.text, wanted))
     }
+}
+
+/// Lines and columns of the values of pointers into a JSON text, or of their nearest parents that are there.
+pub(crate) fn places_in(text: &str, pointers: &[&str]) -> Vec<(usize, usize)> {
+    let text = without_mark(text);
+    let wanted = pointers.iter().map(|pointer| Wanted { pointer, at_key: false });
+    lines_and_columns(text, &places::offsets(text, &wanted.collect::<Vec<_>>()))
+}
+
+/// A text without the byte order mark that some editors put in front: it is no part of the document.
+fn without_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
 fn syntax_error(name: &str, text: &str, error: &serde_json::Error) -> SpecError {
@@ -202,7 +200,6 @@ fn lines_and_columns(text: &str, offsets: &[usize]) -> Vec<(usize, usize)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::limits::MAX_VALUES;
 
     fn check(text: &str, expected: &str) {
         let error = Document::parse("d.json", text, 999)
@@ -216,11 +213,10 @@ mod tests {
         for width in [1, 32, 1000, 10_000] {
             let keys: Vec<String> = (0..width).map(|key| format!("\"k{key}\": 1")).collect();
             let text = format!("{{\n{}\n}}", keys.join(",\n"));
-            let document = Document::parse("wide.json", &text, MAX_VALUES).expect("it is JSON");
             let last = format!("/k{}", width - 1);
             let column = format!("\"k{}\": ", width - 1).len() + 1;
             assert_eq!(
-                document.places(&["/k0", &last, "/none"]),
+                places_in(&text, &["/k0", &last, "/none"]),
                 [(2, 7), (width + 1, column), (1, 1)]
             );
         }

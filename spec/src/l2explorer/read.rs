@@ -64,7 +64,7 @@ impl World {
                 reader.warn(format!("/objects/{index}/coordinates"), text);
             }
         }
-        let warnings = document.warnings(reader.warnings);
+        let warnings = reader.warnings.in_text(name, text);
         Ok((world, warnings))
     }
 }
@@ -93,7 +93,7 @@ impl Object {
         };
         document.fail_on(Object::schema().problems(&document.value))?;
         let object = document.deserialize()?;
-        Ok((object, document.warnings(reader.warnings)))
+        Ok((object, reader.warnings.in_text(name, text)))
     }
 }
 

@@ -44,7 +44,7 @@ impl Scenario {
         let mut reader = Reader::default();
         let scenario = reader.scenario(&document.value);
         document.fail_on(reader.problems)?;
-        Ok((scenario, document.warnings(reader.warnings)))
+        Ok((scenario, reader.warnings.in_text(name, text)))
     }
 
     /// The scenario in the original's form, and what of it that form cannot say.

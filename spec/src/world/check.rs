@@ -1,10 +1,13 @@
-//! One object without a world: read from a text, or built in code and checked by the same rules. Reading worlds is in `mod.rs`.
+//! Worlds and objects that were built in code, checked by the rules of documents; one object read without a world.
+//! Reading worlds is in `mod.rs`.
 
 use std::sync::LazyLock;
 
-use super::Object;
+use serde::Serialize;
+
+use super::{Object, World};
 use crate::document::Document;
-use crate::error::SpecError;
+use crate::error::{Problem, SpecError};
 use crate::limits::MAX_VALUES;
 use crate::schema::document::DocumentSchema;
 
@@ -29,7 +32,7 @@ impl Object {
     /// Checks an object that was built in code by the rules that objects of a document obey.
     ///
     /// # Errors
-    /// [`SpecError::Document`] under the name `object`, with every problem; places are those in its JSON.
+    /// [`SpecError::Document`] under the name `object`, with every problem.
     ///
     /// # Example
     /// ```
@@ -41,9 +44,55 @@ impl Object {
     /// assert_eq!(error.problems()[0].pointer, "/scale");
     /// ```
     pub fn check(&self) -> Result<(), SpecError> {
-        let text = serde_json::to_string(self).expect("an object has string keys only, which always serialise");
-        let document = Document::parse("object", &text, MAX_VALUES)?;
-        document.fail_on(Object::schema().problems(&document.value))
+        check("object", self, Self::schema(), Vec::new())
+    }
+}
+
+impl World {
+    /// Checks a world that was built or changed in code by the rules that documents obey.
+    ///
+    /// # Errors
+    /// [`SpecError::Document`] under the name `world`, with every problem.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::World;
+    /// let mut world = World::default();
+    /// world.environment_params.sun_direction = [0.0; 3];
+    /// let error = world.check().expect_err("the sun shines from somewhere");
+    /// assert_eq!(error.problems()[0].pointer, "/environment_params/sun_direction");
+    /// ```
+    pub fn check(&self) -> Result<(), SpecError> {
+        check("world", self, Self::schema(), self.problems())
+    }
+
+    /// The world after a change, if it obeys the rules of documents then.
+    ///
+    /// # Errors
+    /// As [`World::check`].
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::World;
+    /// let world = World::default();
+    /// assert!(world.clone().edit(|world| world.max_steps = 50).is_ok());
+    /// assert!(world.edit(|world| world.agent_params.time_step = 0.0).is_err());
+    /// ```
+    pub fn edit(mut self, change: impl FnOnce(&mut Self)) -> Result<Self, SpecError> {
+        change(&mut self);
+        self.check().map(|()| self)
+    }
+}
+
+/// Checks a value by its schema; `more` is what is wrong with it besides.
+fn check(name: &str, value: &impl Serialize, schema: &DocumentSchema, more: Vec<Problem>) -> Result<(), SpecError> {
+    let value = serde_json::to_value(value).expect("parts of a world have string keys only, which always serialise");
+    let mut found = schema.problems(&value);
+    found.problems.extend(more);
+    if found.problems.is_empty() {
+        Ok(())
+    } else {
+        Err(SpecError::of_document(name, found))
     }
 }
 

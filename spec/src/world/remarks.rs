@@ -2,9 +2,6 @@
 //! one is said by the schema and in `mod.rs`.
 
 use super::{MotionModel, Object, World};
-use crate::document::Document;
-use crate::error::SpecError;
-use crate::limits::MAX_WORLD_VALUES;
 use crate::warning::{Remarks, Warning};
 
 impl Object {
@@ -19,22 +16,18 @@ impl World {
     /// What is odd about this world as the text that it was read from has it, with the places there; `name` is what messages call
     /// the text.
     ///
-    /// # Errors
-    /// [`SpecError`] where the text is not JSON.
-    ///
     /// # Example
     /// ```
     /// use driftworld_spec::World;
     /// let text = r#"{ "objects": [{ "class": "car", "coordinates": [3, 4], "motion_model": "prey" }] }"#;
-    /// let remarks = World::from_json("w.json", text)?.remarks("w.json", text)?;
+    /// let remarks = World::from_json("w.json", text)?.remarks("w.json", text);
     /// assert_eq!(
     ///     remarks[0].to_string(),
     ///     "w.json:1:72 (/objects/0/motion_model): the car is to move as prey and stands still: it has no speed; set \"speed\""
     /// );
     /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
-    pub fn remarks(&self, name: &str, text: &str) -> Result<Vec<Warning>, SpecError> {
-        let document = Document::parse(name, text, MAX_WORLD_VALUES)?;
+    pub fn remarks(&self, name: &str, text: &str) -> Vec<Warning> {
         let mut remarks = Remarks::default();
         for (index, object) in self.objects.iter().enumerate() {
             if let Some(place) = self.out_of_reach(object) {
@@ -52,7 +45,7 @@ impl World {
                 remarks.push(format!("/objects/{index}/motion_model"), text);
             }
         }
-        Ok(document.warnings(remarks))
+        remarks.in_text(name, text)
     }
 
     /// Where an object stands that nobody comes to: outside the arena, or inside which wall; `None` on free ground.
