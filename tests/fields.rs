@@ -85,23 +85,29 @@ fn first(place: &FieldPlace, full: &Json) -> String {
     format!("{list}/{}/{key}", index.expect("there is a condition of each kind"))
 }
 
+/// A world drawn from a task with this template, in which `tried` is a parameter.
+fn drawn(name: &str, template: &Json, tried: &Json) -> World {
+    let task = json!({ "name": "t", "world": template, "parameters": { "tried": tried } });
+    let task = TaskSpec::from_json(name, &task.to_string()).unwrap_or_else(|error| panic!("{error}"));
+    let variant = task.variant("default").expect("it is always there");
+    let world = Sampler::new(&variant, 3).world(0);
+    world.unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
 #[test]
-fn every_place_takes_a_parameter_and_what_it_says_arrives() {
+fn every_place_takes_a_parameter_and_what_it_says_arrives_there_and_nowhere_else() {
     let full = full();
     for place in World::places() {
         let Some(kind) = place.kind else { continue };
         let pointer = first(place, &full);
-        let mut world = full.clone();
-        let expected = other(place, at(&mut world, &pointer));
-        *at(&mut world, &pointer) = json!({ "param": "tried" });
-        let parameter = json!({ "role": "fixed", "type": kind.name(), "value": expected });
-        let task = json!({ "name": "t", "world": world, "parameters": { "tried": parameter } });
-        let task = TaskSpec::from_json(&place.pointer, &task.to_string()).unwrap_or_else(|error| panic!("{error}"));
-        let variant = task.variant("default").expect("it is always there");
-        let world = Sampler::new(&variant, 3).world(0);
-        let world = world.unwrap_or_else(|error| panic!("{}: {error}", place.pointer));
-        let mut written: Json = serde_json::from_str(&world.to_json()).expect("a world is JSON");
-        assert_eq!(*at(&mut written, &pointer), expected, "{}", place.pointer);
+        let mut template = full.clone();
+        let value = other(place, at(&mut template, &pointer));
+        let tried = json!({ "role": "fixed", "type": kind.name(), "value": value });
+        *at(&mut template, &pointer) = value;
+        let expected = drawn(&place.pointer, &template, &tried);
+        *at(&mut template, &pointer) = json!({ "param": "tried" });
+        assert_eq!(drawn(&place.pointer, &template, &tried), expected, "{}", place.pointer);
+        assert_ne!(expected, drawn(&place.pointer, &full, &tried), "{}", place.pointer);
     }
 }
 

@@ -7,7 +7,7 @@ use driftworld_spec::Comparison;
 
 use crate::assignment::Assignment;
 use crate::combined::distance::{Part, position};
-use crate::combined::sketch::{Sketch, Thing};
+use crate::combined::sketch::{ObjectFeatures, Sketch};
 use crate::scalar::{circular_difference, relative_difference};
 
 /// Objects this far apart, in metres, are no more like each other than one that is there and one that is not.
@@ -98,7 +98,7 @@ impl Objects {
         all
     }
 
-    fn add(&mut self, a: &Thing, b: &Thing) {
+    fn add(&mut self, a: &ObjectFeatures, b: &ObjectFeatures) {
         self.turn += circular_difference(a.heading, b.heading);
         self.motion += differs(a.motion, b.motion);
         self.body += differs(a.body, b.body);
@@ -121,7 +121,7 @@ impl Objects {
 }
 
 /// Metres between the objects of one class in two worlds, paired so that they are least, each at most the cut-off.
-fn matched_metres(a: &[Thing], b: &[Thing]) -> f64 {
+fn matched_metres(a: &[ObjectFeatures], b: &[ObjectFeatures]) -> f64 {
     thread_local! {
         static BUFFERS: RefCell<(Vec<f64>, Assignment)> = RefCell::default();
     }

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::Oklab;
 
-/// Worlds reduced alike: what is the same thing has the same number in each.
+/// Worlds reduced alike: what is the same has the same number in each.
 #[derive(Debug, Default)]
 pub(super) struct Sketcher {
     numbers: BTreeMap<Vec<u8>, u32>,
@@ -20,7 +20,7 @@ pub(super) struct Sketcher {
 #[derive(Clone, Debug)]
 pub(super) struct Sketch {
     /// Objects by class, those of one class in the order of the world.
-    pub(super) objects: Vec<Thing>,
+    pub(super) objects: Vec<ObjectFeatures>,
     /// For each class its number, and where its objects end in `objects`; by number.
     pub(super) classes: Vec<(u32, usize)>,
     /// Cells in which something stands, in rising order.
@@ -48,7 +48,7 @@ pub(super) struct Sketch {
 
 /// An object as it is compared.
 #[derive(Clone, Debug)]
-pub(super) struct Thing {
+pub(super) struct ObjectFeatures {
     pub(super) place: [f64; 2],
     /// In degrees.
     pub(super) heading: f64,
@@ -79,23 +79,23 @@ impl Sketcher {
 
     /// The sketch of a world, with cells of `cell` metres.
     pub(super) fn sketch(&mut self, world: &World, cell: f64) -> Sketch {
-        let mut by_class: BTreeMap<u32, Vec<Thing>> = BTreeMap::new();
+        let mut by_class: BTreeMap<u32, Vec<ObjectFeatures>> = BTreeMap::new();
         for object in &world.objects {
             self.same.read_object(object);
             let class = self.number(Comparison::NumbersOfObjects, object.class.to_lowercase());
-            let thing = self.thing(object);
-            by_class.entry(class).or_default().push(thing);
+            let features = self.features(object);
+            by_class.entry(class).or_default().push(features);
         }
         let mut objects = Vec::with_capacity(world.objects.len());
         let mut classes = Vec::with_capacity(by_class.len());
-        for (class, things) in by_class {
-            objects.extend(things);
+        for (class, group) in by_class {
+            objects.extend(group);
             classes.push((class, objects.len()));
         }
         let index = |metres: f64| (metres / cell).floor() as i32;
         let mut cells: Vec<(i32, i32)> = objects
             .iter()
-            .map(|thing| (index(thing.place[0]), index(thing.place[1])))
+            .map(|object| (index(object.place[0]), index(object.place[1])))
             .collect();
         cells.sort_unstable();
         cells.dedup();
@@ -137,8 +137,8 @@ impl Sketcher {
     }
 
     /// An object that was read last.
-    fn thing(&mut self, object: &Object) -> Thing {
-        Thing {
+    fn features(&mut self, object: &Object) -> ObjectFeatures {
+        ObjectFeatures {
             place: object.coordinates,
             heading: object.heading,
             motion: self.number(Comparison::Motion, ()),
@@ -157,7 +157,7 @@ impl Sketch {
     pub(super) fn classes_of_both<'a>(
         &'a self,
         other: &'a Self,
-    ) -> impl Iterator<Item = (&'a [Thing], &'a [Thing])> + 'a {
+    ) -> impl Iterator<Item = (&'a [ObjectFeatures], &'a [ObjectFeatures])> + 'a {
         let (mut i, mut j) = (0, 0);
         std::iter::from_fn(move || {
             let (mine, theirs) = (self.classes.get(i), other.classes.get(j));
@@ -167,7 +167,7 @@ impl Sketch {
                 (None, Some(theirs)) => theirs.0,
                 (Some(mine), Some(theirs)) => mine.0.min(theirs.0),
             };
-            let take = |sketch: &'a Self, at: &mut usize| -> &'a [Thing] {
+            let take = |sketch: &'a Self, at: &mut usize| -> &'a [ObjectFeatures] {
                 let Some(&(_, end)) = sketch.classes.get(*at).filter(|entry| entry.0 == class) else {
                     return &[];
                 };
@@ -196,7 +196,7 @@ mod tests {
         let mut sketcher = Sketcher::default();
         let a = sketcher.sketch(&world(&[("tree", 1.0), ("Rock", 2.0), ("tree", 3.0)]), 2.0);
         let b = sketcher.sketch(&world(&[("pot", 4.0), ("rock", 5.0)]), 2.0);
-        let xs = |things: &[Thing]| things.iter().map(|thing| thing.place[0]).collect::<Vec<_>>();
+        let xs = |group: &[ObjectFeatures]| group.iter().map(|object| object.place[0]).collect::<Vec<_>>();
         let mut met: Vec<(Vec<f64>, Vec<f64>)> = a.classes_of_both(&b).map(|(a, b)| (xs(a), xs(b))).collect();
         met.sort_by(|a, b| a.partial_cmp(b).unwrap());
         assert_eq!(

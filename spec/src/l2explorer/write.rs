@@ -55,7 +55,7 @@ struct Loss {
 }
 
 /// How many objects had a loss, and where the first one stands.
-struct Losers {
+struct LossCount {
     count: usize,
     first: String,
 }
@@ -64,7 +64,7 @@ struct Losers {
 struct Writer {
     warnings: Vec<Warning>,
     /// In the order in which the kinds of loss were met first.
-    losses: IndexMap<Loss, Losers>,
+    losses: IndexMap<Loss, LossCount>,
 }
 
 impl Writer {
@@ -193,21 +193,21 @@ impl Writer {
     }
 
     fn lose(&mut self, index: usize, key: &str, what: &'static str, becomes: &'static str) {
-        let losers = self.losses.entry(Loss { what, becomes }).or_insert_with(|| Losers {
+        let lost = self.losses.entry(Loss { what, becomes }).or_insert_with(|| LossCount {
             count: 0,
             first: format!("/objects/{index}/{key}"),
         });
-        losers.count += 1;
+        lost.count += 1;
     }
 
     /// The warnings in the order of the world's parts; the objects' stand last, as the objects do.
     fn warnings(self) -> Vec<Warning> {
-        let of_objects = self.losses.into_iter().map(|(Loss { what, becomes }, losers)| {
-            let text = match losers.count {
+        let of_objects = self.losses.into_iter().map(|(Loss { what, becomes }, lost)| {
+            let text = match lost.count {
                 1 => format!("{what} of this object: {becomes}"),
                 count => format!("{what} of {count} objects, this one first: {becomes}"),
             };
-            warning(losers.first, text)
+            warning(lost.first, text)
         });
         self.warnings.into_iter().chain(of_objects).collect()
     }

@@ -97,7 +97,7 @@ impl Explainer<'_> {
             | ValidationErrorKind::OneOfNotValid { context }
             | ValidationErrorKind::OneOfMultipleValid { context } => self.alternatives(error, context),
             ValidationErrorKind::PropertyNames { error: name } => vec![self.name(pointer, name).into()],
-            // Where a text must have characters, an empty one has been told so.
+            // Where a text must have characters, an empty one has been reported.
             ValidationErrorKind::Pattern { .. }
                 if self.instance(error).as_str() == Some("") && self.parent(error).get("minLength").is_some() =>
             {
@@ -183,7 +183,7 @@ impl Explainer<'_> {
         let (parent, key) = pointer.rsplit_once('/').unwrap_or(("", pointer));
         let place = error.schema_path().as_str();
         let rule = place.rsplit_once("/properties/").map_or("", |(rule, _)| rule);
-        let told = |expected: String, advice: String| {
+        let problem = |expected: String, advice: String| {
             Problem::new("spec/unknown-key", pointer, format!("the key {key:?}"), expected).advise(advice)
         };
         let condition = rule.strip_suffix("/then").and_then(|rule| {
@@ -197,7 +197,7 @@ impl Explainer<'_> {
         let Some(condition) = condition else {
             let beside = self.schema.pointer(rule).and_then(|rule| rule.pointer("/required/0"));
             let beside = beside.and_then(Value::as_str).unwrap_or("what stands there");
-            return told(
+            return problem(
                 format!("no such key beside {beside:?}"),
                 "remove one of the two".to_owned(),
             );
@@ -208,14 +208,14 @@ impl Explainer<'_> {
             let roles = self.roles_with(rule, key);
             let advice = format!("remove it, or make the role {}", either(roles));
             let expected = format!("no such key in a {} parameter", found.as_str().unwrap_or_default());
-            return told(expected, advice);
+            return problem(expected, advice);
         }
         let advice = if key == "range" {
             "list the values under \"choices\" instead"
         } else {
             "remove it"
         };
-        told(format!("no such key beside {condition:?}: {found}"), advice.to_owned())
+        problem(format!("no such key beside {condition:?}: {found}"), advice.to_owned())
     }
 
     /// The roles whose parameters may have a key, by the rules beside the one that forbids it.

@@ -254,17 +254,17 @@ fn values_of_parameters(schema: &mut schemars::Schema) {
 
 /// A reference that does not name a number of this variant.
 #[derive(Debug)]
-pub(crate) struct Unsettled;
+pub(crate) struct UnresolvedParams;
 
-pub(crate) fn settle_number(values: &IndexMap<String, Value>, number: &Number) -> Result<f64, Unsettled> {
+pub(crate) fn settle_number(values: &IndexMap<String, Value>, number: &Number) -> Result<f64, UnresolvedParams> {
     match number {
         Number::Literal(number) => Ok(*number),
         Number::Param(reference) => {
-            let value = values.get(&reference.param).ok_or(Unsettled)?;
+            let value = values.get(&reference.param).ok_or(UnresolvedParams)?;
             value
                 .at(reference.index)
                 .and_then(|value| value.as_number())
-                .ok_or(Unsettled)
+                .ok_or(UnresolvedParams)
         }
     }
 }
@@ -272,7 +272,7 @@ pub(crate) fn settle_number(values: &IndexMap<String, Value>, number: &Number) -
 pub(crate) fn settle(
     values: &IndexMap<String, Value>,
     distribution: &Distribution<Number>,
-) -> Result<Distribution, Unsettled> {
+) -> Result<Distribution, UnresolvedParams> {
     distribution.try_map(&mut |number| settle_number(values, number))
 }
 

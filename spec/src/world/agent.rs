@@ -29,16 +29,14 @@ fields! {
         pub max_linear_speed: f64 = 10.0 => Field::original(Measured(&[LargestSpeed])).unit("m/s"),
         /// Largest turn rate in degrees per second.
         #[schemars(range(min = 0.0, max = 3600.0))]
-        pub max_angular_speed: f64 = 90.0
-            => Field::original(Measured(&[LargestTurnRate])).unit("degrees/s"),
+        pub max_angular_speed: f64 = 90.0 => Field::original(Measured(&[LargestTurnRate])).unit("degrees/s"),
         /// Height of the observations in pixels, and their width unless `observation_width` says otherwise.
         #[schemars(range(min = 1, max = 4096))]
         pub observation_size: u32 = 84 => Field::original(Measured(&[CameraAndWeather])).unit("pixels"),
         /// Width of the observations in pixels; as high as wide if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1, max = 4096))]
-        pub observation_width: Option<u32> = None
-            => Field::ours(Measured(&[CameraAndWeather])).unit("pixels"),
+        pub observation_width: Option<u32> = None => Field::ours(Measured(&[CameraAndWeather])).unit("pixels"),
         /// Points per pixel along each side that colours are the mean of: 1 is fast, 2 and more are smooth.
         #[serde(skip_serializing_if = "is_one")]
         #[schemars(range(min = 1, max = 4))]
@@ -51,13 +49,11 @@ fields! {
         pub heading: f64 = 0.0 => Field::original(Measured(&[Heading])).heading(),
         /// Simulated seconds per time step.
         #[schemars(range(min = 0.001, max = 10.0))]
-        pub time_step: f64 = 0.1
-            => Field::ours(Measured(&[TimeStep, StepReward, Limit])).unit("s"),
+        pub time_step: f64 = 0.1 => Field::ours(Measured(&[TimeStep, StepReward, Limit])).unit("s"),
         /// Time steps for which each action is held: a step of the environment lasts this many.
         #[serde(skip_serializing_if = "is_one")]
         #[schemars(range(min = 1, max = 1000))]
-        pub frame_skip: u32 = 1
-            => Field::ours(Measured(&[TimeStep, StepReward, Limit])),
+        pub frame_skip: u32 = 1 => Field::ours(Measured(&[TimeStep, StepReward, Limit])),
         /// Vertical field of view in degrees.
         #[schemars(range(min = 1.0, max = 170.0))]
         pub field_of_view: f64 = 60.0 => Field::ours(Same(CameraAndWeather)).unit("degrees"),
@@ -68,8 +64,7 @@ fields! {
         /// What the state vector holds, in this order.
         #[serde(skip_serializing_if = "is_classic")]
         #[schemars(length(max = 20))]
-        pub state_features: Vec<StateFeature> = StateFeature::CLASSIC.to_vec()
-            => Field::ours(Same(CameraAndWeather)),
+        pub state_features: Vec<StateFeature> = StateFeature::CLASSIC.to_vec() => Field::ours(Same(CameraAndWeather)),
         /// How actions are given.
         pub actions: ActionSpace = ActionSpace::Continuous => Field::ours(Same(SpaceOfActions)),
         /// Whether the agent can interact: without, the third number of an action by velocity is ignored, and the default table of

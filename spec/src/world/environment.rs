@@ -45,16 +45,14 @@ fields! {
         #[schemars(inner(range(min = -1e6, max = 1e6)))]
         pub sun_direction: [f64; 3] = [0.45, -0.35, 0.82] => Field::ours(Same(CameraAndWeather)),
         /// Colour of the sunlight.
-        pub light_color: Color = Color([1.0, 0.97, 0.9])
-            => Field::ours(Measured(&[ColorsOfSurroundings])),
+        pub light_color: Color = Color([1.0, 0.97, 0.9]) => Field::ours(Measured(&[ColorsOfSurroundings])),
         /// Share of the light that reaches every side of everything, 0..1.
         #[schemars(range(min = 0.0, max = 1.0))]
         pub ambient_light: f64 = 0.35 => Field::ours(Same(CameraAndWeather)),
         /// Colour of the sky at the zenith; it pales towards the horizon.
         pub sky_color: Color = Color([0.36, 0.62, 0.9]) => Field::ours(Measured(&[ColorsOfSurroundings])),
         /// Colour of the ground.
-        pub ground_color: Color = Color([0.45, 0.56, 0.34])
-            => Field::ours(Measured(&[ColorsOfSurroundings])),
+        pub ground_color: Color = Color([0.45, 0.56, 0.34]) => Field::ours(Measured(&[ColorsOfSurroundings])),
         /// Distance in metres at which half of what is seen is fog, in the colour of the horizon; no fog if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.1, max = 10_000.0))]

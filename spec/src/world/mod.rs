@@ -71,14 +71,12 @@ fields! {
     pub struct World {
         /// Where the JSON Schema of this document is, for editors; not part of the world.
         #[serde(rename = "$schema", skip_serializing)]
-        pub schema: Option<String> = None
-            => Field::ours(Not("it names a schema for editors"))
+        pub schema: Option<String> = None => Field::ours(Not("it names a schema for editors"))
                 .named("$schema")
                 .fixed("it names a schema for editors, and is no part of the world"),
         /// The version of this form of document. Older ones are read, newer ones refused; without it, it is taken to be 1.
         #[schemars(range(min = 1, max = 1))]
-        pub version: u32 = WORLD_VERSION
-            => Field::ours(Not("it is the form of the document"))
+        pub version: u32 = WORLD_VERSION => Field::ours(Not("it is the form of the document"))
                 .fixed("it is the form of the document, which has one"),
         /// What all chance in the running world grows from: where wanderers go, which pulls of a bandit arm pay, where objects come
         /// back. A sampled world has one of its task, seed and number, so that all variants of the task share it. Without it

@@ -30,8 +30,7 @@ fields! {
         pub model: Model => Field::original(Same(ModelsOfObjects)),
         /// Position on the ground in metres.
         #[schemars(inner(range(min = -300.0, max = 300.0)))]
-        pub coordinates: [f64; 2]
-            => Field::original(Measured(&[PlacesOfObjects, CellsTaken])).unit("m"),
+        pub coordinates: [f64; 2] => Field::original(Measured(&[PlacesOfObjects, CellsTaken])).unit("m"),
         /// Where the object faces, in degrees: 0 is +y, growing clockwise.
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 360.0))]
@@ -113,8 +112,7 @@ fields! {
         /// A name that no other object of the world has.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
-        pub unique_name: Option<String>
-            => Field::original(Not("it is a name"))
+        pub unique_name: Option<String> => Field::original(Not("it is a name"))
                 .fixed("no two objects of a world may have the same; objects are named together by their tag"),
     }
 }

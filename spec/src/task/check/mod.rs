@@ -44,9 +44,9 @@ pub(super) fn compile(
     let unfolded = found.is_empty();
     problems.extend(found);
     let is_unsound = |name: &str| unsound.parameters.contains(name);
-    let told: BTreeSet<String> = problems.iter().map(|problem| problem.pointer.clone()).collect();
+    let reported: BTreeSet<String> = problems.iter().map(|problem| problem.pointer.clone()).collect();
     let more = variant::problems(&document.parameters, &document.variants, &variants, is_unsound);
-    problems.extend(more.into_iter().filter(|problem| !told.contains(&problem.pointer)));
+    problems.extend(more.into_iter().filter(|problem| !reported.contains(&problem.pointer)));
     let of_variants: BTreeSet<&str> = problems
         .iter()
         .filter_map(|problem| problem.pointer.strip_prefix("/variants/")?.split('/').next())
