@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use driftworld_spec::{Object, World};
 
-use crate::assets::{Asset, Block, Catalogue, Coat, Mesh, Paint, Part};
+use crate::assets::{Asset, Block, Catalogue, Material, Mesh, Paint, Part};
 
 /// Everything that a picture of a world depends on, but for the camera.
 #[derive(Clone, Debug)]
@@ -228,7 +228,7 @@ impl Scene {
             middle: sides.map(|[low, high]| if low <= high { f32::midpoint(low, high) } else { 0.0 }),
             radius: halves.iter().map(|half| half * half).sum::<f32>().sqrt(),
             color,
-            blocks: Coat::new(&part).blocks,
+            blocks: Material::new(&part).blocks,
         });
     }
 }

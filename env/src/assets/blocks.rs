@@ -19,12 +19,12 @@ pub(crate) struct Block {
 
 /// Blocks of one colour.
 #[derive(Clone, Debug)]
-pub(crate) struct Coat {
+pub(crate) struct Material {
     pub(crate) paint: Paint,
     pub(crate) blocks: Vec<Block>,
 }
 
-impl Coat {
+impl Material {
     /// A part's triangles, those that face the same way together: then whole blocks face away at once.
     pub(crate) fn new(part: &Part) -> Self {
         let mut order: Vec<usize> = (0..part.mesh.triangles.len()).collect();
@@ -77,21 +77,21 @@ mod tests {
     #[test]
     fn every_triangle_is_in_one_block_and_the_rest_faces_away() {
         let part = Part::new(Mesh::ball(1.0, 1.0, 9, 5), Paint::Fixed([1.0; 3]));
-        let coat = Coat::new(&part);
-        assert_eq!(coat.blocks.len(), part.mesh.triangles.len().div_ceil(BLOCK));
+        let material = Material::new(&part);
+        assert_eq!(material.blocks.len(), part.mesh.triangles.len().div_ceil(BLOCK));
         let lanes = |block: &Block| -> Vec<[f32; 3]> {
             (0..BLOCK)
                 .map(|lane| [0, 1, 2].map(|axis| block.normal[axis][lane]))
                 .collect()
         };
-        let real = coat
+        let real = material
             .blocks
             .iter()
             .flat_map(lanes)
             .filter(|normal| *normal != [0.0; 3])
             .count();
         assert_eq!(real, part.mesh.triangles.len());
-        let last = &coat.blocks[coat.blocks.len() - 1];
+        let last = &material.blocks[material.blocks.len() - 1];
         assert!(last.offset[BLOCK - 1] > 0.0 || last.normal.map(|row| row[BLOCK - 1]) != [0.0; 3]);
     }
 }

@@ -18,7 +18,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use driftworld_spec::Model;
 
-pub(crate) use blocks::{BLOCK, Block, Coat};
+pub(crate) use blocks::{BLOCK, Block, Material};
 pub use catalogue::{Catalogue, FIRST_LIBRARY_CLASS, UNKNOWN_CLASS};
 #[cfg(feature = "gltf")]
 pub use import::{
@@ -54,24 +54,24 @@ struct Level {
     /// How far the surface may be from where it should be, in metres at scale 1.
     error: f32,
     num_triangles: usize,
-    coats: Vec<Coat>,
+    materials: Vec<Material>,
 }
 
 impl Asset {
     /// What to draw where an error of so many metres, at scale 1, cannot be seen.
-    pub(crate) fn level(&self, error: f32) -> &[Coat] {
+    pub(crate) fn level(&self, error: f32) -> &[Material] {
         let good = self.levels.iter().rev().find(|level| level.error <= error);
-        good.or(self.levels.first()).map_or(&[], |level| &level.coats)
+        good.or(self.levels.first()).map_or(&[], |level| &level.materials)
     }
 
     /// An asset of these levels of detail, each with its error in metres; the first is the whole of it.
     pub(crate) fn of_levels(levels: Vec<(f32, Vec<Part>)>, collider: ColliderShape) -> Self {
-        let coated = levels.iter().map(|(error, parts)| Level {
+        let drawn = levels.iter().map(|(error, parts)| Level {
             error: *error,
             num_triangles: parts.iter().map(|part| part.mesh.triangles.len()).sum(),
-            coats: parts.iter().map(Coat::new).collect(),
+            materials: parts.iter().map(Material::new).collect(),
         });
-        let coated = coated.collect();
+        let drawn = drawn.collect();
         let parts = levels.into_iter().next().map_or_else(Vec::new, |(_, parts)| parts);
         let corners = || parts.iter().flat_map(|part| &part.mesh.corners);
         Self {
@@ -79,7 +79,7 @@ impl Asset {
             height: corners().fold(0.01_f32, |most, corner| most.max(corner[2])),
             radius: reach(corners()).max(0.01),
             known: true,
-            levels: coated,
+            levels: drawn,
             parts,
         }
     }
@@ -91,8 +91,8 @@ impl Asset {
 
     /// All there is to choose from for [`Asset::level`].
     #[cfg(feature = "gpu")]
-    pub(crate) fn coats_of_levels(&self) -> impl Iterator<Item = &[Coat]> {
-        self.levels.iter().map(|level| level.coats.as_slice())
+    pub(crate) fn materials_of_levels(&self) -> impl Iterator<Item = &[Material]> {
+        self.levels.iter().map(|level| level.materials.as_slice())
     }
 
     /// Radius of the ball around the middle of the asset's height that holds all of it, in metres at scale 1.

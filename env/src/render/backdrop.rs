@@ -23,8 +23,8 @@ pub(super) struct Backdrop {
     pub(super) rise: Vec<f32>,
     /// 1 / distance of the ground along the view axis; 0 where the row shows sky.
     pub(super) ground: Vec<f32>,
-    /// Inks: of sky; or of the ground's light and dark squares, in light and in dark blocks.
-    pub(super) inks: [Vec<u32>; 4],
+    /// Packed pixels: of sky; or of the ground's light and dark squares, in light and in dark blocks.
+    pub(super) pixels: [Vec<u32>; 4],
     /// Colour into which fog turns everything, as bytes 0 to 255.
     pub(super) fog_color: [f32; 3],
 }
@@ -45,8 +45,8 @@ impl Backdrop {
         for buffer in [&mut self.rise, &mut self.ground] {
             buffer.resize(padded, 0.0);
         }
-        for inks in &mut self.inks {
-            inks.resize(padded, 0);
+        for pixels in &mut self.pixels {
+            pixels.resize(padded, 0);
         }
         let [zenith, horizon] = shader.sky(scene.light.sky_color);
         let upward = shader.share([0.0, 0.0, 1.0]);
@@ -85,7 +85,7 @@ impl Backdrop {
             between(l, share, look.horizon[1], look.zenith[1]),
             between(l, share, look.horizon[2], look.zenith[2]),
         ];
-        let sky = ink(l, sky, CATEGORY_SKY);
+        let sky = pack(l, sky, CATEGORY_SKY);
 
         // How many squares a pixel covers where its ray meets the ground.
         let metres = l.div(one, l.max(ground, l.splat(1e-6)));
@@ -98,14 +98,14 @@ impl Backdrop {
             l.sub(light, coarse),
             l.sub(dark, coarse),
         ];
-        for (inks, share) in self.inks.iter_mut().zip(shares) {
+        for (pixels, share) in self.pixels.iter_mut().zip(shares) {
             let ground = [
                 l.mul(share, l.splat(look.ground[0])),
                 l.mul(share, l.splat(look.ground[1])),
                 l.mul(share, l.splat(look.ground[2])),
             ];
-            let ground = ink(l, ground, CATEGORY_MAP);
-            l.store_words(l.select_words(is_ground, ground, sky), &mut inks[first..]);
+            let ground = pack(l, ground, CATEGORY_MAP);
+            l.store_words(l.select_words(is_ground, ground, sky), &mut pixels[first..]);
         }
     }
 }
@@ -124,7 +124,7 @@ fn contrast<L: Lanes>(l: L, blur: L::Float, which: usize) -> L::Float {
 
 /// Levels 0 to 255, and above, as a word of bytes with a label.
 #[inline(always)]
-fn ink<L: Lanes>(l: L, levels: [L::Float; 3], label: u8) -> L::Word {
+fn pack<L: Lanes>(l: L, levels: [L::Float; 3], label: u8) -> L::Word {
     let (red, green, blue) = (byte(l, levels[0]), byte(l, levels[1]), byte(l, levels[2]));
     let label = l.splat_word(u32::from(label) << 24);
     l.or(label, l.or(red, l.shift_byte(l.or(green, l.shift_byte(blue)))))

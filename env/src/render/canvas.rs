@@ -1,5 +1,5 @@
-//! What triangles are filled into: depth and ink of each pixel. Where triangles come from is in `raster.rs`, what becomes of
-//! the ink in `compose.rs`.
+//! What triangles are filled into: depth and packed pixel of each place. Where triangles come from is in `raster.rs`, what becomes of
+//! them in `compose.rs`.
 
 use super::lanes::{Lanes, MOST_LANES};
 
@@ -13,7 +13,7 @@ pub(super) struct Canvas {
     /// 1 / depth; 0 is infinitely far.
     pub(super) inverse_depth: Vec<f32>,
     /// Colour in the lower three bytes, red lowest; a label in the highest. Counts where something was drawn.
-    pub(super) ink: Vec<u32>,
+    pub(super) pixels: Vec<u32>,
     /// Number of the item plus 1, where that is asked for.
     pub(super) items: Vec<u32>,
 }
@@ -29,7 +29,8 @@ pub(super) struct Triangle {
     pub(super) columns: [usize; 2],
     /// First and last row.
     pub(super) rows: [usize; 2],
-    pub(super) ink: u32,
+    /// Its colour and label, as in [`Canvas::pixels`].
+    pub(super) pixel: u32,
     pub(super) item: u32,
 }
 
@@ -42,7 +43,7 @@ impl Canvas {
         self.inverse_depth.clear();
         self.inverse_depth.resize(pixels, 0.0);
         // What lies in these from before is never read: depth says where something was drawn.
-        self.ink.resize(pixels, 0);
+        self.pixels.resize(pixels, 0);
         self.items.resize(if with_items { pixels } else { 0 }, 0);
     }
 
@@ -53,7 +54,7 @@ impl Canvas {
     pub(super) fn fill<L: Lanes, const ITEMS: bool>(&mut self, lanes: L, triangle: &Triangle) {
         let Triangle { columns, rows, .. } = *triangle;
         let zero = lanes.splat(0.0);
-        let ink = lanes.splat_word(triangle.ink);
+        let packed = lanes.splat_word(triangle.pixel);
         let item = lanes.splat_word(triangle.item);
         let top = rows[0] as f32;
         let last_start = self.stride - L::N;
@@ -74,7 +75,7 @@ impl Canvas {
                 let inside = lanes.at_least(lanes.min(e0, lanes.min(e1, e2)), zero);
                 let taken = lanes.both(inside, lanes.above(inverse, lanes.load(depths)));
                 lanes.store_where(taken, inverse, depths);
-                lanes.store_words_where(taken, ink, &mut self.ink[pixel..pixel + L::N]);
+                lanes.store_words_where(taken, packed, &mut self.pixels[pixel..pixel + L::N]);
                 if ITEMS {
                     lanes.store_words_where(taken, item, &mut self.items[pixel..pixel + L::N]);
                 }

@@ -1,4 +1,4 @@
-//! From ink to images: what was drawn is laid over ground, sky and the arena's walls, and written out in each modality.
+//! From packed pixels to images: what was drawn is laid over ground, sky and the arena's walls, and written out in each modality.
 //! What was drawn is in `canvas.rs`, what the rows behind it look like in `backdrop.rs`.
 
 use std::ops::Range;
@@ -27,7 +27,7 @@ pub(super) struct Walls {
     pub(super) base: [f32; 4],
     pub(super) right: [f32; 4],
     pub(super) up: [f32; 4],
-    pub(super) inks: [u32; 4],
+    pub(super) pixels: [u32; 4],
     /// Metres from the camera up to the walls' upper edge.
     pub(super) above: f32,
 }
@@ -38,7 +38,7 @@ struct Row {
     /// 1 / distance at which a wall's upper edge is seen in this row; walls that are further away are not seen.
     edge: f32,
     ground: f32,
-    inks: [u32; 4],
+    pixels: [u32; 4],
     /// Squares along x and y: at the row's middle, and how they change to the right.
     squares: [[f32; 2]; 2],
     has_squares: bool,
@@ -62,7 +62,7 @@ impl Walls {
             base: [0.0; 4],
             right: [0.0; 4],
             up: [0.0; 4],
-            inks: [0; 4],
+            pixels: [0; 4],
             above: height - z,
         };
         for (k, normal) in inward.into_iter().enumerate() {
@@ -72,13 +72,13 @@ impl Walls {
             walls.right[k] = towards(view.axes.right);
             walls.up[k] = towards(view.axes.up);
             let color = scene.walls[..ARENA_WALLS][k].color;
-            walls.inks[k] = shader.ink(color, [normal[0], normal[1], 0.0]) | u32::from(CATEGORY_MAP) << 24;
+            walls.pixels[k] = shader.packed_pixel(color, [normal[0], normal[1], 0.0]) | u32::from(CATEGORY_MAP) << 24;
         }
         Some(walls)
     }
 }
 
-/// One row's inks and items, kept from picture to picture.
+/// One row's packed pixels and items, kept from picture to picture.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     words: Vec<u32>,
@@ -122,7 +122,7 @@ impl Composition<'_> {
                 let (word, inverse) = self.behind(l, &row, start);
                 let drawn = l.load(&self.canvas.inverse_depth[pixel..]);
                 let in_front = l.above(drawn, inverse);
-                let mut word = l.select_words(in_front, l.load_words(&self.canvas.ink[pixel..]), word);
+                let mut word = l.select_words(in_front, l.load_words(&self.canvas.pixels[pixel..]), word);
                 let inverse = l.max(drawn, inverse);
                 if let Some(distance) = self.fog_distance {
                     word = self.in_fog(l, word, inverse, distance);
@@ -189,18 +189,18 @@ impl Composition<'_> {
     fn row(&self, y: usize) -> Row {
         let backdrop = self.backdrop;
         let ground = backdrop.ground[y];
-        let inks = [0, 1, 2, 3].map(|k| backdrop.inks[k][y]);
+        let pixels = [0, 1, 2, 3].map(|k| backdrop.pixels[k][y]);
         let offset = -self.view.offset(1, y as f32);
         let mut row = Row {
             walls: [[0.0; 2]; 4],
             edge: 0.0,
             ground,
-            inks,
+            pixels,
             squares: [[0.0; 2]; 2],
             has_squares: false,
             has_walls: false,
         };
-        if ground > 0.0 && inks != [inks[0]; 4] {
+        if ground > 0.0 && pixels != [pixels[0]; 4] {
             let metres = 1.0 / ground;
             let axes = &self.view.axes;
             let mut furthest = 0.0_f32;
@@ -231,34 +231,36 @@ impl Composition<'_> {
         row
     }
 
-    /// Ink and 1 / depth of what lies behind everything that was drawn, from a column on.
+    /// Packed pixel and 1 / depth of what lies behind everything that was drawn, from a column on.
     #[inline(always)]
     fn behind<L: Lanes>(&self, l: L, row: &Row, start: usize) -> (L::Word, L::Float) {
         let ground = l.splat(row.ground);
-        let mut ink = l.splat_word(row.inks[0]);
+        let mut pixel = l.splat_word(row.pixels[0]);
         if !(row.has_squares || row.has_walls) {
-            return (ink, ground);
+            return (pixel, ground);
         }
         let offset = l.load(&self.offsets[start..]);
         if row.has_squares {
             let both = l.xor(square(l, row.squares[0], offset), square(l, row.squares[1], offset));
             let fine = l.has_bit(both, 0);
-            let light = l.select_words(fine, l.splat_word(row.inks[1]), ink);
-            let dark = l.select_words(fine, l.splat_word(row.inks[3]), l.splat_word(row.inks[2]));
-            ink = l.select_words(l.has_bit(both, 3), dark, light);
+            let light = l.select_words(fine, l.splat_word(row.pixels[1]), pixel);
+            let dark = l.select_words(fine, l.splat_word(row.pixels[3]), l.splat_word(row.pixels[2]));
+            pixel = l.select_words(l.has_bit(both, 3), dark, light);
         }
         if !row.has_walls {
-            return (ink, ground);
+            return (pixel, ground);
         }
-        let Some(walls) = &self.walls else { return (ink, ground) };
-        let (mut inverse, mut wall_ink) = (along(l, row.walls[0], offset), l.splat_word(walls.inks[0]));
+        let Some(walls) = &self.walls else {
+            return (pixel, ground);
+        };
+        let (mut inverse, mut wall_pixel) = (along(l, row.walls[0], offset), l.splat_word(walls.pixels[0]));
         for k in 1..4 {
             let other = along(l, row.walls[k], offset);
-            wall_ink = l.select_words(l.above(other, inverse), l.splat_word(walls.inks[k]), wall_ink);
+            wall_pixel = l.select_words(l.above(other, inverse), l.splat_word(walls.pixels[k]), wall_pixel);
             inverse = l.max(other, inverse);
         }
         let seen = l.both(l.at_least(inverse, l.splat(row.edge)), l.above(inverse, ground));
-        (l.select_words(seen, wall_ink, ink), l.select(seen, inverse, ground))
+        (l.select_words(seen, wall_pixel, pixel), l.select(seen, inverse, ground))
     }
 
     /// Colours turned into the fog's with distance; the sky stays.

@@ -8,11 +8,11 @@ use super::frame::{CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{Avx2, Avx512};
 use super::lanes::{Lanes, MOST_LANES, Portable};
-use super::raster::{Paintwork, draw_block};
+use super::raster::{ShadingParams, draw_block};
 use super::shade::Shader;
-use super::sight::{InSight, What, find, level, sort};
 use super::target::Target;
 use super::view::{NEAR, Pose, View};
+use super::visibility::{Drawable, Visible, find, level, sort};
 use crate::EnvError;
 use crate::assets::Paint;
 use crate::camera::Camera;
@@ -26,7 +26,7 @@ pub struct CpuRenderer {
     set: Set,
     canvas: Canvas,
     backdrop: Backdrop,
-    order: Vec<InSight>,
+    order: Vec<Visible>,
     offsets: Vec<f32>,
     classes: Vec<u16>,
     scratch: Scratch,
@@ -189,15 +189,15 @@ impl CpuRenderer {
         let mut order = std::mem::take(&mut self.order);
         find(scene, &view, walls.is_some(), &mut order);
         sort(&mut order);
-        for &sight in &order {
-            match sight.what {
-                What::Item(index) => {
+        for &visible in &order {
+            match visible.drawable {
+                Drawable::Item(index) => {
                     let item = &scene.items[index as usize];
-                    self.draw_item::<L, ITEMS>(lanes, item, index, sight, &view, &shader, scene);
+                    self.draw_item::<L, ITEMS>(lanes, item, index, visible, &view, &shader, scene);
                 }
-                What::Panels(index) => {
+                Drawable::Panels(index) => {
                     let group = &scene.panels()[index as usize];
-                    self.draw_panels::<L, ITEMS>(lanes, group, sight, &view, &shader, scene);
+                    self.draw_panels::<L, ITEMS>(lanes, group, visible, &view, &shader, scene);
                 }
             }
         }
@@ -235,7 +235,7 @@ impl CpuRenderer {
         lanes: L,
         item: &Item,
         index: u32,
-        sight: InSight,
+        visible: Visible,
         view: &View,
         shader: &Shader,
         scene: &Scene,
@@ -246,21 +246,21 @@ impl CpuRenderer {
         } else {
             u32::from(item.class_id) << CATEGORY_BITS
         };
-        let mut paint = Paintwork {
+        let mut params = ShadingParams {
             color: [0.0; 3],
             ambient: shader.ambient,
             label: (label | u32::from(category(item))) << 24,
             item: index + 1,
-            may_be_cut: sight.nearest < NEAR,
+            may_be_cut: visible.nearest < NEAR,
         };
-        for coat in level(item, sight, view) {
-            let color = match coat.paint {
+        for material in level(item, visible, view) {
+            let color = match material.paint {
                 Paint::Main(own) => item.color.unwrap_or(own),
                 Paint::Fixed(color) => color,
             };
-            paint.color = shader.in_light(color);
-            for block in &coat.blocks {
-                draw_block::<L, ITEMS>(lanes, &mut self.canvas, block, &at, &paint);
+            params.color = shader.in_light(color);
+            for block in &material.blocks {
+                draw_block::<L, ITEMS>(lanes, &mut self.canvas, block, &at, &params);
             }
         }
     }
@@ -270,21 +270,21 @@ impl CpuRenderer {
         &mut self,
         lanes: L,
         group: &PanelGroup,
-        sight: InSight,
+        visible: Visible,
         view: &View,
         shader: &Shader,
         scene: &Scene,
     ) {
         let at = view.placement(&Pose::WORLD, scene.light.direction);
-        let paint = Paintwork {
+        let params = ShadingParams {
             color: shader.in_light(group.color),
             ambient: shader.ambient,
             label: u32::from(CATEGORY_MAP) << 24,
             item: 0,
-            may_be_cut: sight.nearest < NEAR,
+            may_be_cut: visible.nearest < NEAR,
         };
         for block in &group.blocks {
-            draw_block::<L, ITEMS>(lanes, &mut self.canvas, block, &at, &paint);
+            draw_block::<L, ITEMS>(lanes, &mut self.canvas, block, &at, &params);
         }
     }
 }

@@ -18,10 +18,10 @@ mod raster;
 mod renderer;
 mod report;
 mod shade;
-mod sight;
 mod target;
 mod top_down;
 mod view;
+mod visibility;
 
 pub use cpu::CpuRenderer;
 pub use frame::{

@@ -6,9 +6,9 @@ use super::lanes::Lanes;
 use super::view::{NEAR, Placement};
 use crate::assets::{BLOCK, Block};
 
-/// What all triangles of a coat share.
+/// What all triangles of a material share.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Paintwork {
+pub(super) struct ShadingParams {
     /// Colour in full light, as bytes: 0 to 255 and above.
     pub(super) color: [f32; 3],
     /// Share of the light that comes from everywhere.
@@ -30,10 +30,10 @@ pub(super) fn draw_block<L: Lanes, const ITEMS: bool>(
     canvas: &mut Canvas,
     block: &Block,
     at: &Placement,
-    paint: &Paintwork,
+    params: &ShadingParams,
 ) {
     for first in (0..BLOCK).step_by(L::N) {
-        draw_lanes::<L, ITEMS>(lanes, canvas, block, first, at, paint);
+        draw_lanes::<L, ITEMS>(lanes, canvas, block, first, at, params);
     }
 }
 
@@ -44,7 +44,7 @@ fn draw_lanes<L: Lanes, const ITEMS: bool>(
     block: &Block,
     first: usize,
     at: &Placement,
-    paint: &Paintwork,
+    params: &ShadingParams,
 ) {
     let normal = load3(l, &block.normal, 0, first);
     let behind = l.sub(l.splat(0.0), l.load(&block.offset[first..]));
@@ -58,12 +58,12 @@ fn draw_lanes<L: Lanes, const ITEMS: bool>(
         load3(l, &block.corners, 6, first),
     ];
     let depth = project(l, corners, &at.depth);
-    let ink = inks(l, normal, at, paint);
+    let pixels = packed_pixels(l, normal, at, params);
     // Which way a triangle goes must not depend on its neighbours: how many there are depends on the instruction set.
     let mut cut = 0;
-    if paint.may_be_cut {
+    if params.may_be_cut {
         cut = l.bits(l.both(facing, l.above(l.splat(NEAR), least(l, depth))));
-        draw_all_cut::<L, ITEMS>(l, canvas, block, (first, cut), at, (&ink, paint.item));
+        draw_all_cut::<L, ITEMS>(l, canvas, block, (first, cut), at, (&pixels, params.item));
     }
     let one = l.splat(1.0);
     let inverse = [l.div(one, depth[0]), l.div(one, depth[1]), l.div(one, depth[2])];
@@ -100,20 +100,20 @@ fn draw_lanes<L: Lanes, const ITEMS: bool>(
     while seen != 0 {
         let lane = seen.trailing_zeros() as usize;
         seen &= seen - 1;
-        canvas.fill::<L, ITEMS>(l, &triangle(&rows, lane, ink[lane], paint.item));
+        canvas.fill::<L, ITEMS>(l, &triangle(&rows, lane, pixels[lane], params.item));
     }
 }
 
 /// One lane's triangle.
 #[inline(always)]
-fn triangle(rows: &[PerLane; 16], lane: usize, ink: u32, item: u32) -> Triangle {
+fn triangle(rows: &[PerLane; 16], lane: usize, pixel: u32, item: u32) -> Triangle {
     let three = |first: usize| [rows[first][lane], rows[first + 1][lane], rows[first + 2][lane]];
     Triangle {
         edges: [three(0), three(3), three(6)],
         inverse_depth: three(9),
         columns: [rows[12][lane] as usize, rows[13][lane] as usize],
         rows: [rows[14][lane] as usize, rows[15][lane] as usize],
-        ink,
+        pixel,
         item,
     }
 }
@@ -182,23 +182,23 @@ fn dot<L: Lanes>(l: L, point: [L::Float; 3], by: [f32; 3], plus: L::Float) -> L:
 
 /// Colours of a block's faces, with the label above them. The formula is that of `shade.rs`.
 #[inline(always)]
-fn inks<L: Lanes>(l: L, normal: [L::Float; 3], at: &Placement, paint: &Paintwork) -> [u32; BLOCK] {
+fn packed_pixels<L: Lanes>(l: L, normal: [L::Float; 3], at: &Placement, params: &ShadingParams) -> [u32; BLOCK] {
     let (zero, one) = (l.splat(0.0), l.splat(1.0));
     let sun = l.max(dot(l, normal, at.sun, zero), zero);
     let sky = l.mul(l.splat(0.06), l.mul(l.add(normal[2], one), l.sub(one, sun)));
     let share = l.add(
-        l.mul_add(sun, l.splat(1.0 - paint.ambient), l.splat(paint.ambient)),
+        l.mul_add(sun, l.splat(1.0 - params.ambient), l.splat(params.ambient)),
         sky,
     );
     let (red, green, blue) = (
-        byte(l, share, paint.color[0]),
-        byte(l, share, paint.color[1]),
-        byte(l, share, paint.color[2]),
+        byte(l, share, params.color[0]),
+        byte(l, share, params.color[1]),
+        byte(l, share, params.color[2]),
     );
     let rgb = l.or(red, l.shift_byte(l.or(green, l.shift_byte(blue))));
-    let mut inks = [0; BLOCK];
-    l.store_words(l.or(rgb, l.splat_word(paint.label)), &mut inks);
-    inks
+    let mut pixels = [0; BLOCK];
+    l.store_words(l.or(rgb, l.splat_word(params.label)), &mut pixels);
+    pixels
 }
 
 #[inline(always)]
@@ -215,7 +215,7 @@ fn draw_all_cut<L: Lanes, const ITEMS: bool>(
     block: &Block,
     (first, mut lanes_to_cut): (usize, u32),
     at: &Placement,
-    (ink, item): (&[u32; BLOCK], u32),
+    (pixels, item): (&[u32; BLOCK], u32),
 ) {
     while lanes_to_cut != 0 {
         let lane = lanes_to_cut.trailing_zeros() as usize;
@@ -223,7 +223,7 @@ fn draw_all_cut<L: Lanes, const ITEMS: bool>(
         let (polygon, count) = cut(block, first + lane, at);
         for k in 2..count {
             let corners = [polygon[0], polygon[k - 1], polygon[k]];
-            if let Some(triangle) = set_up(corners, [canvas.width, canvas.height], ink[lane], item) {
+            if let Some(triangle) = set_up(corners, [canvas.width, canvas.height], pixels[lane], item) {
                 canvas.fill::<L, ITEMS>(lanes, &triangle);
             }
         }
@@ -260,7 +260,7 @@ fn cut(block: &Block, lane: usize, at: &Placement) -> ([[f32; 3]; 4], usize) {
 }
 
 /// A triangle by its corners' columns, rows and 1 / depth; none if no pixel's centre may be in it.
-fn set_up(corners: [[f32; 3]; 3], size: [usize; 2], ink: u32, item: u32) -> Option<Triangle> {
+fn set_up(corners: [[f32; 3]; 3], size: [usize; 2], pixel: u32, item: u32) -> Option<Triangle> {
     let range = |axis: usize| {
         let values = corners.map(|corner| corner[axis]);
         let low = values.iter().copied().fold(f32::INFINITY, f32::min).max(0.0).ceil();
@@ -287,7 +287,7 @@ fn set_up(corners: [[f32; 3]; 3], size: [usize; 2], ink: u32, item: u32) -> Opti
         inverse_depth: [plane(0), plane(1), plane(2)],
         columns,
         rows,
-        ink,
+        pixel,
         item,
     })
 }

@@ -35,8 +35,8 @@ impl Shader {
         std::array::from_fn(|k| color[k] * self.tint[k] * 255.0)
     }
 
-    /// A face's ink: red lowest, no label.
-    pub(crate) fn ink(&self, color: [f32; 3], normal: [f32; 3]) -> u32 {
+    /// A face's packed pixel: red lowest, no label.
+    pub(crate) fn packed_pixel(&self, color: [f32; 3], normal: [f32; 3]) -> u32 {
         let share = self.share(normal);
         let [red, green, blue] = self.in_light(color).map(|level| (level * share + 0.5).min(255.0) as u8);
         u32::from_le_bytes([red, green, blue, 0])

@@ -14,7 +14,7 @@ struct Whole {
     @location(4) @interpolate(flat, either) wall_base: vec4f,
     @location(5) @interpolate(flat, either) wall_right: vec4f,
     @location(6) @interpolate(flat, either) wall_up: vec4f,
-    @location(7) @interpolate(flat, either) wall_inks: vec4u,
+    @location(7) @interpolate(flat, either) wall_pixels: vec4u,
     // The ground's colour; squares that a pixel covers per square metre of distance.
     @location(8) @interpolate(flat, either) ground_blur: vec4f,
     // The sky's; how far the outermost column is from the middle at 1 m.
@@ -47,7 +47,7 @@ fn backdrop_vertex(@builtin(vertex_index) vertex: u32, @builtin(instance_index) 
     whole.wall_base = tile.wall_base;
     whole.wall_right = tile.wall_right;
     whole.wall_up = tile.wall_up;
-    whole.wall_inks = tile.wall_inks;
+    whole.wall_pixels = tile.wall_pixels;
     whole.ground_blur = vec4f(tile.ground.xyz, step / (height * SQUARE));
     whole.zenith_width = vec4f(tile.zenith.xyz, abs((0.5 - tile.place.z / 2.0) * step));
     whole.horizon = tile.horizon.xyz;
@@ -88,7 +88,7 @@ fn backdrop_fragment(whole: Whole) -> Behind {
     let is_ground = rise < 0.0;
     var inverse = max(-rise, 0.0) / whole.middle_step_height.w;
     let levels = select(sky(whole, rise), ground(whole, inverse, offset), is_ground);
-    var word = ink(levels, select(SKY, MAP, is_ground));
+    var word = packed_pixel(levels, select(SKY, MAP, is_ground));
 
     let walls = (whole.wall_base + offset.y * whole.wall_up) + whole.wall_right * offset.x;
     let nearest = max(max(walls.x, walls.y), max(walls.z, walls.w));
@@ -96,9 +96,9 @@ fn backdrop_fragment(whole: Whole) -> Behind {
     if whole.rise_walls.w > 0.0 && nearest >= edge && nearest > inverse {
         inverse = nearest;
         // The first of the nearest.
-        word = select(whole.wall_inks.w, whole.wall_inks.z, walls.z == nearest);
-        word = select(word, whole.wall_inks.y, walls.y == nearest);
-        word = select(word, whole.wall_inks.x, walls.x == nearest);
+        word = select(whole.wall_pixels.w, whole.wall_pixels.z, walls.z == nearest);
+        word = select(word, whole.wall_pixels.y, walls.y == nearest);
+        word = select(word, whole.wall_pixels.x, walls.x == nearest);
     }
     if FOG {
         word = in_fog(word, inverse, whole.number);

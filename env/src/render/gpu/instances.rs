@@ -7,8 +7,8 @@ use super::super::compose::{CATEGORY_BITS, Walls};
 use super::super::cpu::category;
 use super::super::frame::CATEGORY_MAP;
 use super::super::shade::Shader;
-use super::super::sight::{InSight, What, find, level};
 use super::super::view::{Placement, Pose, View};
+use super::super::visibility::{Drawable, Visible, find, level};
 use super::tile::{self, TileWords};
 use crate::assets::{Asset, BLOCK, Block};
 use crate::camera::Camera;
@@ -28,7 +28,7 @@ pub(super) type InstanceWords = [u32; WORDS];
 pub(super) enum Shape {
     /// The triangle whose corners the instance holds itself.
     Triangle,
-    /// An asset, and which of its levels: the address of the level's coats, which lasts as long as the asset.
+    /// An asset, and which of its levels: the address of the level's materials, which lasts as long as the asset.
     Asset(Arc<Asset>, usize),
 }
 
@@ -39,7 +39,7 @@ pub(super) struct TileContents {
     pub(super) instances: Vec<InstanceWords>,
     /// One for each instance.
     pub(super) shapes: Vec<Shape>,
-    sights: Vec<InSight>,
+    visible: Vec<Visible>,
 }
 
 impl TileContents {
@@ -52,15 +52,17 @@ impl TileContents {
         self.tile = tile::words(scene, &view, &shader, walls.as_ref(), [0, 0]);
         self.instances.clear();
         self.shapes.clear();
-        let mut sights = std::mem::take(&mut self.sights);
-        find(scene, &view, walls.is_some(), &mut sights);
-        for &sight in &sights {
-            match sight.what {
-                What::Item(index) => self.add_item(&scene.items[index as usize], index, sight, &view, scene, labels),
-                What::Panels(index) => self.add_panels(&scene.panels()[index as usize], &view, scene),
+        let mut all_visible = std::mem::take(&mut self.visible);
+        find(scene, &view, walls.is_some(), &mut all_visible);
+        for &visible in &all_visible {
+            match visible.drawable {
+                Drawable::Item(index) => {
+                    self.add_item(&scene.items[index as usize], index, visible, &view, scene, labels)
+                }
+                Drawable::Panels(index) => self.add_panels(&scene.panels()[index as usize], &view, scene),
             }
         }
-        self.sights = sights;
+        self.visible = all_visible;
     }
 
     /// Puts the tile where it will be drawn: its number in the pass, and its left upper corner in the atlas.
@@ -72,7 +74,7 @@ impl TileContents {
         }
     }
 
-    fn add_item(&mut self, item: &Item, index: u32, sight: InSight, view: &View, scene: &Scene, labels: Labels) {
+    fn add_item(&mut self, item: &Item, index: u32, visible: Visible, view: &View, scene: &Scene, labels: Labels) {
         let at = view.placement(&Pose::of(item), scene.light.direction);
         let class = match labels {
             Labels::WithClass => u32::from(item.class_id) << CATEGORY_BITS,
@@ -80,10 +82,10 @@ impl TileContents {
         };
         let label = (class | u32::from(category(item))) << 24;
         let color = item.color.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
-        let coats = level(item, sight, view);
+        let materials = level(item, visible, view);
         self.instances.push(instance(&at, at.sun, color, [label, index + 1]));
         self.shapes
-            .push(Shape::Asset(Arc::clone(&item.asset), coats.as_ptr().addr()));
+            .push(Shape::Asset(Arc::clone(&item.asset), materials.as_ptr().addr()));
     }
 
     fn add_panels(&mut self, group: &PanelGroup, view: &View, scene: &Scene) {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::device::Device;
 use super::instances::{Shape, corners, normal, triangles};
-use crate::assets::{Asset, Coat, Paint};
+use crate::assets::{Asset, Material, Paint};
 
 /// Numbers of a vertex: place, normal, colour, and whether the object's own colour takes its place.
 pub(super) const VERTEX_LENGTH: usize = 10;
@@ -22,7 +22,7 @@ pub(super) type Mesh = Range<u32>;
 #[derive(Debug)]
 pub(super) struct Library {
     meshes: Vec<Mesh>,
-    /// Numbers of meshes by the address of their coats.
+    /// Numbers of meshes by the address of their materials.
     known: HashMap<usize, u32>,
     /// Keeps the addresses from being used anew.
     assets: Vec<Arc<Asset>>,
@@ -85,9 +85,11 @@ impl Library {
         }
         let number = self.meshes.len() as u32;
         let first = self.num_vertices();
-        let level = asset.coats_of_levels().find(|coats| coats.as_ptr().addr() == *address);
-        for coat in level.unwrap_or_default() {
-            self.add(coat);
+        let level = asset
+            .materials_of_levels()
+            .find(|materials| materials.as_ptr().addr() == *address);
+        for material in level.unwrap_or_default() {
+            self.add(material);
         }
         self.meshes.push(first..self.num_vertices());
         self.known.insert(*address, number);
@@ -99,12 +101,12 @@ impl Library {
         (self.vertices.len() / VERTEX_LENGTH) as u32
     }
 
-    fn add(&mut self, coat: &Coat) {
-        let ([r, g, b], is_main) = match coat.paint {
+    fn add(&mut self, material: &Material) {
+        let ([r, g, b], is_main) = match material.paint {
             Paint::Main(own) => (own, 1.0),
             Paint::Fixed(color) => (color, 0.0),
         };
-        for (block, lane) in coat.blocks.iter().flat_map(triangles) {
+        for (block, lane) in material.blocks.iter().flat_map(triangles) {
             for corner in corners(block, lane) {
                 self.vertices.extend(corner);
                 self.vertices.extend(normal(block, lane));
@@ -151,8 +153,8 @@ mod tests {
     fn an_asset_is_put_down_once_with_all_its_triangles() {
         let mut library = Library::new();
         let asset = asset("tree", &Model::default());
-        let coats = asset.level(0.0);
-        let shape = Shape::Asset(Arc::clone(&asset), coats.as_ptr().addr());
+        let materials = asset.level(0.0);
+        let shape = Shape::Asset(Arc::clone(&asset), materials.as_ptr().addr());
         let number = library.number(&shape);
         assert_eq!((number, library.number(&shape), library.num_meshes()), (1, 1, 2));
         let triangles: usize = asset.parts.iter().map(|part| part.mesh.triangles.len()).sum();

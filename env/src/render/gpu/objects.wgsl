@@ -24,7 +24,7 @@ struct Instance {
 struct Seen {
     @builtin(position) position: vec4f,
     // CLIP @builtin(clip_distances) inside: array<f32, 4>,
-    // Ink, item, tile.
+    // Packed pixel, item, tile.
     @location(0) @interpolate(flat, either) numbers: vec3u,
 }
 
@@ -60,7 +60,7 @@ fn objects_vertex(corner: Corner, instance: Instance) -> Seen {
         depth,
     );
     // CLIP seen.inside = array<f32, 4>(column, place.z * depth - column, row, place.w * depth - row);
-    seen.numbers = vec3u(ink(color * light.xyz * 255.0 * share, 0u) | instance.numbers.y, instance.numbers.z, number);
+    seen.numbers = vec3u(packed_pixel(color * light.xyz * 255.0 * share, 0u) | instance.numbers.y, instance.numbers.z, number);
     return seen;
 }
 

@@ -31,7 +31,7 @@ pub(super) fn words(scene: &Scene, view: &View, shader: &Shader, walls: Option<&
         four(walls.map_or(none, |walls| walls.base)),
         four(walls.map_or(none, |walls| walls.right)),
         four(walls.map_or(none, |walls| walls.up)),
-        walls.map_or([0; 4], |walls| walls.inks),
+        walls.map_or([0; 4], |walls| walls.pixels),
         with(ground, 0.0),
         with(zenith, 0.0),
         with(horizon, 0.0),

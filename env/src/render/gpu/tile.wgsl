@@ -14,7 +14,7 @@ struct Tile {
     wall_base: vec4f,
     wall_right: vec4f,
     wall_up: vec4f,
-    wall_inks: vec4u,
+    wall_pixels: vec4u,
     // Levels 0 to 255 and above.
     ground: vec4f,
     zenith: vec4f,
@@ -42,7 +42,7 @@ struct Pixel {
 // Whether any tile of the pass has fog.
 override FOG: bool = false;
 
-fn ink(levels: vec3f, label: u32) -> u32 {
+fn packed_pixel(levels: vec3f, label: u32) -> u32 {
     let bytes = vec3u(min(levels + 0.5, vec3f(255.0)));
     return (label << 24u) | (bytes.z << 16u) | (bytes.y << 8u) | bytes.x;
 }
@@ -56,5 +56,5 @@ fn in_fog(word: u32, inverse: f32, tile: u32) -> u32 {
     let reach = inverse * fog.w;
     let share = 1.0 / (reach * reach + 1.0);
     let levels = vec3f(vec3u(word & 255u, (word >> 8u) & 255u, (word >> 16u) & 255u));
-    return ink(levels + (fog.xyz - levels) * share, word >> 24u);
+    return packed_pixel(levels + (fog.xyz - levels) * share, word >> 24u);
 }

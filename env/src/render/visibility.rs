@@ -1,7 +1,7 @@
 //! What of a scene may be in a picture, and how closely it is looked at. How it is drawn is each renderer's.
 
 use super::view::{NEAR, View};
-use crate::assets::Coat;
+use crate::assets::Material;
 use crate::scene::{ARENA_WALLS, Item, Scene};
 
 /// Largest error of a simplified mesh that is drawn, in pixels.
@@ -9,28 +9,28 @@ const TOLERANCE: f32 = 0.5;
 
 /// Something that may be in the picture.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct InSight {
+pub(super) struct Visible {
     /// Depth of its nearest point in metres.
     pub(super) nearest: f32,
-    pub(super) what: What,
+    pub(super) drawable: Drawable,
 }
 
 /// Which item of a scene, or which group of its panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum What {
+pub(super) enum Drawable {
     Item(u32),
     Panels(u32),
 }
 
 /// Finds what may be seen, in the scene's order; the arena's own walls only if they are not drawn by formula.
-pub(super) fn find(scene: &Scene, view: &View, walls_are_drawn: bool, found: &mut Vec<InSight>) {
+pub(super) fn find(scene: &Scene, view: &View, walls_are_drawn: bool, found: &mut Vec<Visible>) {
     found.clear();
-    let mut note = |middle: [f32; 3], radius: f32, what: What| {
+    let mut note = |middle: [f32; 3], radius: f32, drawable: Drawable| {
         let middle = view.view_from_world(middle);
         if view.sees(middle, radius) {
-            found.push(InSight {
+            found.push(Visible {
                 nearest: middle[2] - radius,
-                what,
+                drawable,
             });
         }
     };
@@ -41,25 +41,25 @@ pub(super) fn find(scene: &Scene, view: &View, walls_are_drawn: bool, found: &mu
             note(
                 [x, y, half],
                 item.asset.ball_radius() * item.scale,
-                What::Item(index as u32),
+                Drawable::Item(index as u32),
             );
         }
     }
     for (index, group) in scene.panels().iter().enumerate() {
         if index >= ARENA_WALLS || !walls_are_drawn {
-            note(group.middle, group.radius, What::Panels(index as u32));
+            note(group.middle, group.radius, Drawable::Panels(index as u32));
         }
     }
 }
 
 /// Puts what may be seen in order, near to far: what is behind is then mostly hidden when it comes.
-pub(super) fn sort(found: &mut [InSight]) {
-    found.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.what.cmp(&b.what)));
+pub(super) fn sort(found: &mut [Visible]) {
+    found.sort_unstable_by(|a, b| a.nearest.total_cmp(&b.nearest).then(a.drawable.cmp(&b.drawable)));
 }
 
 /// The mesh of an item that is fine enough for how near it is.
-pub(super) fn level<'a>(item: &'a Item, sight: InSight, view: &View) -> &'a [Coat] {
-    let pixels_per_metre = view.scale * item.scale / sight.nearest.max(NEAR);
+pub(super) fn level<'a>(item: &'a Item, visible: Visible, view: &View) -> &'a [Material] {
+    let pixels_per_metre = view.scale * item.scale / visible.nearest.max(NEAR);
     item.asset.level(TOLERANCE / pixels_per_metre)
 }
 
@@ -80,8 +80,8 @@ mod tests {
         let mut found = Vec::new();
         find(&scene, &view, true, &mut found);
         sort(&mut found);
-        let order: Vec<What> = found.iter().map(|sight| sight.what).collect();
-        assert_eq!(order, [What::Item(2), What::Item(0)]);
+        let order: Vec<Drawable> = found.iter().map(|visible| visible.drawable).collect();
+        assert_eq!(order, [Drawable::Item(2), Drawable::Item(0)]);
         find(&scene, &view, false, &mut found);
         assert!(found.len() > 2, "the arena's walls, as panels");
     }
