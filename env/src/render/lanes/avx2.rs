@@ -15,12 +15,11 @@ use std::arch::x86_64::{
 };
 
 use super::Lanes;
+use super::intrinsics::lanes_by_intrinsics;
 
 /// Proof that the processor has AVX2.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx2(());
-
-const N: usize = 8;
 
 impl Avx2 {
     /// The proof, if this processor has it.
@@ -29,167 +28,72 @@ impl Avx2 {
     }
 }
 
-/// The first lanes of a slice, for reading.
-#[inline(always)]
-fn first<T>(from: &[T]) -> &[T; N] {
-    from.first_chunk()
-        .expect("callers hand in at least as much as a vector holds")
-}
+lanes_by_intrinsics! {
+    Avx2: 8 lanes of __m256, __m256i, __m256;
+    conversions: splat(f32) -> __m256 = _mm256_set1_ps, root(__m256) -> __m256 = _mm256_sqrt_ps,
+        truncate(__m256) -> __m256i = _mm256_cvttps_epi32, float(__m256i) -> __m256 = _mm256_cvtepi32_ps;
+    floats: add = _mm256_add_ps, sub = _mm256_sub_ps, mul = _mm256_mul_ps, div = _mm256_div_ps, min = _mm256_min_ps,
+        max = _mm256_max_ps;
+    words: or = _mm256_or_si256, xor = _mm256_xor_si256;
+    memory: _mm256_loadu_ps, _mm256_storeu_ps, _mm256_loadu_si256, _mm256_storeu_si256;
 
-/// The first lanes of a slice, for writing.
-#[inline(always)]
-fn first_mut<T>(to: &mut [T]) -> &mut [T; N] {
-    to.first_chunk_mut()
-        .expect("callers hand in at least as much as a vector holds")
-}
-
-// SAFETY of all blocks below: a value of `Avx2` exists only where the processor has AVX2, and each pointer is that of an
-// array of exactly as many elements as the instruction reads or writes; none needs alignment.
-impl Lanes for Avx2 {
-    const N: usize = N;
-    type Float = __m256;
-    type Word = __m256i;
-    type Mask = __m256;
-
-    #[inline(always)]
-    fn splat(self, value: f32) -> __m256 {
-        // SAFETY: above.
-        unsafe { _mm256_set1_ps(value) }
-    }
     #[inline(always)]
     fn count_up(self) -> __m256 {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm256_setr_ps(0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0) }
     }
     #[inline(always)]
-    fn load(self, from: &[f32]) -> __m256 {
-        // SAFETY: above.
-        unsafe { _mm256_loadu_ps(first(from).as_ptr()) }
-    }
-    #[inline(always)]
-    fn store(self, value: __m256, to: &mut [f32]) {
-        // SAFETY: above.
-        unsafe { _mm256_storeu_ps(first_mut(to).as_mut_ptr(), value) }
-    }
-    #[inline(always)]
-    fn add(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: above.
-        unsafe { _mm256_add_ps(a, b) }
-    }
-    #[inline(always)]
-    fn sub(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: above.
-        unsafe { _mm256_sub_ps(a, b) }
-    }
-    #[inline(always)]
-    fn mul(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: above.
-        unsafe { _mm256_mul_ps(a, b) }
-    }
-    #[inline(always)]
-    fn div(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: above.
-        unsafe { _mm256_div_ps(a, b) }
-    }
-    #[inline(always)]
-    fn min(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: above.
-        unsafe { _mm256_min_ps(a, b) }
-    }
-    #[inline(always)]
-    fn max(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: above.
-        unsafe { _mm256_max_ps(a, b) }
-    }
-    #[inline(always)]
     fn at_least(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm256_cmp_ps::<_CMP_GE_OQ>(a, b) }
     }
     #[inline(always)]
     fn above(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm256_cmp_ps::<_CMP_GT_OQ>(a, b) }
     }
     #[inline(always)]
-    fn root(self, a: __m256) -> __m256 {
-        // SAFETY: above.
-        unsafe { _mm256_sqrt_ps(a) }
-    }
-    #[inline(always)]
     fn both(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm256_and_ps(a, b) }
     }
     #[inline(always)]
     fn bits(self, mask: __m256) -> u32 {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm256_movemask_ps(mask) as u32 }
     }
     #[inline(always)]
     fn select(self, mask: __m256, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm256_blendv_ps(b, a, mask) }
     }
-
     #[inline(always)]
     fn splat_word(self, value: u32) -> __m256i {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm256_set1_epi32(value as i32) }
     }
     #[inline(always)]
-    fn load_words(self, from: &[u32]) -> __m256i {
-        // SAFETY: above.
-        unsafe { _mm256_loadu_si256(first(from).as_ptr().cast()) }
-    }
-    #[inline(always)]
-    fn store_words(self, value: __m256i, to: &mut [u32]) {
-        // SAFETY: above.
-        unsafe { _mm256_storeu_si256(first_mut(to).as_mut_ptr().cast(), value) }
-    }
-    #[inline(always)]
     fn select_words(self, mask: __m256, a: __m256i, b: __m256i) -> __m256i {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm256_blendv_epi8(b, a, _mm256_castps_si256(mask)) }
     }
     #[inline(always)]
-    fn or(self, a: __m256i, b: __m256i) -> __m256i {
-        // SAFETY: above.
-        unsafe { _mm256_or_si256(a, b) }
-    }
-    #[inline(always)]
-    fn xor(self, a: __m256i, b: __m256i) -> __m256i {
-        // SAFETY: above.
-        unsafe { _mm256_xor_si256(a, b) }
-    }
-    #[inline(always)]
     fn shift_byte(self, value: __m256i) -> __m256i {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm256_slli_epi32::<8>(value) }
     }
     #[inline(always)]
     fn has_bit(self, value: __m256i, bit: u32) -> __m256 {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe {
             let only = _mm256_set1_epi32(1 << bit);
             _mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(value, only), only))
         }
     }
     #[inline(always)]
-    fn truncate(self, value: __m256) -> __m256i {
-        // SAFETY: above.
-        unsafe { _mm256_cvttps_epi32(value) }
-    }
-    #[inline(always)]
-    fn float(self, value: __m256i) -> __m256 {
-        // SAFETY: above.
-        unsafe { _mm256_cvtepi32_ps(value) }
-    }
-
-    #[inline(always)]
     fn store_rgb(self, value: __m256i, to: &mut [u8]) {
         let to: &mut [u8; 3 * N] = to.first_chunk_mut().expect("callers hand in three bytes a lane");
-        // SAFETY: above; 16 and 8 bytes of the 24 are written.
+        // SAFETY: as in the macro; 16 and 8 bytes of the 24 are written.
         unsafe {
             // Within each half the fourth bytes go out; then the halves close up.
             let halves = _mm256_setr_epi8(
@@ -204,15 +108,14 @@ impl Lanes for Avx2 {
             _mm_storel_epi64(to[16..].as_mut_ptr().cast(), _mm256_extracti128_si256::<1>(packed));
         }
     }
-
     #[inline(always)]
     fn store_where(self, mask: __m256, value: __m256, to: &mut [f32]) {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm256_maskstore_ps(first_mut(to).as_mut_ptr(), _mm256_castps_si256(mask), value) }
     }
     #[inline(always)]
     fn store_words_where(self, mask: __m256, value: __m256i, to: &mut [u32]) {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm256_maskstore_epi32(first_mut(to).as_mut_ptr().cast(), _mm256_castps_si256(mask), value) }
     }
 }

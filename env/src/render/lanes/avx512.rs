@@ -14,12 +14,11 @@ use std::arch::x86_64::{
 };
 
 use super::Lanes;
+use super::intrinsics::lanes_by_intrinsics;
 
 /// Proof that the processor has AVX-512 F and BW.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx512(());
-
-const N: usize = 16;
 
 impl Avx512 {
     /// The proof, if this processor has it.
@@ -29,36 +28,18 @@ impl Avx512 {
     }
 }
 
-/// The first lanes of a slice, for reading.
-#[inline(always)]
-fn first<T>(from: &[T]) -> &[T; N] {
-    from.first_chunk()
-        .expect("callers hand in at least as much as a vector holds")
-}
+lanes_by_intrinsics! {
+    Avx512: 16 lanes of __m512, __m512i, __mmask16;
+    conversions: splat(f32) -> __m512 = _mm512_set1_ps, root(__m512) -> __m512 = _mm512_sqrt_ps,
+        truncate(__m512) -> __m512i = _mm512_cvttps_epi32, float(__m512i) -> __m512 = _mm512_cvtepi32_ps;
+    floats: add = _mm512_add_ps, sub = _mm512_sub_ps, mul = _mm512_mul_ps, div = _mm512_div_ps, min = _mm512_min_ps,
+        max = _mm512_max_ps;
+    words: or = _mm512_or_si512, xor = _mm512_xor_si512;
+    memory: _mm512_loadu_ps, _mm512_storeu_ps, _mm512_loadu_si512, _mm512_storeu_si512;
 
-/// The first lanes of a slice, for writing.
-#[inline(always)]
-fn first_mut<T>(to: &mut [T]) -> &mut [T; N] {
-    to.first_chunk_mut()
-        .expect("callers hand in at least as much as a vector holds")
-}
-
-// SAFETY of all blocks below: a value of `Avx512` exists only where the processor has AVX-512 F and BW, and each pointer is that of an
-// array of exactly as many elements as the instruction reads or writes; none needs alignment.
-impl Lanes for Avx512 {
-    const N: usize = N;
-    type Float = __m512;
-    type Word = __m512i;
-    type Mask = __mmask16;
-
-    #[inline(always)]
-    fn splat(self, value: f32) -> __m512 {
-        // SAFETY: above.
-        unsafe { _mm512_set1_ps(value) }
-    }
     #[inline(always)]
     fn count_up(self) -> __m512 {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe {
             _mm512_setr_ps(
                 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0,
@@ -66,59 +47,14 @@ impl Lanes for Avx512 {
         }
     }
     #[inline(always)]
-    fn load(self, from: &[f32]) -> __m512 {
-        // SAFETY: above.
-        unsafe { _mm512_loadu_ps(first(from).as_ptr()) }
-    }
-    #[inline(always)]
-    fn store(self, value: __m512, to: &mut [f32]) {
-        // SAFETY: above.
-        unsafe { _mm512_storeu_ps(first_mut(to).as_mut_ptr(), value) }
-    }
-    #[inline(always)]
-    fn add(self, a: __m512, b: __m512) -> __m512 {
-        // SAFETY: above.
-        unsafe { _mm512_add_ps(a, b) }
-    }
-    #[inline(always)]
-    fn sub(self, a: __m512, b: __m512) -> __m512 {
-        // SAFETY: above.
-        unsafe { _mm512_sub_ps(a, b) }
-    }
-    #[inline(always)]
-    fn mul(self, a: __m512, b: __m512) -> __m512 {
-        // SAFETY: above.
-        unsafe { _mm512_mul_ps(a, b) }
-    }
-    #[inline(always)]
-    fn div(self, a: __m512, b: __m512) -> __m512 {
-        // SAFETY: above.
-        unsafe { _mm512_div_ps(a, b) }
-    }
-    #[inline(always)]
-    fn min(self, a: __m512, b: __m512) -> __m512 {
-        // SAFETY: above.
-        unsafe { _mm512_min_ps(a, b) }
-    }
-    #[inline(always)]
-    fn max(self, a: __m512, b: __m512) -> __m512 {
-        // SAFETY: above.
-        unsafe { _mm512_max_ps(a, b) }
-    }
-    #[inline(always)]
     fn at_least(self, a: __m512, b: __m512) -> __mmask16 {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, b) }
     }
     #[inline(always)]
     fn above(self, a: __m512, b: __m512) -> __mmask16 {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm512_cmp_ps_mask::<_CMP_GT_OQ>(a, b) }
-    }
-    #[inline(always)]
-    fn root(self, a: __m512) -> __m512 {
-        // SAFETY: above.
-        unsafe { _mm512_sqrt_ps(a) }
     }
     #[inline(always)]
     fn both(self, a: __mmask16, b: __mmask16) -> __mmask16 {
@@ -130,65 +66,33 @@ impl Lanes for Avx512 {
     }
     #[inline(always)]
     fn select(self, mask: __mmask16, a: __m512, b: __m512) -> __m512 {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm512_mask_blend_ps(mask, b, a) }
     }
-
     #[inline(always)]
     fn splat_word(self, value: u32) -> __m512i {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm512_set1_epi32(value as i32) }
     }
     #[inline(always)]
-    fn load_words(self, from: &[u32]) -> __m512i {
-        // SAFETY: above.
-        unsafe { _mm512_loadu_si512(first(from).as_ptr().cast()) }
-    }
-    #[inline(always)]
-    fn store_words(self, value: __m512i, to: &mut [u32]) {
-        // SAFETY: above.
-        unsafe { _mm512_storeu_si512(first_mut(to).as_mut_ptr().cast(), value) }
-    }
-    #[inline(always)]
     fn select_words(self, mask: __mmask16, a: __m512i, b: __m512i) -> __m512i {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm512_mask_blend_epi32(mask, b, a) }
     }
     #[inline(always)]
-    fn or(self, a: __m512i, b: __m512i) -> __m512i {
-        // SAFETY: above.
-        unsafe { _mm512_or_si512(a, b) }
-    }
-    #[inline(always)]
-    fn xor(self, a: __m512i, b: __m512i) -> __m512i {
-        // SAFETY: above.
-        unsafe { _mm512_xor_si512(a, b) }
-    }
-    #[inline(always)]
     fn shift_byte(self, value: __m512i) -> __m512i {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm512_slli_epi32::<8>(value) }
     }
     #[inline(always)]
     fn has_bit(self, value: __m512i, bit: u32) -> __mmask16 {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm512_test_epi32_mask(value, _mm512_set1_epi32(1 << bit)) }
     }
     #[inline(always)]
-    fn truncate(self, value: __m512) -> __m512i {
-        // SAFETY: above.
-        unsafe { _mm512_cvttps_epi32(value) }
-    }
-    #[inline(always)]
-    fn float(self, value: __m512i) -> __m512 {
-        // SAFETY: above.
-        unsafe { _mm512_cvtepi32_ps(value) }
-    }
-
-    #[inline(always)]
     fn store_rgb(self, value: __m512i, to: &mut [u8]) {
         let to: &mut [u8; 3 * N] = to.first_chunk_mut().expect("callers hand in three bytes a lane");
-        // SAFETY: above; the mask lets 12 words, 48 bytes, through.
+        // SAFETY: as in the macro; the mask lets 12 words, 48 bytes, through.
         unsafe {
             // Within each quarter the fourth bytes go out; then the quarters close up.
             let quarter = _mm_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1);
@@ -199,15 +103,14 @@ impl Lanes for Avx512 {
             _mm512_mask_storeu_epi32(to.as_mut_ptr().cast(), 0x0fff, packed);
         }
     }
-
     #[inline(always)]
     fn store_where(self, mask: __mmask16, value: __m512, to: &mut [f32]) {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm512_mask_storeu_ps(first_mut(to).as_mut_ptr(), mask, value) }
     }
     #[inline(always)]
     fn store_words_where(self, mask: __mmask16, value: __m512i, to: &mut [u32]) {
-        // SAFETY: above.
+        // SAFETY: as in the macro.
         unsafe { _mm512_mask_storeu_epi32(first_mut(to).as_mut_ptr().cast(), mask, value) }
     }
 }

@@ -1,0 +1,86 @@
+//! The operations that are one intrinsic in every instruction set of x86-64, written once. What differs between sets
+//! is in their own files.
+
+/// Implements [`Lanes`](super::Lanes) by the intrinsics that are named, for a type whose values prove that the
+/// processor has them; what differs between sets is added as it stands.
+macro_rules! lanes_by_intrinsics {
+    (
+        $set:ident: $count:literal lanes of $float:ident, $word:ident, $mask:ident;
+        conversions: $($convert:ident($from:ident) -> $to:ident = $by:ident),*;
+        floats: $($on_floats:ident = $by_floats:ident),*;
+        words: $($on_words:ident = $by_words:ident),*;
+        memory: $load:ident, $store:ident, $load_words:ident, $store_words:ident;
+        $($own:item)*
+    ) => {
+        const N: usize = $count;
+
+        /// The first lanes of a slice, for reading.
+        #[inline(always)]
+        fn first<T>(from: &[T]) -> &[T; N] {
+            from.first_chunk()
+                .expect("callers hand in at least as much as a vector holds")
+        }
+
+        /// The first lanes of a slice, for writing.
+        #[inline(always)]
+        fn first_mut<T>(to: &mut [T]) -> &mut [T; N] {
+            to.first_chunk_mut()
+                .expect("callers hand in at least as much as a vector holds")
+        }
+
+        // SAFETY of all blocks below: a value of the set exists only where the processor has its instructions, and each
+        // pointer is that of an array of exactly as many elements as the instruction reads or writes; none needs
+        // alignment.
+        impl Lanes for $set {
+            const N: usize = N;
+            type Float = $float;
+            type Word = $word;
+            type Mask = $mask;
+
+            $(
+                #[inline(always)]
+                fn $convert(self, value: $from) -> $to {
+                    // SAFETY: above.
+                    unsafe { $by(value) }
+                }
+            )*
+            $(
+                #[inline(always)]
+                fn $on_floats(self, a: $float, b: $float) -> $float {
+                    // SAFETY: above.
+                    unsafe { $by_floats(a, b) }
+                }
+            )*
+            $(
+                #[inline(always)]
+                fn $on_words(self, a: $word, b: $word) -> $word {
+                    // SAFETY: above.
+                    unsafe { $by_words(a, b) }
+                }
+            )*
+            #[inline(always)]
+            fn load(self, from: &[f32]) -> $float {
+                // SAFETY: above.
+                unsafe { $load(first(from).as_ptr()) }
+            }
+            #[inline(always)]
+            fn store(self, value: $float, to: &mut [f32]) {
+                // SAFETY: above.
+                unsafe { $store(first_mut(to).as_mut_ptr(), value) }
+            }
+            #[inline(always)]
+            fn load_words(self, from: &[u32]) -> $word {
+                // SAFETY: above.
+                unsafe { $load_words(first(from).as_ptr().cast()) }
+            }
+            #[inline(always)]
+            fn store_words(self, value: $word, to: &mut [u32]) {
+                // SAFETY: above.
+                unsafe { $store_words(first_mut(to).as_mut_ptr().cast(), value) }
+            }
+            $($own)*
+        }
+    };
+}
+
+pub(super) use lanes_by_intrinsics;
