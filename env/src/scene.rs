@@ -233,6 +233,11 @@ impl Scene {
     }
 }
 
+/// What exposure comes to with ever more light, and the intensity at which it is half of that: an intensity of 2.3 is day,
+/// with an exposure of 1. Below, brightness falls with the intensity; above, it rises ever more slowly.
+const BRIGHTEST: f32 = 1.72;
+const HALF_BRIGHT: f32 = 1.65;
+
 fn light(world: &World) -> Light {
     let environment = &world.environment_params;
     let direction = environment.sun_direction.map(|part| part as f32);
@@ -241,8 +246,7 @@ fn light(world: &World) -> Light {
     Light {
         direction: direction.map(|part| part / length),
         color: environment.light_color.to_f32(),
-        // 2.3 is day; below, brightness falls with the intensity; above, it rises ever more slowly.
-        exposure: 1.72 * intensity / (intensity + 1.65),
+        exposure: BRIGHTEST * intensity / (intensity + HALF_BRIGHT),
         ambient: environment.ambient_light as f32,
         sky_color: environment.sky_color.to_f32(),
         fog_distance: environment.fog_distance.map(|metres| metres as f32),

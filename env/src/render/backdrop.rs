@@ -3,7 +3,7 @@
 
 use super::frame::{CATEGORY_MAP, CATEGORY_SKY};
 use super::lanes::{Lanes, MOST_LANES};
-use super::shade::Shader;
+use super::shade::{FULL_LEVEL, ROUNDING, Shader};
 use super::view::View;
 use crate::scene::Scene;
 
@@ -57,7 +57,7 @@ impl Backdrop {
             zenith,
             horizon,
         };
-        self.fog_color = horizon.map(|level| level.min(255.0));
+        self.fog_color = horizon.map(|level| level.min(FULL_LEVEL));
         for first in (0..padded).step_by(L::N) {
             self.prepare_rows(l, view, &look, first);
         }
@@ -132,5 +132,5 @@ fn pack<L: Lanes>(l: L, levels: [L::Float; 3], label: u8) -> L::Word {
 
 #[inline(always)]
 fn byte<L: Lanes>(l: L, level: L::Float) -> L::Word {
-    l.truncate(l.min(l.add(level, l.splat(0.5)), l.splat(255.0)))
+    l.truncate(l.min(l.add(level, l.splat(ROUNDING)), l.splat(FULL_LEVEL)))
 }

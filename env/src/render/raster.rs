@@ -3,6 +3,7 @@
 
 use super::canvas::{Canvas, Triangle};
 use super::lanes::Lanes;
+use super::shade::{FULL_LEVEL, ROUNDING, SKY_SHARE};
 use super::view::{NEAR, Placement};
 use crate::assets::{BLOCK, Block};
 
@@ -180,12 +181,12 @@ fn dot<L: Lanes>(l: L, point: [L::Float; 3], by: [f32; 3], plus: L::Float) -> L:
     )
 }
 
-/// Colours of a block's faces, with the label above them. The formula is that of `shade.rs`.
+/// Packed pixels of a block's faces, with the label above the colour: the formula of `shade.rs`, for all lanes at once.
 #[inline(always)]
 fn packed_pixels<L: Lanes>(l: L, normal: [L::Float; 3], at: &Placement, params: &ShadingParams) -> [u32; BLOCK] {
     let (zero, one) = (l.splat(0.0), l.splat(1.0));
     let sun = l.max(dot(l, normal, at.sun, zero), zero);
-    let sky = l.mul(l.splat(0.06), l.mul(l.add(normal[2], one), l.sub(one, sun)));
+    let sky = l.mul(l.splat(SKY_SHARE), l.mul(l.add(normal[2], one), l.sub(one, sun)));
     let share = l.add(
         l.mul_add(sun, l.splat(1.0 - params.ambient), l.splat(params.ambient)),
         sky,
@@ -203,8 +204,8 @@ fn packed_pixels<L: Lanes>(l: L, normal: [L::Float; 3], at: &Placement, params: 
 
 #[inline(always)]
 fn byte<L: Lanes>(l: L, share: L::Float, full: f32) -> L::Word {
-    let level = l.mul_add(share, l.splat(full), l.splat(0.5));
-    l.truncate(l.min(level, l.splat(255.0)))
+    let level = l.mul_add(share, l.splat(full), l.splat(ROUNDING));
+    l.truncate(l.min(level, l.splat(FULL_LEVEL)))
 }
 
 /// Draws what of these lanes' triangles lies beyond the near plane: one by one, since few are ever so near.

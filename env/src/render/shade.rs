@@ -1,7 +1,29 @@
-//! Light on surfaces: sun and ambient on flat faces. The light's numbers are the scene's.
+//! Light on surfaces: sun, ambient and sky light on flat faces. The light of a scene is in `scene.rs`.
+//!
+//! Light is applied in gamma space: sRGB values are multiplied as they stand, and never made linear. A colour in full
+//! light is then the colour that the task names, and no picture depends on a power function, which platforms round
+//! differently. The price is that half the light looks darker than half a real one.
+//!
+//! The formula exists three times, for one face (here), for the lanes of a block (`raster.rs`) and on a graphics card
+//! (`objects.wgsl`). All three take their numbers from the constants below.
 
 use crate::scene::Light;
 use crate::vector::dot;
+
+/// Light from the sky on a face that the sun does not reach, as a share: once for an upright face, twice for the ground.
+pub(crate) const SKY_SHARE: f32 = 0.06;
+
+/// The level of a colour of 1 in full light, and the highest that a byte holds.
+pub(crate) const FULL_LEVEL: f32 = 255.0;
+
+/// Added to a level before it is cut to a byte.
+pub(crate) const ROUNDING: f32 = 0.5;
+
+/// How bright the sky is: without any light, what each unit of the brightest channel adds, and at most.
+const SKY_BRIGHTNESS: [f32; 3] = [0.12, 0.88, 1.06];
+
+/// The horizon's colour: this share of the zenith's, and so much white.
+const HORIZON: [f32; 2] = [0.42, 0.55];
 
 /// Turns colours and normals into levels 0 to 255 under one light; more than 255 is cut by whoever makes bytes of it.
 #[derive(Clone, Copy, Debug)]
@@ -27,25 +49,29 @@ impl Shader {
     /// What looks away from the sun still gets a little from the sky, more if it looks up.
     pub(crate) fn share(&self, normal: [f32; 3]) -> f32 {
         let sun = dot(normal, self.direction).max(0.0);
-        self.ambient + (1.0 - self.ambient) * sun + 0.06 * (normal[2] + 1.0) * (1.0 - sun)
+        self.ambient + (1.0 - self.ambient) * sun + SKY_SHARE * (normal[2] + 1.0) * (1.0 - sun)
     }
 
     /// A colour in full light.
     pub(crate) fn in_light(&self, color: [f32; 3]) -> [f32; 3] {
-        std::array::from_fn(|k| color[k] * self.tint[k] * 255.0)
+        std::array::from_fn(|k| color[k] * self.tint[k] * FULL_LEVEL)
     }
 
     /// A face's packed pixel: red lowest, no label.
     pub(crate) fn packed_pixel(&self, color: [f32; 3], normal: [f32; 3]) -> u32 {
         let share = self.share(normal);
-        let [red, green, blue] = self.in_light(color).map(|level| (level * share + 0.5).min(255.0) as u8);
+        let [red, green, blue] = self
+            .in_light(color)
+            .map(|level| (level * share + ROUNDING).min(FULL_LEVEL) as u8);
         u32::from_le_bytes([red, green, blue, 0])
     }
 
     /// The sky's colours at the zenith and at the horizon, for its own colour. It dims with the light, less than the ground does.
     pub(crate) fn sky(&self, color: [f32; 3]) -> [[f32; 3]; 2] {
         let brightest = self.tint[0].max(self.tint[1]).max(self.tint[2]);
-        let bright = (0.12 + 0.88 * brightest).min(1.06) * 255.0;
-        [color.map(|c| c * bright), color.map(|c| (c * 0.42 + 0.55) * bright)]
+        let [dark, gain, most] = SKY_BRIGHTNESS;
+        let bright = (dark + gain * brightest).min(most) * FULL_LEVEL;
+        let [share, white] = HORIZON;
+        [color.map(|c| c * bright), color.map(|c| (c * share + white) * bright)]
     }
 }

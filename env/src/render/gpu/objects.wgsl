@@ -1,5 +1,5 @@
 // Triangles of objects and of walls that are not the arena's own: projected, lit and labelled corner by corner, after
-// view.rs and raster.rs. One instance is one object of one tile.
+// view.rs, raster.rs and, for light, shade.rs, which has the constants. One instance is one object of one tile.
 
 struct Corner {
     @location(0) point: vec3f,
@@ -48,7 +48,7 @@ fn objects_vertex(corner: Corner, instance: Instance) -> Seen {
     let row = along(instance.row, corner.point) + 0.5 * depth;
 
     let sun = max(dot(corner.normal, instance.sun), 0.0);
-    let share = sun * (1.0 - light.w) + light.w + 0.06 * ((corner.normal.z + 1.0) * (1.0 - sun));
+    let share = sun * (1.0 - light.w) + light.w + SKY_SHARE * ((corner.normal.z + 1.0) * (1.0 - sun));
     let own = corner.paint.w * instance.color.w > 0.5;
     let color = select(corner.paint.xyz, instance.color.xyz, own);
 
@@ -60,7 +60,7 @@ fn objects_vertex(corner: Corner, instance: Instance) -> Seen {
         depth,
     );
     // CLIP seen.inside = array<f32, 4>(column, place.z * depth - column, row, place.w * depth - row);
-    seen.numbers = vec3u(packed_pixel(color * light.xyz * 255.0 * share, 0u) | instance.numbers.y, instance.numbers.z, number);
+    seen.numbers = vec3u(packed_pixel(color * light.xyz * FULL_LEVEL * share, 0u) | instance.numbers.y, instance.numbers.z, number);
     return seen;
 }
 

@@ -4,6 +4,7 @@
 use super::super::backdrop::{CONTRAST, FADING, SQUARE};
 use super::super::compose::{MOST_SQUARES, SHIFT};
 use super::super::frame::{CATEGORY_MAP, CATEGORY_SKY};
+use super::super::shade::{FULL_LEVEL, ROUNDING, SKY_SHARE};
 use super::super::view::NEAR;
 use super::device::Device;
 use super::instances::WORDS;
@@ -84,6 +85,7 @@ fn source(has_clip_distances: bool) -> String {
     let constants = format!(
         "const NEAR: f32 = {NEAR:?};\nconst SQUARE: f32 = {SQUARE:?};\nconst CONTRAST: vec2f = vec2f({:?}, {:?});\n\
          const FADING: vec2f = vec2f({:?}, {:?});\nconst MOST_SQUARES: f32 = {MOST_SQUARES:?};\nconst SHIFT: f32 = {SHIFT:?};\n\
+         const SKY_SHARE: f32 = {SKY_SHARE:?};\nconst FULL_LEVEL: f32 = {FULL_LEVEL:?};\nconst ROUNDING: f32 = {ROUNDING:?};\n\
          const SKY: u32 = {CATEGORY_SKY}u;\nconst MAP: u32 = {CATEGORY_MAP}u;\n",
         CONTRAST[0], CONTRAST[1], FADING[0], FADING[1],
     );

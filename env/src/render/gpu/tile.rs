@@ -2,7 +2,7 @@
 //! which objects are in it is found in `instances.rs`.
 
 use super::super::compose::Walls;
-use super::super::shade::Shader;
+use super::super::shade::{FULL_LEVEL, Shader};
 use super::super::view::View;
 use crate::scene::Scene;
 
@@ -19,7 +19,7 @@ pub(super) fn words(scene: &Scene, view: &View, shader: &Shader, walls: Option<&
     let [zenith, horizon] = shader.sky(scene.light.sky_color);
     let upward = shader.share([0.0, 0.0, 1.0]);
     let ground = shader.in_light(scene.ground_color).map(|level| level * upward);
-    let fog = horizon.map(|level| level.min(255.0));
+    let fog = horizon.map(|level| level.min(FULL_LEVEL));
     let [width, height] = view.size;
     let none = [0.0; 4];
     [

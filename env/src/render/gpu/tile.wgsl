@@ -43,7 +43,7 @@ struct Pixel {
 override FOG: bool = false;
 
 fn packed_pixel(levels: vec3f, label: u32) -> u32 {
-    let bytes = vec3u(min(levels + 0.5, vec3f(255.0)));
+    let bytes = vec3u(min(levels + ROUNDING, vec3f(FULL_LEVEL)));
     return (label << 24u) | (bytes.z << 16u) | (bytes.y << 8u) | bytes.x;
 }
 
