@@ -2,7 +2,7 @@
 //! anyone asks.
 
 use super::grid::Grid;
-use super::ground::Ground;
+use super::occupancy::OccupancyGrid;
 
 /// Cost of a step to a straight and to a slanting neighbour, in fifths of a cell.
 pub(super) const STRAIGHT: u32 = 5;
@@ -53,13 +53,18 @@ impl Flood {
     }
 
     /// Finds the distance of a cell, and of all that are nearer.
-    pub(super) fn reach(&mut self, cell: usize, ground: &Ground, charge: Charge) -> u32 {
+    pub(super) fn reach(&mut self, cell: usize, ground: &OccupancyGrid, charge: Charge) -> u32 {
         while self.distance[cell] >= self.next && self.spread(ground, charge, |_| {}).is_some() {}
         self.distance[cell]
     }
 
     /// Spreads from the nearest cells that wait, which are told; hands back how far they are. `None` if all are found.
-    pub(super) fn spread(&mut self, ground: &Ground, charge: Charge, mut found: impl FnMut(usize)) -> Option<u32> {
+    pub(super) fn spread(
+        &mut self,
+        ground: &OccupancyGrid,
+        charge: Charge,
+        mut found: impl FnMut(usize),
+    ) -> Option<u32> {
         if self.num_waiting == 0 {
             return None;
         }

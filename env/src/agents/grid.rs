@@ -1,4 +1,4 @@
-//! The arena as cells of equal size. What stands on them is in `ground.rs`.
+//! The arena as cells of equal size. What stands on them is in `occupancy.rs`.
 
 /// Most cells along one side of the grid.
 const MOST_CELLS: usize = 256;

@@ -2,8 +2,8 @@
 
 mod flood;
 mod grid;
-mod ground;
 mod nearest;
+mod occupancy;
 mod on_rails;
 mod random;
 mod route;
@@ -22,7 +22,7 @@ pub trait Agent {
     /// The action for the environment's next step.
     fn act(&mut self, environment: &Environment) -> Action;
 
-    /// Told before each episode, with a number to draw all chance in it from.
+    /// Told before each episode, with a seed for all that it draws in it.
     ///
     /// In a lifetime, every evaluation of the same world comes with the same number, so that an agent that has not changed acts
     /// alike in it; what is learned in the same world again comes with another. The worlds of one number under one seed

@@ -26,7 +26,7 @@ pub(super) struct Goal {
     /// Where it is, in metres.
     pub(super) place: [f32; 2],
     /// How likely it pays, above 0: what pays half the time is as good as what is twice as far.
-    pub(super) chance: f32,
+    pub(super) probability: f32,
 }
 
 /// Which goals a cell belongs to, as lists within one list, and room to look around a goal.
@@ -75,7 +75,7 @@ impl Marks {
 }
 
 impl Route {
-    /// The goal of the shortest way from a place, each way as long as it is over its goal's chance; the first of equals.
+    /// The goal of the shortest way from a place, each way as long as it is over its goal's probability; the first of equals.
     ///
     /// Ways lead around all that is avoided but their goal. What this instance led to is lost.
     pub(super) fn nearest(
@@ -105,7 +105,7 @@ impl Route {
         self.flood.begin(grid, grid.cell_at(from));
         // For each goal, how far it is at least: to the first cell that is open on the way to it alone.
         let mut least: Vec<Option<u32>> = vec![None; goals.len()];
-        let likeliest = goals.iter().map(|goal| goal.chance).fold(0.0, f32::max);
+        let likeliest = goals.iter().map(|goal| goal.probability).fold(0.0, f32::max);
         let (mut best, mut farthest, mut num_unseen) = (f32::INFINITY, 0, looked_at.len());
         let mut seen = Vec::new();
         loop {
@@ -121,7 +121,7 @@ impl Route {
                     // What is known beyond the flood's edge are ways, if not the shortest.
                     let way = self.length(&goals[number], distance);
                     farthest = farthest.max(way);
-                    best = best.min(self.metres(way) / goals[number].chance);
+                    best = best.min(self.metres(way) / goals[number].probability);
                 }
             }
             if self.metres(distance) / likeliest > best || num_unseen == 0 && distance >= farthest {
@@ -132,10 +132,10 @@ impl Route {
         let mut costs = Vec::with_capacity(goals.len());
         for (number, goal) in goals.iter().enumerate() {
             if let Some(least) = least[number]
-                && self.metres(least) / goal.chance <= best
+                && self.metres(least) / goal.probability <= best
             {
                 let way = self.length(goal, least);
-                costs.push((number, self.metres(way) / goal.chance));
+                costs.push((number, self.metres(way) / goal.probability));
             }
         }
         let nearest = costs.into_iter().min_by(|(_, a), (_, b)| a.total_cmp(b));
@@ -152,9 +152,9 @@ impl Route {
             return numbers;
         }
         let cost = |number: &usize| {
-            let Goal { place, chance, .. } = goals[*number];
+            let Goal { place, probability, .. } = goals[*number];
             let [x, y] = [place[0] - from[0], place[1] - from[1]];
-            (x * x + y * y).sqrt() / chance
+            (x * x + y * y).sqrt() / probability
         };
         numbers.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
         let mut left = MOST_MARKS;
@@ -382,7 +382,7 @@ mod tests {
                     .map(|index| Goal {
                         object: index as u32,
                         place: scene.items[index].position,
-                        chance: world.objects[index].reward_probability.max(0.01) as f32,
+                        probability: world.objects[index].reward_probability.max(0.01) as f32,
                     })
                     .collect();
                 let mut costs = Vec::new();
@@ -397,7 +397,7 @@ mod tests {
                         let (found, expected) = (f64::from(route.metres(found)), slow.metres(from));
                         prop_assert!((found - expected).abs() <= 1e-4 * expected, "{} for {}", found, expected);
                     }
-                    costs.push(slow.metres(from) / f64::from(goal.chance));
+                    costs.push(slow.metres(from) / f64::from(goal.probability));
                 }
                 let chosen = route.nearest(&world, &scene, from, &goals, &avoided).expect("there are goals");
                 let least = costs.iter().copied().fold(f64::INFINITY, f64::min);

@@ -16,7 +16,7 @@ const PATIENCE: u32 = 150;
 /// How far from the edge of an object that will come back the agent waits for it, in metres.
 const ASIDE: f32 = 1.5;
 
-/// Tours all objects that pay, nearest first by the way around obstacles and surest first where chance has a say, and then goes where the world's success lies.
+/// Tours all objects that pay, nearest first by the way around obstacles and surest first where rewards are uncertain, and then goes where the world's success lies.
 ///
 /// It reads the world's state, not its pictures.
 #[derive(Clone, Debug, Default)]
@@ -94,7 +94,7 @@ impl OnRailsAgent {
             .map(|index| Goal {
                 object: index as u32,
                 place: scene.items[index].position,
-                chance: world.objects[index].reward_probability.max(0.01) as f32,
+                probability: world.objects[index].reward_probability.max(0.01) as f32,
             })
             .collect();
         let nearest = self

@@ -14,7 +14,7 @@ const HOLD: u32 = 8;
 /// table it draws rows.
 #[derive(Clone, Debug)]
 pub struct RandomAgent {
-    chance: ChaCha8Rng,
+    rng: ChaCha8Rng,
     action: Action,
     held: u32,
 }
@@ -23,7 +23,7 @@ impl RandomAgent {
     /// An agent whose actions depend on this number alone.
     pub fn new(seed: u64) -> Self {
         Self {
-            chance: ChaCha8Rng::seed_from_u64(seed),
+            rng: ChaCha8Rng::seed_from_u64(seed),
             action: Action::Continuous([0.0; 3]),
             held: 0,
         }
@@ -35,9 +35,9 @@ impl Agent for RandomAgent {
         if self.held == 0 {
             let agent = &environment.world().agent_params;
             self.action = match agent.num_actions() {
-                Some(rows) => Action::Discrete(self.chance.random_range(0..rows as u64) as usize),
+                Some(rows) => Action::Discrete(self.rng.random_range(0..rows as u64) as usize),
                 None if agent.actions == ActionSpace::Normalized || agent.action_model == ActionModel::ByWaypoint => {
-                    let mut share = || self.chance.random::<f64>() * 2.0 - 1.0;
+                    let mut share = || self.rng.random::<f64>() * 2.0 - 1.0;
                     let shares = [share(), share(), share()];
                     let [x, y] = environment.world().environment_params.arena_size();
                     Action::Continuous(match (agent.action_model, &agent.actions) {
@@ -51,9 +51,9 @@ impl Agent for RandomAgent {
                     })
                 }
                 None => {
-                    let speed = self.chance.random::<f64>() * agent.max_linear_speed;
-                    let turn = (self.chance.random::<f64>() * 2.0 - 1.0) * agent.max_angular_speed;
-                    Action::Continuous([speed, turn, self.chance.random::<f64>()])
+                    let speed = self.rng.random::<f64>() * agent.max_linear_speed;
+                    let turn = (self.rng.random::<f64>() * 2.0 - 1.0) * agent.max_angular_speed;
+                    Action::Continuous([speed, turn, self.rng.random::<f64>()])
                 }
             };
         }

@@ -4,14 +4,14 @@
 use driftworld_spec::World;
 
 use super::flood::{Charge, Flood, STRAIGHT};
-use super::ground::Ground;
 use super::nearest::Marks;
+use super::occupancy::OccupancyGrid;
 use crate::scene::Scene;
 
 /// Ways to one goal at a time, over the free cells of the arena. Another goal takes over what is known of the ground.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Route {
-    pub(super) ground: Ground,
+    pub(super) ground: OccupancyGrid,
     pub(super) flood: Flood,
     pub(super) marks: Marks,
 }

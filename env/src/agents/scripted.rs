@@ -91,7 +91,7 @@ impl ScriptedAgent {
     }
 
     /// What the command under way does in this step; `None` if it is over.
-    fn carry_out(&mut self, environment: &Environment) -> Option<Action> {
+    fn run_command(&mut self, environment: &Environment) -> Option<Action> {
         match self.commands[self.now].clone() {
             Command::Act { action, steps } => (self.steps < steps).then_some(action),
             Command::Tour { steps } => {
@@ -157,7 +157,7 @@ impl Agent for ScriptedAgent {
             if self.is_over() {
                 break;
             }
-            if let Some(action) = self.carry_out(environment) {
+            if let Some(action) = self.run_command(environment) {
                 self.steps += 1;
                 return action;
             }

@@ -109,7 +109,7 @@ impl Channels {
                 received
                     .messages
                     .extend(self.remark(Category::Communications, Level::Log, said, time));
-                let done = self.carry_out(environment, channel, &message, time, &mut received);
+                let done = self.execute(environment, channel, &message, time, &mut received);
                 (message.token, done)
             }
             Err((token, refusal)) => (token, Err(refusal)),
@@ -196,7 +196,7 @@ impl Channels {
         })
     }
 
-    fn carry_out(
+    fn execute(
         &mut self,
         environment: &mut Environment,
         channel: Channel,

@@ -1,4 +1,4 @@
-//! What an agent can do, and what comes of it as motion. What the motion runs into is in `body.rs`.
+//! What an agent can do, and what comes of it as motion. What the motion runs into is in `collision_world.rs`.
 
 use driftworld_spec::{ActionModel, ActionSpace, AgentParams, World};
 

@@ -1,12 +1,12 @@
-//! What counts as a touch, and how long it lasts. What a touch pays is in `answer.rs`.
+//! What counts as a touch, and how long it lasts. What a touch pays is in `interactions.rs`.
 //!
 //! A contact begins when the gap between the agent and an object is no wider than [`TOUCH`] anywhere on their ways, and ends when it
 //! is wider than [`RELEASE`], both when the agent has moved and when the objects have: who follows another at its heels stays in
 //! touch. These are places, not times: how often one pass touches does not depend on speed or time step.
 
-use super::body::{GHOST, Ground, SOLID, slot};
+use super::budget::Budget;
+use super::collision_world::{CollisionWorld, GHOST, SOLID, slot};
 use super::footprint::Point;
-use super::looks::Looks;
 
 /// Widest gap that is a touch, in metres: a little more than the skin.
 const TOUCH: f64 = 0.03;
@@ -14,7 +14,7 @@ const TOUCH: f64 = 0.03;
 /// Widest gap at which a contact lasts, in metres; a range is left as far beyond its edge.
 pub(super) const RELEASE: f64 = 0.25;
 
-impl Ground {
+impl CollisionWorld {
     /// Notes the objects that the agent touched on its way of this time step, each once, but for those that are `skipped`.
     pub(super) fn note_passed(&mut self, met: &mut Vec<u32>, skipped: impl Fn(u32) -> bool) {
         let Some((mut least, mut most)) = self.path().first().map(|&start| (start, start)) else {
@@ -27,7 +27,7 @@ impl Ground {
             }
         }
         let reach = self.radius + TOUCH;
-        self.gather(SOLID | GHOST, None, [least, most], reach, &mut Looks::new(u64::MAX));
+        self.gather(SOLID | GHOST, None, [least, most], reach, &mut Budget::new(u64::MAX));
         for &number in &self.scratch.numbers {
             let Some(object) = self.standing[number as usize].object else {
                 continue;
@@ -62,7 +62,7 @@ impl Ground {
     pub(super) fn note_touching(&mut self, at: [f32; 2], met: &mut Vec<u32>) {
         let at: Point = at.map(f64::from);
         let reach = self.radius + TOUCH;
-        self.gather(SOLID | GHOST, None, [at, at], reach, &mut Looks::new(u64::MAX));
+        self.gather(SOLID | GHOST, None, [at, at], reach, &mut Budget::new(u64::MAX));
         for &number in &self.scratch.numbers {
             if self.low[number as usize].gap(at).distance <= reach
                 && let Some(object) = self.standing[number as usize].object

@@ -4,8 +4,8 @@ use driftworld_spec::{MotionModel, Object, Pushable, Respawn, Stimulus, World};
 use proptest::prelude::*;
 
 use super::action::Action;
+use super::budget;
 use super::environment::Environment;
-use super::looks;
 
 /// What the bodies of a crowd are.
 #[derive(Clone, Copy, Debug)]
@@ -97,8 +97,8 @@ impl Environment {
 
 /// What no time step with so many objects goes beyond, whatever they are: looks, and sixty parts of physics.
 fn bound(count: usize) -> u64 {
-    let each = (looks::EACH_MOVER + looks::EACH_RETURN + 4) * count as u64;
-    looks::AGENTS + looks::MOVERS + looks::RETURNS + 1_000_000 + each
+    let each = (budget::EACH_MOVER + budget::EACH_RETURN + 4) * count as u64;
+    budget::AGENTS + budget::MOVERS + budget::RETURNS + 1_000_000 + each
 }
 
 proptest! {
@@ -126,7 +126,7 @@ fn a_crowd_of_twice_as_many_is_looked_at_twice_as_much_and_not_four_times() {
             let [some, more] = [4000, 8000].map(|count| looked(crowd(&[kind], "cube", count, spread, 0.1)));
             // Where limits bind, what is over them does not count; below them twice as many are looked at twice as
             // much.
-            let fixed = looks::MOVERS + looks::RETURNS;
+            let fixed = budget::MOVERS + budget::RETURNS;
             assert!(
                 more <= 2 * some + fixed / 2,
                 "{kind:?} within {spread} m: {some}, then {more}"

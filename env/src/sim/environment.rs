@@ -1,16 +1,16 @@
-//! [`Environment`]: a world that runs. Steps are in `step.rs`, bodies in `body.rs`, pictures in `look.rs`, who acts
+//! [`Environment`]: a world that runs. Steps are in `step.rs`, bodies in `collision_world.rs`, pictures in `observation.rs`, who acts
 //! in `agents`.
 
 use std::sync::Arc;
 
 use driftworld_spec::{GameMode, Object, Stimulus, World};
 
-use super::body::Ground;
-use super::chance::{Identities, Seed};
-use super::episode::{AgentState, Episode, ObjectState};
+use super::collision_world::CollisionWorld;
 use super::event::Warning;
+use super::progress::ResumeState;
 use super::pushing::is_pushed;
-use super::state::Came;
+use super::state::{AgentState, ObjectState, SimState};
+use super::streams::{Identities, Seed};
 use crate::EnvError;
 use crate::assets::Catalogue;
 use crate::render::{Frame, Renderer, RendererKind};
@@ -34,11 +34,11 @@ pub struct Environment {
     /// The world at its start, and with it what was spawned later.
     pub(super) world: Arc<World>,
     pub(super) seed: Seed,
-    /// Who the objects are to chance.
+    /// Which random numbers belong to which object.
     pub(super) identities: Identities,
     pub(super) scene: Scene,
-    pub(super) ground: Ground,
-    pub(super) episode: Episode,
+    pub(super) ground: CollisionWorld,
+    pub(super) episode: SimState,
     pub(super) had_targets: bool,
     /// The objects' tags, for events.
     pub(super) tags: Vec<Option<Arc<str>>>,
@@ -134,13 +134,13 @@ impl Environment {
 
     fn build(mut world: Arc<World>, catalogue: &Catalogue, renderer: Renderer, frame: Frame) -> Self {
         // A world that was written down while it ran is taken back to its start, and then told how far it had come.
-        let came = world.progress.is_some().then(|| Came::out_of(&mut world));
+        let came = world.progress.is_some().then(|| ResumeState::out_of(&mut world));
         let scene = Scene::from_world_with(&world, catalogue);
-        let ground = Ground::new(&world, &scene);
-        let seed = Seed::of(&world, came.as_ref().and_then(Came::seed));
+        let ground = CollisionWorld::new(&world, &scene);
+        let seed = Seed::of(&world, came.as_ref().and_then(ResumeState::seed));
         let mut identities = Identities::default();
         let mut environment = Self {
-            episode: Episode::new(&world, &seed, &mut identities),
+            episode: SimState::new(&world, &seed, &mut identities),
             had_targets: world.objects.iter().any(Object::is_target),
             tags: tags(&world),
             scratch: Scratch::default(),
@@ -153,14 +153,14 @@ impl Environment {
             frame,
         };
         // At a start nothing is touched or near yet: where the agent starts counts as news in the first step.
-        if let Some(came) = came.filter(Came::has_begun) {
+        if let Some(came) = came.filter(ResumeState::has_begun) {
             environment.resume(&came);
         }
         environment
     }
 
     /// Notes what is touched and near now, as no news.
-    pub(super) fn take_stock(&mut self) {
+    pub(super) fn init_contacts(&mut self) {
         let here = self.episode.agent.position;
         self.episode.contacts.clear();
         self.ground.note_touching(here, &mut self.episode.contacts);

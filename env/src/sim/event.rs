@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use driftworld_spec::{Enclosure, Stimulus};
 
-use super::edit::Obstacle;
+use super::editing::Obstacle;
 
 /// One thing that happened to one object.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]

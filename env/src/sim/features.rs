@@ -3,8 +3,8 @@
 use driftworld_spec::{EndCondition, Object, StateFeature, Stimulus};
 
 use super::environment::Environment;
-use super::episode::ObjectState;
-use super::judge::pays_now;
+use super::state::ObjectState;
+use super::termination::pays_now;
 
 impl Environment {
     /// The numbers of the features that the world asks for, in its order: by default position, heading, velocity.

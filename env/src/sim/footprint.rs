@@ -1,5 +1,5 @@
 //! What a body covers of the ground: a disc or a convex polygon, and how far a point is from it. Who slides along footprints is in
-//! `slide.rs`; where bodies stand is in `body.rs`.
+//! `slide.rs`; where bodies stand is in `collision_world.rs`.
 //!
 //! All bodies stand upright and move in the plane, so that what stops them is a question of two dimensions. Its answers are
 //! exact: closed forms in `f64`, with no iteration that could end early.

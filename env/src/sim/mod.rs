@@ -1,38 +1,38 @@
 //! Running a world: actions, bodies, events.
 
 mod action;
-mod answer;
-mod body;
-mod chance;
+mod broad_phase;
+mod budget;
+mod collision_world;
 mod contact;
 #[cfg(test)]
 mod crowds;
-mod edit;
+mod editing;
 mod environment;
-mod episode;
 mod event;
 mod features;
 mod footprint;
-mod judge;
-mod look;
-mod looks;
+mod interactions;
 mod motion;
+mod mover;
 mod moving_body;
 mod neighbours;
-mod objects;
+mod observation;
 mod outline;
-mod places;
+mod progress;
 mod pushing;
 mod sequence;
 mod slide;
 mod snapshot;
 mod state;
 mod step;
+mod streams;
+mod termination;
 mod walls;
 
 pub use action::Action;
-pub use edit::Obstacle;
+pub use editing::Obstacle;
 pub use environment::Environment;
-pub use episode::{AgentState, ObjectState};
 pub use event::{Event, Step, Warning};
 pub use snapshot::Snapshot;
+pub use state::{AgentState, ObjectState};

@@ -1,140 +1,141 @@
-//! How objects move by themselves: where each wants to go. How far it comes is found in `moving_body.rs`.
+//! What objects do by themselves between the agent's steps: moving, and coming back. Where each wants to go is in `mover.rs`.
 
-use driftworld_spec::{MotionModel, Object};
+use super::budget::{self, Budget, SharedBudget};
+use super::environment::Environment;
+use super::mover::View;
+use super::walls;
 
-use super::chance::{self, Purpose, Seed, Stream};
-
-/// Distance at which a waypoint counts as reached, in metres.
-const REACHED: f32 = 0.3;
-
-/// Share of the way it meant to go below which a wanderer gives its goal up.
-const STUCK: f32 = 0.2;
-
-/// An object that moves: what it is about to do.
-#[derive(Clone, Debug)]
-pub(super) struct Mover {
-    /// The object's number in the world.
-    pub(crate) object: usize,
-    /// Number of the next point of a patrol.
-    next: usize,
-    /// Where a wanderer is going.
-    goal: Option<[f32; 2]>,
-    /// The wanderer's own chance: it depends on the world's seed and the object alone.
-    chance: Stream,
-    /// How many goals it has drawn.
-    goals: u64,
-}
-
-/// What a mover sees before it decides.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct View {
-    /// Where it is, in metres.
-    pub(crate) position: [f32; 2],
-    /// Where it faces, in degrees.
-    pub(crate) heading_deg: f32,
-    /// Where the agent is.
-    pub(crate) agent: [f32; 2],
-    /// Half the arena's sides.
-    pub(crate) half: [f32; 2],
-    /// Seconds of a step.
-    pub(crate) seconds: f32,
-}
-
-/// What a mover means to do in a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stride {
-    /// Its new heading in degrees.
-    pub(crate) heading_deg: f32,
-    /// The way it means to go, in metres.
-    pub(crate) by: [f32; 2],
-}
-
-impl Mover {
-    /// The mover of an object, if it moves.
-    pub(super) fn new(index: usize, object: &Object, seed: &Seed, identity: u64) -> Option<Self> {
-        chance::moves(object).then(|| Self {
-            object: index,
-            next: 0,
-            goal: None,
-            chance: Stream::new(seed, identity, Purpose::Goals),
-            goals: 0,
-        })
-    }
-
-    /// The number of its next point, where it is going, and how many goals it has drawn.
-    pub(super) fn progress(&self) -> (u32, Option<[f64; 2]>, u64) {
-        let goal = self.goal.map(|goal| goal.map(f64::from));
-        (self.next as u32, goal, self.goals)
-    }
-
-    /// Goes on from what [`Mover::progress`] said.
-    pub(super) fn resume(&mut self, next: u32, goal: Option<[f64; 2]>, goals: u64) {
-        self.next = next as usize;
-        self.goal = goal.map(|goal| goal.map(|metres| metres as f32));
-        self.goals = goals;
-    }
-
-    /// What the object means to do; `None` if it stands still.
-    pub(super) fn decide(&mut self, object: &Object, view: View) -> Option<Stride> {
-        let wanted = self.direction(object, view)?;
-        let bearing = libm::atan2f(wanted[0], wanted[1]).to_degrees();
-        let turn = (bearing - view.heading_deg + 180.0).rem_euclid(360.0) - 180.0;
-        let most = object.turn_rate.map_or(180.0, |rate| rate as f32 * view.seconds);
-        let heading_deg = (view.heading_deg + turn.clamp(-most, most)).rem_euclid(360.0);
-        let mut metres = object.speed as f32 * view.seconds;
-        // Not past a waypoint, so that it is met; who runs or hunts has no such end.
-        if matches!(object.motion_model, MotionModel::Patrol | MotionModel::RandomWaypoint) {
-            metres = metres.min(length(wanted));
-            // Nor around and around one that it cannot turn to in time: it slows down while it looks elsewhere.
-            metres *= libm::cosf((turn - turn.clamp(-most, most)).to_radians()).max(0.0);
+impl Environment {
+    /// Lets every object that moves by itself go its way.
+    pub(super) fn move_objects(&mut self) {
+        if self.episode.movers.is_empty() {
+            return;
         }
-        let heading = heading_deg.to_radians();
-        Some(Stride {
-            heading_deg,
-            by: [libm::sinf(heading) * metres, libm::cosf(heading) * metres],
-        })
+        self.ground.place_agent(self.episode.agent.position);
+        let half = self.scene.arena_size().map(|side| side / 2.0);
+        let seconds = self.world.agent_params.time_step as f32;
+        let mut movers = std::mem::take(&mut self.episode.movers);
+        let count = budget::MOVERS + budget::EACH_MOVER * movers.len() as u64;
+        let mut budget = SharedBudget::new(count, movers.len(), self.episode.ticks);
+        for (place, mover) in movers.iter_mut().enumerate() {
+            let index = mover.object;
+            if !self.episode.objects[index].present {
+                continue;
+            }
+            let item = &mut self.scene.items[index];
+            let from = item.position;
+            let view = View {
+                position: from,
+                heading_deg: item.heading_deg,
+                agent: self.episode.agent.position,
+                half,
+                seconds,
+            };
+            if let Some(stride) = mover.decide(&self.world.objects[index], view) {
+                let turn = [item.heading_deg, stride.heading_deg];
+                // Where the body is, the item is, to the last bit: a world that was written down has nothing else to go on from.
+                let pose = self.ground.push(index as u32, stride.by, turn, budget.at(place));
+                if let Some(pose) = pose {
+                    (item.position, item.heading_deg) = pose;
+                    mover.moved(stride.by, [0, 1].map(|axis| item.position[axis] - from[axis]));
+                }
+            }
+            self.note_mover(index, from);
+        }
+        self.episode.movers = movers;
+        #[cfg(test)]
+        (self.scratch.looked += count - budget.left());
     }
 
-    /// The way to where the object wants to be, in metres; for prey, away from the agent.
-    fn direction(&mut self, object: &Object, view: View) -> Option<[f32; 2]> {
-        let to = |point: [f32; 2]| [point[0] - view.position[0], point[1] - view.position[1]];
-        let to_agent = to(view.agent);
-        let seen = object.sight_range.is_none_or(|range| length(to_agent) <= range as f32);
-        let way = match object.motion_model {
-            MotionModel::Predator if seen => to_agent,
-            MotionModel::Prey if seen => to_agent.map(|metres| -metres),
-            MotionModel::Stationary | MotionModel::Predator | MotionModel::Prey => return None,
-            MotionModel::Patrol => {
-                let point = |number: usize| object.waypoints[number].map(|metres| metres as f32);
-                if object.waypoints.is_empty() {
-                    return None;
-                }
-                if length(to(point(self.next))) < REACHED {
-                    self.next = (self.next + 1) % object.waypoints.len();
-                }
-                to(point(self.next))
-            }
-            MotionModel::RandomWaypoint => {
-                if self.goal.is_none_or(|goal| length(to(goal)) < REACHED) {
-                    let sides = view.half.map(|half| (half - 1.0).max(0.0));
-                    let units = self.chance.draw(self.goals);
-                    self.goals += 1;
-                    self.goal = Some([0, 1].map(|axis| (units[axis] * 2.0 - 1.0) as f32 * sides[axis]));
-                }
-                to(self.goal?)
-            }
-        };
-        (length(way) > 1e-4).then_some(way)
-    }
-
-    /// Hears how far it came: a wanderer that hardly moved looks for another goal.
-    pub(super) fn moved(&mut self, meant: [f32; 2], came: [f32; 2]) {
-        if length(came) < STUCK * length(meant) {
-            self.goal = None;
+    /// Notes what an object that moves by itself, and came from a place, met on its way.
+    fn note_mover(&mut self, index: usize, from: [f32; 2]) {
+        let to = self.scene.items[index].position;
+        let came = [0, 1].map(|axis| to[axis] - from[axis]);
+        let (began, ends) = (self.ground.began(), self.episode.agent.position);
+        if came != [0.0; 2] {
+            self.scratch.moved.push((index, from));
+        }
+        // The agent and a ghost go their ways at once; a solid body stops for the agent, and moves when that has moved.
+        if !self.world.objects[index].solid {
+            self.ground
+                .note_passing(index as u32, came, [began, ends], &mut self.scratch.met);
+        } else if came != [0.0; 2] {
+            self.ground
+                .note_passing(index as u32, came, [ends, ends], &mut self.scratch.met);
         }
     }
-}
 
-fn length([x, y]: [f32; 2]) -> f32 {
-    (x * x + y * y).sqrt()
+    /// Puts back the destroyed objects whose time has come: near their first place, where nothing stands.
+    pub(super) fn respawn(&mut self) {
+        let now = self.episode.ticks;
+        let mut returning = std::mem::take(&mut self.episode.returning);
+        let waiting = returning.len();
+        let count = budget::RETURNS + budget::EACH_RETURN * waiting as u64;
+        let mut budget = SharedBudget::new(count, waiting, now);
+        let per_place = if waiting > 0 { 1 + self.num_wall_corners() } else { 0 };
+        let mut place = 0;
+        returning.retain(|&(index, due)| {
+            place += 1;
+            due > now || !self.try_respawn(index, per_place, budget.at(place - 1))
+        });
+        self.episode.returning = returning;
+        #[cfg(test)]
+        (self.scratch.looked += count - budget.left());
+    }
+
+    /// How many corners the walls of the world have.
+    fn num_wall_corners(&self) -> usize {
+        let environment = &self.world.environment_params;
+        let regions: usize = environment.regions().into_iter().map(<[_]>::len).sum();
+        regions + environment.walls.iter().map(|wall| wall.polygon.len()).sum::<usize>()
+    }
+
+    /// Puts an object back at a free place; false if none is found in this step. Each place that is tried takes
+    /// `per_place` looks.
+    fn try_respawn(&mut self, index: usize, per_place: usize, budget: &mut Budget) -> bool {
+        /// Places tried in one step.
+        const TRIES: u32 = 16;
+        let object = &self.world.objects[index];
+        let Some(respawn) = &object.respawn else { return true };
+        self.ground.place_agent(self.episode.agent.position);
+        let radius = self.scene.items[index].asset.collider.radius() * self.scene.items[index].scale;
+        let first = object.coordinates.map(|metres| metres as f32);
+        for _ in 0..TRIES {
+            if !budget.take(per_place) {
+                return false;
+            }
+            // What comes back has its random numbers: they are made with the episode, or when it is spawned.
+            let Some(rng) = self.episode.rng_of(index) else {
+                return true;
+            };
+            let [out, around] = rng.draw_place().map(|unit| unit as f32);
+            let distance = respawn.radius as f32 * out.sqrt();
+            let angle = std::f32::consts::TAU * around;
+            let place = [
+                first[0] + distance * libm::cosf(angle),
+                first[1] + distance * libm::sinf(angle),
+            ];
+            let in_wall = walls::obstacle(&self.world, place.map(f64::from), f64::from(radius)).is_some();
+            if !in_wall && self.ground.is_free(place, radius, budget) {
+                self.ground.remove(index as u32);
+                let item = &mut self.scene.items[index];
+                item.position = place;
+                item.heading_deg = object.heading as f32;
+                item.reward = object.reward as f32;
+                item.visible = true;
+                self.ground.add_object(index as u32, item, object.solid);
+                let state = &mut self.episode.objects[index];
+                (state.present, state.reward, state.in_range) = (true, object.reward, false);
+                self.scratch.arrived.push(index);
+                if let Some(rng) = self.episode.rng_of(index) {
+                    rng.note_return();
+                }
+                if let Some(body) = self.episode.pushed_of(index) {
+                    (body.velocity, body.spin_deg) = ([0.0; 2], 0.0);
+                }
+                return true;
+            }
+        }
+        false
+    }
 }

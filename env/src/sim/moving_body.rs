@@ -1,11 +1,11 @@
 //! Bodies of objects that move: how far one comes before it meets something, and putting one back. Where it wants to go is
-//! decided in `motion.rs`, what the agent bumps into is in `body.rs`.
+//! decided in `mover.rs`, what the agent bumps into is in `collision_world.rs`.
 
 use rapier3d::prelude::*;
 
-use super::body::{AGENT, EDGE, Ground, SOLID, WALL, shows_heading, slot};
+use super::budget::Budget;
+use super::collision_world::{AGENT, CollisionWorld, EDGE, SOLID, WALL, shows_heading, slot};
 use super::footprint::Footprint;
-use super::looks::Looks;
 use super::outline::Outline;
 use super::slide::{Obstacles, SKIN};
 
@@ -22,7 +22,7 @@ const LOOKS_PER_SHAPE: usize = 16;
 /// is looked for eight times.
 const LOOKS_TO_TURN: usize = 12;
 
-impl Ground {
+impl CollisionWorld {
     /// Tells the objects where the agent is: they stop in front of it.
     pub(crate) fn place_agent(&mut self, at: [f32; 2]) {
         let handle = if let Some(handle) = self.agent_handle {
@@ -61,7 +61,7 @@ impl Ground {
         index: u32,
         by: [f32; 2],
         turn_deg: [f32; 2],
-        looks: &mut Looks,
+        budget: &mut Budget,
     ) -> Option<([f32; 2], f32)> {
         let handle = self.handles[index as usize]?;
         let start = self.colliders[handle].translation();
@@ -73,7 +73,7 @@ impl Ground {
         let outline = &self.standing[slot(handle)].outline;
         outline.turned_into(heading_deg, &mut body);
         let reach = length + TURN_ROOM + body.reach() + 2.0 * SKIN;
-        let around = self.gather(SOLID | WALL | AGENT, Some(handle), [from, from], reach, looks);
+        let around = self.gather(SOLID | WALL | AGENT, Some(handle), [from, from], reach, budget);
         // Corners are given to corners, and there is room to be found.
         let given = if body.as_disc().is_some() {
             0
@@ -81,7 +81,7 @@ impl Ground {
             body.num_corners()
         };
         let num_corners = around.map(|corners| corners + given * self.scratch.numbers.len());
-        let Some(num_corners) = num_corners.filter(|corners| given == 0 || looks.take(LOOKS_TO_TURN * corners)) else {
+        let Some(num_corners) = num_corners.filter(|corners| given == 0 || budget.take(LOOKS_TO_TURN * corners)) else {
             self.scratch.body = body;
             return None;
         };
@@ -93,7 +93,7 @@ impl Ground {
                 numbers: &scratch.numbers,
                 num_corners,
             };
-            obstacles.slide(from, way, radius, looks, &mut scratch.touched, &mut scratch.strides);
+            obstacles.slide(from, way, radius, budget, &mut scratch.touched, &mut scratch.strides);
         } else {
             // Its corners are given to what it may meet, so that it is a point among wider bodies.
             let count = scratch.numbers.len();
@@ -125,7 +125,7 @@ impl Ground {
                 num_corners,
             };
             scratch.strides.push(begun);
-            obstacles.slide(begun, way, 0.0, looks, &mut scratch.touched, &mut scratch.strides);
+            obstacles.slide(begun, way, 0.0, budget, &mut scratch.touched, &mut scratch.strides);
         }
         let end = scratch.strides.last().copied().unwrap_or(from);
         scratch.body = body;
@@ -152,7 +152,7 @@ impl Ground {
 
     /// Whether an object's body, taken away before, would stand free at a place. It would not where there is more
     /// around it than may be looked at.
-    pub(crate) fn is_free(&self, at: [f32; 2], radius: f32, looks: &mut Looks) -> bool {
+    pub(crate) fn is_free(&self, at: [f32; 2], radius: f32, budget: &mut Budget) -> bool {
         let [x, y] = [0, 1].map(|axis| self.half[axis] - radius - SKIN as f32 - at[axis].abs());
         if x < 0.0 || y < 0.0 {
             return false;
@@ -172,6 +172,6 @@ impl Ground {
                 .intersection_test(&between, &ball, collider.shape())
                 .is_ok_and(|met| met.intersecting)
         };
-        looks.take(LOOKS_PER_SHAPE * near.len()) && near.len() < MOST_NEAR && !near.iter().any(meets)
+        budget.take(LOOKS_PER_SHAPE * near.len()) && near.len() < MOST_NEAR && !near.iter().any(meets)
     }
 }

@@ -6,10 +6,10 @@
 
 use rapier3d::prelude::ColliderHandle;
 
-use super::body::{Ground, SOLID, WALL, slot};
+use super::budget::Budget;
+use super::collision_world::{CollisionWorld, SOLID, WALL, slot};
 use super::environment::Environment;
 use super::event::Warning;
-use super::looks::Looks;
 
 /// Distance in metres within which bodies are taken to be able to meet, on top of their ways.
 pub(super) const MARGIN: f32 = 0.2;
@@ -66,10 +66,10 @@ impl Environment {
         let pushed = &self.episode.pushed;
         let radii = pushed.iter().map(|body| self.body_radius(body.object));
         let widest = radii.fold(0.0, f32::max);
-        let mut looks = Looks::new(LOOKS);
+        let mut budget = Budget::new(LOOKS);
         let parts = u64::from(parts);
-        let mut may_meet = Looks::new(MAY_MEET);
-        let mut overlap = Looks::new(FEWEST_OVERLAPS.max(OVERLAP / parts));
+        let mut may_meet = Budget::new(MAY_MEET);
+        let mut overlap = Budget::new(FEWEST_OVERLAPS.max(OVERLAP / parts));
         let most = (MOVE / parts) as usize;
         let mut seen = vec![false; pushed.len()];
         for index in &first {
@@ -79,10 +79,10 @@ impl Environment {
         let mut indices = Vec::new();
         while let Some(&index) = waiting.get(next) {
             next += 1;
-            let Some(around) = self.around_pushed(index, seconds, widest, &mut looks) else {
+            let Some(around) = self.around_pushed(index, seconds, widest, &mut budget) else {
                 continue;
             };
-            let fits = |left: Looks, count: usize| count as u64 <= left.left();
+            let fits = |left: Budget, count: usize| count as u64 <= left.left();
             if around.may_meet > ONE_MAY_MEET || around.overlaps > ONE_OVERLAPS {
                 continue;
             }
@@ -105,12 +105,12 @@ impl Environment {
             indices,
             most_pairs: FEWEST_PAIRS.max(PAIRS / parts) as usize,
             #[cfg(test)]
-            looked: LOOKS - looks.left(),
+            looked: LOOKS - budget.left(),
         }
     }
 
     /// What is around a body that may move; nothing if that is more than may be looked at.
-    fn around_pushed(&self, index: usize, seconds: f32, widest: f32, looks: &mut Looks) -> Option<Around> {
+    fn around_pushed(&self, index: usize, seconds: f32, widest: f32, budget: &mut Budget) -> Option<Around> {
         let pushed = &self.episode.pushed;
         let object = pushed[index].object;
         let own = self.ground.handles[object]?;
@@ -127,7 +127,7 @@ impl Environment {
             overlaps: 0,
         };
         for (count, handle) in self.ground.around(SOLID | WALL, Some(own), area).enumerate() {
-            if !looks.take(1) || count > ONE_LOOKS {
+            if !budget.take(1) || count > ONE_LOOKS {
                 return None;
             }
             let other = self.ground.standing[slot(handle)].object;
@@ -190,7 +190,7 @@ impl Environment {
     }
 }
 
-impl Ground {
+impl CollisionWorld {
     /// The box around a body on the ground.
     fn box_of(&self, handle: ColliderHandle) -> [[f32; 2]; 2] {
         let area = self.colliders[handle].compute_aabb();

@@ -1,4 +1,4 @@
-//! Bodies that are pushed: rigid bodies on the ground, stepped by rapier. What else the agent bumps into is in `body.rs`.
+//! Bodies that are pushed: rigid bodies on the ground, stepped by rapier. What else the agent bumps into is in `collision_world.rs`.
 //!
 //! Each time step starts a physics world of its own, made of the pushed bodies that may move, what stands around them and the
 //! agent; nothing but places and velocities goes from one time step to the next. So a world that was written down goes on to
@@ -7,12 +7,12 @@
 use driftworld_spec::{MotionModel, Object, World};
 use rapier3d::prelude::*;
 
-use super::body::{EDGE, Ground, SOLID, WALL, slot};
+use super::collision_world::{CollisionWorld, EDGE, SOLID, WALL, slot};
 use super::environment::Environment;
-use super::episode::wrapped;
 use super::neighbours::MARGIN;
 use super::outline::Outline;
 use super::slide::SKIN;
+use super::state::wrapped;
 
 /// What the agent weighs, in kilograms. In each time step it meets what it pushes with this mass at its own speed.
 const AGENT_MASS: f32 = 80.0;
@@ -124,7 +124,7 @@ impl Environment {
                 break;
             }
         }
-        self.take_over(&physics, &active);
+        self.read_back(&physics, &active);
         if is_jammed {
             self.rest_but(&[]);
         }
@@ -164,7 +164,7 @@ impl Environment {
         let (mass, friction) = self.world.objects[body.object]
             .pushable
             .map_or((1.0, 0.5), |pushable| (pushable.mass as f32, pushable.friction as f32));
-        let (shape, from_ground) = Ground::shape(item);
+        let (shape, from_ground) = CollisionWorld::shape(item);
         let turn = Vector::new(0.0, 0.0, -item.heading_deg.to_radians());
         let place = Pose::new(Vector::new(item.position[0], item.position[1], 0.0), turn);
         let handle = physics.bodies.insert(
@@ -283,7 +283,7 @@ impl Environment {
     }
 
     /// Puts the bodies where the physics has brought them; one that it brought through a wall stays, at rest.
-    fn take_over(&mut self, physics: &PhysicsWorld, active: &[Active]) {
+    fn read_back(&mut self, physics: &PhysicsWorld, active: &[Active]) {
         for body in active {
             let pushed = &mut self.episode.pushed[body.index];
             let object = pushed.object;

@@ -1,8 +1,8 @@
-//! Whose turn it is in a scavenger sequence. What is paid in turn, and out of it, is in `answer.rs`.
+//! Whose turn it is in a scavenger sequence. What is paid in turn, and out of it, is in `interactions.rs`.
 
 use driftworld_spec::Object;
 
-use super::episode::ObjectState;
+use super::state::ObjectState;
 
 /// The places of a sequence in their order, and how many of them have been collected from the first on.
 #[derive(Clone, Debug, Default)]

@@ -1,11 +1,11 @@
-//! Sliding: the way of a body that is driven one way, without friction, among footprints. Which bodies these are is in `body.rs` and
+//! Sliding: the way of a body that is driven one way, without friction, among footprints. Which bodies these are is in `collision_world.rs` and
 //! `moving_body.rs`.
 //!
 //! The law: at each moment the body moves as it is driven, less what leads into something that it touches. So on its way along a
 //! wall it keeps the part of its speed that points along the wall, whatever the wall's length, the body's width or the time step.
 
+use super::budget::Budget;
 use super::footprint::{Footprint, Gap, Point};
-use super::looks::Looks;
 
 /// Distance that a body keeps from what it slides along, in metres.
 pub(super) const SKIN: f64 = 0.01;
@@ -104,25 +104,25 @@ impl Obstacles<'_> {
     /// Lets a round body, driven a way in a unit of time, slide; notes in `path` where its way bends, and its end.
     ///
     /// What its middle is inside of does not hold it: where something was put on it, it walks out whichever way it likes.
-    /// Its way ends where its looks do.
+    /// Its way ends where its budget does.
     pub(super) fn slide(
         &self,
         from: Point,
         by: Point,
         radius: f64,
-        looks: &mut Looks,
+        budget: &mut Budget,
         touched: &mut Vec<Gap>,
         path: &mut Vec<Point>,
     ) {
         let (mut at, mut left) = (from, 1.0);
         for _ in 0..MOST_PARTS {
-            if !looks.take(LOOKS_PER_PART * self.num_corners) {
+            if !budget.take(LOOKS_PER_PART * self.num_corners) {
                 break;
             }
             touched.clear();
             let gaps = self.footprints().map(|footprint| footprint.gap(at));
             touched.extend(gaps.filter(|gap| is_touched(gap, radius)));
-            let Some((way, held_by)) = allowed(by, touched, looks) else {
+            let Some((way, held_by)) = allowed(by, touched, budget) else {
                 break;
             };
             let mut time = left;
@@ -192,7 +192,7 @@ fn is_touched(gap: &Gap, radius: f64) -> bool {
 }
 
 /// The part of a way that leads into nothing that is touched, and the way out of what turned it; nothing where no way is left.
-fn allowed(by: Point, touched: &[Gap], looks: &mut Looks) -> Option<(Point, Option<Point>)> {
+fn allowed(by: Point, touched: &[Gap], budget: &mut Budget) -> Option<(Point, Option<Point>)> {
     let length = dot(by, by).sqrt();
     // What a way led into, the next one is likely to lead into, too.
     let mut suspect = 0;
@@ -222,7 +222,7 @@ fn allowed(by: Point, touched: &[Gap], looks: &mut Looks) -> Option<(Point, Opti
             continue;
         }
         let way = add(by, gap.out, -into);
-        if !looks.take(touched.len()) {
+        if !budget.take(touched.len()) {
             break;
         }
         if free(way, 1e-6 * length) {
@@ -288,7 +288,7 @@ mod tests {
         ) {
             let by = by.map(|part| part * length);
             let touched: Vec<Gap> = outs.into_iter().map(|out| Gap { distance: 0.0, out }).collect();
-            let found = allowed(by, &touched, &mut Looks::new(u64::MAX));
+            let found = allowed(by, &touched, &mut Budget::new(u64::MAX));
             prop_assert_eq!(found, allowed_by_all(by, &touched));
         }
     }

@@ -1,13 +1,13 @@
-//! Keeping a moment of a running world in memory, and going back to it. The form that can be written down is in `state.rs`.
+//! Keeping a moment of a running world in memory, and going back to it. The form that can be written down is in `progress.rs`.
 
 use std::fmt;
 use std::sync::Arc;
 
 use driftworld_spec::World;
 
-use super::chance::Seed;
 use super::environment::Environment;
-use super::episode::Episode;
+use super::state::SimState;
+use super::streams::Seed;
 use crate::EnvError;
 use crate::assets::Catalogue;
 
@@ -20,7 +20,7 @@ pub struct Snapshot {
     world: Arc<World>,
     catalogue: Catalogue,
     seed: Seed,
-    episode: Episode,
+    episode: SimState,
     /// Where each object stands and faces.
     places: Vec<([f32; 2], f32)>,
 }

@@ -1,251 +1,146 @@
-//! Writing a running world down as a world, and going on from it. The form that stays in memory is in `snapshot.rs`.
+//! All that changes while a world runs, in one value: what a snapshot copies. What changes it is in the files beside this one.
 
-use std::sync::Arc;
+use driftworld_spec::{ActionModel, LastEvent, Object, World};
 
-use driftworld_spec::{AgentParams, Object, ObjectProgress, Origin, Progress, World};
-
-use super::environment::Environment;
-use super::episode::wrapped;
-use super::motion::Mover;
+use super::mover::Mover;
+use super::pushing::Pushed;
+use super::sequence::Sequence;
+use super::streams::{Identities, ObjectRng, Seed};
 use crate::agents::OnRailsAgent;
 
-/// What a world that was written down says of its course, when the world itself has been taken back to its start.
-pub(super) struct Came {
-    progress: Progress,
-    agent: ([f32; 2], f32),
-    /// Where each object stands and faces, and what it is worth.
-    objects: Vec<([f32; 2], f32, f64)>,
+/// Where the agent is and how it moves.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct AgentState {
+    /// Position in metres.
+    pub position: [f32; 2],
+    /// Heading in degrees, 0..360, clockwise from +y.
+    pub heading_deg: f32,
+    /// Velocity over the last step in metres per second.
+    pub velocity: [f32; 2],
 }
 
-impl Environment {
-    /// The world as it is now, as a document: objects where they stand with the rewards that are left, and in `progress` all
-    /// else that a reset to it needs to go on as if nothing had been.
-    ///
-    /// Destroyed objects are among the objects, so that numbers stay; their progress says that they are not there.
-    ///
-    /// # Example
-    /// ```
-    /// use driftworld_env::{Action, Environment};
-    /// use driftworld_spec::World;
-    /// let mut environment = Environment::new(World::default())?;
-    /// environment.step(Action::Continuous([10.0, 90.0, 0.0]))?;
-    /// let written = environment.state().to_json();
-    /// let read = World::from_json("state", &written).expect("a state is a sound world");
-    /// assert_eq!(Environment::new(read)?.agent(), environment.agent());
-    /// # Ok::<(), driftworld_env::EnvError>(())
-    /// ```
-    pub fn state(&self) -> World {
-        let mut world = (*self.world).clone();
-        let agent = self.episode.agent;
-        let start = &world.agent_params;
-        let now = self.agent_now();
-        let origin = (now.coordinates != start.coordinates || now.heading != start.heading).then_some(Origin {
-            coordinates: start.coordinates,
-            heading: start.heading,
-            reward: 0.0,
-        });
-        world.agent_params = now;
-        let objects = world
-            .objects
-            .iter_mut()
-            .enumerate()
-            .map(|(index, object)| self.note_object(index, object))
-            .collect();
-        let episode = &self.episode;
-        world.progress = Some(Progress {
-            seed: self.seed.hash().map(str::to_owned),
-            steps: episode.steps,
-            ticks: episode.ticks,
-            episode_return: episode.earned,
-            unshaped_return: episode.unshaped,
-            last_reward: episode.last_reward,
-            last_event: episode.last_event,
-            ended: episode.ended,
-            velocity: agent.velocity.map(f64::from),
-            origin,
-            chance: None,
-            rails: episode.rails.as_ref().map(OnRailsAgent::progress),
-            objects,
-        });
-        world
-    }
-
-    /// The agent of the world, where it is now: to the bit where it started if it is there.
-    pub(crate) fn agent_now(&self) -> AgentParams {
-        let agent = self.episode.agent;
-        let mut now = self.world.agent_params.clone();
-        let stands = now.coordinates.map(|metres| metres as f32) == agent.position
-            && wrapped(now.heading as f32) == agent.heading_deg;
-        if !stands {
-            now.coordinates = agent.position.map(f64::from);
-            now.heading = f64::from(agent.heading_deg);
-        }
-        now
-    }
-
-    /// An object of the world, where it is now and with what is left of its reward.
-    pub(crate) fn object_now(&self, index: usize) -> Object {
-        let mut now = self.world.objects[index].clone();
-        self.put_where_it_is(index, &mut now);
-        now
-    }
-
-    /// Puts an object where it is now; hands back where it was if that is elsewhere.
-    fn put_where_it_is(&self, index: usize, object: &mut Object) -> Option<Origin> {
-        let state = &self.episode.objects[index];
-        let item = &self.scene.items[index];
-        let stands = object.coordinates.map(|metres| metres as f32) == item.position
-            && object.heading as f32 == item.heading_deg
-            && object.reward == state.reward;
-        let origin = (!stands).then_some(Origin {
-            coordinates: object.coordinates,
-            heading: object.heading,
-            reward: object.reward,
-        });
-        if !stands {
-            object.coordinates = item.position.map(f64::from);
-            object.heading = f64::from(item.heading_deg);
-            object.reward = state.reward;
-        }
-        origin
-    }
-
-    /// How far an object has come; the object is put where it is now.
-    fn note_object(&self, index: usize, object: &mut Object) -> ObjectProgress {
-        let state = &self.episode.objects[index];
-        let origin = self.put_where_it_is(index, object);
-        let episode = &self.episode;
-        // All of these lists rise.
-        let mover = episode.movers.binary_search_by_key(&index, |mover| mover.object);
-        let pushed = episode.pushed.binary_search_by_key(&index, |body| body.object);
-        let returns = episode.returning.binary_search_by_key(&index, |(other, _)| *other);
-        let luck = episode.luck.binary_search_by_key(&index, |luck| luck.object);
-        let mover = mover.ok().map(|place| &episode.movers[place]);
-        let pushed = pushed.ok().map(|place| &episode.pushed[place]);
-        let returns = returns.ok().map(|place| episode.returning[place]);
-        let luck = luck.ok().map(|place| &episode.luck[place]);
-        let (waypoint, goal, goals) = mover.map_or((0, None, 0), Mover::progress);
-        ObjectProgress {
-            present: state.present,
-            collected: state.collected,
-            touched: self.touches(index),
-            in_range: state.in_range,
-            origin,
-            returns_at: returns.map(|(_, tick)| tick),
-            goal,
-            waypoint,
-            goals,
-            pulls: luck.map_or(0, |luck| luck.pulls),
-            returns: luck.map_or(0, |luck| luck.returns),
-            tries: luck.map_or(0, |luck| luck.tries),
-            chance: None,
-            velocity: pushed
-                .filter(|body| body.velocity != [0.0; 2])
-                .map(|body| body.velocity.map(f64::from)),
-            spin: pushed.map_or(0.0, |body| f64::from(body.spin_deg)),
-        }
-    }
-
-    /// Goes on from where a world had come when it was written down. This environment is at the start of that world.
-    pub(super) fn resume(&mut self, came: &Came) {
-        let progress = &came.progress;
-        let episode = &mut self.episode;
-        (episode.agent.position, episode.agent.heading_deg) = came.agent;
-        episode.agent.velocity = progress.velocity.map(|speed| speed as f32);
-        (episode.steps, episode.ticks) = (progress.steps, progress.ticks);
-        (episode.earned, episode.unshaped) = (progress.episode_return, progress.unshaped_return);
-        (episode.last_reward, episode.last_event) = (progress.last_reward, progress.last_event);
-        episode.ended = progress.ended;
-        if episode.rails.is_some()
-            && let Some(rails) = &progress.rails
-        {
-            let resumed = OnRailsAgent::resumed(rails, &self.world, &self.scene);
-            self.episode.rails = Some(resumed);
-        }
-        self.episode.contacts.clear();
-        for (index, own) in progress.objects.iter().enumerate().take(self.world.objects.len()) {
-            self.resume_object(index, own, came.objects[index]);
-        }
-        self.episode.sequence.advance(&self.episode.objects);
-    }
-
-    fn resume_object(&mut self, index: usize, own: &ObjectProgress, now: ([f32; 2], f32, f64)) {
-        let (position, heading_deg, reward) = now;
-        let state = &mut self.episode.objects[index];
-        (state.present, state.collected, state.in_range) = (own.present, own.collected, own.in_range);
-        state.reward = reward;
-        let item = &mut self.scene.items[index];
-        (item.position, item.heading_deg) = (position, heading_deg);
-        (item.reward, item.visible) = (reward as f32, own.present);
-        if own.touched {
-            self.episode.contacts.push(index as u32);
-        }
-        self.episode.returning.extend(own.returns_at.map(|tick| (index, tick)));
-        let movers = &mut self.episode.movers;
-        if let Ok(place) = movers.binary_search_by_key(&index, |mover| mover.object) {
-            movers[place].resume(own.waypoint, own.goal, own.goals);
-        }
-        if let Some(luck) = self.episode.luck_of(index) {
-            (luck.pulls, luck.returns, luck.tries) = (own.pulls, own.returns, own.tries);
-        }
-        if let Some(body) = self.episode.pushed_of(index) {
-            body.velocity = own
-                .velocity
-                .map_or([0.0; 2], |velocity| velocity.map(|speed| speed as f32));
-            body.spin_deg = own.spin as f32;
-        }
-        self.ground.remove(index as u32);
-        if own.present {
-            self.ground
-                .add_object(index as u32, item, self.world.objects[index].solid);
-        }
+impl AgentState {
+    /// The direction in which the agent looks: length 1.
+    pub fn forward(&self) -> [f32; 2] {
+        let heading = self.heading_deg.to_radians();
+        [libm::sinf(heading), libm::cosf(heading)]
     }
 }
 
-impl Came {
-    /// Takes a world's progress out of it, and the world back to its start.
-    pub(super) fn out_of(world: &mut Arc<World>) -> Self {
-        let world = Arc::make_mut(world);
-        let progress = world.progress.take().unwrap_or_default();
-        let agent = &mut world.agent_params;
-        let place = (
-            agent.coordinates.map(|metres| metres as f32),
-            wrapped(agent.heading as f32),
-        );
-        if let Some(origin) = &progress.origin {
-            (agent.coordinates, agent.heading) = (origin.coordinates, origin.heading);
-        }
-        let mut objects = Vec::with_capacity(world.objects.len());
-        let own = progress.objects.iter().map(Some).chain(std::iter::repeat(None));
-        for (object, own) in world.objects.iter_mut().zip(own) {
-            objects.push((
-                object.coordinates.map(|metres| metres as f32),
-                object.heading as f32,
-                object.reward,
-            ));
-            if let Some(origin) = own.and_then(|own| own.origin) {
-                (object.coordinates, object.heading) = (origin.coordinates, origin.heading);
-                object.reward = origin.reward;
-            }
-        }
+/// One object while its world runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjectState {
+    /// What a triggering pays now; 0 once it has paid what pays once.
+    pub reward: f64,
+    /// Whether it is still there.
+    pub present: bool,
+    /// Whether it has paid, or was destroyed: places in a sequence count on it.
+    pub collected: bool,
+    pub(super) in_range: bool,
+}
+
+impl ObjectState {
+    /// An object at its start.
+    pub(super) fn new(object: &Object) -> Self {
         Self {
-            progress,
-            agent: place,
-            objects,
+            reward: object.reward,
+            present: true,
+            collected: false,
+            in_range: false,
         }
     }
+}
 
-    /// Whether the world ran before: progress that says no more than a seed is that of a start.
-    pub(super) fn has_begun(&self) -> bool {
-        let only_seed = Progress {
-            seed: self.progress.seed.clone(),
-            ..Progress::default()
+/// A heading brought to 0..360 degrees, 360 excluded, which rounding can lead to.
+pub(super) fn wrapped(heading_deg: f32) -> f32 {
+    let heading_deg = heading_deg.rem_euclid(360.0);
+    if heading_deg < 360.0 { heading_deg } else { 0.0 }
+}
+
+/// Where a world stands in its course.
+#[derive(Clone)]
+pub(crate) struct SimState {
+    pub(super) agent: AgentState,
+    pub(super) objects: Vec<ObjectState>,
+    pub(super) steps: u32,
+    /// Time steps since the start.
+    pub(super) ticks: u64,
+    /// The sum of rewards since the start.
+    pub(super) earned: f64,
+    /// The same without what shaping paid: what conditions on the return count.
+    pub(super) unshaped: f64,
+    /// What the last step paid.
+    pub(super) last_reward: f64,
+    pub(super) last_event: Option<LastEvent>,
+    pub(super) ended: bool,
+    /// What bandit arms and returning objects draw, in rising order of their objects.
+    pub(super) rngs: Vec<ObjectRng>,
+    /// Objects in contact at the end of the last step, in rising order.
+    pub(super) contacts: Vec<u32>,
+    /// The objects that move by themselves.
+    pub(super) movers: Vec<Mover>,
+    /// The objects that are pushed, in rising order.
+    pub(super) pushed: Vec<Pushed>,
+    /// Destroyed objects that come back, in rising order, with the time step in which they do.
+    pub(super) returning: Vec<(usize, u64)>,
+    pub(super) rails: Option<OnRailsAgent>,
+    /// Whose turn it is, where objects have one.
+    pub(super) sequence: Sequence,
+}
+
+impl SimState {
+    /// The start of a world. What is touched or near is found later, when there are bodies.
+    pub(super) fn new(world: &World, seed: &Seed, identities: &mut Identities) -> Self {
+        let start = &world.agent_params;
+        let mut episode = Self {
+            agent: AgentState {
+                position: start.coordinates.map(|metres| metres as f32),
+                heading_deg: wrapped(start.heading as f32),
+                velocity: [0.0; 2],
+            },
+            objects: world.objects.iter().map(ObjectState::new).collect(),
+            steps: 0,
+            ticks: 0,
+            earned: 0.0,
+            unshaped: 0.0,
+            last_reward: 0.0,
+            last_event: None,
+            ended: false,
+            rngs: Vec::new(),
+            contacts: Vec::new(),
+            movers: Vec::new(),
+            pushed: Pushed::all(world),
+            returning: Vec::new(),
+            rails: (start.action_model == ActionModel::OnRails).then(OnRailsAgent::new),
+            sequence: Sequence::of(&world.objects),
         };
-        self.progress != only_seed
+        for (index, object) in world.objects.iter().enumerate() {
+            episode.add_processes(index, object, seed, identities);
+        }
+        episode
     }
 
-    /// The hash of the places of things at the start of the world, if chance depends on it and has been asked for.
-    pub(super) fn seed(&self) -> Option<String> {
-        self.progress.seed.clone()
+    /// Adds what moves an object and what it draws; `object` is as it was at its start.
+    pub(super) fn add_processes(&mut self, index: usize, object: &Object, seed: &Seed, identities: &mut Identities) {
+        // Most objects of most worlds draw nothing, and then nobody asks who they are.
+        let identity = if object.takes_chances() {
+            identities.take(object)
+        } else {
+            0
+        };
+        self.movers.extend(Mover::new(index, object, seed, identity));
+        self.rngs.extend(ObjectRng::new(index, object, seed, identity));
+    }
+
+    /// The motion of an object that is pushed.
+    pub(super) fn pushed_of(&mut self, object: usize) -> Option<&mut Pushed> {
+        let found = self.pushed.binary_search_by_key(&object, |body| body.object).ok()?;
+        self.pushed.get_mut(found)
+    }
+
+    /// What an object draws, if it draws for pulls or returns.
+    pub(super) fn rng_of(&mut self, object: usize) -> Option<&mut ObjectRng> {
+        let found = self.rngs.binary_search_by_key(&object, |rng| rng.object).ok()?;
+        self.rngs.get_mut(found)
     }
 }

@@ -1,12 +1,12 @@
-//! One step of a world: the action, its time steps, what the rules make of them. What touching things does is in `answer.rs`,
-//! endings are in `judge.rs`.
+//! One step of a world: the action, its time steps, what the rules make of them. What touching things does is in `interactions.rs`,
+//! endings are in `termination.rs`.
 
 use driftworld_spec::{ActionModel, LastEvent};
 
 use super::action::{Action, Intent};
 use super::environment::Environment;
-use super::episode::wrapped;
 use super::event::Step;
+use super::state::wrapped;
 use crate::EnvError;
 
 impl Environment {
@@ -35,7 +35,7 @@ impl Environment {
         for _ in 0..self.world.agent_params.frame_skip.max(1) {
             step.reward += pay;
             self.tick(intent, step);
-            self.judge(step);
+            self.check_termination(step);
             if step.terminated || self.episode.ticks >= max_ticks {
                 break;
             }
@@ -89,14 +89,14 @@ impl Environment {
     /// One time step.
     fn tick(&mut self, intent: Intent, step: &mut Step) {
         self.episode.ticks += 1;
-        self.carry_out(intent);
-        self.bring_back();
+        self.apply_action(intent);
+        self.respawn();
         self.move_objects();
-        self.answer(intent, step);
+        self.apply_stimuli(intent, step);
     }
 
     /// Turns and moves the agent, and notes the objects it meets on the way.
-    fn carry_out(&mut self, intent: Intent) {
+    fn apply_action(&mut self, intent: Intent) {
         let start = self.episode.agent.position;
         self.episode.agent.heading_deg = wrapped(self.episode.agent.heading_deg + intent.turn_deg);
         let by = match intent.towards {

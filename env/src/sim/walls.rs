@@ -1,8 +1,8 @@
-//! Where walls leave no room: geometry of polygons on the ground. How walls stop a body is in `body.rs`.
+//! Where walls leave no room: geometry of polygons on the ground. How walls stop a body is in `collision_world.rs`.
 
 use driftworld_spec::World;
 
-use super::edit::Obstacle;
+use super::editing::Obstacle;
 
 /// What of the arena and its walls is in the way of a round body of this radius in metres.
 pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option<Obstacle> {

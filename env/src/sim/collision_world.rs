@@ -1,13 +1,13 @@
 //! Bodies on the ground: what the agent bumps into, slides along and touches. How far apart
-//! two are is in `footprint.rs`, what counts as a touch in `contact.rs`, what one is worth in `answer.rs`.
+//! two are is in `footprint.rs`, what counts as a touch in `contact.rs`, what one is worth in `interactions.rs`.
 
 use driftworld_spec::World;
 use rapier3d::prelude::*;
 
+use super::broad_phase::BroadPhase;
+use super::budget::{self, Budget};
 use super::footprint::{Footprint, Gap, Point};
-use super::looks::{self, Looks};
 use super::outline::Outline;
-use super::places::Places;
 use super::slide::{Obstacles, SKIN};
 use crate::assets::ColliderShape;
 use crate::scene::{Item, Scene};
@@ -26,11 +26,11 @@ pub(super) const WALL: Group = Group::GROUP_3;
 pub(super) const AGENT: Group = Group::GROUP_4;
 
 /// All bodies of a world. Nothing moves by forces, so there is no time step here: only questions about shapes.
-pub(crate) struct Ground {
+pub(crate) struct CollisionWorld {
     bodies: RigidBodySet,
     pub(super) colliders: ColliderSet,
     /// Where colliders are, by the numbers of their handles.
-    places: Places,
+    places: BroadPhase,
     pub(super) narrow_phase: NarrowPhase,
     islands: IslandManager,
     soft_bodies: SoftBodySet,
@@ -84,7 +84,7 @@ pub(super) struct Scratch {
     pub(super) looked: u64,
 }
 
-impl Ground {
+impl CollisionWorld {
     pub(crate) fn new(world: &World, scene: &Scene) -> Self {
         let agent = &world.agent_params;
         let (radius, height) = (agent.agent_width as f32 / 2.0, agent.agent_height as f32);
@@ -93,7 +93,7 @@ impl Ground {
         let mut ground = Self {
             bodies: RigidBodySet::new(),
             colliders: ColliderSet::new(),
-            places: Places::new(),
+            places: BroadPhase::new(),
             narrow_phase: NarrowPhase::new(),
             islands: IslandManager::new(),
             soft_bodies: SoftBodySet::new(),
@@ -343,14 +343,14 @@ impl Ground {
     /// Notes in `scratch.numbers` the bodies of these groups, one left aside, around the places from one to another,
     /// and hands back how many corners they have in all.
     ///
-    /// Nothing, and the list is not whole, if there are more of them than `looks`, which each body takes one of.
+    /// Nothing, and the list is not whole, if there are more of them than the budget has looks; each body takes one.
     pub(super) fn gather(
         &mut self,
         groups: Group,
         but: Option<ColliderHandle>,
         [from, to]: [Point; 2],
         reach: f64,
-        looks: &mut Looks,
+        budget: &mut Budget,
     ) -> Option<usize> {
         let mut numbers = std::mem::take(&mut self.scratch.numbers);
         numbers.clear();
@@ -363,10 +363,10 @@ impl Ground {
         let least = [0, 1].map(|axis| (from[axis].min(to[axis]) - reach) as f32);
         let most = [0, 1].map(|axis| (from[axis].max(to[axis]) + reach) as f32);
         // One more than may be looked at is one too many, wherever it stands in the tree.
-        let at_most = usize::try_from(looks.left()).unwrap_or(usize::MAX).saturating_add(1);
+        let at_most = usize::try_from(budget.left()).unwrap_or(usize::MAX).saturating_add(1);
         let around = self.around(groups, but, [least, most]).take(at_most);
         numbers.extend(around.map(|handle| slot(handle) as u32));
-        let is_whole = looks.take(numbers.len());
+        let is_whole = budget.take(numbers.len());
         if is_whole {
             // The tree's order depends on its past, which a world that was written down does not have.
             numbers.sort_unstable_by_key(|number| self.standing[*number as usize].rank);
@@ -379,7 +379,7 @@ impl Ground {
 
     /// Moves the agent's body as far as solid things let it, sliding along them; hands back where it comes to.
     ///
-    /// Nothing is passed through at any speed. The way is noted for [`Ground::path`].
+    /// Nothing is passed through at any speed. The way is noted for [`CollisionWorld::path`].
     pub(crate) fn slide(&mut self, from: [f32; 2], by: [f32; 2]) -> [f32; 2] {
         let start = from.map(f64::from);
         let way = by.map(f64::from);
@@ -391,8 +391,8 @@ impl Ground {
         }
         let to = [start[0] + way[0], start[1] + way[1]];
         let reach = self.radius + SKIN + 1e-3;
-        let mut looks = Looks::new(looks::AGENTS);
-        self.gather(SOLID | WALL, None, [start, to], reach, &mut Looks::new(u64::MAX));
+        let mut budget = Budget::new(budget::AGENTS);
+        self.gather(SOLID | WALL, None, [start, to], reach, &mut Budget::new(u64::MAX));
         let obstacles = Obstacles {
             footprints: &self.low,
             numbers: &self.scratch.numbers,
@@ -402,7 +402,7 @@ impl Ground {
             self.scratch.path.push(to);
         } else {
             // It may turn anywhere, but it goes no farther than it meant to.
-            let whole = self.gather(SOLID | WALL, None, [start, start], length + 2.0 + reach, &mut looks);
+            let whole = self.gather(SOLID | WALL, None, [start, start], length + 2.0 + reach, &mut budget);
             let Some(num_corners) = whole else { return from };
             let mut scratch = std::mem::take(&mut self.scratch);
             let obstacles = Obstacles {
@@ -418,7 +418,7 @@ impl Ground {
                 clear,
                 way,
                 self.radius,
-                &mut looks,
+                &mut budget,
                 &mut scratch.touched,
                 &mut scratch.path,
             );

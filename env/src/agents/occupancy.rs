@@ -12,7 +12,7 @@ const CLEARANCE: f32 = 0.15;
 /// How often each cell is taken: by walls once, and once by each object that is led around. What did not change since the last
 /// way is kept.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Ground {
+pub(super) struct OccupancyGrid {
     grid: Grid,
     walls: Walls,
     taken: Vec<u32>,
@@ -77,7 +77,7 @@ impl Disc {
     }
 }
 
-impl Ground {
+impl OccupancyGrid {
     pub(super) fn grid(&self) -> Grid {
         self.grid
     }
@@ -265,7 +265,7 @@ mod tests {
             discs in prop::collection::vec(([-30.0..30.0_f32, -30.0..30.0_f32], 0.0..60.0_f32, any::<bool>()), 1..40),
         ) {
             let grid = Grid::over([50.0, 40.0]);
-            let ground = Ground { grid, taken: vec![100; grid.num_cells()], ..Ground::default() };
+            let ground = OccupancyGrid { grid, taken: vec![100; grid.num_cells()], ..OccupancyGrid::default() };
             let discs: Vec<(Disc, bool)> = discs
                 .into_iter()
                 .map(|(centre, radius, is_taken)| (Disc { object: 0, centre, radius }, is_taken))

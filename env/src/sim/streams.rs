@@ -1,24 +1,24 @@
-//! A world's own chance: streams of random numbers, one for each object and purpose. Who draws from them is in `answer.rs`,
-//! `objects.rs` and `motion.rs`.
+//! The random numbers of a running world: a stream for each object and purpose. Who draws from them is in `interactions.rs`,
+//! `motion.rs` and `mover.rs`.
 //!
 //! Every draw has a number, and is had without the draws before it: what an object draws for the third time depends on the
 //! world's seed, on the object's own and on the 3, and on nothing else that is in the world or happens in it.
 
 use std::collections::BTreeMap;
 
-use driftworld_spec::{MotionModel, Object, World};
+use driftworld_spec::{Object, World};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// What the key of a world with a seed is filled up with.
 const DOMAIN: [u8; 24] = *b"driftworld chance 1\0\0\0\0\0";
 
-/// What all chance of a world grows from: its `seed`, or the hash of where things stood at its start.
+/// What all random numbers of a world depend on: its `seed`, or the hash of where things stood at its start.
 ///
-/// Hashing costs as much as reading the world, so it waits until something needs chance.
+/// Hashing costs as much as reading the world, so it waits until something draws.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) enum Seed {
-    /// A world without a seed in which nothing has needed chance yet.
+    /// A world without a seed in which nothing has drawn yet.
     #[default]
     Unknown,
     /// The world's own.
@@ -141,9 +141,9 @@ impl Stream {
     }
 }
 
-/// What a bandit arm, or an object that comes back, has drawn.
+/// The random numbers of a bandit arm, or of an object that comes back, and how many of them it has drawn.
 #[derive(Clone, Debug)]
-pub(super) struct Luck {
+pub(super) struct ObjectRng {
     /// The object's number in the world.
     pub(super) object: usize,
     pulling: Stream,
@@ -156,8 +156,8 @@ pub(super) struct Luck {
     pub(super) tries: u64,
 }
 
-impl Luck {
-    /// The luck of an object that needs any.
+impl ObjectRng {
+    /// Those of an object that needs any.
     pub(super) fn new(index: usize, object: &Object, seed: &Seed, identity: u64) -> Option<Self> {
         (object.reward_probability < 1.0 || object.respawn.is_some()).then(|| Self {
             object: index,
@@ -169,23 +169,23 @@ impl Luck {
         })
     }
 
-    /// Whether the next pull pays, at odds of `probability`: more luck is needed for less of it, so that whoever lowers the
-    /// odds takes payments away and adds none.
+    /// Whether the next pull pays, with this probability. The same number decides whatever the probability: lowering it takes
+    /// payments away and adds none.
     pub(super) fn pull(&mut self, probability: f64) -> bool {
-        let [luck, _] = self.pulling.draw(self.pulls);
+        let [unit, _] = self.pulling.draw(self.pulls);
         self.pulls += 1;
-        luck < probability
+        unit < probability
     }
 
     /// Two numbers for the next place that is tried.
-    pub(super) fn place(&mut self) -> [f64; 2] {
+    pub(super) fn draw_place(&mut self) -> [f64; 2] {
         let place = self.returning.redraw(self.returns, self.tries);
         self.tries += 1;
         place
     }
 
     /// Notes that the object has come back.
-    pub(super) fn came_back(&mut self) {
+    pub(super) fn note_return(&mut self) {
         self.returns += 1;
         self.tries = 0;
     }
@@ -197,11 +197,6 @@ fn mix(bits: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)
-}
-
-/// Whether an object moves by itself.
-pub(super) fn moves(object: &Object) -> bool {
-    object.motion_model != MotionModel::Stationary && object.speed > 0.0
 }
 
 #[cfg(test)]
@@ -255,7 +250,7 @@ mod tests {
         assert_eq!(identities(&[3]), [(3, all[&3])].into());
     }
 
-    /// Pinned: if it changes, so does every world that moves by chance.
+    /// Pinned: if it changes, so does every world that draws.
     #[test]
     fn the_numbers_stay_as_they_are() {
         let identity = Identities::default().take(&at([3.0, 4.0], Some(7)));
@@ -270,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn luck_is_spread_evenly() {
+    fn draws_are_spread_evenly() {
         let identity = Identities::default().take(&at([3.0, 4.0], None));
         let stream = Stream::new(&Seed::Own(5), identity, Purpose::Pulls);
         for axis in 0..2 {

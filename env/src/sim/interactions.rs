@@ -1,24 +1,24 @@
-//! What the agent's motion sets off: stimuli, what they pay, what they destroy. Endings are in `judge.rs`.
+//! What the agent's motion sets off: stimuli, what they pay, what they destroy. Endings are in `termination.rs`.
 
 use std::sync::Arc;
 
 use driftworld_spec::Stimulus;
 
 use super::action::Intent;
-use super::chance::Luck;
 use super::contact::RELEASE;
 use super::environment::{Environment, Scratch};
 use super::event::{Event, Step};
+use super::streams::ObjectRng;
 
 impl Environment {
     /// Finds what the time step set off, and pays for it. `scratch.met` holds what the agent met on its way, and what met it.
-    pub(super) fn answer(&mut self, intent: Intent, step: &mut Step) {
+    pub(super) fn apply_stimuli(&mut self, intent: Intent, step: &mut Step) {
         let mut scratch = std::mem::take(&mut self.scratch);
         scratch.triggered.clear();
         scratch.triggered.reserve(32);
         scratch.moved.sort_unstable_by_key(|(index, _)| *index);
         scratch.arrived.sort_unstable();
-        self.answer_contacts(&mut scratch);
+        self.update_contacts(&mut scratch);
         if intent.interact {
             let agent = &self.episode.agent;
             self.ground
@@ -57,7 +57,7 @@ impl Environment {
     }
 
     /// Contacts that begin and that end.
-    fn answer_contacts(&mut self, scratch: &mut Scratch) {
+    fn update_contacts(&mut self, scratch: &mut Scratch) {
         let here = self.episode.agent.position;
         self.ground.note_touching(here, &mut scratch.met);
         scratch.met.sort_unstable();
@@ -122,9 +122,9 @@ impl Environment {
         let due = self.is_due(object.order);
         let destroyed = due && object.destroy_stimulus.contains(&stimulus);
         let odds = object.reward_probability;
-        // An arm that always pays has no luck of its own, and needs none.
-        let lucky = |luck: &mut Luck| luck.pull(odds);
-        let pays = would_pay && due && self.episode.luck_of(index).is_none_or(lucky);
+        // An arm that always pays draws nothing.
+        let pull = |rng: &mut ObjectRng| rng.pull(odds);
+        let pays = would_pay && due && self.episode.rng_of(index).is_none_or(pull);
         let reward = if pays {
             self.episode.objects[index].reward
         } else if would_pay && !due {
@@ -142,7 +142,7 @@ impl Environment {
             self.scene.items[index].reward = 0.0;
         }
         if destroyed {
-            self.take_body_away(index);
+            self.remove_body(index);
             if let Some(respawn) = &object.respawn {
                 let ticks = (respawn.delay / world.agent_params.time_step).ceil() as u64;
                 let back = (index, self.episode.ticks + ticks.max(1));

@@ -1,4 +1,4 @@
-//! Where bodies are: which of them lie around a place. What they are is in `body.rs`.
+//! Where bodies are: which of them lie around a place. What they are is in `collision_world.rs`.
 //!
 //! Walls, what is solid and what is passed through have a tree each, so that who asks for some is not held up by the
 //! others.
@@ -6,7 +6,7 @@
 use rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use rapier3d::prelude::*;
 
-use super::body::{AGENT, GHOST, SOLID, WALL};
+use super::collision_world::{AGENT, GHOST, SOLID, WALL};
 
 /// The trees, and which groups each holds.
 const HELD: [Group; 3] = [WALL, SOLID.union(AGENT), GHOST];
@@ -18,7 +18,7 @@ const FEW: usize = 64;
 const WORN: usize = 4;
 
 /// Trees of boxes around bodies, by the numbers of their handles.
-pub(super) struct Places {
+pub(super) struct BroadPhase {
     trees: [Tree; 3],
     workspace: BvhWorkspace,
 }
@@ -33,7 +33,7 @@ struct Tree {
     moved: usize,
 }
 
-impl Places {
+impl BroadPhase {
     pub(super) fn new() -> Self {
         Self {
             trees: Default::default(),

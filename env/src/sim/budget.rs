@@ -1,5 +1,5 @@
 //! How much one time step may look at, so that no heap of bodies can freeze it. Who looks is in `slide.rs`,
-//! `moving_body.rs`, `objects.rs` and `pushing.rs`; what each does when its looks are used up is said there.
+//! `moving_body.rs`, `motion.rs` and `pushing.rs`; what each does when its budget is used up is said there.
 //!
 //! A look is a question about one corner of one body. Looks are counted and not timed: a world goes the same way on
 //! every machine, alone or in a batch. What is counted depends on where things stand alone, so that a world that was
@@ -20,11 +20,11 @@ pub(super) const EACH_RETURN: u64 = 20;
 
 /// Looks that are left.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Looks {
+pub(super) struct Budget {
     left: u64,
 }
 
-impl Looks {
+impl Budget {
     pub(super) fn new(count: u64) -> Self {
         Self { left: count }
     }
@@ -45,14 +45,14 @@ impl Looks {
 /// Looks for which many wait in a row, always in the same order. Half of them is kept for those from a place on that
 /// changes with each time step, so that nobody waits for ever behind the same crowd.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shared {
-    looks: Looks,
+pub(super) struct SharedBudget {
+    budget: Budget,
     kept: u64,
     /// From which place on the kept half is given.
     from: usize,
 }
 
-impl Shared {
+impl SharedBudget {
     /// So many looks for `waiting` in a row, in this time step.
     pub(super) fn new(count: u64, waiting: usize, tick: u64) -> Self {
         /// A prime, so that every place has its turn, and neighbours do not have theirs one after another.
@@ -60,24 +60,24 @@ impl Shared {
         let waiting = waiting.max(1) as u64;
         let turn = if waiting.is_multiple_of(TURN) { 1 } else { TURN };
         Self {
-            looks: Looks::new(count - count / 2),
+            budget: Budget::new(count - count / 2),
             kept: count / 2,
             from: (tick % waiting * turn % waiting) as usize,
         }
     }
 
-    /// The looks of the one at a place in the row; places are asked for in rising order.
-    pub(super) fn at(&mut self, place: usize) -> &mut Looks {
+    /// The budget of the one at a place in the row; places are asked for in rising order.
+    pub(super) fn at(&mut self, place: usize) -> &mut Budget {
         if place >= self.from {
-            self.looks.left += std::mem::take(&mut self.kept);
+            self.budget.left += std::mem::take(&mut self.kept);
         }
-        &mut self.looks
+        &mut self.budget
     }
 
     /// How many are left in all.
     #[cfg(test)]
     pub(super) fn left(self) -> u64 {
-        self.looks.left + self.kept
+        self.budget.left + self.kept
     }
 }
 
@@ -95,7 +95,7 @@ mod tests {
         ) {
             let mut served = vec![false; wants.len()];
             for tick in 0..wants.len() as u64 * 20 {
-                let mut shared = Shared::new(count, wants.len(), tick);
+                let mut shared = SharedBudget::new(count, wants.len(), tick);
                 let mut taken = 0;
                 for (place, want) in wants.iter().enumerate() {
                     if shared.at(place).take(*want) {

@@ -1,11 +1,11 @@
 //! What the world's rules make of where things stand: the potential of its shaping, and what ends an episode. What objects pay
-//! is in `answer.rs`.
+//! is in `interactions.rs`.
 
 use driftworld_spec::{EndCondition, Object, Stimulus};
 
 use super::environment::Environment;
-use super::episode::ObjectState;
 use super::event::Step;
+use super::state::ObjectState;
 
 impl Environment {
     /// The potential that the world's shaping gives to this moment; 0 without shaping and where nothing draws the agent.
@@ -49,7 +49,7 @@ impl Environment {
     }
 
     /// Whether the step so far ended the episode by itself, and how.
-    pub(super) fn judge(&self, step: &mut Step) {
+    pub(super) fn check_termination(&self, step: &mut Step) {
         let rules = &self.world.rules;
         let holds = |conditions: &[EndCondition]| conditions.iter().any(|condition| self.holds(condition, step));
         let success = holds(&rules.success);

@@ -1,5 +1,5 @@
 //! Changing a world while it runs, from outside: new objects, fewer objects, another place for the agent. What the agent
-//! itself changes is in `answer.rs`.
+//! itself changes is in `interactions.rs`.
 
 use std::fmt;
 use std::sync::Arc;
@@ -7,8 +7,8 @@ use std::sync::Arc;
 use driftworld_spec::{MAX_OBJECTS, Object};
 
 use super::environment::Environment;
-use super::episode::ObjectState;
 use super::pushing::Pushed;
+use super::state::ObjectState;
 use super::walls;
 use crate::EnvError;
 
@@ -63,7 +63,7 @@ impl Environment {
             let name = name.clone();
             return Err(EnvError::NameTaken { name, object: first });
         }
-        // Without a seed, chance depends on where things stood before anything was spawned. Where it was not known, nothing
+        // Without a seed, random numbers depend on where things stood before anything was spawned. Where it was not known, nothing
         // has drawn from it.
         self.seed.learn(&self.world);
         self.scene.add(&object);
@@ -72,7 +72,7 @@ impl Environment {
         self.episode.objects.push(ObjectState::new(&object));
         self.episode.sequence.add(index, object.order);
         self.episode
-            .add_motives(index, &object, &self.seed, &mut self.identities);
+            .add_processes(index, &object, &self.seed, &mut self.identities);
         self.episode.pushed.extend(Pushed::new(index, &object));
         self.tags.push(object.tag.as_deref().map(Arc::from));
         self.had_targets |= object.is_target();
@@ -98,14 +98,14 @@ impl Environment {
         self.episode.returning.retain(|pending| !comes_back(pending));
         self.episode.objects[object].collected = true;
         self.episode.sequence.advance(&self.episode.objects);
-        self.take_body_away(object);
+        self.remove_body(object);
         self.episode.contacts.retain(|contact| *contact as usize != object);
         Ok(())
     }
 
     /// An object's body and look go; whether they come back, and that it is not touched any more, is for the caller to
     /// say.
-    pub(super) fn take_body_away(&mut self, object: usize) {
+    pub(super) fn remove_body(&mut self, object: usize) {
         self.episode.objects[object].present = false;
         self.scene.items[object].visible = false;
         self.ground.remove(object as u32);
@@ -128,9 +128,9 @@ impl Environment {
         }
         let agent = &mut self.episode.agent;
         agent.position = position.map(|metres| metres as f32);
-        agent.heading_deg = super::episode::wrapped(heading_deg.rem_euclid(360.0) as f32);
+        agent.heading_deg = super::state::wrapped(heading_deg.rem_euclid(360.0) as f32);
         agent.velocity = [0.0; 2];
-        self.take_stock();
+        self.init_contacts();
         Ok(())
     }
 

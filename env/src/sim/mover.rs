@@ -1,0 +1,145 @@
+//! How objects move by themselves: where each wants to go. How far it comes is found in `moving_body.rs`.
+
+use driftworld_spec::{MotionModel, Object};
+
+use super::streams::{Purpose, Seed, Stream};
+
+/// Distance at which a waypoint counts as reached, in metres.
+const REACHED: f32 = 0.3;
+
+/// Share of the way it meant to go below which a wanderer gives its goal up.
+const STUCK: f32 = 0.2;
+
+/// An object that moves: what it is about to do.
+#[derive(Clone, Debug)]
+pub(super) struct Mover {
+    /// The object's number in the world.
+    pub(crate) object: usize,
+    /// Number of the next point of a patrol.
+    next: usize,
+    /// Where a wanderer is going.
+    goal: Option<[f32; 2]>,
+    /// The wanderer's random numbers: they depend on the world's seed and the object alone.
+    goal_stream: Stream,
+    /// How many goals it has drawn.
+    goals: u64,
+}
+
+/// What a mover sees before it decides.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct View {
+    /// Where it is, in metres.
+    pub(crate) position: [f32; 2],
+    /// Where it faces, in degrees.
+    pub(crate) heading_deg: f32,
+    /// Where the agent is.
+    pub(crate) agent: [f32; 2],
+    /// Half the arena's sides.
+    pub(crate) half: [f32; 2],
+    /// Seconds of a step.
+    pub(crate) seconds: f32,
+}
+
+/// What a mover means to do in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stride {
+    /// Its new heading in degrees.
+    pub(crate) heading_deg: f32,
+    /// The way it means to go, in metres.
+    pub(crate) by: [f32; 2],
+}
+
+impl Mover {
+    /// The mover of an object, if it moves.
+    pub(super) fn new(index: usize, object: &Object, seed: &Seed, identity: u64) -> Option<Self> {
+        moves(object).then(|| Self {
+            object: index,
+            next: 0,
+            goal: None,
+            goal_stream: Stream::new(seed, identity, Purpose::Goals),
+            goals: 0,
+        })
+    }
+
+    /// The number of its next point, where it is going, and how many goals it has drawn.
+    pub(super) fn progress(&self) -> (u32, Option<[f64; 2]>, u64) {
+        let goal = self.goal.map(|goal| goal.map(f64::from));
+        (self.next as u32, goal, self.goals)
+    }
+
+    /// Goes on from what [`Mover::progress`] said.
+    pub(super) fn resume(&mut self, next: u32, goal: Option<[f64; 2]>, goals: u64) {
+        self.next = next as usize;
+        self.goal = goal.map(|goal| goal.map(|metres| metres as f32));
+        self.goals = goals;
+    }
+
+    /// What the object means to do; `None` if it stands still.
+    pub(super) fn decide(&mut self, object: &Object, view: View) -> Option<Stride> {
+        let wanted = self.direction(object, view)?;
+        let bearing = libm::atan2f(wanted[0], wanted[1]).to_degrees();
+        let turn = (bearing - view.heading_deg + 180.0).rem_euclid(360.0) - 180.0;
+        let most = object.turn_rate.map_or(180.0, |rate| rate as f32 * view.seconds);
+        let heading_deg = (view.heading_deg + turn.clamp(-most, most)).rem_euclid(360.0);
+        let mut metres = object.speed as f32 * view.seconds;
+        // Not past a waypoint, so that it is met; who runs or hunts has no such end.
+        if matches!(object.motion_model, MotionModel::Patrol | MotionModel::RandomWaypoint) {
+            metres = metres.min(length(wanted));
+            // Nor around and around one that it cannot turn to in time: it slows down while it looks elsewhere.
+            metres *= libm::cosf((turn - turn.clamp(-most, most)).to_radians()).max(0.0);
+        }
+        let heading = heading_deg.to_radians();
+        Some(Stride {
+            heading_deg,
+            by: [libm::sinf(heading) * metres, libm::cosf(heading) * metres],
+        })
+    }
+
+    /// The way to where the object wants to be, in metres; for prey, away from the agent.
+    fn direction(&mut self, object: &Object, view: View) -> Option<[f32; 2]> {
+        let to = |point: [f32; 2]| [point[0] - view.position[0], point[1] - view.position[1]];
+        let to_agent = to(view.agent);
+        let seen = object.sight_range.is_none_or(|range| length(to_agent) <= range as f32);
+        let way = match object.motion_model {
+            MotionModel::Predator if seen => to_agent,
+            MotionModel::Prey if seen => to_agent.map(|metres| -metres),
+            MotionModel::Stationary | MotionModel::Predator | MotionModel::Prey => return None,
+            MotionModel::Patrol => {
+                let point = |number: usize| object.waypoints[number].map(|metres| metres as f32);
+                if object.waypoints.is_empty() {
+                    return None;
+                }
+                if length(to(point(self.next))) < REACHED {
+                    self.next = (self.next + 1) % object.waypoints.len();
+                }
+                to(point(self.next))
+            }
+            MotionModel::RandomWaypoint => {
+                if self.goal.is_none_or(|goal| length(to(goal)) < REACHED) {
+                    let sides = view.half.map(|half| (half - 1.0).max(0.0));
+                    let units = self.goal_stream.draw(self.goals);
+                    self.goals += 1;
+                    self.goal = Some([0, 1].map(|axis| (units[axis] * 2.0 - 1.0) as f32 * sides[axis]));
+                }
+                to(self.goal?)
+            }
+        };
+        (length(way) > 1e-4).then_some(way)
+    }
+
+    /// Hears how far it came: a wanderer that hardly moved looks for another goal.
+    pub(super) fn moved(&mut self, meant: [f32; 2], came: [f32; 2]) {
+        if length(came) < STUCK * length(meant) {
+            self.goal = None;
+        }
+    }
+}
+
+/// Whether an object moves by itself.
+fn moves(object: &Object) -> bool {
+    object.motion_model != MotionModel::Stationary && object.speed > 0.0
+}
+
+fn length([x, y]: [f32; 2]) -> f32 {
+    (x * x + y * y).sqrt()
+}
