@@ -2,21 +2,17 @@
 //! be better. The way to the chosen one is found in `route.rs`.
 
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 use driftworld_spec::World;
 
 use super::flood::{BLOCKED, Charge, SLANTING, STRAIGHT};
-use super::grid::Grid;
+use super::marks::Marks;
 use super::route::Route;
 use crate::scene::Scene;
 
 /// The most cells that belong to goals in one choice. Of more, only the goals that are nearest as the crow flies are
 /// looked at.
 const MOST_MARKS: usize = 2_000_000;
-
-/// The most cells that are gone over around goals in one choice; then ways are as long as they are known to be.
-const MOST_LOOKS: usize = 4_000_000;
 
 /// A place that may be walked to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,51 +23,6 @@ pub(super) struct Goal {
     pub(super) place: [f32; 2],
     /// How likely it pays, above 0: what pays half the time is as good as what is twice as far.
     pub(super) probability: f32,
-}
-
-/// Which goals a cell belongs to, as lists within one list, and room to look around a goal.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Marks {
-    /// For each cell the place of its first mark, from 1.
-    first: Vec<u32>,
-    /// Number of a goal, and the place of the next mark of the cell.
-    links: Vec<(u32, u32)>,
-    marked: Vec<usize>,
-    /// For each cell the way from it to a goal, while that is being found.
-    back: Vec<u32>,
-    touched: Vec<usize>,
-    open: BinaryHeap<Reverse<(u32, usize)>>,
-    /// How many more cells may be gone over around goals.
-    looks: usize,
-}
-
-impl Marks {
-    fn begin(&mut self, grid: Grid) {
-        for cell in self.marked.drain(..) {
-            // The list may be that of a larger arena.
-            if let Some(first) = self.first.get_mut(cell) {
-                *first = 0;
-            }
-        }
-        self.links.clear();
-        self.looks = MOST_LOOKS;
-        self.first.resize(grid.num_cells(), 0);
-        self.back.resize(grid.num_cells(), u32::MAX);
-    }
-
-    fn add(&mut self, cell: usize, goal: usize) {
-        self.links.push((goal as u32, self.first[cell]));
-        self.first[cell] = self.links.len() as u32;
-        self.marked.push(cell);
-    }
-
-    fn of(&self, cell: usize, mut each: impl FnMut(usize)) {
-        let mut next = self.first[cell];
-        while let Some(&(goal, after)) = (next as usize).checked_sub(1).and_then(|place| self.links.get(place)) {
-            each(goal as usize);
-            next = after;
-        }
-    }
 }
 
 impl Route {

@@ -4,7 +4,7 @@
 use driftworld_spec::World;
 
 use super::flood::{Charge, Flood, STRAIGHT};
-use super::nearest::Marks;
+use super::marks::Marks;
 use super::occupancy::OccupancyGrid;
 use crate::scene::Scene;
 

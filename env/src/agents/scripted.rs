@@ -100,7 +100,7 @@ impl ScriptedAgent {
             }
             Command::Go { name, until, steps } => {
                 let numbers = (self.steps < steps).then(|| self.go(environment, &name, until))??;
-                Some(in_space(numbers, environment))
+                Some(in_space(numbers, environment.sim()))
             }
             Command::Repeat => None,
         }
@@ -110,7 +110,7 @@ impl ScriptedAgent {
         if self.walk.is_none() {
             let object = nearest(environment, name)?;
             self.walk = Some(Walk {
-                target: Target::at(object, environment, &mut self.route),
+                target: Target::at(object, environment.sim(), &mut self.route),
                 before: environment.objects()[object].clone(),
                 asked: 0,
             });
@@ -119,15 +119,15 @@ impl ScriptedAgent {
         if walk.is_over(environment, until) {
             return None;
         }
-        if walk.target.is_astray(environment) {
-            walk.target = Target::at(walk.target.object, environment, &mut self.route);
+        if walk.target.is_astray(environment.sim()) {
+            walk.target = Target::at(walk.target.object, environment.sim(), &mut self.route);
         }
         let purpose = match until {
             Until::Interacted => Purpose::Interact,
             Until::Touched | Until::Near(_) => Purpose::Touch,
         };
-        let numbers = walk.target.towards(environment, purpose, &mut self.route);
-        walk.asked += u32::from(purpose == Purpose::Interact && walk.target.is_in_reach(environment));
+        let numbers = walk.target.towards(environment.sim(), purpose, &mut self.route);
+        walk.asked += u32::from(purpose == Purpose::Interact && walk.target.is_in_reach(environment.sim()));
         Some(numbers)
     }
 }
@@ -140,12 +140,9 @@ impl Walk {
             now.present != before.present || now.collected != before.collected || now.reward != before.reward
         };
         match until {
-            Until::Touched => answered(&self.before) || environment.touches(index),
+            Until::Touched => answered(&self.before) || environment.sim().state.touches(index),
             Until::Interacted => answered(&self.before) || self.asked >= INSISTENCE,
-            Until::Near(metres) => {
-                let place = environment.scene().items[index].position;
-                !now.present || distance(environment.agent().position, place) < metres
-            }
+            Until::Near(metres) => !now.present || distance(environment.agent().position, now.position) < metres,
         }
     }
 }
@@ -167,7 +164,7 @@ impl Agent for ScriptedAgent {
                 self.now = 0;
             }
         }
-        in_space([0.0; 3], environment)
+        in_space([0.0; 3], environment.sim())
     }
 
     fn begin(&mut self, _seed: u64) {
@@ -187,7 +184,6 @@ impl Agent for ScriptedAgent {
 /// The nearest object that is there and has this tag or unique name.
 fn nearest(environment: &Environment, name: &str) -> Option<usize> {
     let here = environment.agent().position;
-    let items = &environment.scene().items;
     let named = |object: &Object| {
         [&object.tag, &object.unique_name]
             .into_iter()
@@ -202,7 +198,7 @@ fn nearest(environment: &Environment, name: &str) -> Option<usize> {
         .enumerate();
     objects
         .filter(|(_, (object, state))| state.present && named(object))
-        .map(|(index, _)| (index, distance(here, items[index].position)))
+        .map(|(index, (_, state))| (index, distance(here, state.position)))
         .min_by(|(_, a), (_, b)| a.total_cmp(b))
         .map(|(index, _)| index)
 }

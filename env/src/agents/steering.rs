@@ -4,7 +4,7 @@
 use driftworld_spec::{ActionModel, ActionSpace, MotionModel, Object};
 
 use super::route::Route;
-use crate::sim::{Action, Environment};
+use crate::sim::{Action, SimRef};
 
 /// Metres within which an object is walked at straight, whatever the way.
 const NEAR: f32 = 2.0;
@@ -37,34 +37,32 @@ pub(super) struct Target {
 
 impl Target {
     /// The object where it is now, with the way around what is there now: the route leads to it from now on.
-    pub(super) fn at(object: usize, environment: &Environment, route: &mut Route) -> Self {
-        let (world, scene) = (environment.world(), environment.scene());
-        let goal = scene.items[object].position;
-        let avoided = avoided(environment, Some(object));
+    pub(super) fn at(object: usize, sim: SimRef, route: &mut Route) -> Self {
+        let (world, scene) = (sim.world, sim.scene());
+        let goal = sim.objects()[object].position;
+        let avoided = avoided(sim, Some(object));
         route.lead(world, scene, goal, &avoided);
         Self { object, goal, avoided }
     }
 
     /// Whether the object has moved so far that the way leads astray.
-    pub(super) fn is_astray(&self, environment: &Environment) -> bool {
-        let now = environment.scene().items[self.object].position;
-        let far = distance(environment.agent().position, now);
+    pub(super) fn is_astray(&self, sim: SimRef) -> bool {
+        let now = sim.objects()[self.object].position;
+        let far = distance(sim.agent().position, now);
         far >= NEAR && distance(now, self.goal) > (ASTRAY * far).max(0.5)
     }
 
     /// Whether the agent is so near that an interaction should be answered.
-    pub(super) fn is_in_reach(&self, environment: &Environment) -> bool {
-        let item = &environment.scene().items[self.object];
-        let bodies =
-            item.asset.collider.radius() * item.scale + environment.world().agent_params.agent_width as f32 / 2.0;
-        distance(environment.agent().position, item.position) < bodies + 0.5
+    pub(super) fn is_in_reach(&self, sim: SimRef) -> bool {
+        let bodies = sim.body_radius(self.object) + sim.world.agent_params.agent_width as f32 / 2.0;
+        distance(sim.agent().position, sim.objects()[self.object].position) < bodies + 0.5
     }
 
     /// The next step on the way, by the route that leads here, as speed, turn rate and interaction.
-    pub(super) fn towards(&self, environment: &Environment, purpose: Purpose, route: &mut Route) -> [f64; 3] {
-        let world = environment.world();
-        let agent = environment.agent();
-        let goal = environment.scene().items[self.object].position;
+    pub(super) fn towards(&self, sim: SimRef, purpose: Purpose, route: &mut Route) -> [f64; 3] {
+        let world = sim.world;
+        let agent = sim.agent();
+        let goal = sim.objects()[self.object].position;
         let straight = distance(agent.position, goal);
         let point = if straight < NEAR {
             goal
@@ -94,8 +92,8 @@ impl Target {
 
 /// The objects that a way to `goal` leads around: what stands fast and is solid or costs. Without a goal all of them, by rising
 /// index.
-pub(super) fn avoided(environment: &Environment, goal: Option<usize>) -> Vec<u32> {
-    let objects = environment.world().objects.iter().zip(environment.objects());
+pub(super) fn avoided(sim: SimRef, goal: Option<usize>) -> Vec<u32> {
+    let objects = sim.world.objects.iter().zip(sim.objects());
     let returns_elsewhere = |object: &Object| object.respawn.as_ref().is_some_and(|back| back.radius > 0.0);
     let stands = |object: &Object| {
         object.motion_model == MotionModel::Stationary && object.pushable.is_none() && !returns_elsewhere(object)
@@ -110,10 +108,10 @@ pub(super) fn avoided(environment: &Environment, goal: Option<usize>) -> Vec<u32
 }
 
 /// The action in the world's own space: the row of its table that comes nearest, if it has one.
-pub(super) fn in_space(numbers: [f64; 3], environment: &Environment) -> Action {
-    let agent = &environment.world().agent_params;
+pub(super) fn in_space(numbers: [f64; 3], sim: SimRef) -> Action {
+    let agent = &sim.world.agent_params;
     let velocity = |numbers: [f64; 3]| match agent.action_model {
-        ActionModel::ByWaypoint => waypoint(numbers, environment),
+        ActionModel::ByWaypoint => waypoint(numbers, sim),
         _ => numbers,
     };
     let (speed, turn) = (agent.max_linear_speed.max(1e-9), agent.max_angular_speed.max(1e-9));
@@ -125,7 +123,7 @@ pub(super) fn in_space(numbers: [f64; 3], environment: &Environment) -> Action {
         let [a, b, c] = numbers;
         return Action::Continuous(match agent.action_model {
             ActionModel::ByWaypoint => {
-                let [width, depth] = environment.world().environment_params.arena_size();
+                let [width, depth] = sim.world.environment_params.arena_size();
                 [a / width * 2.0, b / depth * 2.0, c / turn]
             }
             _ => [a / speed, b / turn, c * 2.0 - 1.0],
@@ -140,9 +138,9 @@ pub(super) fn in_space(numbers: [f64; 3], environment: &Environment) -> Action {
 }
 
 /// A speed and a turn as a point to walk to: that which the velocity leads to in one step.
-fn waypoint([speed, turn, _]: [f64; 3], environment: &Environment) -> [f64; 3] {
-    let agent = environment.agent();
-    let agent_params = &environment.world().agent_params;
+fn waypoint([speed, turn, _]: [f64; 3], sim: SimRef) -> [f64; 3] {
+    let agent = sim.agent();
+    let agent_params = &sim.world.agent_params;
     let seconds = agent_params.time_step * f64::from(agent_params.frame_skip);
     let heading = (agent.heading_deg + (turn * seconds) as f32).to_radians();
     let ahead = if speed < 0.0 {

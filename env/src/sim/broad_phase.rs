@@ -6,7 +6,7 @@
 use rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use rapier3d::prelude::*;
 
-use super::collision_world::{AGENT, GHOST, SOLID, WALL};
+use super::groups::{AGENT, GHOST, SOLID, WALL};
 
 /// The trees, and which groups each holds.
 const HELD: [Group; 3] = [WALL, SOLID.union(AGENT), GHOST];

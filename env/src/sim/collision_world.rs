@@ -5,25 +5,15 @@ use driftworld_spec::World;
 use rapier3d::prelude::*;
 
 use super::broad_phase::BroadPhase;
-use super::budget::{self, Budget};
+use super::budget::Budget;
 use super::footprint::{Footprint, Gap, Point};
+use super::groups::{AGENT, GHOST, SOLID, WALL};
 use super::outline::Outline;
-use super::slide::{Obstacles, SKIN};
 use crate::assets::ColliderShape;
 use crate::scene::{Item, Scene};
 
 /// Where the world ends for what starts outside the arena, in metres from the origin: a document knows no place beyond.
 pub(super) const EDGE: f32 = 300.0;
-
-/// Bodies that stop the agent.
-pub(super) const SOLID: Group = Group::GROUP_1;
-/// Bodies that it passes through.
-pub(super) const GHOST: Group = Group::GROUP_2;
-/// Walls: they stop it, and are nobody's object.
-pub(super) const WALL: Group = Group::GROUP_3;
-
-/// The agent, as objects that move meet it.
-pub(super) const AGENT: Group = Group::GROUP_4;
 
 /// All bodies of a world. Nothing moves by forces, so there is no time step here: only questions about shapes.
 pub(crate) struct CollisionWorld {
@@ -79,9 +69,6 @@ pub(super) struct Scratch {
     pub(super) body: Footprint,
     /// Footprints widened by it.
     pub(super) widened: Vec<Footprint>,
-    /// How much the agent's ways so far looked at.
-    #[cfg(test)]
-    pub(super) looked: u64,
 }
 
 impl CollisionWorld {
@@ -90,7 +77,7 @@ impl CollisionWorld {
         let (radius, height) = (agent.agent_width as f32 / 2.0, agent.agent_height as f32);
         // An upright cylinder for all that stands on the ground: the round ends lie below it and above the head.
         let capsule = |radius: f32| SharedShape::capsule(Vector::ZERO, Vector::new(0.0, 0.0, height), radius);
-        let mut ground = Self {
+        let mut bodies = Self {
             bodies: RigidBodySet::new(),
             colliders: ColliderSet::new(),
             places: BroadPhase::new(),
@@ -110,21 +97,21 @@ impl CollisionWorld {
         };
         // Walls are added where there are any; most worlds have none but those of the arena.
         let count = 4 + scene.items.len();
-        ground.standing.reserve(count);
-        ground.low.reserve(count);
-        ground.whole.reserve(count);
-        ground.add_arena(scene.arena_size());
+        bodies.standing.reserve(count);
+        bodies.low.reserve(count);
+        bodies.whole.reserve(count);
+        bodies.add_arena(scene.arena_size());
         let environment = &world.environment_params;
         for region in environment.regions() {
-            ground.add_region(region);
+            bodies.add_region(region);
         }
         for wall in &environment.walls {
-            ground.add_region(&wall.polygon);
+            bodies.add_region(&wall.polygon);
         }
         for (index, (item, object)) in scene.items.iter().zip(&world.objects).enumerate() {
-            ground.add_object(index as u32, item, object.solid);
+            bodies.add_object(index as u32, item, object.solid);
         }
-        ground
+        bodies
     }
 
     /// Puts a body where it belongs; `heading_deg` turns its outline.
@@ -253,8 +240,19 @@ impl CollisionWorld {
         (shape, from_ground)
     }
 
+    /// Brings an object's body up to date with its item: puts it where that stands, or takes it away.
+    pub(super) fn sync_object(&mut self, index: u32, item: &Item, solid: bool) {
+        let body = self.handles.get(index as usize).copied().flatten();
+        match (body, item.visible) {
+            (Some(handle), true) => self.put(handle, item.position, item.heading_deg),
+            (Some(_), false) => self.remove(index),
+            (None, true) => self.add_object(index, item, solid),
+            (None, false) => {}
+        }
+    }
+
     /// Puts an object's body where its item stands.
-    pub(crate) fn add_object(&mut self, index: u32, item: &Item, solid: bool) {
+    fn add_object(&mut self, index: u32, item: &Item, solid: bool) {
         let (shape, from_ground) = Self::shape(item);
         // Put together by hand: a product of poses would round the height in a way that depends on the heading.
         let at = from_ground.translation + Vector::new(item.position[0], item.position[1], 0.0);
@@ -277,8 +275,20 @@ impl CollisionWorld {
         self.handles[index as usize] = Some(handle);
     }
 
+    /// Puts a body at a place and turns it to a heading in degrees.
+    fn put(&mut self, handle: ColliderHandle, at: [f32; 2], heading_deg: f32) {
+        let collider = &self.colliders[handle];
+        let mut pose = *collider.position();
+        if shows_heading(collider.shared_shape()) {
+            pose = Pose::new(pose.translation, Vector::new(0.0, 0.0, -heading_deg.to_radians()));
+        }
+        (pose.translation.x, pose.translation.y) = (at[0], at[1]);
+        self.colliders[handle].set_position(pose);
+        self.note_place(handle, heading_deg);
+    }
+
     /// Takes an object away.
-    pub(crate) fn remove(&mut self, index: u32) {
+    fn remove(&mut self, index: u32) {
         if let Some(handle) = self.handles[index as usize].take() {
             let group = self.colliders[handle].collision_groups().memberships;
             self.colliders.remove(
@@ -377,70 +387,6 @@ impl CollisionWorld {
         num_corners
     }
 
-    /// Moves the agent's body as far as solid things let it, sliding along them; hands back where it comes to.
-    ///
-    /// Nothing is passed through at any speed. The way is noted for [`CollisionWorld::path`].
-    pub(crate) fn slide(&mut self, from: [f32; 2], by: [f32; 2]) -> [f32; 2] {
-        let start = from.map(f64::from);
-        let way = by.map(f64::from);
-        let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
-        self.scratch.path.clear();
-        self.scratch.path.push(start);
-        if length < 1e-6 {
-            return from;
-        }
-        let to = [start[0] + way[0], start[1] + way[1]];
-        let reach = self.radius + SKIN + 1e-3;
-        let mut budget = Budget::new(budget::AGENTS);
-        self.gather(SOLID | WALL, None, [start, to], reach, &mut Budget::new(u64::MAX));
-        let obstacles = Obstacles {
-            footprints: &self.low,
-            numbers: &self.scratch.numbers,
-            num_corners: 0,
-        };
-        if obstacles.is_clear(start, way, self.radius) {
-            self.scratch.path.push(to);
-        } else {
-            // It may turn anywhere, but it goes no farther than it meant to.
-            let whole = self.gather(SOLID | WALL, None, [start, start], length + 2.0 + reach, &mut budget);
-            let Some(num_corners) = whole else { return from };
-            let mut scratch = std::mem::take(&mut self.scratch);
-            let obstacles = Obstacles {
-                footprints: &self.low,
-                numbers: &scratch.numbers,
-                num_corners,
-            };
-            let clear = obstacles.out_of_overlap(start, self.radius);
-            if clear != start {
-                scratch.path.push(clear);
-            }
-            obstacles.slide(
-                clear,
-                way,
-                self.radius,
-                &mut budget,
-                &mut scratch.touched,
-                &mut scratch.path,
-            );
-            self.scratch = scratch;
-        }
-        let end = self.scratch.path.last().copied().unwrap_or(start);
-        let mut place = end.map(|metres| metres as f32);
-        let inside = self.half.map(|half| half - (self.radius + SKIN) as f32);
-        let is_within = (0..2).all(|axis| inside[axis] > 0.0 && from[axis].abs() <= inside[axis] + SKIN as f32);
-        for axis in 0..2 {
-            // Rounding brings nothing out of the arena that came from within.
-            if is_within {
-                place[axis] = place[axis].clamp(-inside[axis], inside[axis]);
-            }
-            place[axis] = place[axis].clamp(-EDGE, EDGE);
-        }
-        if let Some(end) = self.scratch.path.last_mut() {
-            *end = place.map(f64::from);
-        }
-        place
-    }
-
     /// The outline of an object, while it is there.
     pub(super) fn outline_of(&self, object: u32) -> Option<&Outline> {
         self.handles[object as usize].map(|handle| &self.standing[slot(handle)].outline)
@@ -494,6 +440,6 @@ pub(super) fn slot(handle: ColliderHandle) -> usize {
 }
 
 /// Whether a body shows where it faces: round ones do not.
-pub(super) fn shows_heading(shape: &SharedShape) -> bool {
+fn shows_heading(shape: &SharedShape) -> bool {
     matches!(shape.shape_type(), ShapeType::Cuboid | ShapeType::ConvexPolyhedron)
 }

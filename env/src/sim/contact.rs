@@ -5,8 +5,9 @@
 //! touch. These are places, not times: how often one pass touches does not depend on speed or time step.
 
 use super::budget::Budget;
-use super::collision_world::{CollisionWorld, GHOST, SOLID, slot};
+use super::collision_world::{CollisionWorld, slot};
 use super::footprint::Point;
+use super::groups::{GHOST, SOLID};
 
 /// Widest gap that is a touch, in metres: a little more than the skin.
 const TOUCH: f64 = 0.03;

@@ -80,19 +80,13 @@ fn looked(world: World) -> u64 {
     let mut environment = Environment::new(world).expect("every checked world starts");
     let mut most = 0;
     for step in 0..4 {
-        let before = environment.looked();
+        let before = environment.encounters.looked;
         environment
             .step(Action::Continuous([2.0, f64::from(step) * 10.0, 0.0]))
             .expect("the episode goes on");
-        most = most.max(environment.looked() - before);
+        most = most.max(environment.encounters.looked - before);
     }
     most
-}
-
-impl Environment {
-    fn looked(&self) -> u64 {
-        self.scratch.looked + self.ground.scratch.looked
-    }
 }
 
 /// What no time step with so many objects goes beyond, whatever they are: looks, and sixty parts of physics.

@@ -1,41 +1,15 @@
 //! Changing a world while it runs, from outside: new objects, fewer objects, another place for the agent. What the agent
 //! itself changes is in `interactions.rs`.
 
-use std::fmt;
 use std::sync::Arc;
 
 use driftworld_spec::{MAX_OBJECTS, Object};
 
 use super::environment::Environment;
-use super::pushing::Pushed;
-use super::state::ObjectState;
+use super::interactions::init_contacts;
+use super::state::wrapped;
 use super::walls;
 use crate::EnvError;
-
-/// What stands where the agent should stand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Obstacle {
-    /// Nothing: the place is outside the arena, or not a place at all.
-    Outside,
-    /// A wall, or a region that cannot be entered.
-    Wall,
-    /// A solid object.
-    Object {
-        /// Its index in the world.
-        index: usize,
-    },
-}
-
-impl fmt::Display for Obstacle {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Outside => f.write_str("no ground of the arena"),
-            Self::Wall => f.write_str("a wall"),
-            Self::Object { index } => write!(f, "object {index}"),
-        }
-    }
-}
 
 impl Environment {
     /// The index of the object of this `unique_name`, whether it is there now or not.
@@ -66,14 +40,10 @@ impl Environment {
         // Without a seed, random numbers depend on where things stood before anything was spawned. Where it was not known, nothing
         // has drawn from it.
         self.seed.learn(&self.world);
-        self.scene.add(&object);
-        self.ground
-            .add_object(index as u32, &self.scene.items[index], object.solid);
-        self.episode.objects.push(ObjectState::new(&object));
-        self.episode.sequence.add(index, object.order);
-        self.episode
-            .add_processes(index, &object, &self.seed, &mut self.identities);
-        self.episode.pushed.extend(Pushed::new(index, &object));
+        self.state.add_object(&object, &self.seed, &mut self.identities);
+        self.state.sequence.add(index, object.order);
+        self.views.scene.add(&object);
+        self.views.sync_object(index, &object, &self.state.objects[index]);
         self.tags.push(object.tag.as_deref().map(Arc::from));
         self.had_targets |= object.is_target();
         Arc::make_mut(&mut self.world).objects.push(object);
@@ -87,28 +57,22 @@ impl Environment {
     /// # Errors
     /// [`EnvError::NoSuchObject`], and [`EnvError::AlreadyGone`] where there is nothing to take away; nothing is changed then.
     pub fn destroy(&mut self, object: usize) -> Result<(), EnvError> {
-        let count = self.episode.objects.len();
+        let count = self.state.objects.len();
         if object >= count {
             return Err(EnvError::NoSuchObject { found: object, count });
         }
         let comes_back = |(index, _): &(usize, u64)| *index == object;
-        if !self.episode.objects[object].present && !self.episode.returning.iter().any(comes_back) {
+        let state = &mut self.state;
+        if !state.objects[object].present && !state.returning.iter().any(comes_back) {
             return Err(EnvError::AlreadyGone { object });
         }
-        self.episode.returning.retain(|pending| !comes_back(pending));
-        self.episode.objects[object].collected = true;
-        self.episode.sequence.advance(&self.episode.objects);
-        self.remove_body(object);
-        self.episode.contacts.retain(|contact| *contact as usize != object);
+        state.returning.retain(|pending| !comes_back(pending));
+        (state.objects[object].present, state.objects[object].collected) = (false, true);
+        state.advance_sequence();
+        state.contacts.retain(|contact| *contact as usize != object);
+        self.views
+            .sync_object(object, &self.world.objects[object], &state.objects[object]);
         Ok(())
-    }
-
-    /// An object's body and look go; whether they come back, and that it is not touched any more, is for the caller to
-    /// say.
-    pub(super) fn remove_body(&mut self, object: usize) {
-        self.episode.objects[object].present = false;
-        self.scene.items[object].visible = false;
-        self.ground.remove(object as u32);
     }
 
     /// Puts the agent somewhere else, looking along a heading in degrees clockwise from +y; any number of turns.
@@ -122,25 +86,15 @@ impl Environment {
         if !heading_deg.is_finite() {
             return Err(EnvError::NoHeading { found: heading_deg });
         }
-        if let Some(found) = self.obstacle(position) {
+        if let Some(found) = walls::agent_obstacle(self.sim(), position) {
             let width = self.world.agent_params.agent_width;
             return Err(EnvError::NoRoom { position, found, width });
         }
-        let agent = &mut self.episode.agent;
+        let agent = &mut self.state.agent;
         agent.position = position.map(|metres| metres as f32);
-        agent.heading_deg = super::state::wrapped(heading_deg.rem_euclid(360.0) as f32);
+        agent.heading_deg = wrapped(heading_deg.rem_euclid(360.0) as f32);
         agent.velocity = [0.0; 2];
-        self.init_contacts();
+        init_contacts(&self.world, &mut self.state, &mut self.views);
         Ok(())
-    }
-
-    /// What is in the way of the agent's body at a place.
-    pub(super) fn obstacle(&self, position: [f64; 2]) -> Option<Obstacle> {
-        let radius = self.world.agent_params.agent_width / 2.0;
-        walls::obstacle(&self.world, position, radius).or_else(|| {
-            let mut blocked = Vec::new();
-            self.ground.blocking(position.map(|metres| metres as f32), &mut blocked);
-            blocked.first().map(|index| Obstacle::Object { index: *index as usize })
-        })
     }
 }

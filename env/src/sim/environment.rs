@@ -1,17 +1,23 @@
-//! [`Environment`]: a world that runs. Steps are in `step.rs`, bodies in `collision_world.rs`, pictures in `observation.rs`, who acts
-//! in `agents`.
+//! [`Environment`]: a state, the systems that change it, the views on it, and a renderer beside them. How a step runs
+//! through the systems is in `step.rs`, pictures are in `observation.rs`, agents in `agents`.
 
 use std::sync::Arc;
 
-use driftworld_spec::{GameMode, Object, Stimulus, World};
+use driftworld_spec::{ActionModel, GameMode, Object, World};
 
-use super::collision_world::CollisionWorld;
-use super::event::Warning;
+use super::encounters::Encounters;
+use super::interactions::Stimuli;
+use super::neighbours::heap;
 use super::progress::ResumeState;
-use super::pushing::is_pushed;
+use super::pushed::is_pushed;
+use super::sim_ref::SimRef;
 use super::state::{AgentState, ObjectState, SimState};
 use super::streams::{Identities, Seed};
+use super::views::Views;
+use super::walls;
+use super::warning::Warning;
 use crate::EnvError;
+use crate::agents::RailsPolicy;
 use crate::assets::Catalogue;
 use crate::render::{Frame, Renderer, RendererKind};
 use crate::scene::Scene;
@@ -36,33 +42,17 @@ pub struct Environment {
     pub(super) seed: Seed,
     /// Which random numbers belong to which object.
     pub(super) identities: Identities,
-    pub(super) scene: Scene,
-    pub(super) ground: CollisionWorld,
-    pub(super) episode: SimState,
+    pub(super) state: SimState,
+    pub(super) views: Views,
+    /// Who steers in a world on rails.
+    pub(super) rails: Option<RailsPolicy>,
     pub(super) had_targets: bool,
     /// The objects' tags, for events.
     pub(super) tags: Vec<Option<Arc<str>>>,
-    pub(super) scratch: Scratch,
+    pub(super) encounters: Encounters,
+    pub(super) stimuli: Stimuli,
     pub(super) renderer: Renderer,
     pub(super) frame: Frame,
-}
-
-/// Lists that each time step uses again.
-#[derive(Default)]
-pub(super) struct Scratch {
-    /// Objects that the agent met on its way, and that met it on theirs.
-    pub(super) met: Vec<u32>,
-    /// Contacts that last although a moving object ran ahead, in rising order.
-    pub(super) kept: Vec<u32>,
-    /// Objects that moved in this time step, by index, and where they came from.
-    pub(super) moved: Vec<(usize, [f32; 2])>,
-    /// Objects that came back in this time step.
-    pub(super) arrived: Vec<usize>,
-    pub(super) reached: Vec<u32>,
-    pub(super) triggered: Vec<(u32, Stimulus)>,
-    /// How much the time steps so far looked at.
-    #[cfg(test)]
-    pub(super) looked: u64,
 }
 
 impl Environment {
@@ -117,56 +107,58 @@ impl Environment {
     }
 
     pub(super) fn start(&mut self, world: Arc<World>) {
-        let catalogue = self.scene.catalogue().clone();
+        let catalogue = self.views.scene.catalogue().clone();
         self.start_with(world, &catalogue);
     }
 
     pub(super) fn start_with(&mut self, world: Arc<World>, catalogue: &Catalogue) {
         let frame = std::mem::replace(&mut self.frame, Frame::new(0, 0));
-        let (scratch, ways) = (
-            std::mem::take(&mut self.scratch),
-            std::mem::take(&mut self.ground.scratch),
+        let (encounters, stimuli, scratch) = (
+            std::mem::take(&mut self.encounters),
+            std::mem::take(&mut self.stimuli),
+            std::mem::take(&mut self.views.bodies.scratch),
         );
         *self = Self::build(world, catalogue, std::mem::take(&mut self.renderer), frame);
         // Lists that have grown are used again; each step clears them.
-        (self.scratch, self.ground.scratch) = (scratch, ways);
+        (self.encounters, self.stimuli, self.views.bodies.scratch) = (encounters, stimuli, scratch);
     }
 
     fn build(mut world: Arc<World>, catalogue: &Catalogue, renderer: Renderer, frame: Frame) -> Self {
-        // A world that was written down while it ran is taken back to its start, and then told how far it had come.
-        let came = world.progress.is_some().then(|| ResumeState::out_of(&mut world));
-        let scene = Scene::from_world_with(&world, catalogue);
-        let ground = CollisionWorld::new(&world, &scene);
-        let seed = Seed::of(&world, came.as_ref().and_then(ResumeState::seed));
+        // A world that was written down while it ran is taken back to its start, and then goes on from where it had come.
+        let resume = world.progress.is_some().then(|| ResumeState::out_of(&mut world));
+        let mut views = Views::new(&world, catalogue);
+        let seed = Seed::of(&world, resume.as_ref().and_then(ResumeState::seed));
         let mut identities = Identities::default();
-        let mut environment = Self {
-            episode: SimState::new(&world, &seed, &mut identities),
+        let mut state = SimState::new(&world, &seed, &mut identities);
+        let mut rails = (world.agent_params.action_model == ActionModel::OnRails).then(RailsPolicy::default);
+        if let Some(resume) = resume.filter(ResumeState::has_begun) {
+            resume.apply(&world, &mut state, &mut views);
+            if let (Some(policy), Some(progress)) = (&mut rails, resume.rails()) {
+                *policy = RailsPolicy::resumed(progress, &world, &views.scene);
+            }
+        }
+        Self {
             had_targets: world.objects.iter().any(Object::is_target),
             tags: tags(&world),
-            scratch: Scratch::default(),
             world,
             seed,
             identities,
-            scene,
-            ground,
+            state,
+            views,
+            rails,
+            encounters: Encounters::default(),
+            stimuli: Stimuli::default(),
             renderer,
             frame,
-        };
-        // At a start nothing is touched or near yet: where the agent starts counts as news in the first step.
-        if let Some(came) = came.filter(ResumeState::has_begun) {
-            environment.resume(&came);
         }
-        environment
     }
 
-    /// Notes what is touched and near now, as no news.
-    pub(super) fn init_contacts(&mut self) {
-        let here = self.episode.agent.position;
-        self.episode.contacts.clear();
-        self.ground.note_touching(here, &mut self.episode.contacts);
-        self.episode.contacts.sort_unstable();
-        for index in 0..self.episode.objects.len() {
-            self.episode.objects[index].in_range = self.is_in_range(index);
+    /// This world as it is now, to be read.
+    pub(crate) fn sim(&self) -> SimRef<'_> {
+        SimRef {
+            world: &self.world,
+            state: &self.state,
+            views: &self.views,
         }
     }
 
@@ -177,37 +169,37 @@ impl Environment {
 
     /// Where the agent is.
     pub fn agent(&self) -> AgentState {
-        self.episode.agent
+        self.state.agent
     }
 
     /// The objects as they are now, in the world's order.
     pub fn objects(&self) -> &[ObjectState] {
-        &self.episode.objects
+        &self.state.objects
     }
 
     /// What there is to see now.
     pub fn scene(&self) -> &Scene {
-        &self.scene
+        &self.views.scene
     }
 
     /// Steps since the start.
     pub fn num_steps(&self) -> u32 {
-        self.episode.steps
+        self.state.steps
     }
 
     /// Seconds of the world's own time since the start.
     pub fn seconds(&self) -> f64 {
-        self.episode.ticks as f64 * self.world.agent_params.time_step
+        self.state.ticks as f64 * self.world.agent_params.time_step
     }
 
     /// The sum of rewards since the start.
     pub fn episode_return(&self) -> f64 {
-        self.episode.earned
+        self.state.earned
     }
 
     /// Whether the episode is over, so that a reset must come before the next step.
     pub fn ended(&self) -> bool {
-        self.episode.ended
+        self.state.ended
     }
 
     /// What this world asks for that is not as its author may think.
@@ -216,21 +208,21 @@ impl Environment {
         if self.world.game_mode == GameMode::CollectImages {
             warnings.push(Warning::ForPhotographs);
         }
-        if self.episode.ticks == 0
-            && let Some(obstacle) = self.obstacle(self.world.agent_params.coordinates)
+        if self.state.ticks == 0
+            && let Some(obstacle) = walls::agent_obstacle(self.sim(), self.world.agent_params.coordinates)
         {
             warnings.push(Warning::StartsInside { obstacle });
         }
         let objects = 0..self.world.objects.len();
         warnings.extend(objects.flat_map(|index| self.warnings_of(index)));
-        warnings.extend(self.heap());
+        warnings.extend(heap(self.sim()));
         warnings
     }
 
     /// The warnings about one object, by its index in the world.
     pub(crate) fn warnings_of(&self, index: usize) -> Vec<Warning> {
         let mut warnings = Vec::new();
-        let (object, item) = (&self.world.objects[index], &self.scene.items[index]);
+        let (object, item) = (&self.world.objects[index], &self.views.scene.items[index]);
         if let Some(enclosure) = self.world.environment_params.enclosure(object.coordinates) {
             warnings.push(Warning::StandsInWall {
                 object: index,

@@ -1,9 +1,9 @@
 //! The state vector: the features that a world asks for, as numbers. What each means is said in `StateFeature`.
 
-use driftworld_spec::{EndCondition, Object, StateFeature, Stimulus};
+use driftworld_spec::{EndCondition, Object, StateFeature, Stimulus, World};
 
 use super::environment::Environment;
-use super::state::ObjectState;
+use super::state::{ObjectState, SimState};
 use super::termination::pays_now;
 
 impl Environment {
@@ -31,79 +31,79 @@ impl Environment {
     fn fill_state(&self, state: &mut [f32]) {
         let mut rest = state;
         for feature in &self.world.agent_params.state_features {
-            let (numbers, length) = self.feature(*feature);
+            let (numbers, length) = values(&self.world, &self.state, *feature);
             let (own, others) = rest.split_at_mut(length);
             own.copy_from_slice(&numbers[..length]);
             rest = others;
         }
     }
+}
 
-    /// The numbers of one feature, and how many of the three are in use.
-    fn feature(&self, feature: StateFeature) -> ([f32; 3], usize) {
-        let agent = &self.episode.agent;
-        let [x, y] = agent.position;
-        let [vx, vy] = agent.velocity;
-        let numbers = match feature {
-            StateFeature::Position => [x, y, 0.0],
-            StateFeature::Heading => [agent.heading_deg, 0.0, 0.0],
-            StateFeature::Velocity => [vx, vy, 0.0],
-            StateFeature::Direction => {
-                let [east, north] = agent.forward();
-                [east, north, 0.0]
-            }
-            StateFeature::OwnVelocity => {
-                let [ahead, right] = self.own_axes(agent.velocity);
-                [ahead, right, 0.0]
-            }
-            StateFeature::Goal => self.way_in_own_axes(self.nearest(|object, state| self.is_goal(object, state))),
-            StateFeature::NearestTarget => {
-                let due = |object: &Object, state: &ObjectState| pays_now(object, state) && self.is_due(object.order);
-                self.way_in_own_axes(self.nearest(due))
-            }
-            StateFeature::Counts => {
-                let objects = || self.world.objects.iter().zip(&self.episode.objects);
-                let left = objects().filter(|(object, state)| pays_now(object, state)).count();
-                let collected = objects().filter(|(_, state)| state.collected).count();
-                [left as f32, collected as f32, 0.0]
-            }
-            StateFeature::LastReward => [self.episode.last_reward as f32, 0.0, 0.0],
-            StateFeature::LastEvent => self.episode.last_event.map_or([0.0; 3], |event| {
-                let number = match event.stimulus {
-                    Stimulus::AgentCollide => 1.0,
-                    Stimulus::AgentInteract => 2.0,
-                    Stimulus::AgentInRange => 3.0,
-                };
-                [number, event.reward as f32, f32::from(u8::from(event.destroyed))]
-            }),
-            StateFeature::StepsLeft => {
-                let most = self.world.step_limit().unwrap_or(0);
-                let left = f64::from(most.saturating_sub(self.episode.steps)) / f64::from(most.max(1));
-                [if most == 0 { 1.0 } else { left as f32 }, 0.0, 0.0]
-            }
-        };
-        (numbers, feature.num_values())
-    }
+/// The numbers of one feature, and how many of the three are in use.
+fn values(world: &World, state: &SimState, feature: StateFeature) -> ([f32; 3], usize) {
+    let agent = &state.agent;
+    let [x, y] = agent.position;
+    let [vx, vy] = agent.velocity;
+    let numbers = match feature {
+        StateFeature::Position => [x, y, 0.0],
+        StateFeature::Heading => [agent.heading_deg, 0.0, 0.0],
+        StateFeature::Velocity => [vx, vy, 0.0],
+        StateFeature::Direction => {
+            let [east, north] = agent.forward();
+            [east, north, 0.0]
+        }
+        StateFeature::OwnVelocity => {
+            let [ahead, right] = own_axes(state, agent.velocity);
+            [ahead, right, 0.0]
+        }
+        StateFeature::Goal => way_in_own_axes(state, state.nearest(world, |object, own| is_goal(world, object, own))),
+        StateFeature::NearestTarget => {
+            let due = |object: &Object, own: &ObjectState| pays_now(object, own) && state.is_due(object.order);
+            way_in_own_axes(state, state.nearest(world, due))
+        }
+        StateFeature::Counts => {
+            let objects = || world.objects.iter().zip(&state.objects);
+            let left = objects().filter(|(object, own)| pays_now(object, own)).count();
+            let collected = objects().filter(|(_, own)| own.collected).count();
+            [left as f32, collected as f32, 0.0]
+        }
+        StateFeature::LastReward => [state.last_reward as f32, 0.0, 0.0],
+        StateFeature::LastEvent => state.last_event.map_or([0.0; 3], |event| {
+            let number = match event.stimulus {
+                Stimulus::AgentCollide => 1.0,
+                Stimulus::AgentInteract => 2.0,
+                Stimulus::AgentInRange => 3.0,
+            };
+            [number, event.reward as f32, f32::from(u8::from(event.destroyed))]
+        }),
+        StateFeature::StepsLeft => {
+            let most = world.step_limit().unwrap_or(0);
+            let left = f64::from(most.saturating_sub(state.steps)) / f64::from(most.max(1));
+            [if most == 0 { 1.0 } else { left as f32 }, 0.0, 0.0]
+        }
+    };
+    (numbers, feature.num_values())
+}
 
-    /// What the goal feature points to: the tag of the shaping, else those whose touch is a success.
-    fn is_goal(&self, object: &Object, state: &ObjectState) -> bool {
-        let Some(tag) = &object.tag else { return false };
-        let rules = &self.world.rules;
-        let wanted = rules.shaping.as_ref().and_then(|shaping| shaping.toward.as_ref());
-        let touch = |condition: &EndCondition| matches!(condition, EndCondition::Touch(wanted) if wanted == tag);
-        state.present && wanted.map_or_else(|| rules.success.iter().any(touch), |wanted| wanted == tag)
-    }
+/// What the goal feature points to: the tag of the shaping, else those whose touch is a success.
+fn is_goal(world: &World, object: &Object, own: &ObjectState) -> bool {
+    let Some(tag) = &object.tag else { return false };
+    let rules = &world.rules;
+    let wanted = rules.shaping.as_ref().and_then(|shaping| shaping.toward.as_ref());
+    let touch = |condition: &EndCondition| matches!(condition, EndCondition::Touch(wanted) if wanted == tag);
+    own.present && wanted.map_or_else(|| rules.success.iter().any(touch), |wanted| wanted == tag)
+}
 
-    /// The way to an object ahead and to the right in metres, and 1; all 0 without an object.
-    fn way_in_own_axes(&self, index: Option<usize>) -> [f32; 3] {
-        index.map_or([0.0; 3], |index| {
-            let [ahead, right] = self.own_axes(self.way_to(index));
-            [ahead, right, 1.0]
-        })
-    }
+/// The way to an object ahead and to the right in metres, and 1; all 0 without an object.
+fn way_in_own_axes(state: &SimState, index: Option<usize>) -> [f32; 3] {
+    index.map_or([0.0; 3], |index| {
+        let [ahead, right] = own_axes(state, state.way_to(index));
+        [ahead, right, 1.0]
+    })
+}
 
-    /// A vector of the world as the agent has it: ahead and to the right.
-    fn own_axes(&self, [x, y]: [f32; 2]) -> [f32; 2] {
-        let [east, north] = self.episode.agent.forward();
-        [x * east + y * north, x * north - y * east]
-    }
+/// A vector of the world as the agent has it: ahead and to the right.
+fn own_axes(state: &SimState, [x, y]: [f32; 2]) -> [f32; 2] {
+    let [east, north] = state.agent.forward();
+    [x * east + y * north, x * north - y * east]
 }

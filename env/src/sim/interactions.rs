@@ -1,188 +1,226 @@
-//! What the agent's motion sets off: stimuli, what they pay, what they destroy. Endings are in `termination.rs`.
+//! What motion sets off: stimuli, what they pay, what they destroy. Endings are in `termination.rs`.
 
 use std::sync::Arc;
 
-use driftworld_spec::Stimulus;
+use driftworld_spec::{Stimulus, World};
 
 use super::action::Intent;
 use super::contact::RELEASE;
-use super::environment::{Environment, Scratch};
+use super::encounters::Encounters;
 use super::event::{Event, Step};
+use super::sim_ref::SimRef;
+use super::state::SimState;
 use super::streams::ObjectRng;
+use super::views::Views;
 
-impl Environment {
-    /// Finds what the time step set off, and pays for it. `scratch.met` holds what the agent met on its way, and what met it.
-    pub(super) fn apply_stimuli(&mut self, intent: Intent, step: &mut Step) {
-        let mut scratch = std::mem::take(&mut self.scratch);
-        scratch.triggered.clear();
-        scratch.triggered.reserve(32);
-        scratch.moved.sort_unstable_by_key(|(index, _)| *index);
-        scratch.arrived.sort_unstable();
-        self.update_contacts(&mut scratch);
-        if intent.interact {
-            let agent = &self.episode.agent;
-            self.ground
-                .in_reach(agent.position, agent.forward(), &mut scratch.reached);
-            let reached = scratch.reached.iter();
-            scratch
-                .triggered
-                .extend(reached.map(|index| (*index, Stimulus::AgentInteract)));
-        }
-        for index in 0..self.episode.objects.len() {
-            let reach = self.world.objects[index].range_stimulus_distance;
-            if reach <= 0.0 {
-                continue;
-            }
-            let was = self.episode.objects[index].in_range;
-            let enters = !was && self.comes_near(index, &scratch);
-            if enters {
-                scratch.triggered.push((index as u32, Stimulus::AgentInRange));
-            }
-            self.episode.objects[index].in_range = (was || enters) && self.is_within(index, reach + RELEASE);
-        }
-        scratch.triggered.sort_unstable();
-        scratch.triggered.dedup();
-        let num_returning = self.episode.returning.len();
-        for &(index, stimulus) in &scratch.triggered {
-            self.trigger(index as usize, stimulus, step);
-        }
-        if self.episode.returning.len() > num_returning {
-            self.episode.returning.sort_unstable_by_key(|(index, _)| *index);
-        }
-        let objects = &self.episode.objects;
-        self.episode
-            .contacts
-            .retain(|contact| objects[*contact as usize].present);
-        self.scratch = scratch;
+/// Lists that each time step uses again.
+#[derive(Default)]
+pub(super) struct Stimuli {
+    reached: Vec<u32>,
+    triggered: Vec<(u32, Stimulus)>,
+}
+
+/// What an object's stimuli are applied to: the world as it was at its start, and the objects' tags.
+#[derive(Clone, Copy)]
+pub(super) struct Objects<'a> {
+    pub(super) world: &'a World,
+    pub(super) tags: &'a [Option<Arc<str>>],
+}
+
+/// Finds what the time step's encounters set off, and pays for it.
+pub(super) fn apply_stimuli(
+    objects: Objects,
+    state: &mut SimState,
+    views: &mut Views,
+    intent: Intent,
+    encounters: &mut Encounters,
+    stimuli: &mut Stimuli,
+    step: &mut Step,
+) {
+    let Stimuli { reached, triggered } = stimuli;
+    triggered.clear();
+    triggered.reserve(32);
+    encounters.moved.sort_unstable_by_key(|(index, _)| *index);
+    encounters.returned.sort_unstable();
+    update_contacts(state, views, encounters, triggered);
+    if intent.interact {
+        views
+            .bodies
+            .in_reach(state.agent.position, state.agent.forward(), reached);
+        triggered.extend(reached.iter().map(|index| (*index, Stimulus::AgentInteract)));
     }
-
-    /// Contacts that begin and that end.
-    fn update_contacts(&mut self, scratch: &mut Scratch) {
-        let here = self.episode.agent.position;
-        self.ground.note_touching(here, &mut scratch.met);
-        scratch.met.sort_unstable();
-        scratch.met.dedup();
-        let contacts = &mut self.episode.contacts;
-        contacts.reserve(scratch.met.len().max(16));
-        let known = contacts.len();
-        for index in scratch.met.drain(..) {
-            if contacts[..known].binary_search(&index).is_err() {
-                scratch.triggered.push((index, Stimulus::AgentCollide));
-                contacts.push(index);
-            }
+    for (index, object) in objects.world.objects.iter().enumerate() {
+        let reach = object.range_stimulus_distance;
+        if reach <= 0.0 {
+            continue;
         }
-        contacts.sort_unstable();
-        let (new, moved) = (&scratch.triggered, &scratch.moved);
-        let stays = |index: &u32| {
-            // What was met in front of the agent, and moved on since, was touched when the agent had moved.
-            let is_new = new.binary_search_by_key(index, |(other, _)| *other).is_ok();
-            let has_moved = || {
-                moved
-                    .binary_search_by_key(&(*index as usize), |(other, _)| *other)
-                    .is_ok()
-            };
-            is_new && has_moved()
-                || scratch.kept.binary_search(index).is_ok()
-                || self.ground.is_still_touched(*index, here)
+        let sim = SimRef {
+            world: objects.world,
+            state,
+            views,
         };
-        contacts.retain(stays);
-    }
-
-    /// Whether the agent is in an object's range anywhere on both their ways of this time step.
-    fn comes_near(&self, index: usize, scratch: &Scratch) -> bool {
-        if scratch.arrived.binary_search(&index).is_ok() || self.is_in_range(index) {
-            return self.is_in_range(index);
+        let was = state.objects[index].in_range;
+        let enters = !was && comes_near(sim, index, encounters);
+        if enters {
+            triggered.push((index as u32, Stimulus::AgentInRange));
         }
-        let to = self.scene.items[index].position.map(f64::from);
-        let nearest = if let Ok(place) = scratch.moved.binary_search_by_key(&index, |(other, _)| *other) {
-            // As the agent sees it, the object comes from where it was then to where it is now.
-            let from = scratch.moved[place].1.map(f64::from);
-            let (began, ends) = (self.ground.began(), self.episode.agent.position);
-            let then = [0, 1].map(|axis| from[axis] - f64::from(began[axis]));
-            let now = [0, 1].map(|axis| to[axis] - f64::from(ends[axis]));
-            squared_distance([0.0; 2], then, now)
-        } else {
-            let path = self.ground.path().windows(2);
-            path.map(|ends| squared_distance(to, ends[0], ends[1]))
-                .fold(f64::INFINITY, f64::min)
+        let is_in_range = (was || enters) && is_within(sim, index, reach + RELEASE);
+        state.objects[index].in_range = is_in_range;
+    }
+    triggered.sort_unstable();
+    triggered.dedup();
+    let num_returning = state.returning.len();
+    for &(index, stimulus) in triggered.iter() {
+        if let Some(event) = trigger(objects, state, views, index as usize, stimulus) {
+            step.reward += event.reward;
+            step.events.push(event);
+        }
+    }
+    if state.returning.len() > num_returning {
+        state.returning.sort_unstable_by_key(|(index, _)| *index);
+    }
+    let states = &state.objects;
+    state.contacts.retain(|contact| states[*contact as usize].present);
+}
+
+/// Notes what is touched and near now, as no news.
+pub(super) fn init_contacts(world: &World, state: &mut SimState, views: &mut Views) {
+    state.contacts.clear();
+    views.bodies.note_touching(state.agent.position, &mut state.contacts);
+    state.contacts.sort_unstable();
+    for index in 0..state.objects.len() {
+        state.objects[index].in_range = is_in_range(SimRef { world, state, views }, index);
+    }
+}
+
+/// Contacts that begin and that end.
+fn update_contacts(
+    state: &mut SimState,
+    views: &mut Views,
+    encounters: &mut Encounters,
+    triggered: &mut Vec<(u32, Stimulus)>,
+) {
+    let here = state.agent.position;
+    let Encounters { met, kept, moved, .. } = encounters;
+    views.bodies.note_touching(here, met);
+    met.sort_unstable();
+    met.dedup();
+    let contacts = &mut state.contacts;
+    contacts.reserve(met.len().max(16));
+    let known = contacts.len();
+    for index in met.drain(..) {
+        if contacts[..known].binary_search(&index).is_err() {
+            triggered.push((index, Stimulus::AgentCollide));
+            contacts.push(index);
+        }
+    }
+    contacts.sort_unstable();
+    let stays = |index: &u32| {
+        // What was met in front of the agent, and moved on since, was touched when the agent had moved.
+        let is_new = triggered.binary_search_by_key(index, |(other, _)| *other).is_ok();
+        let has_moved = || {
+            moved
+                .binary_search_by_key(&(*index as usize), |(other, _)| *other)
+                .is_ok()
         };
-        self.is_range(index, nearest, self.world.objects[index].range_stimulus_distance)
-    }
+        is_new && has_moved() || kept.binary_search(index).is_ok() || views.bodies.is_still_touched(*index, here)
+    };
+    contacts.retain(stays);
+}
 
-    /// One stimulus on one object: what it pays, whether it destroys.
-    fn trigger(&mut self, index: usize, stimulus: Stimulus, step: &mut Step) {
-        if !self.episode.objects[index].present {
-            return;
-        }
-        let world = Arc::clone(&self.world);
-        let object = &world.objects[index];
-        let once = object.reward_once_stimulus.contains(&stimulus);
-        let would_pay = once || object.reward_stimulus.contains(&stimulus);
-        // Out of its turn an object neither pays nor goes: the sequence could not be finished otherwise.
-        let due = self.is_due(object.order);
-        let destroyed = due && object.destroy_stimulus.contains(&stimulus);
-        let odds = object.reward_probability;
-        // An arm that always pays draws nothing.
-        let pull = |rng: &mut ObjectRng| rng.pull(odds);
-        let pays = would_pay && due && self.episode.rng_of(index).is_none_or(pull);
-        let reward = if pays {
-            self.episode.objects[index].reward
-        } else if would_pay && !due {
-            world.rules.order_penalty
-        } else {
-            0.0
-        };
-        step.reward += reward;
-        let state = &mut self.episode.objects[index];
-        state.collected |= pays || destroyed;
-        self.episode.sequence.advance(&self.episode.objects);
-        let state = &mut self.episode.objects[index];
-        if pays && once {
-            state.reward = 0.0;
-            self.scene.items[index].reward = 0.0;
-        }
-        if destroyed {
-            self.remove_body(index);
-            if let Some(respawn) = &object.respawn {
-                let ticks = (respawn.delay / world.agent_params.time_step).ceil() as u64;
-                let back = (index, self.episode.ticks + ticks.max(1));
-                self.episode.returning.push(back);
-            }
-        }
-        step.events.push(Event {
-            object: index,
-            tag: self.tags[index].clone(),
-            stimulus,
-            reward,
-            destroyed,
-        });
+/// Whether the agent is in an object's range anywhere on both their ways of this time step.
+fn comes_near(sim: SimRef, index: usize, encounters: &Encounters) -> bool {
+    if encounters.returned.binary_search(&index).is_ok() || is_in_range(sim, index) {
+        return is_in_range(sim, index);
     }
+    let to = sim.objects()[index].position.map(f64::from);
+    let bodies = &sim.views.bodies;
+    let moved = &encounters.moved;
+    let nearest = if let Ok(place) = moved.binary_search_by_key(&index, |(other, _)| *other) {
+        // As the agent sees it, the object comes from where it was then to where it is now.
+        let from = moved[place].1.map(f64::from);
+        let (began, ends) = (bodies.began(), sim.agent().position);
+        let then = [0, 1].map(|axis| from[axis] - f64::from(began[axis]));
+        let now = [0, 1].map(|axis| to[axis] - f64::from(ends[axis]));
+        squared_distance([0.0; 2], then, now)
+    } else {
+        let path = bodies.path().windows(2);
+        path.map(|ends| squared_distance(to, ends[0], ends[1]))
+            .fold(f64::INFINITY, f64::min)
+    };
+    is_range(sim, index, nearest, sim.world.objects[index].range_stimulus_distance)
+}
 
-    /// Whether all objects with a lower place in the sequence have been collected.
-    pub(super) fn is_due(&self, order: Option<u32>) -> bool {
-        self.episode.sequence.is_due(order)
+/// One stimulus on one object: what it pays, whether it destroys. No event where the object is gone.
+fn trigger(
+    objects: Objects,
+    state: &mut SimState,
+    views: &mut Views,
+    index: usize,
+    stimulus: Stimulus,
+) -> Option<Event> {
+    let (world, object) = (objects.world, &objects.world.objects[index]);
+    if !state.objects[index].present {
+        return None;
     }
+    let once = object.reward_once_stimulus.contains(&stimulus);
+    let would_pay = once || object.reward_stimulus.contains(&stimulus);
+    // Out of its turn an object neither pays nor goes: the sequence could not be finished otherwise.
+    let due = state.is_due(object.order);
+    let destroyed = due && object.destroy_stimulus.contains(&stimulus);
+    let odds = object.reward_probability;
+    // An arm that always pays draws nothing.
+    let pull = |rng: &mut ObjectRng| rng.pull(odds);
+    let pays = would_pay && due && state.rng_of(index).is_none_or(pull);
+    let own = &mut state.objects[index];
+    let reward = if pays {
+        own.reward
+    } else if would_pay && !due {
+        world.rules.order_penalty
+    } else {
+        0.0
+    };
+    own.collected |= pays || destroyed;
+    own.present = !destroyed;
+    if pays && once {
+        own.reward = 0.0;
+    }
+    if destroyed || (pays && once) {
+        views.sync_object(index, object, own);
+    }
+    state.advance_sequence();
+    if let (true, Some(respawn)) = (destroyed, &object.respawn) {
+        let ticks = (respawn.delay / world.agent_params.time_step).ceil() as u64;
+        state.returning.push((index, state.ticks + ticks.max(1)));
+    }
+    Some(Event {
+        object: index,
+        tag: objects.tags[index].clone(),
+        stimulus,
+        reward,
+        destroyed,
+    })
+}
 
-    /// Centre to centre in 3D: the agent's at half its height, the object's at half of its own.
-    pub(super) fn is_in_range(&self, index: usize) -> bool {
-        self.is_within(index, self.world.objects[index].range_stimulus_distance)
-    }
+/// Centre to centre in 3D: the agent's at half its height, the object's at half of its own.
+fn is_in_range(sim: SimRef, index: usize) -> bool {
+    is_within(sim, index, sim.world.objects[index].range_stimulus_distance)
+}
 
-    fn is_within(&self, index: usize, reach: f64) -> bool {
-        let [x, y] = self.way_to(index).map(f64::from);
-        self.is_range(index, x * x + y * y, reach)
-    }
+fn is_within(sim: SimRef, index: usize, reach: f64) -> bool {
+    let [x, y] = sim.state.way_to(index).map(f64::from);
+    is_range(sim, index, x * x + y * y, reach)
+}
 
-    /// Whether so much reach covers a distance on the ground, whose square is given.
-    fn is_range(&self, index: usize, squared: f64, reach: f64) -> bool {
-        if reach <= 0.0 || !self.episode.objects[index].present {
-            return false;
-        }
-        let item = &self.scene.items[index];
-        let height = f64::from(item.asset.height * item.scale);
-        let dz = (height - self.world.agent_params.agent_height) / 2.0;
-        squared + dz * dz < reach * reach
+/// Whether so much reach covers a distance on the ground, whose square is given.
+fn is_range(sim: SimRef, index: usize, squared: f64, reach: f64) -> bool {
+    if reach <= 0.0 || !sim.objects()[index].present {
+        return false;
     }
+    let item = &sim.scene().items[index];
+    let height = f64::from(item.asset.height * item.scale);
+    let dz = (height - sim.world.agent_params.agent_height) / 2.0;
+    squared + dz * dz < reach * reach
 }
 
 /// The square of the distance of a point from a straight way.

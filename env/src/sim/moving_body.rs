@@ -1,11 +1,12 @@
-//! Bodies of objects that move: how far one comes before it meets something, and putting one back. Where it wants to go is
+//! Bodies of objects that move: how far one comes before it meets something, and where one may come back. Where it wants to go is
 //! decided in `mover.rs`, what the agent bumps into is in `collision_world.rs`.
 
 use rapier3d::prelude::*;
 
 use super::budget::Budget;
-use super::collision_world::{AGENT, CollisionWorld, EDGE, SOLID, WALL, shows_heading, slot};
+use super::collision_world::{CollisionWorld, EDGE, slot};
 use super::footprint::Footprint;
+use super::groups::{AGENT, SOLID, WALL};
 use super::outline::Outline;
 use super::slide::{Obstacles, SKIN};
 
@@ -37,24 +38,9 @@ impl CollisionWorld {
         self.note_place(handle, 0.0);
     }
 
-    /// Puts an object's body, where it is there, at a place and turns it to a heading in degrees.
-    pub(super) fn put(&mut self, index: u32, at: [f32; 2], heading_deg: f32) {
-        let Some(handle) = self.handles[index as usize] else {
-            return;
-        };
-        let collider = &self.colliders[handle];
-        let mut pose = *collider.position();
-        if shows_heading(collider.shared_shape()) {
-            pose = Pose::new(pose.translation, Vector::new(0.0, 0.0, -heading_deg.to_radians()));
-        }
-        (pose.translation.x, pose.translation.y) = (at[0], at[1]);
-        self.colliders[handle].set_position(pose);
-        self.note_place(handle, heading_deg);
-    }
-
-    /// Turns an object's body from one heading in degrees to another and moves it towards where it means to go; it
+    /// Where an object's body comes to that turns from one heading in degrees to another and goes where it means to; it
     /// stops at walls, solid objects and the agent, and slides along them. A body with corners turns only where it
-    /// finds room for them; else it slides on as it stands. Hands back where it is then and where it faces; nothing for
+    /// finds room for them; else it slides on as it stands. Hands back its place and its heading then; nothing for
     /// an object that is not there, and for one with more around it than it may look at, which waits.
     pub(crate) fn push(
         &mut self,
@@ -139,7 +125,6 @@ impl CollisionWorld {
             };
             place[axis] = place[axis].clamp(-half, half);
         }
-        self.put(index, place, heading_deg);
         Some((place, heading_deg))
     }
 

@@ -7,9 +7,10 @@
 use rapier3d::prelude::ColliderHandle;
 
 use super::budget::Budget;
-use super::collision_world::{CollisionWorld, SOLID, WALL, slot};
-use super::environment::Environment;
-use super::event::Warning;
+use super::collision_world::{CollisionWorld, slot};
+use super::groups::{SOLID, WALL};
+use super::sim_ref::SimRef;
+use super::warning::Warning;
 
 /// Distance in metres within which bodies are taken to be able to meet, on top of their ways.
 pub(super) const MARGIN: f32 = 0.2;
@@ -60,134 +61,132 @@ struct Around {
     overlaps: usize,
 }
 
-impl Environment {
-    /// The bodies that move in a time step of so many parts: the first ones, and what these may meet.
-    pub(super) fn with_neighbours(&self, first: Vec<usize>, seconds: f32, parts: u32) -> Chosen {
-        let pushed = &self.episode.pushed;
-        let radii = pushed.iter().map(|body| self.body_radius(body.object));
-        let widest = radii.fold(0.0, f32::max);
-        let mut budget = Budget::new(LOOKS);
-        let parts = u64::from(parts);
-        let mut may_meet = Budget::new(MAY_MEET);
-        let mut overlap = Budget::new(FEWEST_OVERLAPS.max(OVERLAP / parts));
-        let most = (MOVE / parts) as usize;
-        let mut seen = vec![false; pushed.len()];
-        for index in &first {
-            seen[*index] = true;
-        }
-        let (mut waiting, mut next) = (first, 0);
-        let mut indices = Vec::new();
-        while let Some(&index) = waiting.get(next) {
-            next += 1;
-            let Some(around) = self.around_pushed(index, seconds, widest, &mut budget) else {
-                continue;
-            };
-            let fits = |left: Budget, count: usize| count as u64 <= left.left();
-            if around.may_meet > ONE_MAY_MEET || around.overlaps > ONE_OVERLAPS {
-                continue;
-            }
-            let is_one_too_many = indices.len() >= most;
-            if is_one_too_many || !fits(may_meet, around.may_meet) || !fits(overlap, around.overlaps) {
-                continue;
-            }
-            may_meet.take(around.may_meet);
-            overlap.take(around.overlaps);
-            indices.push(index);
-            for other in around.neighbours {
-                if !std::mem::replace(&mut seen[other], true) {
-                    waiting.push(other);
-                }
-            }
-        }
-        indices.sort_unstable();
-        Chosen {
-            is_whole: indices.len() == waiting.len(),
-            indices,
-            most_pairs: FEWEST_PAIRS.max(PAIRS / parts) as usize,
-            #[cfg(test)]
-            looked: LOOKS - budget.left(),
-        }
+/// The bodies that move in a time step of so many parts: the first ones, and what these may meet.
+pub(super) fn with_neighbours(sim: SimRef, first: Vec<usize>, seconds: f32, parts: u32) -> Chosen {
+    let pushed = &sim.state.pushed;
+    let radii = pushed.iter().map(|body| sim.body_radius(body.object));
+    let widest = radii.fold(0.0, f32::max);
+    let mut budget = Budget::new(LOOKS);
+    let parts = u64::from(parts);
+    let mut may_meet = Budget::new(MAY_MEET);
+    let mut overlap = Budget::new(FEWEST_OVERLAPS.max(OVERLAP / parts));
+    let most = (MOVE / parts) as usize;
+    let mut seen = vec![false; pushed.len()];
+    for index in &first {
+        seen[*index] = true;
     }
-
-    /// What is around a body that may move; nothing if that is more than may be looked at.
-    fn around_pushed(&self, index: usize, seconds: f32, widest: f32, budget: &mut Budget) -> Option<Around> {
-        let pushed = &self.episode.pushed;
-        let object = pushed[index].object;
-        let own = self.ground.handles[object]?;
-        let at = self.scene.items[object].position;
-        let radius = self.body_radius(object);
-        let reach = self.pushed_way(index, seconds) + MARGIN;
-        let box_around = |half: f32| [at.map(|metres| metres - half), at.map(|metres| metres + half)];
-        let area = box_around(radius.max(0.05) + reach + 2.0 * widest);
-        let own_box = self.ground.box_of(own);
-        let surroundings = box_around(self.standing_reach(index, seconds));
-        let mut around = Around {
-            neighbours: Vec::new(),
-            may_meet: 0,
-            overlaps: 0,
+    let (mut waiting, mut next) = (first, 0);
+    let mut indices = Vec::new();
+    while let Some(&index) = waiting.get(next) {
+        next += 1;
+        let Some(around) = around_pushed(sim, index, seconds, widest, &mut budget) else {
+            continue;
         };
-        for (count, handle) in self.ground.around(SOLID | WALL, Some(own), area).enumerate() {
-            if !budget.take(1) || count > ONE_LOOKS {
-                return None;
-            }
-            let other = self.ground.standing[slot(handle)].object;
-            let place = other.and_then(|other| {
-                let other = other as usize;
-                pushed.binary_search_by_key(&other, |body| body.object).ok()
-            });
-            let other_box = self.ground.box_of(handle);
-            around.overlaps += usize::from(overlap(other_box, own_box));
-            let may_be_met = if let Some(place) = place {
-                let other = pushed[place].object;
-                let to = self.scene.items[other].position;
-                let distance = ((to[0] - at[0]).powi(2) + (to[1] - at[1]).powi(2)).sqrt();
-                // In this order, for the sum is rounded.
-                let way = self.pushed_way(index, seconds);
-                let is_near = distance < radius + self.body_radius(other) + way + MARGIN;
-                if is_near {
-                    around.neighbours.push(place);
-                }
-                is_near
-            } else {
-                overlap(other_box, surroundings)
-            };
-            around.may_meet += usize::from(may_be_met);
+        let fits = |left: Budget, count: usize| count as u64 <= left.left();
+        if around.may_meet > ONE_MAY_MEET || around.overlaps > ONE_OVERLAPS {
+            continue;
         }
-        // The tree's order depends on its past, which a world that was written down does not have.
-        around.neighbours.sort_unstable();
-        Some(around)
+        let is_one_too_many = indices.len() >= most;
+        if is_one_too_many || !fits(may_meet, around.may_meet) || !fits(overlap, around.overlaps) {
+            continue;
+        }
+        may_meet.take(around.may_meet);
+        overlap.take(around.overlaps);
+        indices.push(index);
+        for other in around.neighbours {
+            if !std::mem::replace(&mut seen[other], true) {
+                waiting.push(other);
+            }
+        }
     }
+    indices.sort_unstable();
+    Chosen {
+        is_whole: indices.len() == waiting.len(),
+        indices,
+        most_pairs: FEWEST_PAIRS.max(PAIRS / parts) as usize,
+        #[cfg(test)]
+        looked: LOOKS - budget.left(),
+    }
+}
 
-    /// The first object that can be pushed and that more bodies overlap than may.
-    pub(super) fn heap(&self) -> Option<Warning> {
-        let others = |object: usize| {
-            let own = self.ground.handles[object];
-            let area = own.map(|own| self.ground.box_of(own));
-            area.into_iter()
-                .flat_map(move |area| self.ground.around(SOLID | WALL, own, area))
+/// What is around a body that may move; nothing if that is more than may be looked at.
+fn around_pushed(sim: SimRef, index: usize, seconds: f32, widest: f32, budget: &mut Budget) -> Option<Around> {
+    let pushed = &sim.state.pushed;
+    let object = pushed[index].object;
+    let own = sim.views.bodies.handles[object]?;
+    let at = sim.objects()[object].position;
+    let radius = sim.body_radius(object);
+    let reach = pushed_way(sim, index, seconds) + MARGIN;
+    let box_around = |half: f32| [at.map(|metres| metres - half), at.map(|metres| metres + half)];
+    let area = box_around(radius.max(0.05) + reach + 2.0 * widest);
+    let own_box = sim.views.bodies.box_of(own);
+    let surroundings = box_around(standing_reach(sim, index, seconds));
+    let mut around = Around {
+        neighbours: Vec::new(),
+        may_meet: 0,
+        overlaps: 0,
+    };
+    for (count, handle) in sim.views.bodies.around(SOLID | WALL, Some(own), area).enumerate() {
+        if !budget.take(1) || count > ONE_LOOKS {
+            return None;
+        }
+        let other = sim.views.bodies.standing[slot(handle)].object;
+        let place = other.and_then(|other| {
+            let other = other as usize;
+            pushed.binary_search_by_key(&other, |body| body.object).ok()
+        });
+        let other_box = sim.views.bodies.box_of(handle);
+        around.overlaps += usize::from(overlap(other_box, own_box));
+        let may_be_met = if let Some(place) = place {
+            let other = pushed[place].object;
+            let to = sim.objects()[other].position;
+            let distance = ((to[0] - at[0]).powi(2) + (to[1] - at[1]).powi(2)).sqrt();
+            // In this order, for the sum is rounded.
+            let way = pushed_way(sim, index, seconds);
+            let is_near = distance < radius + sim.body_radius(other) + way + MARGIN;
+            if is_near {
+                around.neighbours.push(place);
+            }
+            is_near
+        } else {
+            overlap(other_box, surroundings)
         };
-        let mut objects = self.episode.pushed.iter().map(|body| body.object);
-        let object = objects.find(|object| others(*object).nth(ONE_OVERLAPS).is_some())?;
-        Some(Warning::Heap {
-            object,
-            bodies: others(object).count(),
-            limit: ONE_OVERLAPS,
-        })
+        around.may_meet += usize::from(may_be_met);
     }
+    // The tree's order depends on its past, which a world that was written down does not have.
+    around.neighbours.sort_unstable();
+    Some(around)
+}
 
-    /// How far a pushed body may come in a time step, in metres.
-    pub(super) fn pushed_way(&self, index: usize, seconds: f32) -> f32 {
-        let agent_speed = self.world.agent_params.max_linear_speed as f32;
-        let [vx, vy] = self.episode.pushed[index].velocity;
-        (vx * vx + vy * vy).sqrt().max(agent_speed) * seconds
-    }
+/// The first object that can be pushed and that more bodies overlap than may.
+pub(super) fn heap(sim: SimRef) -> Option<Warning> {
+    let others = |object: usize| {
+        let own = sim.views.bodies.handles[object];
+        let area = own.map(|own| sim.views.bodies.box_of(own));
+        area.into_iter()
+            .flat_map(move |area| sim.views.bodies.around(SOLID | WALL, own, area))
+    };
+    let mut objects = sim.state.pushed.iter().map(|body| body.object);
+    let object = objects.find(|object| others(*object).nth(ONE_OVERLAPS).is_some())?;
+    Some(Warning::Heap {
+        object,
+        bodies: others(object).count(),
+        limit: ONE_OVERLAPS,
+    })
+}
 
-    /// How far from a pushed body's middle the bodies lie that stand fast and that it may meet, in metres along each
-    /// axis.
-    pub(super) fn standing_reach(&self, index: usize, seconds: f32) -> f32 {
-        let radius = self.body_radius(self.episode.pushed[index].object).max(0.05);
-        radius + self.pushed_way(index, seconds) + MARGIN
-    }
+/// How far a pushed body may come in a time step, in metres.
+pub(super) fn pushed_way(sim: SimRef, index: usize, seconds: f32) -> f32 {
+    let agent_speed = sim.world.agent_params.max_linear_speed as f32;
+    let [vx, vy] = sim.state.pushed[index].velocity;
+    (vx * vx + vy * vy).sqrt().max(agent_speed) * seconds
+}
+
+/// How far from a pushed body's middle the bodies lie that stand fast and that it may meet, in metres along each
+/// axis.
+pub(super) fn standing_reach(sim: SimRef, index: usize, seconds: f32) -> f32 {
+    let radius = sim.body_radius(sim.state.pushed[index].object).max(0.05);
+    radius + pushed_way(sim, index, seconds) + MARGIN
 }
 
 impl CollisionWorld {

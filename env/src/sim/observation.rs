@@ -13,7 +13,7 @@ impl Environment {
         if self.draw_observation().is_err() {
             let camera = self.camera();
             // On the processor: only for so many points that no buffer holds them, then one a pixel.
-            CpuRenderer::new().render(&self.scene, &camera, &mut self.frame);
+            CpuRenderer::new().render(&self.views.scene, &camera, &mut self.frame);
         }
         &self.frame
     }
@@ -38,15 +38,15 @@ impl Environment {
             supersampling,
             ..self.frame.target()
         };
-        self.renderer.draw(&self.scene, &camera, &mut target)
+        self.renderer.draw(&self.views.scene, &camera, &mut target)
     }
 
     /// The agent's camera.
     pub fn camera(&self) -> Camera {
         let agent = &self.world.agent_params;
         Camera::first_person(
-            self.episode.agent.position,
-            self.episode.agent.heading_deg,
+            self.state.agent.position,
+            self.state.agent.heading_deg,
             agent.agent_height as f32,
             agent.field_of_view as f32,
         )
@@ -62,7 +62,7 @@ impl Environment {
             return Err(EnvError::PictureSize { width, height });
         }
         let mut frame = Frame::new(width, height);
-        self.renderer.render(&self.scene, camera, &mut frame)?;
+        self.renderer.render(&self.views.scene, camera, &mut frame)?;
         Ok(frame)
     }
 }

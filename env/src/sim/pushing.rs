@@ -4,15 +4,19 @@
 //! agent; nothing but places and velocities goes from one time step to the next. So a world that was written down goes on to
 //! the last bit, and a world at rest costs nothing.
 
-use driftworld_spec::{MotionModel, Object, World};
+use driftworld_spec::World;
 use rapier3d::prelude::*;
 
-use super::collision_world::{CollisionWorld, EDGE, SOLID, WALL, slot};
-use super::environment::Environment;
-use super::neighbours::MARGIN;
+use super::collision_world::{CollisionWorld, EDGE, slot};
+use super::encounters::Encounters;
+use super::groups::{SOLID, WALL};
+use super::neighbours::{MARGIN, standing_reach, with_neighbours};
 use super::outline::Outline;
+use super::pushed::Pushed;
+use super::sim_ref::SimRef;
 use super::slide::SKIN;
-use super::state::wrapped;
+use super::state::{SimState, wrapped};
+use super::views::Views;
 
 /// What the agent weighs, in kilograms. In each time step it meets what it pushes with this mass at its own speed.
 const AGENT_MASS: f32 = 80.0;
@@ -29,17 +33,6 @@ const MOST_PARTS: u32 = 60;
 /// Standard gravity in metres per second squared: what friction with the ground grows with.
 const GRAVITY: f32 = 9.806_65;
 
-/// The motion of one body that is pushed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Pushed {
-    /// The object's number in the world.
-    pub(super) object: usize,
-    /// In metres per second.
-    pub(super) velocity: [f32; 2],
-    /// In degrees per second, clockwise.
-    pub(super) spin_deg: f32,
-}
-
 /// A body in the physics world of a time step.
 struct Active {
     /// Its number among the pushed bodies.
@@ -49,265 +42,243 @@ struct Active {
     friction: f32,
 }
 
-impl Pushed {
-    /// All that can be pushed in a world, at rest.
-    pub(super) fn all(world: &World) -> Vec<Self> {
-        let objects = world.objects.iter().enumerate();
-        objects.filter_map(|(index, object)| Self::new(index, object)).collect()
+/// Lets the agent push what is in its way, and what was pushed slide on. Hands back how far the agent's own way leads when
+/// what it pushes holds it up; notes what it pushed.
+pub(super) fn push_bodies(
+    world: &World,
+    state: &mut SimState,
+    views: &mut Views,
+    by: [f32; 2],
+    encounters: &mut Encounters,
+) -> [f32; 2] {
+    let sim = SimRef { world, state, views };
+    let present = |body: &Pushed| sim.objects()[body.object].present;
+    let may_move = |body: &Pushed| present(body) && (body.moves() || may_meet_agent(sim, body, by));
+    if !sim.state.pushed.iter().any(may_move) {
+        return by;
     }
-
-    /// An object's motion, at rest, if it can be pushed.
-    pub(super) fn new(object_index: usize, object: &Object) -> Option<Self> {
-        is_pushed(object).then_some(Self {
-            object: object_index,
-            velocity: [0.0; 2],
-            spin_deg: 0.0,
-        })
+    let seconds = world.agent_params.time_step as f32;
+    let pushed = || sim.state.pushed.iter();
+    let agent_pushes = pushed().any(|body| present(body) && may_meet_agent(sim, body, by));
+    let first = (0..).zip(pushed()).filter(|(_, body)| may_move(body));
+    let parts = ((seconds / LONGEST).ceil() as u32).clamp(FEWEST_PARTS, MOST_PARTS);
+    let chosen = with_neighbours(sim, first.map(|(index, _)| index).collect(), seconds, parts);
+    if !chosen.is_whole {
+        stop_all_but(&mut state.pushed, &chosen.indices);
     }
-
-    fn moves(&self) -> bool {
-        self.velocity != [0.0; 2] || self.spin_deg != 0.0
-    }
-}
-
-/// Whether an object can be pushed: it says so, is solid, and does not move by itself.
-pub(super) fn is_pushed(object: &Object) -> bool {
-    object.pushable.is_some() && object.solid && object.motion_model == MotionModel::Stationary
-}
-
-impl Environment {
-    /// Lets the agent push what is in its way, and what was pushed slide on. Hands back how far the agent's own way leads when
-    /// what it pushes holds it up; notes in `scratch.met` what it pushed.
-    pub(super) fn push_bodies(&mut self, by: [f32; 2]) -> [f32; 2] {
-        let present = |body: &Pushed| self.episode.objects[body.object].present;
-        let may_move = |body: &Pushed| present(body) && (body.moves() || self.may_meet_agent(body, by));
-        if !self.episode.pushed.iter().any(may_move) {
-            return by;
+    #[cfg(test)]
+    (encounters.looked += chosen.looked);
+    let mut physics = PhysicsWorld {
+        gravity: Vector::ZERO,
+        ..PhysicsWorld::default()
+    };
+    let sim = SimRef { world, state, views };
+    let indices = chosen.indices.iter().copied();
+    let active: Vec<Active> = indices.map(|index| add_active(sim, &mut physics, index)).collect();
+    add_surroundings(sim, &mut physics, &active, seconds);
+    let agent = agent_pushes.then(|| add_agent(sim, &mut physics, by, seconds));
+    physics.integration_parameters.dt = seconds / parts as f32;
+    let mut is_jammed = false;
+    for _ in 0..parts {
+        physics.step();
+        if let Some((_, collider)) = agent {
+            note_contacts(&state.pushed, &physics, collider, &mut encounters.met);
         }
-        let seconds = self.world.agent_params.time_step as f32;
-        let pushed = || self.episode.pushed.iter();
-        let agent_pushes = pushed().any(|body| present(body) && self.may_meet_agent(body, by));
-        let first = (0..).zip(pushed()).filter(|(_, body)| may_move(body));
-        let parts = ((seconds / LONGEST).ceil() as u32).clamp(FEWEST_PARTS, MOST_PARTS);
-        let chosen = self.with_neighbours(first.map(|(index, _)| index).collect(), seconds, parts);
-        if !chosen.is_whole {
-            self.rest_but(&chosen.indices);
-        }
+        rub(&mut physics, &active);
+        let num_pairs = physics.narrow_phase.contact_pairs().count();
         #[cfg(test)]
-        (self.scratch.looked += chosen.looked);
-        let mut physics = PhysicsWorld {
-            gravity: Vector::ZERO,
-            ..PhysicsWorld::default()
-        };
-        let active: Vec<Active> = chosen
-            .indices
-            .iter()
-            .copied()
-            .map(|index| self.add_active(&mut physics, index))
-            .collect();
-        self.add_surroundings(&mut physics, &active, seconds);
-        let agent = agent_pushes.then(|| self.add_agent(&mut physics, by, seconds));
-        physics.integration_parameters.dt = seconds / parts as f32;
-        let mut is_jammed = false;
-        for _ in 0..parts {
-            physics.step();
-            if let Some((_, collider)) = agent {
-                self.note_contacts(&physics, collider);
-            }
-            rub(&mut physics, &active);
-            let num_pairs = physics.narrow_phase.contact_pairs().count();
-            #[cfg(test)]
-            (self.scratch.looked += num_pairs as u64);
-            if num_pairs > chosen.most_pairs {
-                // More have met on their ways than may: there they stay.
-                is_jammed = true;
-                break;
-            }
-        }
-        self.read_back(&physics, &active);
-        if is_jammed {
-            self.rest_but(&[]);
-        }
-        let Some((body, _)) = agent else { return by };
-        let end = physics.bodies[body].translation();
-        let start = self.episode.agent.position;
-        [end.x - start[0], end.y - start[1]]
-    }
-
-    /// Whether the agent's way may lead to a pushed body.
-    fn may_meet_agent(&self, body: &Pushed, by: [f32; 2]) -> bool {
-        let reach = (by[0] * by[0] + by[1] * by[1]).sqrt() + self.world.agent_params.agent_width as f32 / 2.0;
-        let [x, y] = self.way_to(body.object);
-        (x * x + y * y).sqrt() < reach + self.body_radius(body.object) + MARGIN
-    }
-
-    /// Brings all pushed bodies but these to rest; their numbers rise.
-    fn rest_but(&mut self, indices: &[usize]) {
-        for (index, body) in self.episode.pushed.iter_mut().enumerate() {
-            if indices.binary_search(&index).is_err() {
-                (body.velocity, body.spin_deg) = ([0.0; 2], 0.0);
-            }
+        (encounters.looked += num_pairs as u64);
+        if num_pairs > chosen.most_pairs {
+            // More have met on their ways than may: there they stay.
+            is_jammed = true;
+            break;
         }
     }
-
-    pub(super) fn body_radius(&self, object: usize) -> f32 {
-        let item = &self.scene.items[object];
-        item.asset.collider.radius() * item.scale
+    read_back(&physics, &active, world, state, views, encounters);
+    if is_jammed {
+        stop_all_but(&mut state.pushed, &[]);
     }
+    let Some((body, _)) = agent else { return by };
+    let end = physics.bodies[body].translation();
+    let start = state.agent.position;
+    [end.x - start[0], end.y - start[1]]
+}
 
-    fn add_active(&self, physics: &mut PhysicsWorld, index: usize) -> Active {
-        let body = self.episode.pushed[index];
-        let [vx, vy] = body.velocity;
-        let agent_speed = self.world.agent_params.max_linear_speed as f32;
-        let farthest = (vx * vx + vy * vy).sqrt().max(agent_speed) * LONGEST + MARGIN;
-        let item = &self.scene.items[body.object];
-        let (mass, friction) = self.world.objects[body.object]
-            .pushable
-            .map_or((1.0, 0.5), |pushable| (pushable.mass as f32, pushable.friction as f32));
-        let (shape, from_ground) = CollisionWorld::shape(item);
-        let turn = Vector::new(0.0, 0.0, -item.heading_deg.to_radians());
-        let place = Pose::new(Vector::new(item.position[0], item.position[1], 0.0), turn);
-        let handle = physics.bodies.insert(
-            RigidBodyBuilder::dynamic()
-                .pose(place)
-                .linvel(Vector::new(body.velocity[0], body.velocity[1], 0.0))
-                .angvel(Vector::new(0.0, 0.0, -body.spin_deg.to_radians()))
-                .enabled_translations(true, true, false)
-                .enabled_rotations(false, false, true)
-                .ccd_enabled(true)
-                // Contacts are foreseen: else a body stands still for the rest of the part of the step in which it meets a wall.
-                .soft_ccd_prediction(farthest)
-                .can_sleep(false),
-        );
-        // It weighs and turns as the solid that it is, and meets others as its outline.
-        let mut mass_properties = shape.mass_properties(1.0);
-        mass_properties.set_mass(mass, true);
-        let outline = self.ground.outline_of(body.object as u32);
-        let collider = ColliderBuilder::new(outline.map_or(shape, Outline::upright))
-            .mass_properties(mass_properties.transform_by(&from_ground))
-            .friction(friction)
-            .restitution(0.0)
-            .user_data(u128::from(index as u64));
-        physics
-            .colliders
-            .insert_with_parent(collider, handle, &mut physics.bodies);
-        Active {
-            index,
-            handle,
-            radius: self.body_radius(body.object).max(0.05),
-            friction,
+/// Whether the agent's way may lead to a pushed body.
+fn may_meet_agent(sim: SimRef, body: &Pushed, by: [f32; 2]) -> bool {
+    let reach = (by[0] * by[0] + by[1] * by[1]).sqrt() + sim.world.agent_params.agent_width as f32 / 2.0;
+    let [x, y] = sim.state.way_to(body.object);
+    (x * x + y * y).sqrt() < reach + sim.body_radius(body.object) + MARGIN
+}
+
+/// Brings all pushed bodies but these to rest; their numbers rise.
+fn stop_all_but(pushed: &mut [Pushed], indices: &[usize]) {
+    for (index, body) in pushed.iter_mut().enumerate() {
+        if indices.binary_search(&index).is_err() {
+            body.stop();
         }
     }
+}
 
-    /// Walls and objects that stand fast around the bodies, in an order that does not depend on how the world came to be.
-    fn add_surroundings(&self, physics: &mut PhysicsWorld, active: &[Active], seconds: f32) {
-        let mut around: Vec<(u64, ColliderHandle)> = Vec::new();
-        // Both rise: numbers among the pushed bodies, and their objects.
-        let moves = |object: u32| {
-            let own = |body: &Active| self.episode.pushed[body.index].object;
-            active.binary_search_by_key(&(object as usize), own).is_ok()
-        };
-        for body in active {
-            let at = self.scene.items[self.episode.pushed[body.index].object].position;
-            let reach = self.standing_reach(body.index, seconds);
-            let area = [at.map(|metres| metres - reach), at.map(|metres| metres + reach)];
-            for handle in self.ground.around(SOLID | WALL, None, area) {
-                let standing = &self.ground.standing[slot(handle)];
-                if !standing.object.is_some_and(moves) {
-                    around.push((standing.rank, handle));
-                }
-            }
-        }
-        around.sort_unstable_by_key(|(rank, _)| *rank);
-        around.dedup_by_key(|(rank, _)| *rank);
-        for (_, handle) in around {
-            let standing = &self.ground.colliders[handle];
-            let mut place = *standing.position();
-            place.translation.z = 0.0;
-            let outline = &self.ground.standing[slot(handle)].outline;
-            if outline.is_disc() {
-                place.rotation = Rotation::IDENTITY;
-            }
-            let collider = ColliderBuilder::new(outline.upright()).position(place);
-            // Along walls everything slides, as the agent does: what leads along one is kept.
-            let is_wall = standing.collision_groups().memberships == WALL;
-            let collider = if is_wall {
-                collider
-                    .friction(0.0)
-                    .friction_combine_rule(CoefficientCombineRule::Min)
-            } else {
-                collider
-            };
-            physics.colliders.insert(collider);
-        }
-    }
-
-    /// The agent as a body with its own mass, on the way that it means to go.
-    fn add_agent(&self, physics: &mut PhysicsWorld, by: [f32; 2], seconds: f32) -> (RigidBodyHandle, ColliderHandle) {
-        let [x, y] = self.episode.agent.position;
-        let body = RigidBodyBuilder::dynamic()
-            .translation(Vector::new(x, y, 0.0))
-            .linvel(Vector::new(by[0] / seconds, by[1] / seconds, 0.0))
+fn add_active(sim: SimRef, physics: &mut PhysicsWorld, index: usize) -> Active {
+    let body = sim.state.pushed[index];
+    let [vx, vy] = body.velocity;
+    let agent_speed = sim.world.agent_params.max_linear_speed as f32;
+    let farthest = (vx * vx + vy * vy).sqrt().max(agent_speed) * LONGEST + MARGIN;
+    let own = &sim.objects()[body.object];
+    let (mass, friction) = sim.world.objects[body.object]
+        .pushable
+        .map_or((1.0, 0.5), |pushable| (pushable.mass as f32, pushable.friction as f32));
+    let (shape, from_ground) = CollisionWorld::shape(&sim.scene().items[body.object]);
+    let turn = Vector::new(0.0, 0.0, -own.heading_deg.to_radians());
+    let place = Pose::new(Vector::new(own.position[0], own.position[1], 0.0), turn);
+    let handle = physics.bodies.insert(
+        RigidBodyBuilder::dynamic()
+            .pose(place)
+            .linvel(Vector::new(body.velocity[0], body.velocity[1], 0.0))
+            .angvel(Vector::new(0.0, 0.0, -body.spin_deg.to_radians()))
             .enabled_translations(true, true, false)
-            .lock_rotations()
+            .enabled_rotations(false, false, true)
             .ccd_enabled(true)
-            .can_sleep(false);
-        let body = physics.bodies.insert(body);
-        // What it pushes is not held back by its sides, nor is it by walls.
-        // With its skin, which is where it meets what it pushes.
-        let collider = ColliderBuilder::ball((self.ground.radius + SKIN) as f32)
-            .mass(AGENT_MASS)
-            .friction(0.0)
-            .friction_combine_rule(CoefficientCombineRule::Min)
-            .restitution(0.0);
-        let collider = physics
-            .colliders
-            .insert_with_parent(collider, body, &mut physics.bodies);
-        (body, collider)
+            // Contacts are foreseen: else a body stands still for the rest of the part of the step in which it meets a wall.
+            .soft_ccd_prediction(farthest)
+            .can_sleep(false),
+    );
+    // It weighs and turns as the solid that it is, and meets others as its outline.
+    let mut mass_properties = shape.mass_properties(1.0);
+    mass_properties.set_mass(mass, true);
+    let outline = sim.views.bodies.outline_of(body.object as u32);
+    let collider = ColliderBuilder::new(outline.map_or(shape, Outline::upright))
+        .mass_properties(mass_properties.transform_by(&from_ground))
+        .friction(friction)
+        .restitution(0.0)
+        .user_data(u128::from(index as u64));
+    physics
+        .colliders
+        .insert_with_parent(collider, handle, &mut physics.bodies);
+    Active {
+        index,
+        handle,
+        radius: sim.body_radius(body.object).max(0.05),
+        friction,
     }
+}
 
-    fn note_contacts(&mut self, physics: &PhysicsWorld, agent: ColliderHandle) {
-        for pair in physics.narrow_phase.contact_pairs_with(agent) {
-            let other = if pair.collider1 == agent {
-                pair.collider2
-            } else {
-                pair.collider1
-            };
-            let body = &physics.colliders[other];
-            // What stands fast has no body.
-            if body.parent().is_some() && pair.has_any_active_contact() {
-                let index = body.user_data as usize;
-                self.scratch.met.push(self.episode.pushed[index].object as u32);
+/// Walls and objects that stand fast around the bodies, in an order that does not depend on how the world came to be.
+fn add_surroundings(sim: SimRef, physics: &mut PhysicsWorld, active: &[Active], seconds: f32) {
+    let mut around: Vec<(u64, ColliderHandle)> = Vec::new();
+    // Both rise: numbers among the pushed bodies, and their objects.
+    let moves = |object: u32| {
+        let own = |body: &Active| sim.state.pushed[body.index].object;
+        active.binary_search_by_key(&(object as usize), own).is_ok()
+    };
+    for body in active {
+        let at = sim.objects()[sim.state.pushed[body.index].object].position;
+        let reach = standing_reach(sim, body.index, seconds);
+        let area = [at.map(|metres| metres - reach), at.map(|metres| metres + reach)];
+        for handle in sim.views.bodies.around(SOLID | WALL, None, area) {
+            let standing = &sim.views.bodies.standing[slot(handle)];
+            if !standing.object.is_some_and(moves) {
+                around.push((standing.rank, handle));
             }
         }
     }
+    around.sort_unstable_by_key(|(rank, _)| *rank);
+    around.dedup_by_key(|(rank, _)| *rank);
+    for (_, handle) in around {
+        let standing = &sim.views.bodies.colliders[handle];
+        let mut place = *standing.position();
+        place.translation.z = 0.0;
+        let outline = &sim.views.bodies.standing[slot(handle)].outline;
+        if outline.is_disc() {
+            place.rotation = Rotation::IDENTITY;
+        }
+        let collider = ColliderBuilder::new(outline.upright()).position(place);
+        // Along walls everything slides, as the agent does: what leads along one is kept.
+        let is_wall = standing.collision_groups().memberships == WALL;
+        let collider = if is_wall {
+            collider
+                .friction(0.0)
+                .friction_combine_rule(CoefficientCombineRule::Min)
+        } else {
+            collider
+        };
+        physics.colliders.insert(collider);
+    }
+}
 
-    /// Puts the bodies where the physics has brought them; one that it brought through a wall stays, at rest.
-    fn read_back(&mut self, physics: &PhysicsWorld, active: &[Active]) {
-        for body in active {
-            let pushed = &mut self.episode.pushed[body.index];
-            let object = pushed.object;
-            let item = &mut self.scene.items[object];
-            let moved = &physics.bodies[body.handle];
-            let (at, turn) = (moved.translation(), moved.rotation());
-            let position = [at.x, at.y].map(|metres| metres.clamp(-EDGE, EDGE));
-            let speeds = [moved.linvel().x, moved.linvel().y, moved.angvel().z];
-            let [x, y, turn_speed] = speeds;
-            let sound = (at.x + at.y + x + y + turn_speed).is_finite();
-            if !sound || self.ground.leads_through(item.position, position, object as u32) {
-                (pushed.velocity, pushed.spin_deg) = ([0.0; 2], 0.0);
-                continue;
-            }
-            pushed.velocity = [speeds[0], speeds[1]];
-            pushed.spin_deg = -speeds[2].to_degrees();
-            let yaw = 2.0 * libm::atan2f(turn.z, turn.w);
-            let heading_deg = wrapped(-yaw.to_degrees());
-            // A body at rest keeps its very place, whatever solvers make of it.
-            if position != item.position || pushed.moves() {
-                self.scratch.moved.push((object, item.position));
-                (item.position, item.heading_deg) = (position, heading_deg);
-                self.ground.put(object as u32, position, heading_deg);
-            }
+/// The agent as a body with its own mass, on the way that it means to go.
+fn add_agent(sim: SimRef, physics: &mut PhysicsWorld, by: [f32; 2], seconds: f32) -> (RigidBodyHandle, ColliderHandle) {
+    let [x, y] = sim.agent().position;
+    let body = RigidBodyBuilder::dynamic()
+        .translation(Vector::new(x, y, 0.0))
+        .linvel(Vector::new(by[0] / seconds, by[1] / seconds, 0.0))
+        .enabled_translations(true, true, false)
+        .lock_rotations()
+        .ccd_enabled(true)
+        .can_sleep(false);
+    let body = physics.bodies.insert(body);
+    // What it pushes is not held back by its sides, nor is it by walls.
+    // With its skin, which is where it meets what it pushes.
+    let collider = ColliderBuilder::ball((sim.views.bodies.radius + SKIN) as f32)
+        .mass(AGENT_MASS)
+        .friction(0.0)
+        .friction_combine_rule(CoefficientCombineRule::Min)
+        .restitution(0.0);
+    let collider = physics
+        .colliders
+        .insert_with_parent(collider, body, &mut physics.bodies);
+    (body, collider)
+}
+
+fn note_contacts(pushed: &[Pushed], physics: &PhysicsWorld, agent: ColliderHandle, met: &mut Vec<u32>) {
+    for pair in physics.narrow_phase.contact_pairs_with(agent) {
+        let other = if pair.collider1 == agent {
+            pair.collider2
+        } else {
+            pair.collider1
+        };
+        let body = &physics.colliders[other];
+        // What stands fast has no body.
+        if body.parent().is_some() && pair.has_any_active_contact() {
+            let index = body.user_data as usize;
+            met.push(pushed[index].object as u32);
+        }
+    }
+}
+
+/// Puts the bodies where the physics has brought them; one that it brought through a wall stays, at rest.
+fn read_back(
+    physics: &PhysicsWorld,
+    active: &[Active],
+    world: &World,
+    state: &mut SimState,
+    views: &mut Views,
+    encounters: &mut Encounters,
+) {
+    for body in active {
+        let pushed = &mut state.pushed[body.index];
+        let object = pushed.object;
+        let own = &mut state.objects[object];
+        let moved = &physics.bodies[body.handle];
+        let (at, turn) = (moved.translation(), moved.rotation());
+        let position = [at.x, at.y].map(|metres| metres.clamp(-EDGE, EDGE));
+        let speeds = [moved.linvel().x, moved.linvel().y, moved.angvel().z];
+        let [x, y, turn_speed] = speeds;
+        let sound = (at.x + at.y + x + y + turn_speed).is_finite();
+        if !sound || views.bodies.leads_through(own.position, position, object as u32) {
+            pushed.stop();
+            continue;
+        }
+        pushed.velocity = [speeds[0], speeds[1]];
+        pushed.spin_deg = -speeds[2].to_degrees();
+        let yaw = 2.0 * libm::atan2f(turn.z, turn.w);
+        let heading_deg = wrapped(-yaw.to_degrees());
+        // A body at rest keeps its very place, whatever solvers make of it.
+        if position != own.position || pushed.moves() {
+            encounters.moved.push((object, own.position));
+            (own.position, own.heading_deg) = (position, heading_deg);
+            views.sync_object(object, &world.objects[object], own);
         }
     }
 }

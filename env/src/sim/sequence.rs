@@ -2,8 +2,6 @@
 
 use driftworld_spec::Object;
 
-use super::state::ObjectState;
-
 /// The places of a sequence in their order, and how many of them have been collected from the first on.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sequence {
@@ -34,9 +32,9 @@ impl Sequence {
     }
 
     /// Takes note of what has been collected; nothing ever becomes uncollected.
-    pub(super) fn advance(&mut self, objects: &[ObjectState]) {
-        let is_collected = |(_, index): &(u32, u32)| objects[*index as usize].collected;
-        while self.places.get(self.next).is_some_and(is_collected) {
+    pub(super) fn advance(&mut self, is_collected: impl Fn(usize) -> bool) {
+        let is_done = |(_, index): &(u32, u32)| is_collected(*index as usize);
+        while self.places.get(self.next).is_some_and(is_done) {
             self.next += 1;
         }
     }
@@ -67,21 +65,21 @@ mod tests {
                 object
             };
             let mut objects: Vec<Object> = orders.iter().map(object).collect();
-            let mut states: Vec<ObjectState> = objects.iter().map(ObjectState::new).collect();
+            let mut is_collected = vec![false; objects.len()];
             let mut sequence = Sequence::of(&objects);
             for (moment, index) in collected.into_iter().enumerate() {
                 for (_, order) in spawned.iter().filter(|(at, _)| *at == moment) {
                     objects.push(object(order));
-                    states.push(ObjectState::new(&objects[objects.len() - 1]));
+                    is_collected.push(false);
                     sequence.add(objects.len() - 1, *order);
                 }
-                if let Some(state) = states.get_mut(index) {
-                    state.collected = true;
+                if let Some(own) = is_collected.get_mut(index) {
+                    *own = true;
                 }
-                sequence.advance(&states);
+                sequence.advance(|index| is_collected[index]);
                 for own in &objects {
                     let lower = |other: &Object| other.order.zip(own.order).is_some_and(|(other, own)| other < own);
-                    let expected = objects.iter().zip(&states).all(|(other, state)| !lower(other) || state.collected);
+                    let expected = objects.iter().zip(&is_collected).all(|(other, is_done)| !lower(other) || *is_done);
                     prop_assert_eq!(sequence.is_due(own.order), expected);
                 }
             }

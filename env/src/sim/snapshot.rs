@@ -1,14 +1,17 @@
-//! Keeping a moment of a running world in memory, and going back to it. The form that can be written down is in `progress.rs`.
+//! Keeping a moment of a running world, and going back to it: in memory, or as a world that is written down. What the
+//! written form says is in `progress.rs`.
 
 use std::fmt;
 use std::sync::Arc;
 
-use driftworld_spec::World;
+use driftworld_spec::{AgentParams, Object, World};
 
 use super::environment::Environment;
+use super::progress::{agent_now, object_now, to_world};
 use super::state::SimState;
 use super::streams::Seed;
 use crate::EnvError;
+use crate::agents::RailsPolicy;
 use crate::assets::Catalogue;
 
 /// A moment of a running world, in memory.
@@ -20,17 +23,16 @@ pub struct Snapshot {
     world: Arc<World>,
     catalogue: Catalogue,
     seed: Seed,
-    episode: SimState,
-    /// Where each object stands and faces.
-    places: Vec<([f32; 2], f32)>,
+    state: SimState,
+    rails: Option<RailsPolicy>,
 }
 
 impl fmt::Debug for Snapshot {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.debug_struct("Snapshot")
-            .field("steps", &self.episode.steps)
-            .field("agent", &self.episode.agent)
-            .field("objects", &self.episode.objects.len())
+            .field("steps", &self.state.steps)
+            .field("agent", &self.state.agent)
+            .field("objects", &self.state.objects.len())
             .finish_non_exhaustive()
     }
 }
@@ -41,7 +43,7 @@ impl Environment {
     /// # Example
     /// ```
     /// use driftworld_env::{Action, Environment};
-    /// use driftworld_spec::World;
+    /// use driftworld_spec::{AgentParams, Object, World};
     /// let mut environment = Environment::new(World::default())?;
     /// let start = environment.snapshot();
     /// environment.step(Action::Continuous([10.0, 90.0, 0.0]))?;
@@ -50,13 +52,12 @@ impl Environment {
     /// # Ok::<(), driftworld_env::EnvError>(())
     /// ```
     pub fn snapshot(&self) -> Snapshot {
-        let place = |item: &crate::Item| (item.position, item.heading_deg);
         Snapshot {
             world: Arc::clone(&self.world),
-            catalogue: self.scene.catalogue().clone(),
+            catalogue: self.views.scene.catalogue().clone(),
             seed: self.seed.clone(),
-            episode: self.episode.clone(),
-            places: self.scene.items.iter().map(place).collect(),
+            state: self.state.clone(),
+            rails: self.rails.clone(),
         }
     }
 
@@ -69,20 +70,39 @@ impl Environment {
             self.start_with(Arc::clone(&moment.world), &moment.catalogue);
         }
         self.seed.clone_from(&moment.seed);
-        self.episode.clone_from(&moment.episode);
-        for (index, &(position, heading_deg)) in moment.places.iter().enumerate() {
-            let state = &self.episode.objects[index];
-            let item = &mut self.scene.items[index];
-            item.position = position;
-            item.heading_deg = heading_deg;
-            item.reward = state.reward as f32;
-            item.visible = state.present;
-            self.ground.remove(index as u32);
-            if state.present {
-                self.ground
-                    .add_object(index as u32, item, self.world.objects[index].solid);
-            }
-        }
+        self.state.clone_from(&moment.state);
+        self.rails.clone_from(&moment.rails);
+        self.views.sync_objects(&self.world, &self.state);
         Ok(())
+    }
+
+    /// The world as it is now, as a document: objects where they stand with the rewards that are left, and in `progress` all
+    /// else that a reset to it needs to go on as if nothing had been.
+    ///
+    /// Destroyed objects are among the objects, so that numbers stay; their progress says that they are not there.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_env::{Action, Environment};
+    /// use driftworld_spec::World;
+    /// let mut environment = Environment::new(World::default())?;
+    /// environment.step(Action::Continuous([10.0, 90.0, 0.0]))?;
+    /// let written = environment.state().to_json();
+    /// let read = World::from_json("state", &written).expect("a state is a sound world");
+    /// assert_eq!(Environment::new(read)?.agent(), environment.agent());
+    /// # Ok::<(), driftworld_env::EnvError>(())
+    /// ```
+    pub fn state(&self) -> World {
+        to_world(self.sim(), &self.seed, self.rails.as_ref().map(RailsPolicy::progress))
+    }
+
+    /// The agent of the world, where it is now: to the bit where it started if it is there.
+    pub(crate) fn agent_now(&self) -> AgentParams {
+        agent_now(self.sim())
+    }
+
+    /// An object of the world, where it is now and with what is left of its reward.
+    pub(crate) fn object_now(&self, index: usize) -> Object {
+        object_now(self.sim(), index)
     }
 }

@@ -1,12 +1,12 @@
-//! All that changes while a world runs, in one value: what a snapshot copies. What changes it is in the files beside this one.
+//! All that changes while a world runs, in one value: what a snapshot copies, and what a document of progress writes
+//! down. Systems change it; what is derived from it is in `views.rs`.
 
-use driftworld_spec::{ActionModel, LastEvent, Object, World};
+use driftworld_spec::{LastEvent, Object, World};
 
 use super::mover::Mover;
-use super::pushing::Pushed;
+use super::pushed::Pushed;
 use super::sequence::Sequence;
 use super::streams::{Identities, ObjectRng, Seed};
-use crate::agents::OnRailsAgent;
 
 /// Where the agent is and how it moves.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -30,6 +30,10 @@ impl AgentState {
 /// One object while its world runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectState {
+    /// Position in metres; the last one of an object that is gone.
+    pub position: [f32; 2],
+    /// Heading in degrees, clockwise from +y.
+    pub heading_deg: f32,
     /// What a triggering pays now; 0 once it has paid what pays once.
     pub reward: f64,
     /// Whether it is still there.
@@ -43,6 +47,8 @@ impl ObjectState {
     /// An object at its start.
     pub(super) fn new(object: &Object) -> Self {
         Self {
+            position: object.coordinates.map(|metres| metres as f32),
+            heading_deg: object.heading as f32,
             reward: object.reward,
             present: true,
             collected: false,
@@ -57,7 +63,7 @@ pub(super) fn wrapped(heading_deg: f32) -> f32 {
     if heading_deg < 360.0 { heading_deg } else { 0.0 }
 }
 
-/// Where a world stands in its course.
+/// Where a world stands in its course: the only place that says where things are, whether they are there and what they pay.
 #[derive(Clone)]
 pub(crate) struct SimState {
     pub(super) agent: AgentState,
@@ -77,28 +83,27 @@ pub(crate) struct SimState {
     pub(super) rngs: Vec<ObjectRng>,
     /// Objects in contact at the end of the last step, in rising order.
     pub(super) contacts: Vec<u32>,
-    /// The objects that move by themselves.
+    /// The objects that move by themselves, in rising order.
     pub(super) movers: Vec<Mover>,
     /// The objects that are pushed, in rising order.
     pub(super) pushed: Vec<Pushed>,
     /// Destroyed objects that come back, in rising order, with the time step in which they do.
     pub(super) returning: Vec<(usize, u64)>,
-    pub(super) rails: Option<OnRailsAgent>,
     /// Whose turn it is, where objects have one.
     pub(super) sequence: Sequence,
 }
 
 impl SimState {
-    /// The start of a world. What is touched or near is found later, when there are bodies.
+    /// The start of a world. Nothing is touched or near yet: where the agent starts counts as news in the first step.
     pub(super) fn new(world: &World, seed: &Seed, identities: &mut Identities) -> Self {
         let start = &world.agent_params;
-        let mut episode = Self {
+        let mut state = Self {
             agent: AgentState {
                 position: start.coordinates.map(|metres| metres as f32),
                 heading_deg: wrapped(start.heading as f32),
                 velocity: [0.0; 2],
             },
-            objects: world.objects.iter().map(ObjectState::new).collect(),
+            objects: Vec::with_capacity(world.objects.len()),
             steps: 0,
             ticks: 0,
             earned: 0.0,
@@ -109,27 +114,29 @@ impl SimState {
             rngs: Vec::new(),
             contacts: Vec::new(),
             movers: Vec::new(),
-            pushed: Pushed::all(world),
+            pushed: Vec::new(),
             returning: Vec::new(),
-            rails: (start.action_model == ActionModel::OnRails).then(OnRailsAgent::new),
             sequence: Sequence::of(&world.objects),
         };
-        for (index, object) in world.objects.iter().enumerate() {
-            episode.add_processes(index, object, seed, identities);
+        for object in &world.objects {
+            state.add_object(object, seed, identities);
         }
-        episode
+        state
     }
 
-    /// Adds what moves an object and what it draws; `object` is as it was at its start.
-    pub(super) fn add_processes(&mut self, index: usize, object: &Object, seed: &Seed, identities: &mut Identities) {
+    /// Adds an object at its start, but for its place in the sequence.
+    pub(super) fn add_object(&mut self, object: &Object, seed: &Seed, identities: &mut Identities) {
+        let index = self.objects.len();
         // Most objects of most worlds draw nothing, and then nobody asks who they are.
         let identity = if object.takes_chances() {
             identities.take(object)
         } else {
             0
         };
+        self.objects.push(ObjectState::new(object));
         self.movers.extend(Mover::new(index, object, seed, identity));
         self.rngs.extend(ObjectRng::new(index, object, seed, identity));
+        self.pushed.extend(Pushed::new(index, object));
     }
 
     /// The motion of an object that is pushed.
@@ -142,5 +149,41 @@ impl SimState {
     pub(super) fn rng_of(&mut self, object: usize) -> Option<&mut ObjectRng> {
         let found = self.rngs.binary_search_by_key(&object, |rng| rng.object).ok()?;
         self.rngs.get_mut(found)
+    }
+
+    /// Whether the agent was in contact with an object at the end of the last step.
+    pub(crate) fn touches(&self, index: usize) -> bool {
+        self.contacts.binary_search(&(index as u32)).is_ok()
+    }
+
+    /// Whether all objects with a lower place in the sequence have been collected.
+    pub(super) fn is_due(&self, order: Option<u32>) -> bool {
+        self.sequence.is_due(order)
+    }
+
+    /// Takes note of what has been collected since the last call.
+    pub(super) fn advance_sequence(&mut self) {
+        let objects = &self.objects;
+        self.sequence.advance(|index| objects[index].collected);
+    }
+
+    /// The way from the agent to an object along x and y, in metres.
+    pub(super) fn way_to(&self, index: usize) -> [f32; 2] {
+        let (to, from) = (self.objects[index].position, self.agent.position);
+        [to[0] - from[0], to[1] - from[1]]
+    }
+
+    /// The index of the nearest object, centre to centre on the ground, for which a condition holds.
+    pub(super) fn nearest(&self, world: &World, holds: impl Fn(&Object, &ObjectState) -> bool) -> Option<usize> {
+        let objects = world.objects.iter().zip(&self.objects).enumerate();
+        let distance = |index: usize| {
+            let [x, y] = self.way_to(index);
+            x * x + y * y
+        };
+        objects
+            .filter(|(_, (object, state))| holds(object, state))
+            .map(|(index, _)| (index, distance(index)))
+            .min_by(|(_, a), (_, b)| a.total_cmp(b))
+            .map(|(index, _)| index)
     }
 }

@@ -1,12 +1,17 @@
-//! One step of a world: the action, its time steps, what the rules make of them. What touching things does is in `interactions.rs`,
-//! endings are in `termination.rs`.
+//! One step of a world: the action, its time steps, what the rules make of them. What touching things does is in
+//! `interactions.rs`, endings are in `termination.rs`.
 
 use driftworld_spec::{ActionModel, LastEvent};
 
 use super::action::{Action, Intent};
+use super::agent_motion::apply_action;
 use super::environment::Environment;
 use super::event::Step;
-use super::state::wrapped;
+use super::interactions::{Objects, apply_stimuli};
+use super::motion::move_objects;
+use super::respawn::respawn;
+use super::sim_ref::SimRef;
+use super::termination::{check_termination, potential};
 use crate::EnvError;
 
 impl Environment {
@@ -28,35 +33,40 @@ impl Environment {
         let numbers = self.numbers(action)?;
         let mut intent = self.intent(numbers);
         step.clear();
-        let potential_before = self.potential();
+        let potential_before = potential(&self.world, &self.state);
         step.reward = self.world.rules.step_reward;
         let pay = self.world.rules.reward_per_second * self.world.agent_params.time_step;
         let max_ticks = self.world.max_ticks().unwrap_or(u64::MAX);
         for _ in 0..self.world.agent_params.frame_skip.max(1) {
             step.reward += pay;
             self.tick(intent, step);
-            self.check_termination(step);
-            if step.terminated || self.episode.ticks >= max_ticks {
+            check_termination(&self.world, &self.state, self.had_targets, step);
+            if step.terminated || self.state.ticks >= max_ticks {
                 break;
             }
             intent.interact = false;
         }
-        self.episode.steps = self.episode.steps.saturating_add(1);
-        self.episode.unshaped += step.reward;
-        let steps_are_over = self.world.max_steps > 0 && self.episode.steps >= self.world.max_steps;
-        step.truncated = !step.terminated && (steps_are_over || self.episode.ticks >= max_ticks);
+        let state = &mut self.state;
+        state.steps = state.steps.saturating_add(1);
+        state.unshaped += step.reward;
+        let steps_are_over = self.world.max_steps > 0 && state.steps >= self.world.max_steps;
+        step.truncated = !step.terminated && (steps_are_over || state.ticks >= max_ticks);
         if let Some(shaping) = &self.world.rules.shaping {
-            let after = if step.terminated { 0.0 } else { self.potential() };
+            let after = if step.terminated {
+                0.0
+            } else {
+                potential(&self.world, state)
+            };
             step.reward += shaping.discount * after - potential_before;
         }
-        self.episode.earned += step.reward;
-        self.episode.last_reward = step.reward;
-        self.episode.last_event = step.events.last().map(|event| LastEvent {
+        state.earned += step.reward;
+        state.last_reward = step.reward;
+        state.last_event = step.events.last().map(|event| LastEvent {
             stimulus: event.stimulus,
             reward: event.reward,
             destroyed: event.destroyed,
         });
-        self.episode.ended = step.ended();
+        state.ended = step.ended();
         Ok(())
     }
 
@@ -70,67 +80,45 @@ impl Environment {
 
     /// What the action says, if it can be carried out now.
     fn numbers(&self, action: Action) -> Result<[f64; 3], EnvError> {
-        if self.episode.ended {
+        if self.state.ended {
             return Err(EnvError::Ended);
         }
         action.numbers(&self.world)
     }
 
+    /// What the agent means to do: in a world on rails, what its policy says in place of the action.
     fn intent(&mut self, numbers: [f64; 3]) -> Intent {
         let agent = &self.world.agent_params;
-        let Some(mut rails) = self.episode.rails.take() else {
-            return Intent::new(agent.action_model, numbers, agent);
+        let sim = SimRef {
+            world: &self.world,
+            state: &self.state,
+            views: &self.views,
         };
-        let numbers = rails.steer(self);
-        self.episode.rails = Some(rails);
-        Intent::new(ActionModel::ByVelocity, numbers, &self.world.agent_params)
+        match &mut self.rails {
+            Some(policy) => Intent::new(ActionModel::ByVelocity, policy.steer(sim), agent),
+            None => Intent::new(agent.action_model, numbers, agent),
+        }
     }
 
     /// One time step.
     fn tick(&mut self, intent: Intent, step: &mut Step) {
-        self.episode.ticks += 1;
-        self.apply_action(intent);
-        self.respawn();
-        self.move_objects();
-        self.apply_stimuli(intent, step);
-    }
-
-    /// Turns and moves the agent, and notes the objects it meets on the way.
-    fn apply_action(&mut self, intent: Intent) {
-        let start = self.episode.agent.position;
-        self.episode.agent.heading_deg = wrapped(self.episode.agent.heading_deg + intent.turn_deg);
-        let by = match intent.towards {
-            Some((point, reach)) => {
-                let way = [point[0] - start[0], point[1] - start[1]];
-                let length = (way[0] * way[0] + way[1] * way[1]).sqrt();
-                let share = if length > reach { reach / length } else { 1.0 };
-                way.map(|metres| metres * share)
-            }
-            None => self.episode.agent.forward().map(|part| part * intent.ahead),
+        let Self {
+            world,
+            state,
+            views,
+            encounters,
+            stimuli,
+            ..
+        } = self;
+        state.ticks += 1;
+        encounters.clear();
+        apply_action(world, state, views, intent, encounters);
+        respawn(world, state, views, encounters);
+        move_objects(world, state, views, encounters);
+        let objects = Objects {
+            world,
+            tags: &self.tags,
         };
-        self.scratch.met.clear();
-        self.scratch.moved.clear();
-        self.scratch.arrived.clear();
-        let by = self.push_bodies(by);
-        let position = self.ground.slide(start, by);
-        let objects = &self.world.objects;
-        let movers = &self.episode.movers;
-        // Ghosts that move are met where both ways lead, which is known when they have moved.
-        let moves = |object: u32| {
-            movers
-                .binary_search_by_key(&(object as usize), |mover| mover.object)
-                .is_ok()
-        };
-        let skipped = |object: u32| !objects[object as usize].solid && moves(object);
-        self.ground.note_passed(&mut self.scratch.met, skipped);
-        self.scratch.kept.clear();
-        let contacts = self.episode.contacts.iter().copied();
-        let ground = &self.ground;
-        self.scratch
-            .kept
-            .extend(contacts.filter(|index| ground.is_still_touched(*index, position)));
-        self.episode.agent.position = position;
-        let seconds = self.world.agent_params.time_step as f32;
-        self.episode.agent.velocity = [0, 1].map(|axis| (position[axis] - start[axis]) / seconds);
+        apply_stimuli(objects, state, views, intent, encounters, stimuli, step);
     }
 }

@@ -1,8 +1,9 @@
-//! Where walls leave no room: geometry of polygons on the ground. How walls stop a body is in `collision_world.rs`.
+//! Where walls, and what stands fast, leave no room: geometry of polygons on the ground. How walls stop a body is in `collision_world.rs`.
 
 use driftworld_spec::World;
 
-use super::editing::Obstacle;
+use super::obstacle::Obstacle;
+use super::sim_ref::SimRef;
 
 /// What of the arena and its walls is in the way of a round body of this radius in metres.
 pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option<Obstacle> {
@@ -16,6 +17,17 @@ pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option
     let own = environment.walls.iter().map(|wall| wall.polygon.as_slice());
     let inside = |corners: &[[f64; 2]]| is_near_or_inside(corners, position, radius);
     (beyond || regions.chain(own).any(inside)).then_some(Obstacle::Wall)
+}
+
+/// What is in the way of the agent's body at a place: of the arena and its walls, or a solid object.
+pub(super) fn agent_obstacle(sim: SimRef, position: [f64; 2]) -> Option<Obstacle> {
+    let radius = sim.world.agent_params.agent_width / 2.0;
+    obstacle(sim.world, position, radius).or_else(|| {
+        let mut blocked = Vec::new();
+        let at = position.map(|metres| metres as f32);
+        sim.views.bodies.blocking(at, &mut blocked);
+        blocked.first().map(|index| Obstacle::Object { index: *index as usize })
+    })
 }
 
 /// Whether a point is inside a polygon, by the even-odd rule, or nearer to one of its edges than `margin` in metres.

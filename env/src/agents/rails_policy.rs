@@ -1,0 +1,192 @@
+//! The policy on rails: it knows the map, and tours what pays. How it goes to one object is in `steering.rs`; the agent
+//! that acts by it, in `on_rails.rs`. A world on rails steers by it, too.
+
+use driftworld_spec::{EndCondition, Object, RailsProgress, Stimulus, World};
+
+use super::nearest::Goal;
+use super::route::Route;
+use super::steering::{Purpose, Target, avoided, distance};
+use crate::scene::Scene;
+use crate::sim::SimRef;
+
+/// Steps after which a target that was not reached is left for later.
+const PATIENCE: u32 = 150;
+
+/// How far from the edge of an object that will come back the agent waits for it, in metres.
+const ASIDE: f32 = 1.5;
+
+/// Where the tour stands: which object comes next, and which were given up.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RailsPolicy {
+    target: Option<Target>,
+    steps_on_target: u32,
+    given_up: Vec<usize>,
+    /// Leads to the target. Boxed: agents are moved about, and this is large.
+    route: Box<Route>,
+}
+
+impl RailsPolicy {
+    /// What it is about to do, to be written down.
+    pub(crate) fn progress(&self) -> RailsProgress {
+        let target = self.target.as_ref();
+        RailsProgress {
+            target: target.map(|target| target.object as u32),
+            goal: target.map_or([0.0; 2], |target| target.goal.map(f64::from)),
+            avoided: target.map_or_else(Vec::new, |target| target.avoided.clone()),
+            patience: self.steps_on_target,
+            given_up: self.given_up.iter().map(|index| *index as u32).collect(),
+        }
+    }
+
+    /// Goes on from what was written down. A checked world names none but its own objects.
+    pub(crate) fn resumed(progress: &RailsProgress, world: &World, scene: &Scene) -> Self {
+        let known = |index: &u32| (*index as usize) < world.objects.len();
+        let mut route = Box::<Route>::default();
+        let target = progress.target.filter(known).map(|object| {
+            let goal = progress.goal.map(|metres| metres as f32);
+            let avoided: Vec<u32> = progress.avoided.iter().copied().filter(known).collect();
+            route.lead(world, scene, goal, &avoided);
+            Target {
+                object: object as usize,
+                goal,
+                avoided,
+            }
+        });
+        Self {
+            target,
+            steps_on_target: progress.patience,
+            given_up: progress.given_up.iter().map(|index| *index as usize).collect(),
+            route,
+        }
+    }
+
+    /// Begins the tour anew. What the route knows of the ground it looks at again before it uses it.
+    pub(super) fn begin(&mut self) {
+        let route = std::mem::take(&mut self.route);
+        *self = Self {
+            route,
+            ..Self::default()
+        };
+    }
+
+    /// Whether nothing is worth going to.
+    pub(crate) fn is_done(sim: SimRef) -> bool {
+        wanted(sim).is_empty()
+    }
+
+    fn choose(&mut self, sim: SimRef) {
+        let here = sim.agent().position;
+        let mut wanted = wanted(sim);
+        let mut given_up = vec![false; sim.objects().len()];
+        // What was written down may name objects that the world does not have.
+        for index in &self.given_up {
+            if let Some(given_up) = given_up.get_mut(*index) {
+                *given_up = true;
+            }
+        }
+        if wanted.iter().all(|index| given_up[*index]) {
+            self.given_up.clear();
+            given_up.fill(false);
+        }
+        wanted.retain(|index| !given_up[*index]);
+        let (world, scene) = (sim.world, sim.scene());
+        let goals: Vec<Goal> = wanted
+            .into_iter()
+            .map(|index| Goal {
+                object: index as u32,
+                place: sim.objects()[index].position,
+                probability: world.objects[index].reward_probability.max(0.01) as f32,
+            })
+            .collect();
+        let nearest = self.route.nearest(world, scene, here, &goals, &avoided(sim, None));
+        self.target = nearest.map(|number| Target::at(goals[number].object as usize, sim, &mut self.route));
+        self.steps_on_target = 0;
+    }
+
+    fn towards(&mut self, sim: SimRef) -> [f64; 3] {
+        let Some(target) = &self.target else {
+            return if stands_in_the_way(sim) { back(sim) } else { [0.0; 3] };
+        };
+        let object = &sim.world.objects[target.object];
+        if reacts_to(object, Stimulus::AgentInteract) {
+            return target.towards(sim, Purpose::Interact, &mut self.route);
+        }
+        // A contact counts when it begins: what wants to be touched again is left first.
+        if sim.state.touches(target.object) && reacts_to(object, Stimulus::AgentCollide) {
+            return back(sim);
+        }
+        target.towards(sim, Purpose::Touch, &mut self.route)
+    }
+}
+
+impl RailsPolicy {
+    /// What it does next, as speed, turn rate and interaction, whatever actions the world takes.
+    pub(crate) fn steer(&mut self, sim: SimRef) -> [f64; 3] {
+        self.steps_on_target = self.steps_on_target.saturating_add(1);
+        let wanted = wanted(sim);
+        let stale = self
+            .target
+            .as_ref()
+            .is_none_or(|target| !wanted.contains(&target.object));
+        if !stale && self.steps_on_target > PATIENCE {
+            self.given_up.extend(self.target.as_ref().map(|target| target.object));
+        }
+        if (stale || self.steps_on_target > PATIENCE) && !wanted.is_empty() {
+            self.choose(sim);
+        } else if wanted.is_empty() {
+            self.target = None;
+        }
+        if let Some(target) = self.target.as_mut().filter(|target| target.is_astray(sim)) {
+            *target = Target::at(target.object, sim, &mut self.route);
+        }
+        self.towards(sim)
+    }
+}
+
+/// The objects worth going to, by index: those that pay now; if there are none, those whose touch is a success.
+fn wanted(sim: SimRef) -> Vec<usize> {
+    let world = sim.world;
+    let states = sim.objects();
+    // In a sequence only what comes first of what is left pays.
+    let left = world.objects.iter().zip(states).filter(|(_, state)| !state.collected);
+    let first = left.filter_map(|(object, _)| object.order).min();
+    let in_turn = |index: &usize| {
+        let order = world.objects[*index].order;
+        order.is_none_or(|own| first.is_none_or(|first| own <= first))
+    };
+    let pays =
+        |index: &usize| world.objects[*index].is_target() && states[*index].present && states[*index].reward > 0.0;
+    let paying: Vec<usize> = (0..states.len()).filter(pays).filter(in_turn).collect();
+    if !paying.is_empty() {
+        return paying;
+    }
+    let ends = |object: &Object| {
+        world.rules.success.iter().any(|condition| match condition {
+            EndCondition::Touch(tag) => object.tag.as_ref() == Some(tag),
+            _ => false,
+        })
+    };
+    (0..states.len())
+        .filter(|&index| states[index].present && ends(&world.objects[index]))
+        .collect()
+}
+
+/// Whether the agent stands where something that pays would come back.
+fn stands_in_the_way(sim: SimRef) -> bool {
+    let here = sim.agent().position;
+    let objects = sim.world.objects.iter().zip(sim.objects()).enumerate();
+    let mut gone =
+        objects.filter(|(_, (object, state))| !state.present && object.respawn.is_some() && object.is_target());
+    gone.any(|(index, (object, _))| {
+        let first_place = object.coordinates.map(|metres| metres as f32);
+        distance(here, first_place) < ASIDE + sim.body_radius(index)
+    })
+}
+
+fn back(sim: SimRef) -> [f64; 3] {
+    [-sim.world.agent_params.max_linear_speed / 2.0, 0.0, 0.0]
+}
+
+fn reacts_to(object: &Object, stimulus: Stimulus) -> bool {
+    object.reward_stimulus.contains(&stimulus) || object.reward_once_stimulus.contains(&stimulus)
+}

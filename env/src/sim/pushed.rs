@@ -1,0 +1,39 @@
+//! The motion of an object that is pushed, and which objects are. The physics is in `pushing.rs`.
+
+use driftworld_spec::{MotionModel, Object};
+
+/// The motion of one body that is pushed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pushed {
+    /// The object's number in the world.
+    pub(super) object: usize,
+    /// In metres per second.
+    pub(super) velocity: [f32; 2],
+    /// In degrees per second, clockwise.
+    pub(super) spin_deg: f32,
+}
+
+impl Pushed {
+    /// An object's motion, at rest, if it can be pushed.
+    pub(super) fn new(object_index: usize, object: &Object) -> Option<Self> {
+        is_pushed(object).then_some(Self {
+            object: object_index,
+            velocity: [0.0; 2],
+            spin_deg: 0.0,
+        })
+    }
+
+    /// Brings it to rest.
+    pub(super) fn stop(&mut self) {
+        (self.velocity, self.spin_deg) = ([0.0; 2], 0.0);
+    }
+
+    pub(super) fn moves(&self) -> bool {
+        self.velocity != [0.0; 2] || self.spin_deg != 0.0
+    }
+}
+
+/// Whether an object can be pushed: it says so, is solid, and does not move by itself.
+pub(super) fn is_pushed(object: &Object) -> bool {
+    object.pushable.is_some() && object.solid && object.motion_model == MotionModel::Stationary
+}

@@ -1,0 +1,85 @@
+//! How destroyed objects come back: near their first place, where nothing stands.
+
+use driftworld_spec::World;
+
+use super::budget::{self, Budget, SharedBudget};
+use super::encounters::Encounters;
+use super::sim_ref::SimRef;
+use super::state::SimState;
+use super::views::Views;
+use super::walls;
+
+/// Puts back the destroyed objects whose time has come.
+pub(super) fn respawn(world: &World, state: &mut SimState, views: &mut Views, encounters: &mut Encounters) {
+    let now = state.ticks;
+    let mut returning = std::mem::take(&mut state.returning);
+    let waiting = returning.len();
+    let count = budget::RETURNS + budget::EACH_RETURN * waiting as u64;
+    let mut budget = SharedBudget::new(count, waiting, now);
+    let per_place = if waiting > 0 { 1 + num_wall_corners(world) } else { 0 };
+    let mut place = 0;
+    returning.retain(|&(index, due)| {
+        place += 1;
+        let is_back = due <= now && try_respawn(world, state, views, index, per_place, budget.at(place - 1));
+        if is_back {
+            encounters.returned.push(index);
+        }
+        !is_back
+    });
+    state.returning = returning;
+    #[cfg(test)]
+    (encounters.looked += count - budget.left());
+}
+
+/// How many corners the walls of the world have.
+fn num_wall_corners(world: &World) -> usize {
+    let environment = &world.environment_params;
+    let regions: usize = environment.regions().into_iter().map(<[_]>::len).sum();
+    regions + environment.walls.iter().map(|wall| wall.polygon.len()).sum::<usize>()
+}
+
+/// Puts an object back at a free place; false if none is found in this step. Each place that is tried takes
+/// `per_place` looks.
+fn try_respawn(
+    world: &World,
+    state: &mut SimState,
+    views: &mut Views,
+    index: usize,
+    per_place: usize,
+    budget: &mut Budget,
+) -> bool {
+    /// Places tried in one step.
+    const TRIES: u32 = 16;
+    let object = &world.objects[index];
+    let Some(respawn) = &object.respawn else { return true };
+    views.bodies.place_agent(state.agent.position);
+    let radius = SimRef { world, state, views }.body_radius(index);
+    let first = object.coordinates.map(|metres| metres as f32);
+    for _ in 0..TRIES {
+        if !budget.take(per_place) {
+            return false;
+        }
+        // What comes back has its random numbers: they are made with the state, or when it is spawned.
+        let Some(rng) = state.rng_of(index) else { return true };
+        let [out, around] = rng.draw_place().map(|unit| unit as f32);
+        let distance = respawn.radius as f32 * out.sqrt();
+        let angle = std::f32::consts::TAU * around;
+        let place = [
+            first[0] + distance * libm::cosf(angle),
+            first[1] + distance * libm::sinf(angle),
+        ];
+        let in_wall = walls::obstacle(world, place.map(f64::from), f64::from(radius)).is_some();
+        if !in_wall && views.bodies.is_free(place, radius, budget) {
+            rng.note_return();
+            let own = &mut state.objects[index];
+            (own.position, own.heading_deg) = (place, object.heading as f32);
+            (own.present, own.reward, own.in_range) = (true, object.reward, false);
+            views.sync_object(index, object, own);
+            if let Some(body) = state.pushed_of(index) {
+                body.stop();
+            }
+            return true;
+        }
+    }
+    false
+}

@@ -1,0 +1,40 @@
+//! What is derived from the state: the scene that renderers draw, and the bodies that motion asks about. Neither has
+//! anything of its own to say about a place, a heading, a presence or a reward.
+
+use driftworld_spec::{Object, World};
+
+use super::collision_world::CollisionWorld;
+use super::state::{ObjectState, SimState};
+use crate::assets::Catalogue;
+use crate::scene::Scene;
+
+/// The views on a state.
+pub(crate) struct Views {
+    pub(crate) scene: Scene,
+    pub(super) bodies: CollisionWorld,
+}
+
+impl Views {
+    /// Those of a world at its start, its assets from a catalogue.
+    pub(super) fn new(world: &World, catalogue: &Catalogue) -> Self {
+        let scene = Scene::from_world_with(world, catalogue);
+        let bodies = CollisionWorld::new(world, &scene);
+        Self { scene, bodies }
+    }
+
+    /// Brings an object's item and body up to date with its state. Whoever changes a state calls this, and nothing
+    /// else changes the views.
+    pub(super) fn sync_object(&mut self, index: usize, object: &Object, state: &ObjectState) {
+        let item = &mut self.scene.items[index];
+        (item.position, item.heading_deg) = (state.position, state.heading_deg);
+        (item.reward, item.visible) = (state.reward as f32, state.present);
+        self.bodies.sync_object(index as u32, item, object.solid);
+    }
+
+    /// Brings all objects up to date.
+    pub(super) fn sync_objects(&mut self, world: &World, state: &SimState) {
+        for (index, (object, state)) in world.objects.iter().zip(&state.objects).enumerate() {
+            self.sync_object(index, object, state);
+        }
+    }
+}
