@@ -98,7 +98,7 @@ fn limits_of_what_is_read_are_on_the_page() {
         "metrics/src/log/data_file.rs",
         "metrics/src/log/table.rs",
         "env/src/assets/library/mod.rs",
-        "env/src/assets/import/mod.rs",
+        "env/src/assets/import/limits.rs",
         "src/matrix_file.rs",
         "src/libraries.rs",
     ] {

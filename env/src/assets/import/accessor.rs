@@ -5,8 +5,8 @@ use gltf_json::accessor::{Accessor, ComponentType, GenericComponentType, Type};
 use gltf_json::validation::Checked;
 use gltf_json::{Index, Root};
 
-use super::buffers::{Buffers, one_of};
-use super::refuse;
+use super::buffers::Buffers;
+use super::refusal::{one_of, refuse};
 use crate::EnvError;
 use crate::assets::library::{MAX_MODEL_TRIANGLES, MAX_MODEL_VERTICES};
 

@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use gltf_json::{Index, Root, buffer};
 
-use super::{ReadBeside, refuse, uri};
+use super::refusal::{one_of, refuse};
+use super::uri::{self, ReadBeside};
 use crate::EnvError;
 
 /// The most buffers, and the most bytes of all of them together.
@@ -93,14 +94,5 @@ impl<'a> Buffers<'a> {
         // The end is within the buffer, which is within the data.
         let bytes = data.get(offset as usize..end as usize).unwrap_or_default();
         Ok(View { bytes, stride })
-    }
-}
-
-/// The numbers that a list of this length has.
-pub(super) fn one_of(length: usize) -> String {
-    match length {
-        0 => "none, for there are none".to_owned(),
-        1 => "0, the only one".to_owned(),
-        length => format!("0 to {}", length - 1),
     }
 }

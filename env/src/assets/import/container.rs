@@ -1,6 +1,6 @@
 //! The outermost layer of a file: GLB with its chunks, or plain JSON. What the JSON says is read in `document.rs`.
 
-use super::refuse;
+use super::refusal::refuse;
 use crate::EnvError;
 
 /// The parts of a file.

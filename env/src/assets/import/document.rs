@@ -7,7 +7,8 @@ use gltf_json::Root;
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny, MapAccess, Visitor};
 
-use super::{MAX_IMPORT_DEPTH, MAX_IMPORT_NODES, refuse};
+use super::limits::{MAX_IMPORT_DEPTH, MAX_IMPORT_NODES};
+use super::refusal::{refuse, shortened, shortened_to};
 use crate::EnvError;
 
 /// The most objects and lists: each may cost some hundred bytes of memory for two of text.
@@ -109,19 +110,6 @@ fn is_compression(extension: &str) -> bool {
     ["draco", "meshopt", "quantization", "basisu"]
         .iter()
         .any(|word| extension.to_lowercase().contains(word))
-}
-
-/// A text of a file as it is quoted in a message: never more than a line of it.
-pub(super) fn shortened(text: &str) -> String {
-    shortened_to(60, text)
-}
-
-/// The first letters of a text, at most so many.
-fn shortened_to(most: usize, text: &str) -> String {
-    match text.char_indices().nth(most) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.to_owned(),
-    }
 }
 
 /// Refuses JSON that is nested too deep, or would take many times its length in memory.

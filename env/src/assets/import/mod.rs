@@ -1,4 +1,4 @@
-//! Models from glTF 2.0 files: what may be asked for, and the way from bytes to a model. Files that lie are refused where they
+//! Models from glTF 2.0 files: the way from bytes to a model. Files that lie are refused where they
 //! lie, in the file of the step that meets them. Skins and animations are left out; extensions that compress are refused.
 
 mod accessor;
@@ -9,57 +9,30 @@ mod container;
 mod deviation;
 mod document;
 mod fit;
+mod limits;
 mod nodes;
+mod options;
 mod palette;
 mod primitive;
+mod refusal;
 mod simplify;
+mod size;
 mod surface;
 mod texture;
 mod uri;
 mod warning;
 
 pub use fit::ColliderKind;
+pub use limits::{MAX_IMPORT_BYTES, MAX_IMPORT_DEPTH, MAX_IMPORT_NODES, MAX_TEXTURE_SIDE};
+pub use options::ImportOptions;
+pub use size::ImportSize;
+pub use uri::ReadBeside;
 pub use warning::ImportWarning;
 
 use self::palette::Group;
-use super::library::{Detail, LibraryModel, MAX_MODEL_REACH};
+use self::refusal::refuse;
+use super::library::{Detail, LibraryModel};
 use crate::EnvError;
-
-/// The largest glTF file, and the largest of each file that it names, in bytes.
-pub const MAX_IMPORT_BYTES: usize = 64 << 20;
-
-/// The most nodes of a glTF file.
-pub const MAX_IMPORT_NODES: usize = 10_000;
-
-/// How deep nodes may lie in each other, and objects and lists of JSON.
-pub const MAX_IMPORT_DEPTH: usize = 64;
-
-/// The most pixels of a texture along each side.
-pub const MAX_TEXTURE_SIDE: u32 = 4096;
-
-/// How a glTF file becomes a model.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ImportOptions {
-    /// The class that worlds refer to it by.
-    pub class: String,
-    /// The model's name within its class, such as "1".
-    pub name: String,
-    /// How large it becomes.
-    pub size: ImportSize,
-    /// What the agent bumps into.
-    pub collider: ColliderKind,
-    /// Name of the material whose colour gives way to an object's `color`. Without it, the material named `main`, if any.
-    pub main: Option<String>,
-}
-
-/// How large a model becomes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ImportSize {
-    /// So many metres for each unit of the file: 1 where the file is in metres, as glTF asks for.
-    Scale(f32),
-    /// So high in metres.
-    Height(f32),
-}
 
 /// A model and what was left out of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,10 +42,6 @@ pub struct Imported {
     /// What of the file could not be kept, each kind once.
     pub warnings: Vec<ImportWarning>,
 }
-
-/// Hands over a file that lies beside the glTF file, or says why it cannot. It is asked for relative paths that lead into the
-/// folder only, with `/` between their parts; whoever follows links must see that they stay there too.
-pub type ReadBeside<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 
 impl LibraryModel {
     /// A model from the bytes of a `.glb` or `.gltf` file.
@@ -142,36 +111,4 @@ fn finish(
         model,
         warnings: warnings.into_list(),
     })
-}
-
-/// What is found at a place of a file, and what was expected.
-fn refuse(place: impl Into<String>, found: impl Into<String>, expected: impl Into<String>) -> EnvError {
-    EnvError::BadModel {
-        place: place.into(),
-        found: found.into(),
-        expected: expected.into(),
-    }
-}
-
-impl ImportSize {
-    /// Metres for each unit of a file in which the model is `height` units high.
-    fn factor(self, height: f64) -> Result<f64, EnvError> {
-        let (place, asked) = match self {
-            Self::Scale(scale) => ("scale", f64::from(scale)),
-            Self::Height(metres) => ("height", f64::from(metres)),
-        };
-        if !(asked > 0.0 && asked.is_finite()) {
-            return Err(refuse(place, asked.to_string(), "a number above 0"));
-        }
-        match self {
-            Self::Scale(_) => Ok(asked),
-            Self::Height(_) if asked > f64::from(MAX_MODEL_REACH) => Err(refuse(
-                place,
-                format!("{asked} m"),
-                format!("at most {MAX_MODEL_REACH} m"),
-            )),
-            Self::Height(_) if height > 0.0 => Ok(asked / height),
-            Self::Height(_) => Err(refuse(place, "a flat model, of no height", "a scale in its place")),
-        }
-    }
 }

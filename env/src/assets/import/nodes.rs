@@ -2,8 +2,8 @@
 
 use gltf_json::{Index, Mesh, Node, Root};
 
-use super::buffers::one_of;
-use super::{MAX_IMPORT_DEPTH, refuse};
+use super::limits::MAX_IMPORT_DEPTH;
+use super::refusal::{one_of, refuse};
 use crate::EnvError;
 
 /// Where a mesh stands: three rows of a 3 × 4 matrix that takes its points into the scene.

@@ -6,9 +6,9 @@ use gltf_json::validation::Checked;
 use gltf_json::{Root, material, texture};
 
 use super::accessor::{self, Use};
-use super::buffers::{Buffers, one_of};
+use super::buffers::Buffers;
 use super::coloring::Coloring;
-use super::refuse;
+use super::refusal::{one_of, refuse};
 use super::texture::Textures;
 use super::warning::{ImportWarning, Warnings};
 use crate::EnvError;

@@ -3,10 +3,10 @@
 
 use gltf_json::{Index, Mesh};
 
-use super::buffers::one_of;
 use super::nodes::Pose;
 use super::primitive::{ReadPrimitive, Reading};
-use super::{ImportSize, refuse};
+use super::refusal::{one_of, refuse};
+use super::size::ImportSize;
 use crate::EnvError;
 use crate::assets::library::MAX_MODEL_REACH;
 

@@ -8,10 +8,12 @@ use gltf_json::texture::{Sampler, WrappingMode};
 use gltf_json::validation::Checked;
 use gltf_json::{Index, Root};
 
-use super::buffers::{Buffers, one_of};
+use super::buffers::Buffers;
 use super::color::linear;
+use super::limits::MAX_TEXTURE_SIDE;
+use super::refusal::{one_of, refuse};
+use super::uri::{self, ReadBeside};
 use super::warning::{ImportWarning, Warnings};
-use super::{MAX_TEXTURE_SIDE, ReadBeside, refuse, uri};
 use crate::EnvError;
 
 /// The most pixels of all textures of a model together: two of the largest.

@@ -2,9 +2,13 @@
 
 use base64::Engine;
 
-use super::document::shortened;
-use super::{MAX_IMPORT_BYTES, ReadBeside, refuse};
+use super::limits::MAX_IMPORT_BYTES;
+use super::refusal::{refuse, shortened};
 use crate::EnvError;
+
+/// Hands over a file that lies beside the glTF file, or says why it cannot. It is asked for relative paths that lead into the
+/// folder only, with `/` between their parts; whoever follows links must see that they stay there too.
+pub type ReadBeside<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 
 /// The bytes that a URI stands for.
 pub(super) fn bytes(uri: &str, place: &str, read: &mut ReadBeside) -> Result<Vec<u8>, EnvError> {

@@ -1,0 +1,34 @@
+//! What is said where a glTF file is refused.
+
+use crate::EnvError;
+
+/// What is found at a place of a file, and what was expected.
+pub(super) fn refuse(place: impl Into<String>, found: impl Into<String>, expected: impl Into<String>) -> EnvError {
+    EnvError::BadModel {
+        place: place.into(),
+        found: found.into(),
+        expected: expected.into(),
+    }
+}
+
+/// The numbers that a list of this length has.
+pub(super) fn one_of(length: usize) -> String {
+    match length {
+        0 => "none, for there are none".to_owned(),
+        1 => "0, the only one".to_owned(),
+        length => format!("0 to {}", length - 1),
+    }
+}
+
+/// A text of a file as it is quoted in a message: never more than a line of it.
+pub(super) fn shortened(text: &str) -> String {
+    shortened_to(60, text)
+}
+
+/// The first letters of a text, at most so many.
+pub(super) fn shortened_to(most: usize, text: &str) -> String {
+    match text.char_indices().nth(most) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
