@@ -54,7 +54,7 @@ pub(super) fn run_episode(
     context: &EpisodeContext,
 ) -> Result<Option<Experience>, EnvError> {
     if let Some(label) = context.label {
-        agent.told(label);
+        agent.set_task_label(label);
     }
     agent.begin(context.seed);
     // A world without a limit of steps and without an end would never be over.

@@ -510,7 +510,7 @@ impl Agent for Pupil {
         let label = self.label.take();
         self.told.lock().expect("no test panics with it").push((seed, label));
     }
-    fn told(&mut self, label: &Label) {
+    fn set_task_label(&mut self, label: &Label) {
         self.label = Some(label.clone());
     }
     fn learn(&mut self, _: &Environment, _: &Step) {

@@ -7,28 +7,28 @@ pub trait Agent {
     /// The action for the environment's next step.
     fn act(&mut self, environment: &Environment) -> Action;
 
-    /// Told before each episode, with a seed for all that it draws in it.
+    /// Called before each episode, with a seed for all random numbers that the agent draws in it.
     ///
-    /// In a lifetime, every evaluation of the same world comes with the same number, so that an agent that has not changed acts
-    /// alike in it; what is learned in the same world again comes with another. The worlds of one number under one seed
-    /// come with one number in all variants of a task.
+    /// Within one run, each evaluation of a world comes with the same seed, so that an agent that has not changed acts
+    /// the same again. Learning in that world again comes with another seed. Worlds of the same index under the same
+    /// seed come with the same number in all variants of a task.
     fn begin(&mut self, _seed: u64) {}
 
-    /// Told before [`begin`](Self::begin) what the coming task is called, where the scenario lets the agent know.
-    fn told(&mut self, _label: &Label) {}
+    /// Called before [`begin`](Self::begin) with the label of the coming task, where the scenario reveals it.
+    fn set_task_label(&mut self, _label: &Label) {}
 
-    /// Told after each step in which the agent may learn, and never in an evaluation: whoever learns only here is frozen
-    /// there.
+    /// Called after each step in which the agent may learn, and never in an evaluation. An agent that learns only here
+    /// is frozen in evaluations.
     fn learn(&mut self, _environment: &Environment, _step: &Step) {}
 
-    /// Whether it may change by what it is told in [`learn`](Self::learn). One that does not acts in an episode by what it was
-    /// told before it and sees in it alone.
+    /// Whether [`learn`](Self::learn) may change the agent. If not, what it does in an episode depends only on the
+    /// label, the seed and what it observes there.
     fn learns(&self) -> bool {
         true
     }
 
-    /// A copy that acts in any episode as this agent does now, and is never told to learn. Copies live episodes at the same
-    /// time. `None`, the default, for an agent that cannot be copied: its episodes are lived one after the other.
+    /// A copy that acts as this agent does now and never learns. Copies run episodes in parallel. `None`, the default,
+    /// for an agent that cannot be copied: its episodes run one after the other.
     fn frozen(&self) -> Option<Box<dyn Agent + Send>> {
         None
     }

@@ -272,7 +272,7 @@ impl Batch {
 
     /// Steps of the episode that an environment is in, as [`BatchOptions::max_episode_steps`] counts them.
     pub fn episode_steps(&self, env: usize) -> Option<u32> {
-        self.slots.get(env).map(Slot::lived)
+        self.slots.get(env).map(Slot::steps)
     }
 
     /// Counts on from so many steps, for an episode that began elsewhere.
@@ -283,7 +283,7 @@ impl Batch {
         let num_envs = self.slots.len();
         let slot = self.slots.get_mut(env);
         slot.ok_or(EnvError::NoSuchEnv { found: env, num_envs })?
-            .set_lived(steps);
+            .set_steps(steps);
         Ok(())
     }
 

@@ -24,7 +24,7 @@ pub(super) struct Slot {
     /// Whether the next episode must begin before anything else happens.
     pub(super) is_over: bool,
     /// Steps of the episode that runs, and how many it may have.
-    lived: u32,
+    steps: u32,
     limit: Option<NonZeroU32>,
 }
 
@@ -54,7 +54,7 @@ impl Slot {
             current: 0,
             next: 1,
             is_over: false,
-            lived: 0,
+            steps: 0,
             limit,
         })
     }
@@ -66,14 +66,14 @@ impl Slot {
         }
     }
 
-    pub(super) fn lived(&self) -> u32 {
-        self.lived
+    pub(super) fn steps(&self) -> u32 {
+        self.steps
     }
 
     /// Counts on from so many steps; that may be the last.
-    pub(super) fn set_lived(&mut self, lived: u32) {
-        self.lived = lived;
-        self.is_over |= self.limit.is_some_and(|limit| lived >= limit.get());
+    pub(super) fn set_steps(&mut self, steps: u32) {
+        self.steps = steps;
+        self.is_over |= self.limit.is_some_and(|limit| steps >= limit.get());
     }
 
     pub(super) fn set_source(&mut self, source: WorldSource, restart: Option<u64>) {
@@ -137,8 +137,8 @@ impl Slot {
             return self.reset(index, outputs, renderer);
         }
         self.environment.step_into(action, &mut self.step)?;
-        self.lived = self.lived.saturating_add(1);
-        self.step.truncated |= self.limit.is_some_and(|limit| self.lived >= limit.get());
+        self.steps = self.steps.saturating_add(1);
+        self.step.truncated |= self.limit.is_some_and(|limit| self.steps >= limit.get());
         outputs.note(index, &self.step);
         self.is_over = self.step.ended();
         if let (true, Autoreset::SameStep, Some(finals)) = (self.is_over, autoreset, finals) {
@@ -168,9 +168,9 @@ impl Slot {
         self.environment.reset(world)?;
         self.current = self.next;
         self.next = self.next.saturating_add(1);
-        // A world that was written down after its end has nothing left to live.
+        // A world that was written down after its end has no step left.
         self.is_over = self.environment.ended();
-        self.lived = 0;
+        self.steps = 0;
         Ok(())
     }
 

@@ -36,7 +36,7 @@ pub struct Channels {
     /// Layouts that take the place of the built-in ones in worlds that are reset to.
     maps: MapLibrary,
     sent: u64,
-    /// What is told at each step, of [`PARTS`].
+    /// What is sent after each step, of [`PARTS`].
     watched: Vec<&'static str>,
     /// Which of [`Category::ALL`] are on.
     active: [bool; 4],
@@ -95,7 +95,7 @@ impl Channels {
         self.active[category as usize] = active;
     }
 
-    /// The parts of the world that are told at each step.
+    /// The parts of the world that are sent after each step.
     pub fn watched(&self) -> &[&'static str] {
         &self.watched
     }
@@ -151,7 +151,7 @@ impl Channels {
         }
     }
 
-    /// What is to be told after a step: remarks on what happened, then the parts of the world that are watched.
+    /// What is to be sent after a step: remarks on what happened, then the parts of the world that are watched.
     pub fn after_step(&mut self, environment: &Environment, step: &Step, time: &str) -> Vec<Outgoing> {
         let mut messages = Vec::new();
         for event in &step.events {

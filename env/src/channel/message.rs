@@ -30,7 +30,7 @@ pub struct Outgoing {
     pub token: String,
     /// The token of the message that it answers, if it answers one that had one.
     pub req_token: Option<String>,
-    /// When it was made, as the caller told the time.
+    /// When it was made, by the time that the caller gave.
     pub time: String,
 }
 

@@ -1,4 +1,4 @@
-//! L2Explorer's three channels of JSON messages: what a client asks of a running world, and what it is told. How messages
+//! L2Explorer's three channels of JSON messages: what a client asks of a running world, and what it is sent. How messages
 //! travel, what time it is and where files go is the caller's: nothing here reads or writes anything.
 
 mod category;
@@ -16,7 +16,7 @@ pub use request::Screenshot;
 pub enum Channel {
     /// New worlds, and new objects in the world there is.
     Reset,
-    /// Parts of the world, told at each step to who asked for them.
+    /// Parts of the world, sent after each step to clients that asked for them.
     State,
     /// Pictures, and remarks on what goes on.
     Debug,
