@@ -11,6 +11,7 @@ mod camera;
 mod channel;
 mod error;
 mod photograph;
+mod polygon;
 mod render;
 mod scene;
 mod sim;

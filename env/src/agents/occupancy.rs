@@ -4,6 +4,7 @@
 use driftworld_spec::World;
 
 use super::grid::Grid;
+use crate::polygon::is_near_or_inside;
 use crate::scene::Scene;
 
 /// How far ways keep from walls and objects, in metres beside half the agent's width.
@@ -202,8 +203,9 @@ impl OccupancyGrid {
                 (reach + margin) * sign
             };
             let [low, high] = [-1.0, 1.0].map(|sign| [bound(0, sign), bound(1, sign)]);
+            let corners = corners.iter().map(|corner| corner.map(|metres| metres as f32));
             for cell in grid.within(low, high) {
-                if self.taken[cell] == 0 && near_or_inside(corners, grid.centre(cell), margin) {
+                if self.taken[cell] == 0 && is_near_or_inside(corners.clone(), grid.centre(cell), margin) {
                     self.taken[cell] = 1;
                 }
             }
@@ -215,27 +217,6 @@ impl OccupancyGrid {
             regions,
         };
     }
-}
-
-fn near_or_inside(corners: &[[f64; 2]], [x, y]: [f32; 2], margin: f32) -> bool {
-    let mut inside = false;
-    let mut near = false;
-    for (from, to) in corners.iter().zip(corners.iter().cycle().skip(1)) {
-        let ([ax, ay], [bx, by]) = (from.map(|c| c as f32), to.map(|c| c as f32));
-        let (dx, dy) = (bx - ax, by - ay);
-        let squared = dx * dx + dy * dy;
-        let along = if squared > 0.0 {
-            (((x - ax) * dx + (y - ay) * dy) / squared).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        let (ex, ey) = (x - ax - along * dx, y - ay - along * dy);
-        near |= ex * ex + ey * ey < margin * margin;
-        if (ay > y) != (by > y) && x < dx * (y - ay) / dy + ax {
-            inside = !inside;
-        }
-    }
-    near || inside
 }
 
 #[cfg(test)]

@@ -2,11 +2,10 @@
 
 use driftworld_spec::{Modality, StateFeature, World};
 
+use super::depth::{self, DepthForm};
+use super::options::MAX_BATCH_BYTES;
 use crate::EnvError;
 use crate::render::{FAR_DEPTH, Target};
-
-use super::MAX_BATCH_BYTES;
-use super::depth::{self, DepthForm};
 
 /// What images the environments of a batch make: all alike.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -198,40 +197,20 @@ impl<'a> ImagesMut<'a> {
     }
 
     /// Those of the first environments, and the rest.
-    pub(super) fn split(self, num_envs: usize) -> (Self, Self) {
+    pub(super) fn split(mut self, num_envs: usize) -> (Self, Self) {
         let pixels = num_envs * self.size[0] as usize * self.size[1] as usize;
-        let (rgb, more_rgb) = halves(self.rgb, 3 * pixels);
-        let (depth, more_depth) = halves(self.depth, pixels);
-        let (depth_millimetres, more_millimetres) = halves(self.depth_millimetres, pixels);
-        let (depth_gray, more_gray) = halves(self.depth_gray, pixels);
-        let (category, more_category) = halves(self.category, pixels);
-        let (class, more_class) = halves(self.class, pixels);
-        let (instance, more_instance) = halves(self.instance, pixels);
-        let (size, supersampling) = (self.size, self.supersampling);
-        (
-            Self {
-                size,
-                supersampling,
-                rgb,
-                depth,
-                depth_millimetres,
-                depth_gray,
-                category,
-                class,
-                instance,
-            },
-            Self {
-                size,
-                supersampling,
-                rgb: more_rgb,
-                depth: more_depth,
-                depth_millimetres: more_millimetres,
-                depth_gray: more_gray,
-                category: more_category,
-                class: more_class,
-                instance: more_instance,
-            },
-        )
+        let rest = Self {
+            size: self.size,
+            supersampling: self.supersampling,
+            rgb: cut(&mut self.rgb, 3 * pixels),
+            depth: cut(&mut self.depth, pixels),
+            depth_millimetres: cut(&mut self.depth_millimetres, pixels),
+            depth_gray: cut(&mut self.depth_gray, pixels),
+            category: cut(&mut self.category, pixels),
+            class: cut(&mut self.class, pixels),
+            instance: cut(&mut self.instance, pixels),
+        };
+        (self, rest)
     }
 
     /// Makes the depth that was drawn into the form that is handed out, for the environment of this number among these.
@@ -276,10 +255,12 @@ pub(super) fn filled<T: Clone>(value: T, length: usize) -> Result<Vec<T>, EnvErr
     Ok(buffer)
 }
 
-/// A buffer in two; an empty one in two empty ones.
-pub(super) fn halves<T>(all: &mut [T], at: usize) -> (&mut [T], &mut [T]) {
+/// Cuts a buffer after so many, and hands back the rest; nothing of an empty one.
+pub(super) fn cut<'a, T>(all: &mut &'a mut [T], at: usize) -> &'a mut [T] {
     let at = at.min(all.len());
-    all.split_at_mut(at)
+    let (first, rest) = std::mem::take(all).split_at_mut(at);
+    *all = first;
+    rest
 }
 
 fn wanted<T>(all: &mut [T]) -> Option<&mut [T]> {

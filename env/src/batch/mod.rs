@@ -1,83 +1,31 @@
 //! [`Batch`]: many environments that step together, in one contiguous buffer per output. One environment's part of it is in
-//! `slot.rs`, the buffers of images in `images.rs`; what happens inside an environment is in `sim`.
+//! `slot.rs`, how the work is shared among threads in `part.rs`; what happens inside an environment is in `sim`.
 
 mod depth;
 mod graphics;
 mod images;
+mod options;
 mod outputs;
+mod part;
 mod slot;
 
-use std::num::{NonZeroU32, NonZeroUsize};
+use std::num::NonZeroUsize;
 use std::sync::Arc;
-
-use driftworld_spec::World;
 
 pub use depth::DepthForm;
 pub use images::{ImageLayout, Images};
+pub use options::{Autoreset, BatchOptions, Episode, GoOn, MAX_BATCH_BYTES, MAX_ENVS, WorldSource};
 pub use outputs::Outputs;
 
-use self::outputs::OutputsMut;
+use self::part::{Drawing, Part, Work};
 use self::slot::Slot;
 use crate::EnvError;
 use crate::assets::Catalogue;
 use crate::render::{CpuRenderer, Renderer, RendererKind};
 use crate::sim::{Action, Environment, Event};
 
-/// The most environments of one batch.
-pub const MAX_ENVS: usize = 65_536;
-
-/// The most bytes that the outputs of one batch may take: 16 GiB.
-pub const MAX_BATCH_BYTES: u64 = 16 << 30;
-
 /// The most threads of a batch for each processor: more would only take turns.
 const THREADS_PER_PROCESSOR: usize = 4;
-
-/// Whether to go on: asked before each environment's reset, by several threads.
-pub type GoOn<'a> = &'a (dyn Fn() -> bool + Sync);
-
-/// When an environment whose episode has ended starts the next one. Corresponds to Gymnasium's `AutoresetMode`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Autoreset {
-    /// In the next step: its action is ignored, it pays 0, and hands out the first observation.
-    #[default]
-    NextStep,
-    /// In the same step: it hands out the first observation of the next episode, and keeps the last of the old one in
-    /// [`Batch::final_outputs`].
-    SameStep,
-    /// When [`Batch::reset_where`] says so; stepping before is an error.
-    Disabled,
-}
-
-/// Which episode of which environment a world is wanted for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Episode {
-    /// Number of the environment in its batch.
-    pub env: usize,
-    /// Number of the episode in this environment, from 0.
-    pub index: u64,
-}
-
-/// Where worlds come from: one for each episode, or the reason why there is none.
-///
-/// It is called from several threads, in no particular order; worlds should depend on the episode alone.
-pub type WorldSource = Arc<dyn Fn(Episode) -> Result<World, String> + Send + Sync>;
-
-/// How a batch runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct BatchOptions {
-    /// When episodes that have ended are followed by the next.
-    pub autoreset: Autoreset,
-    /// Threads that step and draw, never more than there are environments, nor more than four for each processor; 0 is one for each
-    /// processor.
-    pub num_threads: usize,
-    /// What draws: the processor, each environment by itself; or a graphics card, all environments at once.
-    pub renderer: RendererKind,
-    /// The numbers of depth images.
-    pub depth: DepthForm,
-    /// A limit of steps beside that of the worlds, which know nothing of it: an episode of so many steps is truncated, whatever
-    /// else it is. As Gymnasium's `TimeLimit` does.
-    pub max_episode_steps: Option<NonZeroU32>,
-}
 
 /// `num_envs` environments that step together.
 ///
@@ -107,39 +55,6 @@ pub struct Batch {
     /// Draws all environments' images together, if a graphics card does; the renderers above are idle then.
     graphics: Option<Renderer>,
     pool: Option<rayon::ThreadPool>,
-}
-
-/// What a step or a reset does to a part of a batch.
-struct Part<'a> {
-    slots: &'a mut [Slot],
-    outputs: OutputsMut<'a>,
-    finals: Option<OutputsMut<'a>>,
-    renderers: &'a mut [CpuRenderer],
-    drawing: Drawing,
-}
-
-/// When images are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Drawing {
-    /// Right after an environment's step.
-    Now,
-    /// After the steps of all.
-    Later,
-}
-
-/// What all parts are to do.
-#[derive(Clone, Copy)]
-enum Work<'a> {
-    Step {
-        actions: &'a [Action],
-        autoreset: Autoreset,
-    },
-    Reset {
-        chosen: &'a [bool],
-        go_on: GoOn<'a>,
-    },
-    /// Begins the episodes that follow those whose last image had to be drawn first.
-    BeginLate,
 }
 
 impl Batch {
@@ -458,67 +373,6 @@ fn draw_together(
         }
     }
     Ok(())
-}
-
-impl Part<'_> {
-    /// Does the work on environments from `first` on, in halves until each has one renderer.
-    fn run(self, first: usize, work: Work<'_>) -> Result<(), EnvError> {
-        if self.renderers.len() <= 1 {
-            return self.run_here(first, work);
-        }
-        let share = self.renderers.len() / 2;
-        let middle = self.slots.len() * share / self.renderers.len();
-        let (slots, more_slots) = self.slots.split_at_mut(middle);
-        let (outputs, more_outputs) = self.outputs.split(middle);
-        let (finals, more_finals) = match self.finals.map(|finals| finals.split(middle)) {
-            Some((finals, more)) => (Some(finals), Some(more)),
-            None => (None, None),
-        };
-        let (renderers, more_renderers) = self.renderers.split_at_mut(share);
-        let low = Part {
-            slots,
-            outputs,
-            finals,
-            renderers,
-            drawing: self.drawing,
-        };
-        let high = Part {
-            slots: more_slots,
-            outputs: more_outputs,
-            finals: more_finals,
-            renderers: more_renderers,
-            drawing: self.drawing,
-        };
-        let (low, high) = rayon::join(|| low.run(first, work), || high.run(first + middle, work));
-        low.and(high)
-    }
-
-    fn run_here(mut self, first: usize, work: Work<'_>) -> Result<(), EnvError> {
-        let mut outcome = Ok(());
-        let Some(renderer) = self.renderers.first_mut() else {
-            return outcome;
-        };
-        for (index, slot) in self.slots.iter_mut().enumerate() {
-            let env = first + index;
-            let renderer = (self.drawing == Drawing::Now).then_some(&mut *renderer);
-            let done = match work {
-                Work::Reset { chosen, .. } if chosen.get(env) == Some(&false) => Ok(()),
-                Work::Reset { go_on, .. } if !go_on() => Err(EnvError::Stopped),
-                Work::Reset { .. } => slot.reset(index, &mut self.outputs, renderer),
-                Work::Step { actions, autoreset } => slot.step(
-                    actions[env],
-                    autoreset,
-                    index,
-                    &mut self.outputs,
-                    self.finals.as_mut(),
-                    renderer,
-                ),
-                Work::BeginLate => slot.begin_late(index, &mut self.outputs),
-            };
-            outcome = outcome.and(done);
-        }
-        outcome
-    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What comes out of a batch: observations, rewards and flags, one buffer each. Images are in `images.rs`.
 
 use super::depth::DepthForm;
-use super::images::{ImageLayout, Images, ImagesMut, filled, halves};
+use super::images::{ImageLayout, Images, ImagesMut, cut, filled};
 use crate::EnvError;
 
 /// Observations, rewards and flags of all environments, environment after environment.
@@ -78,34 +78,18 @@ impl Outputs {
 
 impl OutputsMut<'_> {
     /// Those of the first environments, and the rest.
-    pub(super) fn split(self, num_envs: usize) -> (Self, Self) {
-        let state_len = self.state_len;
+    pub(super) fn split(mut self, num_envs: usize) -> (Self, Self) {
         let (images, more_images) = self.images.split(num_envs);
-        let (states, more_states) = halves(self.states, num_envs * state_len);
-        let (rewards, more_rewards) = halves(self.rewards, num_envs);
-        let (terminated, more_terminated) = halves(self.terminated, num_envs);
-        let (truncated, more_truncated) = halves(self.truncated, num_envs);
-        let (success, more_success) = halves(self.success, num_envs);
-        (
-            Self {
-                images,
-                states,
-                state_len,
-                rewards,
-                terminated,
-                truncated,
-                success,
-            },
-            Self {
-                images: more_images,
-                states: more_states,
-                state_len,
-                rewards: more_rewards,
-                terminated: more_terminated,
-                truncated: more_truncated,
-                success: more_success,
-            },
-        )
+        let rest = Self {
+            images: more_images,
+            states: cut(&mut self.states, num_envs * self.state_len),
+            state_len: self.state_len,
+            rewards: cut(&mut self.rewards, num_envs),
+            terminated: cut(&mut self.terminated, num_envs),
+            truncated: cut(&mut self.truncated, num_envs),
+            success: cut(&mut self.success, num_envs),
+        };
+        (Self { images, ..self }, rest)
     }
 
     /// The state vector of the environment of this number among these.

@@ -4,8 +4,8 @@ use std::num::NonZeroU32;
 use std::sync::Arc;
 
 use super::images::ImageLayout;
+use super::options::{Autoreset, Episode, WorldSource};
 use super::outputs::OutputsMut;
-use super::{Autoreset, Episode, WorldSource};
 use crate::EnvError;
 use crate::assets::Catalogue;
 use crate::render::CpuRenderer;

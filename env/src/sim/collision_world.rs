@@ -4,12 +4,12 @@
 use driftworld_spec::World;
 use rapier3d::prelude::*;
 
+use super::body_shape::{body_shape, shows_heading};
 use super::broad_phase::BroadPhase;
 use super::budget::Budget;
 use super::footprint::{Footprint, Gap, Point};
 use super::groups::{AGENT, GHOST, SOLID, WALL};
 use super::outline::Outline;
-use crate::assets::ColliderShape;
 use crate::scene::{Item, Scene};
 
 /// Where the world ends for what starts outside the arena, in metres from the origin: a document knows no place beyond.
@@ -203,43 +203,6 @@ impl CollisionWorld {
         }
     }
 
-    /// The shape of an object's body, and where it is in the object's frame: on the ground, facing +y.
-    pub(super) fn shape(item: &Item) -> (SharedShape, Pose) {
-        let scale = item.scale;
-        let least = |metres: f32| (metres * scale).max(0.005);
-        let (shape, height, tilt) = match &item.asset.collider {
-            ColliderShape::Box { half } => {
-                let [x, y, z] = half.map(least);
-                (SharedShape::cuboid(x, y, z), z, 0.0)
-            }
-            ColliderShape::Ball { radius } => (SharedShape::ball(least(*radius)), least(*radius), 0.0),
-            ColliderShape::Cylinder { radius, half_height } => {
-                // The engine's cylinders lie along y.
-                let (radius, half) = (least(*radius), least(*half_height));
-                (SharedShape::cylinder(half, radius), half, std::f32::consts::FRAC_PI_2)
-            }
-            ColliderShape::Capsule { radius, half_height } => {
-                let (radius, half) = (least(*radius), (half_height * scale).max(0.0));
-                (SharedShape::capsule_z(half, radius), half + radius, 0.0)
-            }
-            ColliderShape::Hull { points } => {
-                let corners: Vec<Vector> = points
-                    .iter()
-                    .map(|point| Vector::new(point[0], point[1], point[2]) * scale)
-                    .collect();
-                if let Some(shape) = SharedShape::convex_hull(&corners) {
-                    (shape, 0.0, 0.0)
-                } else {
-                    // Points in one plane hold nothing: the cylinder around them.
-                    let (radius, half) = (least(item.asset.collider.radius()), least(item.asset.height / 2.0));
-                    (SharedShape::cylinder(half, radius), half, std::f32::consts::FRAC_PI_2)
-                }
-            }
-        };
-        let from_ground = Pose::new(Vector::new(0.0, 0.0, height), Vector::new(tilt, 0.0, 0.0));
-        (shape, from_ground)
-    }
-
     /// Brings an object's body up to date with its item: puts it where that stands, or takes it away.
     pub(super) fn sync_object(&mut self, index: u32, item: &Item, solid: bool) {
         let body = self.handles.get(index as usize).copied().flatten();
@@ -253,7 +216,7 @@ impl CollisionWorld {
 
     /// Puts an object's body where its item stands.
     fn add_object(&mut self, index: u32, item: &Item, solid: bool) {
-        let (shape, from_ground) = Self::shape(item);
+        let (shape, from_ground) = body_shape(item);
         // Put together by hand: a product of poses would round the height in a way that depends on the heading.
         let at = from_ground.translation + Vector::new(item.position[0], item.position[1], 0.0);
         let pose = if shows_heading(&shape) {
@@ -437,9 +400,4 @@ impl CollisionWorld {
 /// The number of a handle: colliders that are gone give theirs to new ones.
 pub(super) fn slot(handle: ColliderHandle) -> usize {
     handle.into_raw_parts().0 as usize
-}
-
-/// Whether a body shows where it faces: round ones do not.
-fn shows_heading(shape: &SharedShape) -> bool {
-    matches!(shape.shape_type(), ShapeType::Cuboid | ShapeType::ConvexPolyhedron)
 }

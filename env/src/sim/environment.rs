@@ -102,13 +102,9 @@ impl Environment {
     /// # Errors
     /// As [`Environment::new`]; on error this world goes on.
     pub fn reset(&mut self, world: World) -> Result<(), EnvError> {
-        self.start(Arc::new(world));
-        Ok(())
-    }
-
-    pub(super) fn start(&mut self, world: Arc<World>) {
         let catalogue = self.views.scene.catalogue().clone();
-        self.start_with(world, &catalogue);
+        self.start_with(Arc::new(world), &catalogue);
+        Ok(())
     }
 
     pub(super) fn start_with(&mut self, world: Arc<World>, catalogue: &Catalogue) {

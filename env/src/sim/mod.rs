@@ -2,6 +2,7 @@
 
 mod action;
 mod agent_motion;
+mod body_shape;
 mod broad_phase;
 mod budget;
 mod collision_world;

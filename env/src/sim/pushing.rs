@@ -7,7 +7,8 @@
 use driftworld_spec::World;
 use rapier3d::prelude::*;
 
-use super::collision_world::{CollisionWorld, EDGE, slot};
+use super::body_shape::body_shape;
+use super::collision_world::{EDGE, slot};
 use super::encounters::Encounters;
 use super::groups::{SOLID, WALL};
 use super::neighbours::{MARGIN, standing_reach, with_neighbours};
@@ -129,7 +130,7 @@ fn add_active(sim: SimRef, physics: &mut PhysicsWorld, index: usize) -> Active {
     let (mass, friction) = sim.world.objects[body.object]
         .pushable
         .map_or((1.0, 0.5), |pushable| (pushable.mass as f32, pushable.friction as f32));
-    let (shape, from_ground) = CollisionWorld::shape(&sim.scene().items[body.object]);
+    let (shape, from_ground) = body_shape(&sim.scene().items[body.object]);
     let turn = Vector::new(0.0, 0.0, -own.heading_deg.to_radians());
     let place = Pose::new(Vector::new(own.position[0], own.position[1], 0.0), turn);
     let handle = physics.bodies.insert(

@@ -1,9 +1,10 @@
-//! Where walls, and what stands fast, leave no room: geometry of polygons on the ground. How walls stop a body is in `collision_world.rs`.
+//! Where walls, and what stands fast, leave no room. How walls stop a body is in `collision_world.rs`.
 
 use driftworld_spec::World;
 
 use super::obstacle::Obstacle;
 use super::sim_ref::SimRef;
+use crate::polygon::is_near_or_inside;
 
 /// What of the arena and its walls is in the way of a round body of this radius in metres.
 pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option<Obstacle> {
@@ -15,7 +16,7 @@ pub(super) fn obstacle(world: &World, position: [f64; 2], radius: f64) -> Option
     let beyond = (0..2).any(|axis| position[axis].abs() > arena[axis] / 2.0 - radius);
     let regions = environment.regions().into_iter();
     let own = environment.walls.iter().map(|wall| wall.polygon.as_slice());
-    let inside = |corners: &[[f64; 2]]| is_near_or_inside(corners, position, radius);
+    let inside = |corners: &[[f64; 2]]| is_near_or_inside(corners.iter().copied(), position, radius);
     (beyond || regions.chain(own).any(inside)).then_some(Obstacle::Wall)
 }
 
@@ -28,29 +29,6 @@ pub(super) fn agent_obstacle(sim: SimRef, position: [f64; 2]) -> Option<Obstacle
         sim.views.bodies.blocking(at, &mut blocked);
         blocked.first().map(|index| Obstacle::Object { index: *index as usize })
     })
-}
-
-/// Whether a point is inside a polygon, by the even-odd rule, or nearer to one of its edges than `margin` in metres.
-fn is_near_or_inside(corners: &[[f64; 2]], [x, y]: [f64; 2], margin: f64) -> bool {
-    let mut inside = false;
-    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-    for (&[ax, ay], &[bx, by]) in edges {
-        let (dx, dy) = (bx - ax, by - ay);
-        let squared = dx * dx + dy * dy;
-        let along = if squared > 0.0 {
-            (((x - ax) * dx + (y - ay) * dy) / squared).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        let (ex, ey) = (x - ax - along * dx, y - ay - along * dy);
-        if ex * ex + ey * ey < margin * margin {
-            return true;
-        }
-        if (ay > y) != (by > y) && x < dx * (y - ay) / dy + ax {
-            inside = !inside;
-        }
-    }
-    inside
 }
 
 #[cfg(test)]

@@ -1,0 +1,37 @@
+//! Polygons on the ground. What stands there is not known here.
+
+use std::ops::{Add, Div, Mul, Sub};
+
+/// Whether a point is inside a polygon, by the even-odd rule, or nearer to one of its edges than `margin` in metres.
+pub(crate) fn is_near_or_inside<F>(corners: impl Iterator<Item = [F; 2]> + Clone, [x, y]: [F; 2], margin: F) -> bool
+where
+    F: Copy + PartialOrd + From<u8> + Add<Output = F> + Sub<Output = F> + Mul<Output = F> + Div<Output = F>,
+{
+    let (zero, one) = (F::from(0), F::from(1));
+    let mut inside = false;
+    for ([ax, ay], [bx, by]) in corners.clone().zip(corners.cycle().skip(1)) {
+        let (dx, dy) = (bx - ax, by - ay);
+        let squared = dx * dx + dy * dy;
+        let along = if squared > zero {
+            ((x - ax) * dx + (y - ay) * dy) / squared
+        } else {
+            zero
+        };
+        // Of the edge's line, what lies between its ends.
+        let along = if along < zero {
+            zero
+        } else if along > one {
+            one
+        } else {
+            along
+        };
+        let (ex, ey) = (x - ax - along * dx, y - ay - along * dy);
+        if ex * ex + ey * ey < margin * margin {
+            return true;
+        }
+        if (ay > y) != (by > y) && x < dx * (y - ay) / dy + ax {
+            inside = !inside;
+        }
+    }
+    inside
+}
