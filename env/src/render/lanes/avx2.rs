@@ -30,12 +30,26 @@ impl Avx2 {
 
 lanes_by_intrinsics! {
     Avx2: 8 lanes of __m256, __m256i, __m256;
-    conversions: splat(f32) -> __m256 = _mm256_set1_ps, root(__m256) -> __m256 = _mm256_sqrt_ps,
-        truncate(__m256) -> __m256i = _mm256_cvttps_epi32, float(__m256i) -> __m256 = _mm256_cvtepi32_ps;
-    floats: add = _mm256_add_ps, sub = _mm256_sub_ps, mul = _mm256_mul_ps, div = _mm256_div_ps, min = _mm256_min_ps,
-        max = _mm256_max_ps;
-    words: or = _mm256_or_si256, xor = _mm256_xor_si256;
     memory: _mm256_loadu_ps, _mm256_storeu_ps, _mm256_loadu_si256, _mm256_storeu_si256;
+    calls: {
+        splat(value: f32) -> __m256 = _mm256_set1_ps(value);
+        root(a: __m256) -> __m256 = _mm256_sqrt_ps(a);
+        truncate(value: __m256) -> __m256i = _mm256_cvttps_epi32(value);
+        float(value: __m256i) -> __m256 = _mm256_cvtepi32_ps(value);
+        add(a: __m256, b: __m256) -> __m256 = _mm256_add_ps(a, b);
+        sub(a: __m256, b: __m256) -> __m256 = _mm256_sub_ps(a, b);
+        mul(a: __m256, b: __m256) -> __m256 = _mm256_mul_ps(a, b);
+        div(a: __m256, b: __m256) -> __m256 = _mm256_div_ps(a, b);
+        min(a: __m256, b: __m256) -> __m256 = _mm256_min_ps(a, b);
+        max(a: __m256, b: __m256) -> __m256 = _mm256_max_ps(a, b);
+        or(a: __m256i, b: __m256i) -> __m256i = _mm256_or_si256(a, b);
+        xor(a: __m256i, b: __m256i) -> __m256i = _mm256_xor_si256(a, b);
+        shift_byte(value: __m256i) -> __m256i = _mm256_slli_epi32::<8>(value);
+        at_least(a: __m256, b: __m256) -> __m256 = _mm256_cmp_ps::<_CMP_GE_OQ>(a, b);
+        above(a: __m256, b: __m256) -> __m256 = _mm256_cmp_ps::<_CMP_GT_OQ>(a, b);
+        both(a: __m256, b: __m256) -> __m256 = _mm256_and_ps(a, b);
+        select(mask: __m256, a: __m256, b: __m256) -> __m256 = _mm256_blendv_ps(b, a, mask);
+    }
 
     #[inline(always)]
     fn count_up(self) -> __m256 {
@@ -43,29 +57,9 @@ lanes_by_intrinsics! {
         unsafe { _mm256_setr_ps(0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0) }
     }
     #[inline(always)]
-    fn at_least(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: as in the macro.
-        unsafe { _mm256_cmp_ps::<_CMP_GE_OQ>(a, b) }
-    }
-    #[inline(always)]
-    fn above(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: as in the macro.
-        unsafe { _mm256_cmp_ps::<_CMP_GT_OQ>(a, b) }
-    }
-    #[inline(always)]
-    fn both(self, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: as in the macro.
-        unsafe { _mm256_and_ps(a, b) }
-    }
-    #[inline(always)]
     fn bits(self, mask: __m256) -> u32 {
         // SAFETY: as in the macro.
         unsafe { _mm256_movemask_ps(mask) as u32 }
-    }
-    #[inline(always)]
-    fn select(self, mask: __m256, a: __m256, b: __m256) -> __m256 {
-        // SAFETY: as in the macro.
-        unsafe { _mm256_blendv_ps(b, a, mask) }
     }
     #[inline(always)]
     fn splat_word(self, value: u32) -> __m256i {
@@ -76,11 +70,6 @@ lanes_by_intrinsics! {
     fn select_words(self, mask: __m256, a: __m256i, b: __m256i) -> __m256i {
         // SAFETY: as in the macro.
         unsafe { _mm256_blendv_epi8(b, a, _mm256_castps_si256(mask)) }
-    }
-    #[inline(always)]
-    fn shift_byte(self, value: __m256i) -> __m256i {
-        // SAFETY: as in the macro.
-        unsafe { _mm256_slli_epi32::<8>(value) }
     }
     #[inline(always)]
     fn has_bit(self, value: __m256i, bit: u32) -> __m256 {

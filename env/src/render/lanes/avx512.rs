@@ -30,12 +30,26 @@ impl Avx512 {
 
 lanes_by_intrinsics! {
     Avx512: 16 lanes of __m512, __m512i, __mmask16;
-    conversions: splat(f32) -> __m512 = _mm512_set1_ps, root(__m512) -> __m512 = _mm512_sqrt_ps,
-        truncate(__m512) -> __m512i = _mm512_cvttps_epi32, float(__m512i) -> __m512 = _mm512_cvtepi32_ps;
-    floats: add = _mm512_add_ps, sub = _mm512_sub_ps, mul = _mm512_mul_ps, div = _mm512_div_ps, min = _mm512_min_ps,
-        max = _mm512_max_ps;
-    words: or = _mm512_or_si512, xor = _mm512_xor_si512;
     memory: _mm512_loadu_ps, _mm512_storeu_ps, _mm512_loadu_si512, _mm512_storeu_si512;
+    calls: {
+        splat(value: f32) -> __m512 = _mm512_set1_ps(value);
+        root(a: __m512) -> __m512 = _mm512_sqrt_ps(a);
+        truncate(value: __m512) -> __m512i = _mm512_cvttps_epi32(value);
+        float(value: __m512i) -> __m512 = _mm512_cvtepi32_ps(value);
+        add(a: __m512, b: __m512) -> __m512 = _mm512_add_ps(a, b);
+        sub(a: __m512, b: __m512) -> __m512 = _mm512_sub_ps(a, b);
+        mul(a: __m512, b: __m512) -> __m512 = _mm512_mul_ps(a, b);
+        div(a: __m512, b: __m512) -> __m512 = _mm512_div_ps(a, b);
+        min(a: __m512, b: __m512) -> __m512 = _mm512_min_ps(a, b);
+        max(a: __m512, b: __m512) -> __m512 = _mm512_max_ps(a, b);
+        or(a: __m512i, b: __m512i) -> __m512i = _mm512_or_si512(a, b);
+        xor(a: __m512i, b: __m512i) -> __m512i = _mm512_xor_si512(a, b);
+        shift_byte(value: __m512i) -> __m512i = _mm512_slli_epi32::<8>(value);
+        at_least(a: __m512, b: __m512) -> __mmask16 = _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, b);
+        above(a: __m512, b: __m512) -> __mmask16 = _mm512_cmp_ps_mask::<_CMP_GT_OQ>(a, b);
+        select(mask: __mmask16, a: __m512, b: __m512) -> __m512 = _mm512_mask_blend_ps(mask, b, a);
+        select_words(mask: __mmask16, a: __m512i, b: __m512i) -> __m512i = _mm512_mask_blend_epi32(mask, b, a);
+    }
 
     #[inline(always)]
     fn count_up(self) -> __m512 {
@@ -47,16 +61,6 @@ lanes_by_intrinsics! {
         }
     }
     #[inline(always)]
-    fn at_least(self, a: __m512, b: __m512) -> __mmask16 {
-        // SAFETY: as in the macro.
-        unsafe { _mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, b) }
-    }
-    #[inline(always)]
-    fn above(self, a: __m512, b: __m512) -> __mmask16 {
-        // SAFETY: as in the macro.
-        unsafe { _mm512_cmp_ps_mask::<_CMP_GT_OQ>(a, b) }
-    }
-    #[inline(always)]
     fn both(self, a: __mmask16, b: __mmask16) -> __mmask16 {
         a & b
     }
@@ -65,24 +69,9 @@ lanes_by_intrinsics! {
         u32::from(mask)
     }
     #[inline(always)]
-    fn select(self, mask: __mmask16, a: __m512, b: __m512) -> __m512 {
-        // SAFETY: as in the macro.
-        unsafe { _mm512_mask_blend_ps(mask, b, a) }
-    }
-    #[inline(always)]
     fn splat_word(self, value: u32) -> __m512i {
         // SAFETY: as in the macro.
         unsafe { _mm512_set1_epi32(value as i32) }
-    }
-    #[inline(always)]
-    fn select_words(self, mask: __mmask16, a: __m512i, b: __m512i) -> __m512i {
-        // SAFETY: as in the macro.
-        unsafe { _mm512_mask_blend_epi32(mask, b, a) }
-    }
-    #[inline(always)]
-    fn shift_byte(self, value: __m512i) -> __m512i {
-        // SAFETY: as in the macro.
-        unsafe { _mm512_slli_epi32::<8>(value) }
     }
     #[inline(always)]
     fn has_bit(self, value: __m512i, bit: u32) -> __mmask16 {

@@ -6,10 +6,10 @@
 macro_rules! lanes_by_intrinsics {
     (
         $set:ident: $count:literal lanes of $float:ident, $word:ident, $mask:ident;
-        conversions: $($convert:ident($from:ident) -> $to:ident = $by:ident),*;
-        floats: $($on_floats:ident = $by_floats:ident),*;
-        words: $($on_words:ident = $by_words:ident),*;
         memory: $load:ident, $store:ident, $load_words:ident, $store_words:ident;
+        calls: {
+            $($name:ident($($operand:ident: $from:ty),*) -> $to:ty = $by:ident$(::<$constant:tt>)?($($given:ident),*);)*
+        }
         $($own:item)*
     ) => {
         const N: usize = $count;
@@ -39,23 +39,9 @@ macro_rules! lanes_by_intrinsics {
 
             $(
                 #[inline(always)]
-                fn $convert(self, value: $from) -> $to {
+                fn $name(self, $($operand: $from),*) -> $to {
                     // SAFETY: above.
-                    unsafe { $by(value) }
-                }
-            )*
-            $(
-                #[inline(always)]
-                fn $on_floats(self, a: $float, b: $float) -> $float {
-                    // SAFETY: above.
-                    unsafe { $by_floats(a, b) }
-                }
-            )*
-            $(
-                #[inline(always)]
-                fn $on_words(self, a: $word, b: $word) -> $word {
-                    // SAFETY: above.
-                    unsafe { $by_words(a, b) }
+                    unsafe { $by$(::<$constant>)?($($given),*) }
                 }
             )*
             #[inline(always)]

@@ -1,8 +1,8 @@
 //! Several pixels or triangles at a time: the operations that the renderer is made of, for each instruction set.
 //! What is drawn with them is in the files beside this folder.
 //!
-//! Every set rounds alike: no fused multiply-add, the same order, IEEE division and square root. So one scene gives the same
-//! pixels on every machine, and a test holds all sets of the machine against each other.
+//! Every set rounds alike: no fused multiply-add, the same order, IEEE division and square root. So one scene gives the
+//! same pixels on every machine, and a test holds all sets of the machine against each other.
 //!
 //! Code between these operations avoids closures: they are functions without the instruction set, and the compiler then
 //! calls each operation instead of putting it in place (measured: three times slower).
