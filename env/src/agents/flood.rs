@@ -1,5 +1,5 @@
-//! How far every cell is from one of them: Dijkstra's way of finding it, with one bucket for each distance, and no farther than
-//! anyone asks.
+//! How far every cell is from one of them: Dijkstra's way of finding it, with one bucket for each distance, and no
+//! farther than anyone asks.
 
 use super::grid::Grid;
 use super::occupancy::OccupancyGrid;
@@ -8,13 +8,15 @@ use super::occupancy::OccupancyGrid;
 pub(super) const STRAIGHT: u32 = 5;
 pub(super) const SLANTING: u32 = 7;
 
-/// How many times as dear a step is that belongs to a blocked cell: a way through is the last resort, for who is shut in.
+/// How many times as dear a step is that belongs to a blocked cell: a way through is the last resort, for who is shut
+/// in.
 pub(super) const BLOCKED: u32 = 40;
 
 /// More than the dearest step, so that what waits is never a full round ahead; a power of two.
 const NUM_BUCKETS: usize = 512;
 
-/// Which cell of a step makes it dear where it is blocked. Of a walk from far to near it is always the one that is left.
+/// Which cell of a step makes it dear where it is blocked. Of a walk from far to near it is always the one that is
+/// left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Charge {
     /// The flood spreads from the goal of walks: the cell that it comes to.
@@ -23,7 +25,8 @@ pub(super) enum Charge {
     Left,
 }
 
-/// Distances from one cell, in fifths of a cell: of the cells nearer than `next` they are found, of others they are bounds.
+/// Distances from one cell, in fifths of a cell: of the cells nearer than `next` they are found, of others they are
+/// bounds.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Flood {
     distance: Vec<u32>,
@@ -53,15 +56,15 @@ impl Flood {
     }
 
     /// Finds the distance of a cell, and of all that are nearer.
-    pub(super) fn reach(&mut self, cell: usize, ground: &OccupancyGrid, charge: Charge) -> u32 {
-        while self.distance[cell] >= self.next && self.spread(ground, charge, |_| {}).is_some() {}
+    pub(super) fn reach(&mut self, cell: usize, occupancy: &OccupancyGrid, charge: Charge) -> u32 {
+        while self.distance[cell] >= self.next && self.spread(occupancy, charge, |_| {}).is_some() {}
         self.distance[cell]
     }
 
     /// Spreads from the nearest cells that wait, which are told; hands back how far they are. `None` if all are found.
     pub(super) fn spread(
         &mut self,
-        ground: &OccupancyGrid,
+        occupancy: &OccupancyGrid,
         charge: Charge,
         mut found: impl FnMut(usize),
     ) -> Option<u32> {
@@ -73,7 +76,7 @@ impl Flood {
             self.next += 1;
         }
         let here = self.next;
-        let around = ground
+        let around = occupancy
             .grid()
             .around()
             .map(|(step, is_slanting)| (step, if is_slanting { SLANTING } else { STRAIGHT }));
@@ -83,7 +86,7 @@ impl Flood {
                 continue;
             }
             found(cell);
-            let factor = if charge == Charge::Left && ground.is_blocked(cell) {
+            let factor = if charge == Charge::Left && occupancy.is_blocked(cell) {
                 BLOCKED
             } else {
                 1
@@ -95,7 +98,7 @@ impl Flood {
                 if here + cost >= known {
                     continue;
                 }
-                let dear = charge == Charge::Entered && ground.is_blocked(other);
+                let dear = charge == Charge::Entered && occupancy.is_blocked(other);
                 let through = here + cost * if dear { BLOCKED } else { factor };
                 if through < known {
                     self.distance[other] = through;

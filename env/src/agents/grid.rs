@@ -6,8 +6,8 @@ const MOST_CELLS: usize = 256;
 /// Least side of a cell in metres.
 const LEAST_SIDE: f32 = 0.5;
 
-/// Cells over the arena, row by row, with a rim of one cell around them that is never walked on: every cell of the arena has
-/// eight neighbours.
+/// Cells over the arena, row by row, with a rim of one cell around them that is never walked on: every cell of the
+/// arena has eight neighbours.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Grid {
     columns: usize,

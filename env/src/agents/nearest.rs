@@ -1,5 +1,5 @@
-//! Which of many goals is the best to walk to: one flood from the agent for all of them, which ends when no goal farther out can
-//! be better. The way to the chosen one is found in `route.rs`.
+//! Which of many goals is the best to walk to: one flood from the agent for all of them, which ends when no goal
+//! farther out can be better. The way to the chosen one is found in `route.rs`.
 
 use std::cmp::Reverse;
 
@@ -26,7 +26,8 @@ pub(super) struct Goal {
 }
 
 impl Route {
-    /// The goal of the shortest way from a place, each way as long as it is over its goal's probability; the first of equals.
+    /// The goal of the shortest way from a place, each way as long as it is over its goal's probability; the first of
+    /// equals.
     ///
     /// Ways lead around all that is avoided but their goal. What this instance led to is lost.
     pub(super) fn nearest(
@@ -37,15 +38,15 @@ impl Route {
         goals: &[Goal],
         avoided: &[u32],
     ) -> Option<usize> {
-        self.ground.block(world, scene, avoided);
-        let grid = self.ground.grid();
+        self.occupancy.block(world, scene, avoided);
+        let grid = self.occupancy.grid();
         self.marks.begin(grid);
         let looked_at = self.looked_at(from, goals);
         for number in looked_at.iter().copied() {
             let goal = &goals[number];
             self.marks.add(grid.cell_at(goal.place), number);
             for cell in self
-                .ground
+                .occupancy
                 .disc(goal.object)
                 .into_iter()
                 .flat_map(|disc| disc.cells(grid))
@@ -61,7 +62,7 @@ impl Route {
         let mut seen = Vec::new();
         loop {
             let marks = &self.marks;
-            let spread = self.flood.spread(&self.ground, Charge::Left, |cell| {
+            let spread = self.flood.spread(&self.occupancy, Charge::Left, |cell| {
                 marks.of(cell, |number| seen.push(number));
             });
             let Some(distance) = spread else { break };
@@ -95,8 +96,8 @@ impl Route {
 
     /// The numbers of the goals that are looked at, rising: all, if they do not have too many cells.
     fn looked_at(&self, from: [f32; 2], goals: &[Goal]) -> Vec<usize> {
-        let grid = self.ground.grid();
-        let num_cells = |goal: &Goal| 1 + self.ground.disc(goal.object).map_or(0, |disc| disc.num_cells(grid));
+        let grid = self.occupancy.grid();
+        let num_cells = |goal: &Goal| 1 + self.occupancy.disc(goal.object).map_or(0, |disc| disc.num_cells(grid));
         let all: usize = goals.iter().map(num_cells).sum();
         let mut numbers: Vec<usize> = (0..goals.len()).collect();
         if all <= MOST_MARKS {
@@ -120,15 +121,16 @@ impl Route {
         numbers
     }
 
-    /// Length of the way to a goal whose own ground is open, by what the flood knows so far; the flood came to that ground, or to
-    /// the goal, at the distance `least`.
+    /// Length of the way to a goal whose own ground is open, by what the flood knows so far; the flood came to that
+    /// ground, or to the goal, at the distance `least`.
     ///
-    /// Spreads from the goal until the rest of the way, over ground that is the same for all goals, is known from the flood.
+    /// Spreads from the goal until the rest of the way, over ground that is the same for all goals, is known from the
+    /// flood.
     fn length(&mut self, goal: &Goal, least: u32) -> u32 {
-        let (ground, flood) = (&self.ground, &self.flood);
-        let grid = ground.grid();
+        let (occupancy, flood) = (&self.occupancy, &self.flood);
+        let grid = occupancy.grid();
         let start = grid.cell_at(goal.place);
-        let Some(own) = ground.disc(goal.object) else {
+        let Some(own) = occupancy.disc(goal.object) else {
             return flood.distance(start);
         };
         let Marks {
@@ -158,7 +160,7 @@ impl Route {
                 if grid.is_rim(other) {
                     continue;
                 }
-                let is_blocked = ground.count(other) > u32::from(own.covers(other, grid));
+                let is_blocked = occupancy.count(other) > u32::from(own.covers(other, grid));
                 let cost = if is_slanting { SLANTING } else { STRAIGHT } * if is_blocked { BLOCKED } else { 1 };
                 let through = distance + cost;
                 if through < back[other] {
@@ -184,8 +186,8 @@ mod tests {
 
     use super::*;
 
-    /// The same ways by a plan that shares nothing with ours but what a way costs: no queue, no rim, no marks. All cells are gone
-    /// over until nothing changes any more.
+    /// The same ways by a plan that shares nothing with ours but what a way costs: no queue, no rim, no marks. All
+    /// cells are gone over until nothing changes any more.
     struct SlowPlan {
         cells: [i64; 2],
         side: f32,
@@ -319,7 +321,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(96))]
 
-        /// One instance goes from world to world, as an agent does, and leaves some objects out of what it leads around.
+        /// One instance goes from world to world, as an agent does, and leaves some objects out of what it leads
+        /// around.
         #[test]
         fn ways_are_as_long_as_a_slow_plan_has_them_and_the_same_goal_is_nearest(
             worlds in vec((world(), [-13.0..=13.0, -13.0..=13.0f32], any::<u16>()), 1..3),
@@ -343,8 +346,8 @@ mod tests {
                     route.lead(&world, &scene, goal.place, &others);
                     // Asked from here and there, near and far, the flood grows as it must.
                     for from in [goal.place.map(|metres| metres * 0.5), from, [12.0, -12.0]] {
-                        let cell = route.ground.grid().cell_at(from);
-                        let found = route.flood.reach(cell, &route.ground, Charge::Entered);
+                        let cell = route.occupancy.grid().cell_at(from);
+                        let found = route.flood.reach(cell, &route.occupancy, Charge::Entered);
                         let (found, expected) = (f64::from(route.metres(found)), slow.metres(from));
                         prop_assert!((found - expected).abs() <= 1e-4 * expected, "{} for {}", found, expected);
                     }

@@ -1,4 +1,5 @@
-//! Where the agent cannot walk: cells near walls, and near objects that a way leads around. Ways over the rest are found in
+//! Where the agent cannot walk: cells near walls, and near objects that a way leads around. Ways over the rest are
+//! found in
 //! `flood.rs`.
 
 use driftworld_spec::World;
@@ -10,8 +11,8 @@ use crate::scene::Scene;
 /// How far ways keep from walls and objects, in metres beside half the agent's width.
 const CLEARANCE: f32 = 0.15;
 
-/// How often each cell is taken: by walls once, and once by each object that is led around. What did not change since the last
-/// way is kept.
+/// How often each cell is taken: by walls once, and once by each object that is led around. What did not change since
+/// the last way is kept.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OccupancyGrid {
     grid: Grid,

@@ -6,7 +6,8 @@ use super::rails_policy::RailsPolicy;
 use super::steering::in_space;
 use crate::sim::{Action, Environment};
 
-/// Tours all objects that pay, nearest first by the way around obstacles and surest first where rewards are uncertain, and then goes where the world's success lies.
+/// Tours all objects that pay, nearest first by the way around obstacles and surest first where rewards are uncertain,
+/// and then goes where the world's success lies.
 ///
 /// It reads the world's state, not its pictures.
 #[derive(Clone, Debug, Default)]

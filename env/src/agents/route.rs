@@ -1,5 +1,5 @@
-//! Ways around obstacles: the next step to a goal, and how far it is. Which of several goals is nearest is found in `nearest.rs`;
-//! who walks the ways, in `on_rails.rs`.
+//! Ways around obstacles: the next step to a goal, and how far it is. Which of several goals is nearest is found in
+//! `nearest.rs`; who walks the ways, in `on_rails.rs`.
 
 use driftworld_spec::World;
 
@@ -11,7 +11,7 @@ use crate::scene::Scene;
 /// Ways to one goal at a time, over the free cells of the arena. Another goal takes over what is known of the ground.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Route {
-    pub(super) ground: OccupancyGrid,
+    pub(super) occupancy: OccupancyGrid,
     pub(super) flood: Flood,
     pub(super) marks: Marks,
 }
@@ -21,17 +21,17 @@ impl Route {
     ///
     /// The goal's own cell may be blocked by what stands around it.
     pub(super) fn lead(&mut self, world: &World, scene: &Scene, goal: [f32; 2], avoided: &[u32]) {
-        self.ground.block(world, scene, avoided);
-        let grid = self.ground.grid();
+        self.occupancy.block(world, scene, avoided);
+        let grid = self.occupancy.grid();
         self.flood.begin(grid, grid.cell_at(goal));
     }
 
     /// Where to walk next from a place: the point a few cells down the way to the goal.
     pub(super) fn next(&mut self, from: [f32; 2], ahead: usize) -> [f32; 2] {
-        let grid = self.ground.grid();
+        let grid = self.occupancy.grid();
         let mut cell = grid.cell_at(from);
         // Cells that are nearer than this one are found by then, and the way leads over no others.
-        self.flood.reach(cell, &self.ground, Charge::Entered);
+        self.flood.reach(cell, &self.occupancy, Charge::Entered);
         for _ in 0..ahead {
             let around = grid.around().map(|(step, _)| cell.wrapping_add_signed(step));
             let inside = around.into_iter().filter(|next| !grid.is_rim(*next));
@@ -45,6 +45,6 @@ impl Route {
 
     /// A distance of the flood in metres.
     pub(super) fn metres(&self, distance: u32) -> f32 {
-        distance as f32 / STRAIGHT as f32 * self.ground.grid().side()
+        distance as f32 / STRAIGHT as f32 * self.occupancy.grid().side()
     }
 }

@@ -1,4 +1,5 @@
-//! The text form of what a scripted agent does: one command a line, read and checked. Carrying it out is in `scripted.rs`.
+//! The text form of what a scripted agent does: one command a line, read and checked. Carrying it out is in
+//! `scripted.rs`.
 
 use driftworld_spec::nearest;
 use driftworld_text::{is_unprintable, quoted};

@@ -1,4 +1,5 @@
-//! An agent that follows a script: fixed actions, and walks to what the script names. How a script is written is in `script.rs`.
+//! An agent that follows a script: fixed actions, and walks to what the script names. How a script is written is in
+//! `script.rs`.
 
 use driftworld_spec::Object;
 
@@ -12,7 +13,8 @@ use crate::sim::{Action, Environment, ObjectState};
 /// Steps for which an agent interacts with an object that does not answer.
 const INSISTENCE: u32 = 10;
 
-/// Plays a script anew in every episode, one command a line; `#` begins a comment, and after the last line it stands still.
+/// Plays a script anew in every episode, one command a line; `#` begins a comment, and after the last line it stands
+/// still.
 ///
 /// | line | what it does |
 /// |---|---|
@@ -24,8 +26,8 @@ const INSISTENCE: u32 = 10;
 /// | `tour [N]` | does what [`OnRailsAgent`] does until nothing is worth going to |
 /// | `repeat` | begins again; only as the last line |
 ///
-/// A walk to something that is not there takes no step. Walks fit every action space; the actions of `step` and `action`
-/// are handed to the world as they stand.
+/// A walk to something that is not there takes no step. Walks fit every action space; the actions of `step` and
+/// `action` are handed to the world as they stand.
 ///
 /// # Example
 /// ```

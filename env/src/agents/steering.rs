@@ -1,5 +1,5 @@
-//! Walking to one object: the way there, the next step on it, and that step as an action of the world. Which object is chosen by
-//! the agents.
+//! Walking to one object: the way there, the next step on it, and that step as an action of the world. Which object is
+//! chosen by the agents.
 
 use driftworld_spec::{ActionModel, ActionSpace, MotionModel, Object};
 
@@ -90,8 +90,8 @@ impl Target {
     }
 }
 
-/// The objects that a way to `goal` leads around: what stands fast and is solid or costs. Without a goal all of them, by rising
-/// index.
+/// The objects that a way to `goal` leads around: what stands fast and is solid or costs. Without a goal all of them,
+/// by rising index.
 pub(super) fn avoided(sim: SimRef, goal: Option<usize>) -> Vec<u32> {
     let objects = sim.world.objects.iter().zip(sim.objects());
     let returns_elsewhere = |object: &Object| object.respawn.as_ref().is_some_and(|back| back.radius > 0.0);
