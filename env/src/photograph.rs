@@ -1,5 +1,5 @@
-//! Photographs of a world's objects, one at a time, from around and above: what `collect_images` asks for. Files, and how
-//! pictures are written into them, are the caller's.
+//! Photographs of a world's objects, one at a time, from around and above: what `collect_images` asks for. Files, and
+//! how pictures are written into them, are the caller's.
 
 use driftworld_spec::{EnvironmentParams, World};
 
@@ -32,9 +32,9 @@ pub struct Photograph {
 
 /// A place where the objects of a world are photographed one by one.
 ///
-/// Each object stands alone on a ground of the world's colour under a sky of the world's colour, without walls and fog. It
-/// is full daylight, whatever the world's light is, with the sun behind the photographer's left shoulder: no view is of a
-/// shaded side. The same object gives the same pixels wherever it stands and faces in the world.
+/// Each object stands alone on a ground of the world's colour under a sky of the world's colour, without walls and fog.
+/// It is full daylight, whatever the world's light is, with the sun behind the photographer's left shoulder: no view is
+/// of a shaded side. The same object gives the same pixels wherever it stands and faces in the world.
 ///
 /// # Example
 /// ```
@@ -119,8 +119,8 @@ impl Studio {
 
     /// All photographs: object by object, from the side up to the top, each time once around.
     ///
-    /// Yaws are the full circle in `yaw_subdivisions` equal parts, from the front on. The first elevation is 0 and the last
-    /// of several 90 degrees.
+    /// Yaws are the full circle in `yaw_subdivisions` equal parts, from the front on. The first elevation is 0 and the
+    /// last of several 90 degrees.
     pub fn photographs(&self) -> Vec<Photograph> {
         let mut photographs = Vec::with_capacity(self.scene.items.len() * (self.yaws * self.elevations) as usize);
         for (object, item) in self.scene.items.iter().enumerate() {

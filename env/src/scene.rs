@@ -233,8 +233,8 @@ impl Scene {
     }
 }
 
-/// What exposure comes to with ever more light, and the intensity at which it is half of that: an intensity of 2.3 is day,
-/// with an exposure of 1. Below, brightness falls with the intensity; above, it rises ever more slowly.
+/// What exposure comes to with ever more light, and the intensity at which it is half of that: an intensity of 2.3 is
+/// day, with an exposure of 1. Below, brightness falls with the intensity; above, it rises ever more slowly.
 const BRIGHTEST: f32 = 1.72;
 const HALF_BRIGHT: f32 = 1.65;
 

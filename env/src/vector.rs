@@ -1,4 +1,5 @@
-//! The few operations on directions and places in space that cameras and renderers share. Nothing here knows what they mean.
+//! The few operations on directions and places in space that cameras and renderers share. Nothing here knows what they
+//! mean.
 
 pub(crate) fn add(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]

@@ -123,7 +123,8 @@ fn steps_take_no_memory() {
     assert_eq!(taken_alone, 0, "on one thread");
     let (taken_beside_a_body, _) = taken(world_with_a_far_body(), 1, 300);
     assert_eq!(taken_beside_a_body, 0, "what can be pushed costs nothing until it is");
-    // Handing work to other threads takes a block of the pool's queue for every 63 times, whatever the number of environments.
+    // Handing work to other threads takes a block of the pool's queue for every 63 times, whatever the number of
+    // environments.
     let (taken_by_two, _) = taken(world(), 2, 300);
     assert!(taken_by_two <= 10, "on two threads: {taken_by_two} in 300 steps");
     heaps_take_memory_in_proportion();

@@ -1,4 +1,5 @@
-//! A batch is so many environments: the same numbers and pixels as each alone, whatever the threads and the way of resetting.
+//! A batch is so many environments: the same numbers and pixels as each alone, whatever the threads and the way of
+//! resetting.
 
 use std::sync::Arc;
 
@@ -268,7 +269,8 @@ fn outputs_that_take_too_much_are_refused_before_they_are_taken() {
         world.agent_params.observation_size = 4096;
         world
     };
-    // Colour, metres, categories and objects: 12 bytes a pixel, 201 MB an environment; 85 of them are 17.1 GB, 16 GiB are 17.18 GB.
+    // Colour, metres, categories and objects: 12 bytes a pixel, 201 MB an environment; 85 of them are 17.1 GB, 16 GiB
+    // are 17.18 GB.
     let made = |num_envs, autoreset| {
         let source: WorldSource = Arc::new(move |episode| {
             assert_eq!(episode.env, 0, "the first world says how large all are");

@@ -1,5 +1,5 @@
-//! The laws of touching and coming near: what one pass sets off does not depend on speed, on the time step, or on how often one
-//! looks.
+//! The laws of touching and coming near: what one pass sets off does not depend on speed, on the time step, or on how
+//! often one looks.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
@@ -11,7 +11,8 @@ fn start(world: World) -> Environment {
     Environment::new(world).expect("a sound world starts")
 }
 
-/// How often each stimulus was set off on a way of legs (turn in degrees, metres), at a speed, in time steps of a length.
+/// How often each stimulus was set off on a way of legs (turn in degrees, metres), at a speed, in time steps of a
+/// length.
 fn count(mut world: World, legs: &[(f64, f64)], speed: f64, seconds: f64) -> [usize; 2] {
     let agent = &mut world.agent_params;
     (agent.max_linear_speed, agent.max_angular_speed, agent.time_step) = (1000.0, 1e6, seconds);
@@ -193,7 +194,8 @@ fn a_mover_that_rushes_past_touches_and_comes_near_once() {
     }
 }
 
-/// Ways of the agent and of a ball that moves at once, both straight, in time steps of a length: how often it is touched and near.
+/// Ways of the agent and of a ball that moves at once, both straight, in time steps of a length: how often it is
+/// touched and near.
 fn meeting(mut object: Object, agent: ([f64; 2], f64, f64), seconds: f64, total: f64) -> [usize; 2] {
     let (at, heading, speed) = agent;
     object.motion_model = driftworld_spec::MotionModel::Patrol;

@@ -1,7 +1,9 @@
-//! Files that mean harm, or that are merely broken: each is refused with its own message, within the limits, without a panic.
+//! Files that mean harm, or that are merely broken: each is refused with its own message, within the limits, without a
+//! panic.
 //!
-//! The corpus lies in `tests/hostile/`: a file, and beside it the message. It is made here; `DRIFTWORLD_UPDATE_HOSTILE=1`
-//! writes it anew. A file that is not made here any more, or made differently, fails the test.
+//! The corpus lies in `tests/hostile/`: a file, and beside it the message. It is made here;
+//! `DRIFTWORLD_UPDATE_HOSTILE=1` writes it anew. A file that is not made here any more, or made differently, fails the
+//! test.
 #![cfg(feature = "gltf")]
 
 use std::collections::BTreeSet;

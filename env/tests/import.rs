@@ -1,4 +1,5 @@
-//! Sound glTF files become the models that they describe: the right way up, of the right size and colours; and worlds find them.
+//! Sound glTF files become the models that they describe: the right way up, of the right size and colours; and worlds
+//! find them.
 #![cfg(feature = "gltf")]
 
 use std::sync::Arc;
@@ -212,8 +213,8 @@ fn two_pixels() -> Vec<u8> {
     png
 }
 
-/// A quad whose material has a texture of two pixels. The first triangle lies in the left half, the second one in the right
-/// half, corners 0 and 3 on the border; then all of it is moved by so many pictures to the right.
+/// A quad whose material has a texture of two pixels. The first triangle lies in the left half, the second one in the
+/// right half, corners 0 and 3 on the border; then all of it is moved by so many pictures to the right.
 fn textured(pictures: f32) -> Quad {
     let mut quad = Quad::new();
     let places: Vec<u8> = [[0.5_f32, 0.0], [0.0, 0.5], [1.0, 0.5], [0.5, 1.0]]

@@ -1,7 +1,7 @@
 //! The graphics card draws what the processor draws: colours, depths and labels of the same scenes, pixel by pixel.
 //!
-//! A pixel may differ at an edge: the card snaps corners to a grid within the pixel, the processor does not. Where there is no
-//! adapter the tests say that they are skipped; with `DRIFTWORLD_REQUIRE_GPU=1` they fail there.
+//! A pixel may differ at an edge: the card snaps corners to a grid within the pixel, the processor does not. Where
+//! there is no adapter the tests say that they are skipped; with `DRIFTWORLD_REQUIRE_GPU=1` they fail there.
 
 #![cfg(feature = "gpu")]
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]

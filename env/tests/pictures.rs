@@ -266,7 +266,8 @@ fn read_png(path: &std::path::Path) -> ((u32, u32), Vec<u8>) {
     ((info.width, info.height), rgb)
 }
 
-/// A scene with everything that is drawn in a way of its own: regions, a house cut by the near plane, fog and thin things.
+/// A scene with everything that is drawn in a way of its own: regions, a house cut by the near plane, fog and thin
+/// things.
 fn crowded() -> Scene {
     let classes: Vec<_> = classes().collect();
     let place = |k: usize| [(k * 37 % 60) as f64 - 30.0, (k * 53 % 60) as f64 - 30.0];

@@ -1,4 +1,5 @@
-//! What touching, interacting and coming near do; what walls do; what ends an episode; and that all of it repeats exactly.
+//! What touching, interacting and coming near do; what walls do; what ends an episode; and that all of it repeats
+//! exactly.
 
 use driftworld_env::{Action, Agent, EnvError, Environment, OnRailsAgent, RandomAgent, Step, Warning};
 use driftworld_spec::{ActionModel, ActionSpace, EndCondition, MotionModel, Object, Shaping, Stimulus, Wall, World};

@@ -1,4 +1,5 @@
-//! A running world that is written down, or kept in memory, goes on as if nothing had been: to the last bit, pictures included.
+//! A running world that is written down, or kept in memory, goes on as if nothing had been: to the last bit, pictures
+//! included.
 
 use driftworld_env::{Action, Agent, EnvError, Environment, RandomAgent};
 use driftworld_spec::{

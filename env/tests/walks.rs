@@ -1,5 +1,6 @@
-//! A thousand straight walks among walls and objects, beside those of a frictionless disc that is computed by other means: in steps
-//! of two millimetres, each put back to the skin of what it overlaps, with distances of boxes and discs in their own frames.
+//! A thousand straight walks among walls and objects, beside those of a frictionless disc that is computed by other
+//! means: in steps of two millimetres, each put back to the skin of what it overlaps, with distances of boxes and discs
+//! in their own frames.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 

@@ -1,5 +1,5 @@
-//! The laws of sliding: along anything the agent, a mover or a pushed body keeps the part of its speed that leads along it, and
-//! nothing is passed.
+//! The laws of sliding: along anything the agent, a mover or a pushed body keeps the part of its speed that leads along
+//! it, and nothing is passed.
 
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 

@@ -1,5 +1,5 @@
-//! Batches of pictures on the machine's first adapter, which may be software, and the same on the processor. How they are started is
-//! in `graphics.rs`.
+//! Batches of pictures on the machine's first adapter, which may be software, and the same on the processor. How they
+//! are started is in `graphics.rs`.
 
 use criterion::{Criterion, Throughput, criterion_group};
 use driftworld_env::{Action, Camera, CpuRenderer, Environment, GpuChoice, GpuRenderer, Picture, Target};

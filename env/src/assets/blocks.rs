@@ -1,4 +1,5 @@
-//! Meshes as the processor likes them: triangles in blocks, one array for each coordinate. How they are drawn is the renderer's.
+//! Meshes as the processor likes them: triangles in blocks, one array for each coordinate. How they are drawn is the
+//! renderer's.
 
 use super::{Mesh, Paint, Part};
 

@@ -29,8 +29,8 @@ pub(crate) const CLASSES: &[(&str, u32)] = &[
     ("tree", 49),
 ];
 
-/// The number of a built-in class in class segmentation. All are the original's and have 1 to 23, in alphabetical order. One of
-/// ours would have the next number up to 30, in a list behind this one: what was stored stays right.
+/// The number of a built-in class in class segmentation. All are the original's and have 1 to 23, in alphabetical
+/// order. One of ours would have the next number up to 30, in a list behind this one: what was stored stays right.
 pub(crate) fn class_number(class: &str) -> Option<u16> {
     let place = CLASSES.binary_search_by_key(&class, |(name, _)| name).ok()?;
     u16::try_from(place + 1).ok()

@@ -1,5 +1,5 @@
-//! [`Catalogue`]: which models a world can refer to, those of libraries in front of the built-in ones. How either is made is
-//! in `library` and `builtin.rs`.
+//! [`Catalogue`]: which models a world can refer to, those of libraries in front of the built-in ones. How either is
+//! made is in `library` and `builtin.rs`.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -17,8 +17,8 @@ pub const FIRST_LIBRARY_CLASS: u16 = 32;
 
 /// The models that worlds may refer to by class and model: the built-in ones, and in front of them those of libraries.
 ///
-/// Cloning one is cheap: clones share their assets. A library's model becomes an asset, many times its size, when it is first
-/// asked for.
+/// Cloning one is cheap: clones share their assets. A library's model becomes an asset, many times its size, when it is
+/// first asked for.
 ///
 /// # Example
 /// ```
@@ -72,9 +72,9 @@ impl Catalogue {
 
     /// The number of a class in class segmentation, the same in every world; capitals do not matter.
     ///
-    /// Built-in classes have 1 to 23, those of libraries follow each other from [`FIRST_LIBRARY_CLASS`] on in the order of
-    /// their names, and whatever is not known has [`UNKNOWN_CLASS`]. A library's models of a built-in class have that
-    /// class's number. 0 is where there is no object.
+    /// Built-in classes have 1 to 23, those of libraries follow each other from [`FIRST_LIBRARY_CLASS`] on in the order
+    /// of their names, and whatever is not known has [`UNKNOWN_CLASS`]. A library's models of a built-in class have
+    /// that class's number. 0 is where there is no object.
     ///
     /// # Example
     /// ```

@@ -1,5 +1,5 @@
-//! What objects look like: meshes made by code from class and model number or read from libraries, and their colliders. Where
-//! they stand is the scene's.
+//! What objects look like: meshes made by code from class and model number or read from libraries, and their colliders.
+//! Where they stand is the scene's.
 
 mod blocks;
 mod builtin;

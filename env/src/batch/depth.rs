@@ -44,8 +44,8 @@ impl Whole for u16 {
     }
 }
 
-/// Whole numbers up to `most` of `scale` times the metres, with the widest vectors of the processor: 0.7 µs for 84 × 84 pixels with
-/// AVX-512, 1.2 with AVX2, 2.1 with SSE2. The numbers are the same with all of them.
+/// Whole numbers up to `most` of `scale` times the metres, with the widest vectors of the processor: 0.7 µs for 84 × 84
+/// pixels with AVX-512, 1.2 with AVX2, 2.1 with SSE2. The numbers are the same with all of them.
 fn scaled<T: Whole>(depth: &[f32], scale: f32, most: f32, out: &mut [T]) {
     #[cfg(target_arch = "x86_64")]
     {

@@ -1,4 +1,5 @@
-//! The pictures of a whole batch drawn together, for renderers that like it so. What an environment draws by itself is in `slot.rs`.
+//! The pictures of a whole batch drawn together, for renderers that like it so. What an environment draws by itself is
+//! in `slot.rs`.
 
 use super::images::ImagesMut;
 use super::slot::Slot;

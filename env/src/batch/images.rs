@@ -98,8 +98,8 @@ impl std::fmt::Display for ImageLayout {
     }
 }
 
-/// The images of all environments of a batch, environment after environment; row 0 on top. Buffers of modalities that are
-/// not asked for are empty.
+/// The images of all environments of a batch, environment after environment; row 0 on top. Buffers of modalities that
+/// are not asked for are empty.
 #[derive(Clone, Debug)]
 pub struct Images {
     /// What there is.
@@ -244,7 +244,8 @@ impl<'a> ImagesMut<'a> {
 /// A buffer of so many of a value.
 ///
 /// # Errors
-/// [`EnvError::BatchMemory`] where memory cannot be had: the buffer is the caller's to choose, so that is no reason to end all.
+/// [`EnvError::BatchMemory`] where memory cannot be had: the buffer is the caller's to choose, so that is no reason to
+/// end all.
 pub(super) fn filled<T: Clone>(value: T, length: usize) -> Result<Vec<T>, EnvError> {
     let mut buffer = Vec::new();
     buffer.try_reserve_exact(length).map_err(|_| EnvError::BatchMemory {

@@ -1,4 +1,5 @@
-//! [`Batch`]: many environments that step together, in one contiguous buffer per output. One environment's part of it is in
+//! [`Batch`]: many environments that step together, in one contiguous buffer per output. One environment's part of it
+//! is in
 //! `slot.rs`, how the work is shared among threads in `part.rs`; what happens inside an environment is in `sim`.
 
 mod depth;
@@ -29,9 +30,10 @@ const THREADS_PER_PROCESSOR: usize = 4;
 
 /// `num_envs` environments that step together.
 ///
-/// Each behaves exactly as an [`Environment`] alone would, whatever the number of threads. A step in which no episode begins
-/// allocates nothing, but that the pool's queue takes a block of memory once in about sixty steps if there are several threads. Worlds
-/// take memory in steps in which something is pushed or comes back, bodies overlap, or an agent on rails chooses where to go.
+/// Each behaves exactly as an [`Environment`] alone would, whatever the number of threads. A step in which no episode
+/// begins allocates nothing, but that the pool's queue takes a block of memory once in about sixty steps if there are
+/// several threads. Worlds take memory in steps in which something is pushed or comes back, bodies overlap, or an agent
+/// on rails chooses where to go.
 ///
 /// # Example
 /// ```
@@ -61,10 +63,10 @@ impl Batch {
     /// Environments at the start of their episodes 0, their first observations drawn.
     ///
     /// # Errors
-    /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchMemory`] where outputs would take more than
-    /// [`MAX_BATCH_BYTES`], or more than can be had; [`EnvError::BatchWorld`] where the source has no world;
-    /// [`EnvError::BatchImages`] where worlds ask for different images; [`EnvError::BatchThreads`] if threads cannot be had;
-    /// [`EnvError::NoGpu`] if a graphics card is asked for and none works; and as [`Renderer::draw_batch`].
+    /// [`EnvError::BatchSize`] for none or more than [`MAX_ENVS`]; [`EnvError::BatchMemory`] where outputs would take
+    /// more than [`MAX_BATCH_BYTES`], or more than can be had; [`EnvError::BatchWorld`] where the source has no world;
+    /// [`EnvError::BatchImages`] where worlds ask for different images; [`EnvError::BatchThreads`] if threads cannot be
+    /// had; [`EnvError::NoGpu`] if a graphics card is asked for and none works; and as [`Renderer::draw_batch`].
     pub fn new(num_envs: usize, source: WorldSource, options: BatchOptions) -> Result<Self, EnvError> {
         Self::with_catalogue(num_envs, source, options, &Catalogue::default())
     }
@@ -164,8 +166,8 @@ impl Batch {
         &self.outputs
     }
 
-    /// With [`Autoreset::SameStep`], the last observation, reward and flags of each environment whose episode ended in the last
-    /// step: those where the outputs say terminated or truncated. Other environments' parts hold old values.
+    /// With [`Autoreset::SameStep`], the last observation, reward and flags of each environment whose episode ended in
+    /// the last step: those where the outputs say terminated or truncated. Other environments' parts hold old values.
     pub fn final_outputs(&self) -> Option<&Outputs> {
         self.finals.as_ref()
     }
@@ -202,8 +204,8 @@ impl Batch {
         Ok(())
     }
 
-    /// Gives one environment another source of worlds: another task, say. It holds from its next episode on; with `restart`
-    /// given, that is the episode of this number.
+    /// Gives one environment another source of worlds: another task, say. It holds from its next episode on; with
+    /// `restart` given, that is the episode of this number.
     ///
     /// # Errors
     /// [`EnvError::NoSuchEnv`].
@@ -239,8 +241,8 @@ impl Batch {
     /// The same as long as `go_on` says so.
     ///
     /// # Errors
-    /// As [`Batch::reset_where`]; [`EnvError::Stopped`] if some have not begun: they do so with the next reset, or with the next step
-    /// where episodes begin by themselves.
+    /// As [`Batch::reset_where`]; [`EnvError::Stopped`] if some have not begun: they do so with the next reset, or with
+    /// the next step where episodes begin by themselves.
     pub fn reset_where_while(&mut self, chosen: &[bool], go_on: GoOn<'_>) -> Result<(), EnvError> {
         self.expect_one_each(chosen.len())?;
         self.begin_next(|env| chosen[env]);
@@ -258,9 +260,9 @@ impl Batch {
     /// Lets every environment act once: one action for each, in order. What comes of it is in [`Batch::outputs`].
     ///
     /// # Errors
-    /// [`EnvError::BatchLength`] and [`EnvError::BatchAction`] before anything has changed. [`EnvError::BatchWorld`] and
-    /// [`EnvError::BatchImages`] when the next episode of an environment cannot begin: the others have stepped, and the next
-    /// step asks for that world again.
+    /// [`EnvError::BatchLength`] and [`EnvError::BatchAction`] before anything has changed. [`EnvError::BatchWorld`]
+    /// and [`EnvError::BatchImages`] when the next episode of an environment cannot begin: the others have stepped, and
+    /// the next step asks for that world again.
     pub fn step(&mut self, actions: &[Action]) -> Result<(), EnvError> {
         self.expect_one_each(actions.len())?;
         for (env, (slot, action)) in self.slots.iter().zip(actions).enumerate() {

@@ -49,14 +49,14 @@ pub type WorldSource = Arc<dyn Fn(Episode) -> Result<World, String> + Send + Syn
 pub struct BatchOptions {
     /// When episodes that have ended are followed by the next.
     pub autoreset: Autoreset,
-    /// Threads that step and draw, never more than there are environments, nor more than four for each processor; 0 is one for each
-    /// processor.
+    /// Threads that step and draw, never more than there are environments, nor more than four for each processor; 0 is
+    /// one for each processor.
     pub num_threads: usize,
     /// What draws: the processor, each environment by itself; or a graphics card, all environments at once.
     pub renderer: RendererKind,
     /// The numbers of depth images.
     pub depth: DepthForm,
-    /// A limit of steps beside that of the worlds, which know nothing of it: an episode of so many steps is truncated, whatever
-    /// else it is. As Gymnasium's `TimeLimit` does.
+    /// A limit of steps beside that of the worlds, which know nothing of it: an episode of so many steps is truncated,
+    /// whatever else it is. As Gymnasium's `TimeLimit` does.
     pub max_episode_steps: Option<NonZeroU32>,
 }

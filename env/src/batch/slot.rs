@@ -174,8 +174,8 @@ impl Slot {
         Ok(())
     }
 
-    /// Hands out the state vector, and the images if there is a renderer: without one they are drawn later, for all environments
-    /// together.
+    /// Hands out the state vector, and the images if there is a renderer: without one they are drawn later, for all
+    /// environments together.
     fn observe(
         &self,
         index: usize,

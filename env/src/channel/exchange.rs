@@ -1,5 +1,5 @@
-//! [`Channels`]: does what messages ask for, and answers. How a message is read and written is in `message.rs`; what its
-//! payload says, in `request.rs`.
+//! [`Channels`]: does what messages ask for, and answers. How a message is read and written is in `message.rs`; what
+//! its payload says, in `request.rs`.
 
 use driftworld_spec::World;
 use driftworld_spec::maps::MapLibrary;
@@ -14,8 +14,8 @@ use crate::{Environment, Step, Warning};
 /// Our end of the three channels: who watches what, and which remarks are wanted.
 ///
 /// Messages in, messages out; the caller carries them, tells the time, and writes screenshots. A message that is not
-/// understood is answered by an `error` and changes nothing. Tokens of ours are made of the world's hash and a count, in the
-/// form of a UUID (version 8): the same messages give the same answers.
+/// understood is answered by an `error` and changes nothing. Tokens of ours are made of the world's hash and a count,
+/// in the form of a UUID (version 8): the same messages give the same answers.
 ///
 /// # Example
 /// ```
@@ -51,8 +51,8 @@ pub struct Received {
     pub screenshot: Option<Screenshot>,
     /// Whether the environment is at the start of a new world.
     pub reset: bool,
-    /// What was made of a new world or object that its author may not have meant: keys that mean nothing, assets that are not
-    /// known. The Debug channel has the same for who listens to `worldmaker`.
+    /// What was made of a new world or object that its author may not have meant: keys that mean nothing, assets that
+    /// are not known. The Debug channel has the same for who listens to `worldmaker`.
     pub remarks: Vec<String>,
 }
 
@@ -278,8 +278,8 @@ impl Channels {
         Ok(warnings.iter().map(remark_of).chain(own).collect())
     }
 
-    /// The parts of the world that are watched, as they are now. Objects that are gone are left out, and those without a name
-    /// have one made of their number.
+    /// The parts of the world that are watched, as they are now. Objects that are gone are left out, and those without
+    /// a name have one made of their number.
     fn state(&self, environment: &Environment) -> Value {
         let world = environment.world();
         let part = |part: &str| match part {

@@ -1,5 +1,5 @@
-//! L2Explorer's three channels of JSON messages: what a client asks of a running world, and what it is sent. How messages
-//! travel, what time it is and where files go is the caller's: nothing here reads or writes anything.
+//! L2Explorer's three channels of JSON messages: what a client asks of a running world, and what it is sent. How
+//! messages travel, what time it is and where files go is the caller's: nothing here reads or writes anything.
 
 mod category;
 mod exchange;

@@ -1,5 +1,5 @@
-//! Sky and ground by formula: for each row of a picture how far the ground is and in which colours it shows. Which pixels
-//! get them is decided in `compose.rs`.
+//! Sky and ground by formula: for each row of a picture how far the ground is and in which colours it shows. Which
+//! pixels get them is decided in `compose.rs`.
 
 use super::frame::{CATEGORY_MAP, CATEGORY_SKY};
 use super::lanes::{Lanes, MOST_LANES};

@@ -1,5 +1,5 @@
-//! What triangles are filled into: depth and packed pixel of each place. Where triangles come from is in `raster.rs`, what becomes of
-//! them in `compose.rs`.
+//! What triangles are filled into: depth and packed pixel of each place. Where triangles come from is in `raster.rs`,
+//! what becomes of them in `compose.rs`.
 
 use super::lanes::{Lanes, MOST_LANES};
 

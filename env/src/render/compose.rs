@@ -1,5 +1,5 @@
-//! From packed pixels to images: what was drawn is laid over ground, sky and the arena's walls, and written out in each modality.
-//! What was drawn is in `canvas.rs`, what the rows behind it look like in `backdrop.rs`.
+//! From packed pixels to images: what was drawn is laid over ground, sky and the arena's walls, and written out in each
+//! modality. What was drawn is in `canvas.rs`, what the rows behind it look like in `backdrop.rs`.
 
 use std::ops::Range;
 
@@ -21,8 +21,8 @@ pub(super) const MOST_SQUARES: f32 = 8000.0;
 /// Added to the numbers of squares so that none is negative; a multiple of 16, so that their pattern stays.
 pub(super) const SHIFT: f32 = 8192.0;
 
-/// The four walls around the camera, as far as the formulas need them. For each: 1 / distance of the wall along the view
-/// axis is `base + right · x + up · y` for a pixel x to the right and y up at 1 m.
+/// The four walls around the camera, as far as the formulas need them. For each: 1 / distance of the wall along the
+/// view axis is `base + right · x + up · y` for a pixel x to the right and y up at 1 m.
 pub(super) struct Walls {
     pub(super) base: [f32; 4],
     pub(super) right: [f32; 4],

@@ -1,5 +1,5 @@
-//! The renderer that needs nothing but a processor: chooses the instruction set, and draws what is in sight, near to far.
-//! Triangles are drawn in `raster.rs`, images made in `compose.rs`.
+//! The renderer that needs nothing but a processor: chooses the instruction set, and draws what is in sight, near to
+//! far. Triangles are drawn in `raster.rs`, images made in `compose.rs`.
 
 use super::backdrop::Backdrop;
 use super::canvas::Canvas;
@@ -18,7 +18,8 @@ use crate::assets::Paint;
 use crate::camera::Camera;
 use crate::scene::{Item, PanelGroup, Scene};
 
-/// Draws scenes on the processor. Keeps its buffers from picture to picture, and allocates nothing once they are large enough.
+/// Draws scenes on the processor. Keeps its buffers from picture to picture, and allocates nothing once they are large
+/// enough.
 ///
 /// The same scene and camera give the same pixels on every machine, whichever instruction set is used.
 #[derive(Clone, Debug)]
@@ -95,8 +96,8 @@ impl CpuRenderer {
     /// Draws the images that the target asks for.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels, there are at most 2²⁶ points of supersampling, and every
-    /// image has room for exactly its pixels.
+    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels, there are at most 2²⁶ points of supersampling,
+    /// and every image has room for exactly its pixels.
     pub fn draw(&mut self, scene: &Scene, camera: &Camera, target: &mut Target<'_>) -> Result<(), EnvError> {
         target.check()?;
         match target.supersampling {

@@ -74,8 +74,8 @@ pub(crate) const GRAY_PER_METRE: f32 = 2.55;
 
 /// The whole number nearest to `number`, halves upwards, within 0..=`most`, which is below 2²³.
 ///
-/// A sum with 2²³ has no room for a fraction: its last bits are the whole number. Compilers make vectors of that, but not of a cast
-/// that watches for what does not fit: a third of the time with SSE2.
+/// A sum with 2²³ has no room for a fraction: its last bits are the whole number. Compilers make vectors of that, but
+/// not of a cast that watches for what does not fit: a third of the time with SSE2.
 #[inline]
 pub(crate) fn rounded(number: f32, most: f32) -> u32 {
     const SHIFT: f32 = 8_388_608.0;

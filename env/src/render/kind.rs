@@ -13,8 +13,8 @@ pub enum RendererKind {
     Cpu,
     /// A graphics card, or software that stands in for one; an error if there is none.
     Gpu,
-    /// A graphics card if there is one that works; else the processor. Never software that stands in for a graphics card: the
-    /// processor's own renderer is faster.
+    /// A graphics card if there is one that works; else the processor. Never software that stands in for a graphics
+    /// card: the processor's own renderer is faster.
     Auto,
 }
 

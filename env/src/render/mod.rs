@@ -1,4 +1,5 @@
-//! Pictures of scenes. The CPU renderer is the default and needs no driver; that for graphics cards is behind the feature `gpu`.
+//! Pictures of scenes. The CPU renderer is the default and needs no driver; that for graphics cards is behind the
+//! feature `gpu`.
 #![expect(
     clippy::inline_always,
     reason = "what works on vectors must end up inside a function that has their instruction set"

@@ -113,8 +113,8 @@ impl Renderer {
     /// Draws many pictures; a graphics card draws those of one size together.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] for sizes that cannot be; on a graphics card also [`EnvError::GpuPicture`] for pictures that it
-    /// cannot hold, and [`EnvError::Gpu`] when it fails. Some images may be old then.
+    /// [`EnvError::PictureSize`] for sizes that cannot be; on a graphics card also [`EnvError::GpuPicture`] for
+    /// pictures that it cannot hold, and [`EnvError::Gpu`] when it fails. Some images may be old then.
     pub fn draw_batch(&mut self, pictures: &mut [Picture<'_>]) -> Result<(), EnvError> {
         match &mut self.0 {
             Inner::Cpu(renderer) => pictures

@@ -10,7 +10,8 @@
 use crate::scene::Light;
 use crate::vector::dot;
 
-/// Light from the sky on a face that the sun does not reach, as a share: once for an upright face, twice for the ground.
+/// Light from the sky on a face that the sun does not reach, as a share: once for an upright face, twice for the
+/// ground.
 pub(crate) const SKY_SHARE: f32 = 0.06;
 
 /// The level of a colour of 1 in full light, and the highest that a byte holds.
@@ -66,7 +67,8 @@ impl Shader {
         u32::from_le_bytes([red, green, blue, 0])
     }
 
-    /// The sky's colours at the zenith and at the horizon, for its own colour. It dims with the light, less than the ground does.
+    /// The sky's colours at the zenith and at the horizon, for its own colour. It dims with the light, less than the
+    /// ground does.
     pub(crate) fn sky(&self, color: [f32; 3]) -> [[f32; 3]; 2] {
         let brightest = self.tint[0].max(self.tint[1]).max(self.tint[2]);
         let [dark, gain, most] = SKY_BRIGHTNESS;

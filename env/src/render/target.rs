@@ -1,4 +1,5 @@
-//! Where images go: slices that the caller owns, one for each modality that is wanted. What their numbers mean is in `frame.rs`.
+//! Where images go: slices that the caller owns, one for each modality that is wanted. What their numbers mean is in
+//! `frame.rs`.
 
 use driftworld_spec::MAX_POINTS;
 
@@ -42,8 +43,8 @@ impl Target<'_> {
     }
 
     /// # Errors
-    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels, there are at most 2²⁶ points of supersampling, and every
-    /// image has room for exactly its pixels.
+    /// [`EnvError::PictureSize`] unless both sides are 1 to 4096 pixels, there are at most 2²⁶ points of supersampling,
+    /// and every image has room for exactly its pixels.
     pub(super) fn check(&self) -> Result<(), EnvError> {
         let (width, height) = (self.width, self.height);
         if self.is_sound() {

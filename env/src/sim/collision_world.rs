@@ -49,7 +49,8 @@ pub(super) struct Standing {
     pub(super) outline: Outline,
     /// Its object; walls and the agent are nobody's.
     pub(super) object: Option<u32>,
-    /// A number that depends on the world alone: walls are told apart by the number that they were given, objects by theirs.
+    /// A number that depends on the world alone: walls are told apart by the number that they were given, objects by
+    /// theirs.
     pub(super) rank: u64,
 }
 

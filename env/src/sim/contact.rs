@@ -1,8 +1,9 @@
 //! What counts as a touch, and how long it lasts. What a touch pays is in `interactions.rs`.
 //!
-//! A contact begins when the gap between the agent and an object is no wider than [`TOUCH`] anywhere on their ways, and ends when it
-//! is wider than [`RELEASE`], both when the agent has moved and when the objects have: who follows another at its heels stays in
-//! touch. These are places, not times: how often one pass touches does not depend on speed or time step.
+//! A contact begins when the gap between the agent and an object is no wider than [`TOUCH`] anywhere on their ways, and
+//! ends when it is wider than [`RELEASE`], both when the agent has moved and when the objects have: who follows another
+//! at its heels stays in touch. These are places, not times: how often one pass touches does not depend on speed or
+//! time step.
 
 use super::budget::Budget;
 use super::collision_world::{CollisionWorld, slot};
@@ -16,7 +17,8 @@ const TOUCH: f64 = 0.03;
 pub(super) const RELEASE: f64 = 0.25;
 
 impl CollisionWorld {
-    /// Notes the objects that the agent touched on its way of this time step, each once, but for those that are `skipped`.
+    /// Notes the objects that the agent touched on its way of this time step, each once, but for those that are
+    /// `skipped`.
     pub(super) fn note_passed(&mut self, met: &mut Vec<u32>, skipped: impl Fn(u32) -> bool) {
         let Some((mut least, mut most)) = self.path().first().map(|&start| (start, start)) else {
             return;
@@ -44,7 +46,8 @@ impl CollisionWorld {
         }
     }
 
-    /// Notes an object that touched the agent while it came `by` metres to where it is now, and the agent from one place to another.
+    /// Notes an object that touched the agent while it came `by` metres to where it is now, and the agent from one
+    /// place to another.
     pub(super) fn note_passing(&self, object: u32, by: [f32; 2], agent: [[f32; 2]; 2], met: &mut Vec<u32>) {
         let Some(handle) = self.handles[object as usize] else {
             return;

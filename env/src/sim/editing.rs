@@ -1,5 +1,5 @@
-//! Changing a world while it runs, from outside: new objects, fewer objects, another place for the agent. What the agent
-//! itself changes is in `interactions.rs`.
+//! Changing a world while it runs, from outside: new objects, fewer objects, another place for the agent. What the
+//! agent itself changes is in `interactions.rs`.
 
 use std::sync::Arc;
 
@@ -18,9 +18,11 @@ impl Environment {
         self.world.objects.iter().position(named)
     }
 
-    /// Puts a new object into the running world and hands back its index: the next number, for indices stay as they are.
+    /// Puts a new object into the running world and hands back its index: the next number, for indices stay as they
+    /// are.
     ///
-    /// It stands wherever it is put, even in a wall. If it stands where the agent is, the next step is its first contact.
+    /// It stands wherever it is put, even in a wall. If it stands where the agent is, the next step is its first
+    /// contact.
     ///
     /// # Errors
     /// [`EnvError::BadObject`] where a document with this object would be refused, [`EnvError::NameTaken`], and
@@ -37,8 +39,8 @@ impl Environment {
             let name = name.clone();
             return Err(EnvError::NameTaken { name, object: first });
         }
-        // Without a seed, random numbers depend on where things stood before anything was spawned. Where it was not known, nothing
-        // has drawn from it.
+        // Without a seed, random numbers depend on where things stood before anything was spawned. Where it was not
+        // known, nothing has drawn from it.
         self.seed.learn(&self.world);
         self.state.add_object(&object, &self.seed, &mut self.identities);
         self.state.sequence.add(index, object.order);
@@ -55,7 +57,8 @@ impl Environment {
     /// It counts as collected, so that a sequence of which it was a part can go on. Its index stays taken.
     ///
     /// # Errors
-    /// [`EnvError::NoSuchObject`], and [`EnvError::AlreadyGone`] where there is nothing to take away; nothing is changed then.
+    /// [`EnvError::NoSuchObject`], and [`EnvError::AlreadyGone`] where there is nothing to take away; nothing is
+    /// changed then.
     pub fn destroy(&mut self, object: usize) -> Result<(), EnvError> {
         let count = self.state.objects.len();
         if object >= count {
@@ -80,8 +83,8 @@ impl Environment {
     /// It arrives at rest. What it touches there, or is near to, is no news: only what it meets by its own motion pays.
     ///
     /// # Errors
-    /// [`EnvError::NoRoom`] for places outside the arena, in walls, in regions that cannot be entered and in solid objects;
-    /// [`EnvError::NoHeading`] for one that is not finite. On error it stays where it is.
+    /// [`EnvError::NoRoom`] for places outside the arena, in walls, in regions that cannot be entered and in solid
+    /// objects; [`EnvError::NoHeading`] for one that is not finite. On error it stays where it is.
     pub fn teleport(&mut self, position: [f64; 2], heading_deg: f64) -> Result<(), EnvError> {
         if !heading_deg.is_finite() {
             return Err(EnvError::NoHeading { found: heading_deg });

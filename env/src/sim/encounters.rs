@@ -1,4 +1,5 @@
-//! What the motions of one time step led to: who met whom, who moved, who came back. `interactions.rs` makes stimuli of it.
+//! What the motions of one time step led to: who met whom, who moved, who came back. `interactions.rs` makes stimuli of
+//! it.
 
 /// The events of one time step's motions. The lists are used again in the next.
 #[derive(Default)]

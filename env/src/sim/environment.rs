@@ -120,7 +120,8 @@ impl Environment {
     }
 
     fn build(mut world: Arc<World>, catalogue: &Catalogue, renderer: Renderer, frame: Frame) -> Self {
-        // A world that was written down while it ran is taken back to its start, and then goes on from where it had come.
+        // A world that was written down while it ran is taken back to its start, and then goes on from where it had
+        // come.
         let resume = world.progress.is_some().then(|| ResumeState::out_of(&mut world));
         let mut views = Views::new(&world, catalogue);
         let seed = Seed::of(&world, resume.as_ref().and_then(ResumeState::seed));

@@ -1,8 +1,9 @@
-//! What a body covers of the ground: a disc or a convex polygon, and how far a point is from it. Who slides along footprints is in
+//! What a body covers of the ground: a disc or a convex polygon, and how far a point is from it. Who slides along
+//! footprints is in
 //! `slide.rs`; where bodies stand is in `collision_world.rs`.
 //!
-//! All bodies stand upright and move in the plane, so that what stops them is a question of two dimensions. Its answers are
-//! exact: closed forms in `f64`, with no iteration that could end early.
+//! All bodies stand upright and move in the plane, so that what stops them is a question of two dimensions. Its answers
+//! are exact: closed forms in `f64`, with no iteration that could end early.
 
 use smallvec::{SmallVec, smallvec};
 
@@ -50,8 +51,8 @@ impl Footprint {
         }
     }
 
-    /// A line of this half length along x around the origin, widened: its ends are round, so that where two walls meet, they make
-    /// one corner without a notch.
+    /// A line of this half length along x around the origin, widened: its ends are round, so that where two walls meet,
+    /// they make one corner without a notch.
     pub(super) fn line(half_length: f64, radius: f64) -> Self {
         Self {
             corners: smallvec![[-half_length, 0.0], [half_length, 0.0]],
@@ -73,8 +74,8 @@ impl Footprint {
         (corners.len() >= 3).then_some(Self { corners, rounding: 0.0 })
     }
 
-    /// This footprint turned by an angle whose sine and cosine are given, counterclockwise, and then moved; in the memory of
-    /// another one.
+    /// This footprint turned by an angle whose sine and cosine are given, counterclockwise, and then moved; in the
+    /// memory of another one.
     pub(super) fn place_into(&self, [sine, cosine]: Point, at: Point, placed: &mut Self) {
         placed.rounding = self.rounding;
         placed.corners.clear();

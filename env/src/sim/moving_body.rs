@@ -1,5 +1,5 @@
-//! Bodies of objects that move: how far one comes before it meets something, and where one may come back. Where it wants to go is
-//! decided in `mover.rs`, what the agent bumps into is in `collision_world.rs`.
+//! Bodies of objects that move: how far one comes before it meets something, and where one may come back. Where it
+//! wants to go is decided in `mover.rs`, what the agent bumps into is in `collision_world.rs`.
 
 use rapier3d::prelude::*;
 

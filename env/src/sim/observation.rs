@@ -1,4 +1,5 @@
-//! Looking at a running world: the agent's observation, its camera, pictures from anywhere. How they are drawn is in `render`.
+//! Looking at a running world: the agent's observation, its camera, pictures from anywhere. How they are drawn is in
+//! `render`.
 
 use super::environment::Environment;
 use crate::EnvError;

@@ -1,7 +1,7 @@
 //! What an asset's body covers of the ground before it is turned and moved: in all, and up to the agent's height.
 //!
-//! The agent is an upright cylinder: of balls, capsules and hulls, what is above its head does not stop it. Boxes and cylinders
-//! are as wide above as below. Other bodies keep apart by all that they cover.
+//! The agent is an upright cylinder: of balls, capsules and hulls, what is above its head does not stop it. Boxes and
+//! cylinders are as wide above as below. Other bodies keep apart by all that they cover.
 
 use rapier3d::prelude::{SharedShape, Vector};
 

@@ -172,7 +172,8 @@ impl ResumeState {
         self.progress != only_seed
     }
 
-    /// The hash of the places of things at the start of the world, if random numbers depend on it and have been asked for.
+    /// The hash of the places of things at the start of the world, if random numbers depend on it and have been asked
+    /// for.
     pub(super) fn seed(&self) -> Option<String> {
         self.progress.seed.clone()
     }

@@ -1,8 +1,9 @@
-//! Bodies that are pushed: rigid bodies on the ground, stepped by rapier. What else the agent bumps into is in `collision_world.rs`.
+//! Bodies that are pushed: rigid bodies on the ground, stepped by rapier. What else the agent bumps into is in
+//! `collision_world.rs`.
 //!
-//! Each time step starts a physics world of its own, made of the pushed bodies that may move, what stands around them and the
-//! agent; nothing but places and velocities goes from one time step to the next. So a world that was written down goes on to
-//! the last bit, and a world at rest costs nothing.
+//! Each time step starts a physics world of its own, made of the pushed bodies that may move, what stands around them
+//! and the agent; nothing but places and velocities goes from one time step to the next. So a world that was written
+//! down goes on to the last bit, and a world at rest costs nothing.
 
 use driftworld_spec::World;
 use rapier3d::prelude::*;
@@ -43,8 +44,8 @@ struct Active {
     friction: f32,
 }
 
-/// Lets the agent push what is in its way, and what was pushed slide on. Hands back how far the agent's own way leads when
-/// what it pushes holds it up; notes what it pushed.
+/// Lets the agent push what is in its way, and what was pushed slide on. Hands back how far the agent's own way leads
+/// when what it pushes holds it up; notes what it pushed.
 pub(super) fn push_bodies(
     world: &World,
     state: &mut SimState,
@@ -141,7 +142,8 @@ fn add_active(sim: SimRef, physics: &mut PhysicsWorld, index: usize) -> Active {
             .enabled_translations(true, true, false)
             .enabled_rotations(false, false, true)
             .ccd_enabled(true)
-            // Contacts are foreseen: else a body stands still for the rest of the part of the step in which it meets a wall.
+            // Contacts are foreseen: else a body stands still for the rest of the part of the step in which it meets a
+            // wall.
             .soft_ccd_prediction(farthest)
             .can_sleep(false),
     );

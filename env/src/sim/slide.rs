@@ -1,8 +1,10 @@
-//! Sliding: the way of a body that is driven one way, without friction, among footprints. Which bodies these are is in `collision_world.rs` and
+//! Sliding: the way of a body that is driven one way, without friction, among footprints. Which bodies these are is in
+//! `collision_world.rs` and
 //! `moving_body.rs`.
 //!
-//! The law: at each moment the body moves as it is driven, less what leads into something that it touches. So on its way along a
-//! wall it keeps the part of its speed that points along the wall, whatever the wall's length, the body's width or the time step.
+//! The law: at each moment the body moves as it is driven, less what leads into something that it touches. So on its
+//! way along a wall it keeps the part of its speed that points along the wall, whatever the wall's length, the body's
+//! width or the time step.
 
 use super::budget::Budget;
 use super::footprint::{Footprint, Gap, Point};
@@ -10,8 +12,8 @@ use super::footprint::{Footprint, Gap, Point};
 /// Distance that a body keeps from what it slides along, in metres.
 pub(super) const SKIN: f64 = 0.01;
 
-/// How much wider than the skin a gap may be that still counts as contact, in metres: more than rounding to `f32` at the edge of
-/// the world.
+/// How much wider than the skin a gap may be that still counts as contact, in metres: more than rounding to `f32` at
+/// the edge of the world.
 const SLACK: f64 = 2e-4;
 
 /// How far a part of the way may leave a round edge before it is brought back to it, in metres.
@@ -40,7 +42,8 @@ impl Obstacles<'_> {
         self.numbers.iter().map(|number| &self.footprints[*number as usize])
     }
 
-    /// The first time, 0..1, at which a body of this radius comes within the skin of something that it does not touch already.
+    /// The first time, 0..1, at which a body of this radius comes within the skin of something that it does not touch
+    /// already.
     fn first_time(&self, from: Point, by: Point, radius: f64) -> Option<f64> {
         self.footprints()
             .filter(|footprint| footprint.gap(from).distance - radius > SKIN + SLACK)
@@ -103,8 +106,8 @@ impl Obstacles<'_> {
 
     /// Lets a round body, driven a way in a unit of time, slide; notes in `path` where its way bends, and its end.
     ///
-    /// What its middle is inside of does not hold it: where something was put on it, it walks out whichever way it likes.
-    /// Its way ends where its budget does.
+    /// What its middle is inside of does not hold it: where something was put on it, it walks out whichever way it
+    /// likes. Its way ends where its budget does.
     pub(super) fn slide(
         &self,
         from: Point,
@@ -144,7 +147,8 @@ impl Obstacles<'_> {
         }
     }
 
-    /// Follows the edge of what holds the body for so much time, or for less where it bends away; hands back the place and the time.
+    /// Follows the edge of what holds the body for so much time, or for less where it bends away; hands back the place
+    /// and the time.
     fn along(&self, at: Point, by: Point, way: Point, most: f64, out: Point, radius: f64) -> (Point, f64) {
         // What is touched now, and gives this way out, is what is followed.
         let holds = |footprint: &&Footprint| {
@@ -174,7 +178,8 @@ impl Obstacles<'_> {
     }
 }
 
-/// The share of the time that a part of the way takes at the speed of its beginning, if the speed grows evenly with the way.
+/// The share of the time that a part of the way takes at the speed of its beginning, if the speed grows evenly with the
+/// way.
 ///
 /// It does so around a corner, but for the third power of the angle.
 fn share_of_time(first: f64, last: f64) -> f64 {
@@ -186,12 +191,14 @@ fn share_of_time(first: f64, last: f64) -> f64 {
     }
 }
 
-/// Whether something holds a body of this radius. A body without one stands for others' outlines, which hold it from inside, too.
+/// Whether something holds a body of this radius. A body without one stands for others' outlines, which hold it from
+/// inside, too.
 fn is_touched(gap: &Gap, radius: f64) -> bool {
     gap.distance - radius <= SKIN + SLACK && (gap.distance >= 0.0 || radius == 0.0)
 }
 
-/// The part of a way that leads into nothing that is touched, and the way out of what turned it; nothing where no way is left.
+/// The part of a way that leads into nothing that is touched, and the way out of what turned it; nothing where no way
+/// is left.
 fn allowed(by: Point, touched: &[Gap], budget: &mut Budget) -> Option<(Point, Option<Point>)> {
     let length = dot(by, by).sqrt();
     // What a way led into, the next one is likely to lead into, too.

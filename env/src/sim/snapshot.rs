@@ -76,8 +76,8 @@ impl Environment {
         Ok(())
     }
 
-    /// The world as it is now, as a document: objects where they stand with the rewards that are left, and in `progress` all
-    /// else that a reset to it needs to go on as if nothing had been.
+    /// The world as it is now, as a document: objects where they stand with the rewards that are left, and in
+    /// `progress` all else that a reset to it needs to go on as if nothing had been.
     ///
     /// Destroyed objects are among the objects, so that numbers stay; their progress says that they are not there.
     ///

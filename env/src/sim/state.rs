@@ -63,7 +63,8 @@ pub(super) fn wrapped(heading_deg: f32) -> f32 {
     if heading_deg < 360.0 { heading_deg } else { 0.0 }
 }
 
-/// Where a world stands in its course: the only place that says where things are, whether they are there and what they pay.
+/// Where a world stands in its course: the only place that says where things are, whether they are there and what they
+/// pay.
 #[derive(Clone)]
 pub(crate) struct SimState {
     pub(super) agent: AgentState,

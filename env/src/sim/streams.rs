@@ -1,8 +1,9 @@
-//! The random numbers of a running world: a stream for each object and purpose. Who draws from them is in `interactions.rs`,
+//! The random numbers of a running world: a stream for each object and purpose. Who draws from them is in
+//! `interactions.rs`,
 //! `motion.rs` and `mover.rs`.
 //!
-//! Every draw has a number, and is had without the draws before it: what an object draws for the third time depends on the
-//! world's seed, on the object's own and on the 3, and on nothing else that is in the world or happens in it.
+//! Every draw has a number, and is had without the draws before it: what an object draws for the third time depends on
+//! the world's seed, on the object's own and on the 3, and on nothing else that is in the world or happens in it.
 
 use std::collections::BTreeMap;
 
@@ -169,8 +170,8 @@ impl ObjectRng {
         })
     }
 
-    /// Whether the next pull pays, with this probability. The same number decides whatever the probability: lowering it takes
-    /// payments away and adds none.
+    /// Whether the next pull pays, with this probability. The same number decides whatever the probability: lowering it
+    /// takes payments away and adds none.
     pub(super) fn pull(&mut self, probability: f64) -> bool {
         let [unit, _] = self.pulling.draw(self.pulls);
         self.pulls += 1;

@@ -1,5 +1,5 @@
-//! What the world's rules make of where things stand: the potential of its shaping, and what ends an episode. What objects pay
-//! is in `interactions.rs`.
+//! What the world's rules make of where things stand: the potential of its shaping, and what ends an episode. What
+//! objects pay is in `interactions.rs`.
 
 use driftworld_spec::{EndCondition, Object, Stimulus, World};
 

@@ -49,7 +49,8 @@ pub enum Warning {
         /// How many may.
         limit: usize,
     },
-    /// The world is for photographs of its objects ([`Studio`](crate::Studio)); stepped, it runs as if it were for learning.
+    /// The world is for photographs of its objects ([`Studio`](crate::Studio)); stepped, it runs as if it were for
+    /// learning.
     ForPhotographs,
 }
 

@@ -1,5 +1,5 @@
-//! Numbers out of buffers: positions, texture coordinates, colours, indices. Every count and range is checked before anything
-//! is read or memory is taken.
+//! Numbers out of buffers: positions, texture coordinates, colours, indices. Every count and range is checked before
+//! anything is read or memory is taken.
 
 use gltf_json::accessor::{Accessor, ComponentType, GenericComponentType, Type};
 use gltf_json::validation::Checked;
@@ -139,7 +139,8 @@ fn sound<'a>(root: &'a Root, index: Index<Accessor>, for_use: Use, from: &str) -
 }
 
 impl Sound<'_> {
-    /// The bytes from the first element on, the distance of elements, and the size of a number. All elements lie within.
+    /// The bytes from the first element on, the distance of elements, and the size of a number. All elements lie
+    /// within.
     fn bytes<'b>(&self, buffers: &'b Buffers) -> Result<(&'b [u8], usize, usize), EnvError> {
         let Some(view) = self.accessor.buffer_view else {
             return Err(refuse(

@@ -1,4 +1,5 @@
-//! The colour of a triangle: the mean light of material, texture and corners over it. Which colours are kept is decided in
+//! The colour of a triangle: the mean light of material, texture and corners over it. Which colours are kept is decided
+//! in
 //! `palette.rs`.
 
 use super::texture::Texture;

@@ -1,5 +1,5 @@
-//! The JSON of a glTF file: its size is checked before it is parsed, its version and extensions after. Numbers of things in it
-//! are trusted by nobody: whoever follows one looks whether it leads somewhere.
+//! The JSON of a glTF file: its size is checked before it is parsed, its version and extensions after. Numbers of
+//! things in it are trusted by nobody: whoever follows one looks whether it leads somewhere.
 
 use std::fmt;
 
@@ -72,8 +72,8 @@ pub(super) fn parse(json: &str) -> Result<Root, EnvError> {
     Ok(root)
 }
 
-/// Whether JSON that is no glTF 2.0 is of the version before, where meshes had names in place of numbers. Nothing of it is kept in
-/// memory.
+/// Whether JSON that is no glTF 2.0 is of the version before, where meshes had names in place of numbers. Nothing of it
+/// is kept in memory.
 fn is_version_1(json: &str) -> bool {
     gltf_json::deserialize::from_str::<Version1>(json).is_ok()
 }

@@ -1,5 +1,5 @@
-//! Models from glTF 2.0 files: the way from bytes to a model. Files that lie are refused where they
-//! lie, in the file of the step that meets them. Skins and animations are left out; extensions that compress are refused.
+//! Models from glTF 2.0 files: the way from bytes to a model. Files that lie are refused where they lie, in the file of
+//! the step that meets them. Skins and animations are left out; extensions that compress are refused.
 
 mod accessor;
 mod buffers;
@@ -46,13 +46,13 @@ pub struct Imported {
 impl LibraryModel {
     /// A model from the bytes of a `.glb` or `.gltf` file.
     ///
-    /// It is turned so that glTF's up (+y) is up and its front (+z) faces +y, stood on the ground, centred above its origin, and
-    /// gets up to three coarser levels of detail. A triangle's colour is the mean of base colour, texture and corner colours
-    /// over it; at most 64 colours are kept.
+    /// It is turned so that glTF's up (+y) is up and its front (+z) faces +y, stood on the ground, centred above its
+    /// origin, and gets up to three coarser levels of detail. A triangle's colour is the mean of base colour, texture
+    /// and corner colours over it; at most 64 colours are kept.
     ///
     /// # Errors
-    /// [`EnvError::BadModel`] for what is not a sound glTF file within the limits: [`MAX_IMPORT_BYTES`], [`MAX_IMPORT_NODES`],
-    /// [`MAX_IMPORT_DEPTH`], [`MAX_MODEL_VERTICES`](crate::MAX_MODEL_VERTICES),
+    /// [`EnvError::BadModel`] for what is not a sound glTF file within the limits: [`MAX_IMPORT_BYTES`],
+    /// [`MAX_IMPORT_NODES`], [`MAX_IMPORT_DEPTH`], [`MAX_MODEL_VERTICES`](crate::MAX_MODEL_VERTICES),
     /// [`MAX_MODEL_TRIANGLES`](crate::MAX_MODEL_TRIANGLES), [`MAX_TEXTURE_SIDE`].
     pub fn from_gltf(bytes: &[u8], options: &ImportOptions, read: &mut ReadBeside) -> Result<Imported, EnvError> {
         if bytes.len() > MAX_IMPORT_BYTES {

@@ -12,7 +12,8 @@ pub(super) struct Pose([[f64; 4]; 3]);
 
 type Found<'a> = dyn FnMut(Index<Mesh>, &Pose, &str) -> Result<(), EnvError> + 'a;
 
-/// Shows every mesh of the default scene with its pose and the place of its node; without scenes, every mesh that hangs in the tree.
+/// Shows every mesh of the default scene with its pose and the place of its node; without scenes, every mesh that hangs
+/// in the tree.
 pub(super) fn visit(root: &Root, found: &mut Found) -> Result<(), EnvError> {
     let mut walk = Walk {
         root,

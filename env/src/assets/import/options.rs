@@ -14,6 +14,7 @@ pub struct ImportOptions {
     pub size: ImportSize,
     /// What the agent bumps into.
     pub collider: ColliderKind,
-    /// Name of the material whose colour gives way to an object's `color`. Without it, the material named `main`, if any.
+    /// Name of the material whose colour gives way to an object's `color`. Without it, the material named `main`, if
+    /// any.
     pub main: Option<String>,
 }

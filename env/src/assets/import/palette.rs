@@ -102,7 +102,8 @@ impl Heap {
     }
 }
 
-/// The corners that groups use, those at the same place in the same group as one, and the groups with their new numbers.
+/// The corners that groups use, those at the same place in the same group as one, and the groups with their new
+/// numbers.
 pub(super) fn welded(corners: &[[f32; 3]], mut groups: Vec<Group>) -> (Vec<[f32; 3]>, Vec<Group>) {
     let mut welded = Vec::new();
     for group in &mut groups {

@@ -1,4 +1,5 @@
-//! One primitive of a mesh: its corners, its triangles and their colours, read out of the file's accessors. Where it stands is
+//! One primitive of a mesh: its corners, its triangles and their colours, read out of the file's accessors. Where it
+//! stands is
 //! `surface.rs`'s.
 
 use gltf_json::mesh::{Mode, Primitive, Semantic};
@@ -32,7 +33,8 @@ pub(super) struct ReadPrimitive {
 }
 
 impl Reading<'_, '_> {
-    /// Reads a primitive; none if it is made of points or lines. `taken`: vertices and triangles of the scene up to here.
+    /// Reads a primitive; none if it is made of points or lines. `taken`: vertices and triangles of the scene up to
+    /// here.
     pub(super) fn primitive(
         &mut self,
         primitive: &Primitive,

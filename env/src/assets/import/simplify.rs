@@ -1,5 +1,5 @@
-//! Coarser forms of a surface, with the distance by which each is off. Made once, when a model is imported, and stored: the
-//! simplifier's arithmetic is its C++ compiler's, so nothing that must be the same on every machine may call it.
+//! Coarser forms of a surface, with the distance by which each is off. Made once, when a model is imported, and stored:
+//! the simplifier's arithmetic is its C++ compiler's, so nothing that must be the same on every machine may call it.
 
 use meshopt::SimplifyOptions;
 use rapier3d::math::Vector;
@@ -16,7 +16,8 @@ const KEPT: usize = 4;
 /// The largest error of a level, as a share of the surface's size.
 const MOST_ERROR: f32 = 0.2;
 
-/// The most corners of the whole surface that are measured for a level: with more of them, evenly chosen ones stand for all.
+/// The most corners of the whole surface that are measured for a level: with more of them, evenly chosen ones stand for
+/// all.
 const MEASURED: usize = 20_000;
 
 /// The most pairs of triangles at one corner, over all corners: the simplifier looks at each. A corner shared by 63,000
@@ -77,7 +78,8 @@ fn pairs(whole: &[u32], corners: usize) -> u64 {
 }
 
 fn simplified(whole: &[u32], corners: &[[f32; 3]], wanted: usize, most_error: f32) -> Vec<u32> {
-    // Where two colours meet, each has its own corner in the same place: the simplifier takes that for a seam, and keeps it.
+    // Where two colours meet, each has its own corner in the same place: the simplifier takes that for a seam, and
+    // keeps it.
     let options = SimplifyOptions::ErrorAbsolute | SimplifyOptions::Prune;
     meshopt::simplify_decoder(whole, corners, wanted, most_error, options, None)
 }
@@ -91,8 +93,9 @@ fn size<'a, I: Iterator<Item = &'a [f32; 3]>>(points: impl Fn() -> I) -> f32 {
     along(0).max(along(1)).max(along(2)).max(0.0)
 }
 
-/// How far the corners of groups lie from their coarser forms at most; the size of a group of which nothing is left. None as soon
-/// as that is above `most`. Where triangles lie through each other in thousands, fewer corners are measured.
+/// How far the corners of groups lie from their coarser forms at most; the size of a group of which nothing is left.
+/// None as soon as that is above `most`. Where triangles lie through each other in thousands, fewer corners are
+/// measured.
 fn error(corners: &[[f32; 3]], fine: &[Vec<[u32; 3]>], coarse: &[Vec<[u32; 3]>], most: f32) -> Option<f32> {
     let used: Vec<Vec<u32>> = fine.iter().map(|triangles| used(triangles)).collect();
     // Each group has at least one corner measured, which rounding up may add to the most.

@@ -1,5 +1,5 @@
-//! Textures as far as a model needs them: the colour at a place. PNG is read; of anything else the material keeps its plain
-//! colour.
+//! Textures as far as a model needs them: the colour at a place. PNG is read; of anything else the material keeps its
+//! plain colour.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;

@@ -1,4 +1,5 @@
-//! What a glTF file may name: data inside itself, and files in its own folder. Who reads those files decides about links.
+//! What a glTF file may name: data inside itself, and files in its own folder. Who reads those files decides about
+//! links.
 
 use base64::Engine;
 
@@ -6,8 +7,8 @@ use super::limits::MAX_IMPORT_BYTES;
 use super::refusal::{refuse, shortened};
 use crate::EnvError;
 
-/// Hands over a file that lies beside the glTF file, or says why it cannot. It is asked for relative paths that lead into the
-/// folder only, with `/` between their parts; whoever follows links must see that they stay there too.
+/// Hands over a file that lies beside the glTF file, or says why it cannot. It is asked for relative paths that lead
+/// into the folder only, with `/` between their parts; whoever follows links must see that they stay there too.
 pub type ReadBeside<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
 
 /// The bytes that a URI stands for.

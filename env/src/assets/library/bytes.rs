@@ -1,9 +1,10 @@
 //! How a library is written down: a header with a checksum, then the models. Models are read in `reader.rs`.
 //!
-//! All numbers are little-endian. Header: `DRIFTLIB`, version (u32), length of the rest after the checksum (u64), SHA-256 of
-//! that rest. Then the number of models (u32), and each model: class and name (length u16, UTF-8), collider (a tag and its
-//! numbers), corners (count u32, three f32 each), colours (count u16; a tag and three f32 each), levels (count u8; an error as
-//! f32, then for each colour a count u32 and corner numbers, u16 each where the model has at most 65,536 corners, else u32).
+//! All numbers are little-endian. Header: `DRIFTLIB`, version (u32), length of the rest after the checksum (u64),
+//! SHA-256 of that rest. Then the number of models (u32), and each model: class and name (length u16, UTF-8), collider
+//! (a tag and its numbers), corners (count u32, three f32 each), colours (count u16; a tag and three f32 each), levels
+//! (count u8; an error as f32, then for each colour a count u32 and corner numbers, u16 each where the model has at
+//! most 65,536 corners, else u32).
 
 use sha2::{Digest, Sha256};
 

@@ -1,5 +1,5 @@
-//! [`Library`]: models made elsewhere, ready to be drawn. How they are written down is in `bytes.rs`; how they are made from
-//! glTF files is in `import`.
+//! [`Library`]: models made elsewhere, ready to be drawn. How they are written down is in `bytes.rs`; how they are made
+//! from glTF files is in `import`.
 
 mod bytes;
 mod model;

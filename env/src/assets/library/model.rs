@@ -1,4 +1,5 @@
-//! [`LibraryModel`]: one model of a library, with its colours, levels of detail and collider. How it looks in a file is in
+//! [`LibraryModel`]: one model of a library, with its colours, levels of detail and collider. How it looks in a file is
+//! in
 //! `bytes.rs`, how it is simplified in `simplify.rs`.
 
 use super::{

@@ -1,5 +1,5 @@
-//! Models out of bytes that nobody vouches for: nothing is trusted, nothing panics, and no memory is taken for what is not there.
-//! What a sound model is, is said in `model.rs`; what the bytes are, in `bytes.rs`.
+//! Models out of bytes that nobody vouches for: nothing is trusted, nothing panics, and no memory is taken for what is
+//! not there. What a sound model is, is said in `model.rs`; what the bytes are, in `bytes.rs`.
 
 use super::MAX_HULL_POINTS;
 use super::bytes::SMALL;

@@ -1,4 +1,5 @@
-//! Finding graphics cards: which there are, in which order they are tried, and why one cannot be used. Opening one is in
+//! Finding graphics cards: which there are, in which order they are tried, and why one cannot be used. Opening one is
+//! in
 //! `device.rs`.
 
 use crate::EnvError;

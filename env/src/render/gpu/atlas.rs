@@ -1,5 +1,5 @@
-//! Where tiles are drawn: textures that hold many of them side by side, and the buffer through which they come back. What is
-//! drawn is said in `pass.rs`.
+//! Where tiles are drawn: textures that hold many of them side by side, and the buffer through which they come back.
+//! What is drawn is said in `pass.rs`.
 
 use super::device::Device;
 use super::pipelines::{DEPTH_FORMAT, WORD_FORMAT};
@@ -32,8 +32,8 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// A grid for up to `count` tiles, near to a square, on a device whose textures are at most `most` pixels wide and high; none
-    /// if not even one tile fits.
+    /// A grid for up to `count` tiles, near to a square, on a device whose textures are at most `most` pixels wide and
+    /// high; none if not even one tile fits.
     pub(super) fn new(tile: [u32; 2], count: usize, most: u32) -> Option<Self> {
         let [width, height] = tile;
         // Textures are padded to whole aligned rows.

@@ -1,5 +1,5 @@
-//! A graphics device that never panics: what goes wrong on it is noted and handed out as an error. Which device it is, is
-//! chosen in `adapter.rs`.
+//! A graphics device that never panics: what goes wrong on it is noted and handed out as an error. Which device it is,
+//! is chosen in `adapter.rs`.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -45,7 +45,8 @@ impl Complaints {
 }
 
 impl Device {
-    /// Opens an adapter with all that it allows; with `clipping`, triangles are cut at their tile's edges if it can do that.
+    /// Opens an adapter with all that it allows; with `clipping`, triangles are cut at their tile's edges if it can do
+    /// that.
     pub(super) fn open(adapter: &wgpu::Adapter, clipping: Clipping) -> Result<Self, String> {
         let clip = wgpu::Features::CLIP_DISTANCES;
         let features = match clipping {

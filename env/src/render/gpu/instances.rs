@@ -1,5 +1,5 @@
-//! What of one scene is drawn into one tile: an instance for each object in sight, and for each triangle of walls that are not
-//! drawn by formula. The triangles of objects are kept in `library.rs`.
+//! What of one scene is drawn into one tile: an instance for each object in sight, and for each triangle of walls that
+//! are not drawn by formula. The triangles of objects are kept in `library.rs`.
 
 use std::sync::Arc;
 
@@ -126,8 +126,8 @@ pub(super) fn corners(block: &Block, lane: usize) -> [[f32; 3]; 3] {
     [0, 3, 6].map(|first| [0, 1, 2].map(|axis| block.corners[first + axis][lane]))
 }
 
-/// The way of a triangle's corners to the screen, as rows for corners (1, 0, 0), (0, 1, 0) and (0, 0, 1): neighbours then share
-/// their edges to the bit.
+/// The way of a triangle's corners to the screen, as rows for corners (1, 0, 0), (0, 1, 0) and (0, 0, 1): neighbours
+/// then share their edges to the bit.
 fn corners_as_rows(at: &Placement, corners: [[f32; 3]; 3]) -> Placement {
     let row = |row: &[f32; 4]| {
         let [a, b, c] = corners.map(|[x, y, z]| x * row[0] + (y * row[1] + (z * row[2] + row[3])));

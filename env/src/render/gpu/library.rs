@@ -1,5 +1,5 @@
-//! The triangles of every asset that was drawn so far, on the graphics card, and where each begins. What is drawn in a picture
-//! is found in `instances.rs`.
+//! The triangles of every asset that was drawn so far, on the graphics card, and where each begins. What is drawn in a
+//! picture is found in `instances.rs`.
 
 use std::collections::HashMap;
 use std::ops::Range;

@@ -1,8 +1,8 @@
-//! [`GpuRenderer`]: the same pictures drawn by a graphics card, many at once. How one pass is drawn is in `pass.rs`; who decides
-//! for this renderer or the processor's is `renderer.rs`.
+//! [`GpuRenderer`]: the same pictures drawn by a graphics card, many at once. How one pass is drawn is in `pass.rs`;
+//! who decides for this renderer or the processor's is `renderer.rs`.
 //!
-//! The pictures of a batch are tiles of one large target. All objects of one mesh, whichever tile they are in, are drawn
-//! together, cut at the edges of their tiles; one buffer brings all images back.
+//! The pictures of a batch are tiles of one large target. All objects of one mesh, whichever tile they are in, are
+//! drawn together, cut at the edges of their tiles; one buffer brings all images back.
 
 mod adapter;
 mod atlas;
@@ -35,8 +35,9 @@ use crate::scene::Scene;
 
 /// Draws scenes on a graphics card. Keeps its buffers from picture to picture.
 ///
-/// Pictures are those of [`CpuRenderer`](super::CpuRenderer) but for single pixels at edges: each adapter rounds a little
-/// differently. One renderer draws one batch at a time, on the thread that asks and with rayon's threads beside it.
+/// Pictures are those of [`CpuRenderer`](super::CpuRenderer) but for single pixels at edges: each adapter rounds a
+/// little differently. One renderer draws one batch at a time, on the thread that asks and with rayon's threads beside
+/// it.
 #[derive(Debug)]
 pub struct GpuRenderer {
     device: Device,
@@ -123,8 +124,9 @@ impl GpuRenderer {
     /// Draws many pictures, those of one size together.
     ///
     /// # Errors
-    /// [`EnvError::PictureSize`] as for [`CpuRenderer::draw`](super::CpuRenderer::draw), and [`EnvError::GpuPicture`] for pictures
-    /// that this adapter cannot hold, before anything is drawn; [`EnvError::Gpu`] when the device fails: some images may be old then.
+    /// [`EnvError::PictureSize`] as for [`CpuRenderer::draw`](super::CpuRenderer::draw), and [`EnvError::GpuPicture`]
+    /// for pictures that this adapter cannot hold, before anything is drawn; [`EnvError::Gpu`] when the device fails:
+    /// some images may be old then.
     pub fn draw_batch(&mut self, pictures: &mut [Picture<'_>]) -> Result<(), EnvError> {
         let mut jobs = Vec::with_capacity(pictures.len());
         for (index, picture) in pictures.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! One pass: tiles of one size drawn into an atlas and brought back. Which tiles go together is decided in `mod.rs`; what their
-//! bytes become, in `unpack.rs`.
+//! One pass: tiles of one size drawn into an atlas and brought back. Which tiles go together is decided in `mod.rs`;
+//! what their bytes become, in `unpack.rs`.
 
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};

@@ -1,5 +1,5 @@
-//! The shaders made ready for a device: one pair of pipelines, for what lies behind and for objects, for each kind of pass.
-//! What the shaders do is said in the `.wgsl` files.
+//! The shaders made ready for a device: one pair of pipelines, for what lies behind and for objects, for each kind of
+//! pass. What the shaders do is said in the `.wgsl` files.
 
 use super::super::backdrop::{CONTRAST, FADING, SQUARE};
 use super::super::compose::{MOST_SQUARES, SHIFT};

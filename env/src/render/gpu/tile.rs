@@ -1,5 +1,5 @@
-//! One picture of a pass in numbers for the shaders: camera, light, ground, walls. `tile.wgsl` reads what is written here;
-//! which objects are in it is found in `instances.rs`.
+//! One picture of a pass in numbers for the shaders: camera, light, ground, walls. `tile.wgsl` reads what is written
+//! here; which objects are in it is found in `instances.rs`.
 
 use super::super::compose::Walls;
 use super::super::shade::{FULL_LEVEL, Shader};
