@@ -257,6 +257,7 @@ pub(super) fn filled<T: Clone>(value: T, length: usize) -> Result<Vec<T>, EnvErr
 }
 
 /// Cuts a buffer after so many, and hands back the rest; nothing of an empty one.
+#[expect(clippy::mut_mut, reason = "the slice itself gets shorter")]
 pub(super) fn cut<'a, T>(all: &mut &'a mut [T], at: usize) -> &'a mut [T] {
     let at = at.min(all.len());
     let (first, rest) = std::mem::take(all).split_at_mut(at);

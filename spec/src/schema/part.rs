@@ -21,9 +21,9 @@ pub(crate) fn property<'a>(schema: &'a Value, part: &'a Value, pointer: &str) ->
     pointer.split('/').skip(1).try_fold(part, |part, key| {
         let part = whole(schema, part);
         let of_key = |part: &'a Value| part.get("properties")?.get(key);
-        let forms = part["oneOf"].as_array().into_iter().flatten();
+        let mut forms = part["oneOf"].as_array().into_iter().flatten();
         let own = of_key(part).or_else(|| part.get("items"));
-        own.or_else(|| forms.filter_map(of_key).next())
+        own.or_else(|| forms.find_map(of_key))
     })
 }
 

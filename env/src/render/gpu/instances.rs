@@ -57,7 +57,7 @@ impl TileContents {
         for &visible in &all_visible {
             match visible.drawable {
                 Drawable::Item(index) => {
-                    self.add_item(&scene.items[index as usize], index, visible, &view, scene, labels)
+                    self.add_item(&scene.items[index as usize], index, visible, &view, scene, labels);
                 }
                 Drawable::Panels(index) => self.add_panels(&scene.panels()[index as usize], &view, scene),
             }

@@ -148,7 +148,6 @@ pub(crate) fn write(value: &impl Serialize, out: &mut Vec<u8>) {
 }
 
 /// What rows of the table are written with.
-#[expect(clippy::enum_glob_use, reason = "rows are read as a table")]
 pub(crate) mod rows {
     pub(crate) use super::Compared::*;
     pub(crate) use super::Comparison::*;
