@@ -132,7 +132,7 @@ pub(crate) struct Group {
 
 /// Whether what becomes of objects of a template is random, in any variant of its task. One answer for all of them:
 /// worlds of two variants differ in what the variants differ in, and not in who has a seed.
-fn may_take_chances(template: &Template<Object>) -> bool {
+fn may_be_random(template: &Template<Object>) -> bool {
     let opens = |hole: &Hole<Object>| ["/motion_model", "/reward_probability"].contains(&hole.pointer.as_str());
     template.base.takes_chances() || template.holes.iter().any(opens)
 }
@@ -223,7 +223,7 @@ impl Compiled {
                 .map(|(k, fixture)| {
                     let place = format!("fixture/{k}");
                     let mut filled = compiler.template(fixture, &place);
-                    if may_take_chances(fixture) {
+                    if may_be_random(fixture) {
                         filled.base.seed = filled.base.seed.or_else(|| Some(seeds_of(&place).seed(0)));
                     }
                     filled
@@ -331,7 +331,7 @@ impl Compiler<'_> {
             expected,
             turned: spec.turned,
             facing,
-            seeds: may_take_chances(&group.object).then(|| seeds_of(&format!("group/{name}"))),
+            seeds: may_be_random(&group.object).then(|| seeds_of(&format!("group/{name}"))),
         }
     }
 }

@@ -53,7 +53,7 @@ impl Sampler {
     /// Prepares a variant for drawing.
     pub fn new(variant: &Variant, seed: u64) -> Self {
         let compiled = Compiled::new(variant, seed);
-        let by_chance = |requirement: &&Requirement| {
+        let is_random = |requirement: &&Requirement| {
             requirement
                 .names()
                 .iter()
@@ -63,7 +63,7 @@ impl Sampler {
             .task()
             .requirements()
             .iter()
-            .filter(by_chance)
+            .filter(is_random)
             .cloned()
             .collect();
         let mut sampler = Self {

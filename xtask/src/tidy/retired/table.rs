@@ -55,7 +55,7 @@ impl Retired {
 /// The words, as the house parted with them.
 pub(super) const RETIRED: &[Retired] = &[
     Retired::file("answer", "interactions.rs", &[]),
-    Retired::file("chance", "rng.rs or streams.rs", &["env"]),
+    Retired::file("chance", "rng.rs or streams.rs", &[]),
     Retired::file("judge", "termination.rs", &[]),
     Retired::file("patience", "interruptible.rs", &[]),
     Retired::file("sight", "visibility.rs", &[]),
@@ -96,9 +96,9 @@ pub(super) const RETIRED: &[Retired] = &[
     Retired::name(
         "chance",
         "rng, or seed where it is one",
-        &["curriculum", "env", "generator", "python", "spec"],
+        &["curriculum", "env", "python", "spec"],
     ),
-    Retired::name("how", "method", &["env", "report", "spec", "src", "unity"]),
+    Retired::name("how", "method", &["env", "report", "src"]),
     Retired::name("ink", "packed pixel", &["report"]),
     Retired::name("lived", "run, scored log", &["curriculum", "python", "report", "src"]),
     Retired::name("made_from", "add_fingerprint", &[]),
