@@ -6,6 +6,7 @@ mod draw;
 mod drift;
 mod error;
 mod free_space;
+mod interpolation;
 mod philox;
 mod placement;
 mod sampler;

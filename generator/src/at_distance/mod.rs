@@ -5,7 +5,7 @@ mod scan;
 use driftworld_spec::{Domain, Element, Parameter, ParameterType, Role, Value, Variant, nearest};
 
 use crate::GeneratorError;
-use crate::drift::interpolate;
+use crate::interpolation::interpolate;
 use scan::{Scan, Space};
 
 /// The most combinations of choices that are tried.

@@ -1,16 +1,19 @@
 //! [`Sampler`]: a variant under a seed, compiled so that any of its worlds can be drawn at once.
 
+mod groups;
+
 use std::sync::Arc;
 
 use driftworld_spec::maps::MapLibrary;
-use driftworld_spec::{MAX_OBJECTS, ParameterType, Requirement, Turns, Value, Variant, World};
+use driftworld_spec::{ParameterType, Requirement, Value, Variant, World};
 
 use crate::GeneratorError;
-use crate::compiled::{Address, Compiled, Filled, Group, GroupCount, Look};
+use crate::compiled::{Address, Compiled, Filled};
 use crate::free_space::FreeSpace;
-use crate::placement::{Anchor, PlacementContext, Request};
+use crate::placement::{Anchor, PlacementContext};
 use crate::sequence::Sequence;
 use crate::stream::Stream;
+use groups::Draft;
 
 /// How often the randomized parameters of a world are drawn before a requirement that never holds is an error.
 pub(crate) const ATTEMPTS: u32 = 1000;
@@ -289,106 +292,6 @@ impl Sampler {
         Ok(world)
     }
 
-    /// Places the objects of a group around one anchor.
-    fn place(
-        &self,
-        number: usize,
-        group: &Group,
-        anchor: Anchor,
-        anchor_number: u64,
-        draft: &mut Draft,
-    ) -> Result<(), GeneratorError> {
-        let index = draft.index;
-        // Each anchor has numbers of its own, so that one more object around it moves nothing around another.
-        let first = anchor_number << 32;
-        let count = match &group.count {
-            GroupCount::Fixed(count) => *count,
-            GroupCount::Drawn(fill) => fill.with(
-                Address {
-                    index,
-                    object: first,
-                    attempt: 0,
-                },
-                draft.values,
-                whole,
-            ),
-        };
-        let found = draft.world.objects.len().saturating_add(count as usize);
-        if found > MAX_OBJECTS {
-            let variant = self.variant.id();
-            return Err(GeneratorError::TooMany {
-                variant,
-                seed: self.seed,
-                index,
-                found,
-                limit: MAX_OBJECTS,
-            });
-        }
-        let mut turns = group.placement.distribution.num_turns().map(Turns::new);
-        for turn in 0..u64::from(count) {
-            let mut object = self.fill(
-                &group.object,
-                Address {
-                    index,
-                    object: first + turn,
-                    attempt: 0,
-                },
-                draft.values,
-            )?;
-            if let Some(seeds) = &group.seeds {
-                object.seed = object.seed.or_else(|| Some(seeds.seed(first + turn)));
-            }
-            let mut rng = group.placement.stream.at(index, first + turn, 0);
-            let placement = &group.placement.distribution;
-            let request = Request {
-                placement,
-                margins: &group.margins,
-                anchor,
-                group: number,
-                number: turn,
-            };
-            let place = draft
-                .context
-                .find(&request, turns.as_mut(), &mut rng)
-                .map_err(|(tries, reason)| GeneratorError::NoPlace {
-                    variant: self.variant.id(),
-                    seed: self.seed,
-                    index,
-                    group: group.name.clone(),
-                    object: turn as u32 + 1,
-                    count,
-                    tries,
-                    reason,
-                })?;
-            object.coordinates = place;
-            if place.iter().any(|metres| metres.abs() > 300.0) {
-                // Only where no wall is kept out of: the arena itself is smaller.
-                return Err(self.out_of_range(
-                    index,
-                    &format!("group/{}/placement", group.name),
-                    place,
-                    [-300.0, 300.0],
-                ));
-            }
-            let towards = match &group.facing {
-                None => None,
-                Some(Look::Random(stream)) => {
-                    object.heading = 360.0 * stream.at(index, first + turn, 0).unit();
-                    None
-                }
-                Some(Look::Agent) => Some(draft.world.agent_params.coordinates),
-                Some(Look::Middle) => Some(anchor.at),
-                Some(Look::Point(point)) => Some(*point),
-                Some(Look::Group(group)) => draft.context.group(*group).nearest(place),
-            };
-            if let Some(to) = towards.filter(|to| *to != place) {
-                object.heading = heading(place, to);
-            }
-            draft.world.objects.push(object);
-        }
-        Ok(())
-    }
-
     fn fill<T: Clone>(&self, template: &Filled<T>, at: Address, values: &[Value]) -> Result<T, GeneratorError> {
         let mut target = template.base.clone();
         for (hole, fill) in &template.holes {
@@ -437,26 +340,4 @@ impl Sampler {
             high,
         }
     }
-}
-
-/// A world on its way.
-struct Draft<'a, 'g> {
-    index: u64,
-    values: &'a [Value],
-    context: &'a mut PlacementContext<'g>,
-    world: &'a mut World,
-}
-
-/// A drawn count; what does not fit is as good as too many.
-fn whole(value: &Value) -> u32 {
-    value
-        .as_integer()
-        .map_or(0, |count| u32::try_from(count.max(0)).unwrap_or(u32::MAX))
-}
-
-/// The heading in degrees that looks from one place to another.
-fn heading([x, y]: [f64; 2], [to_x, to_y]: [f64; 2]) -> f64 {
-    let turned = libm::atan2(to_x - x, to_y - y).to_degrees().rem_euclid(360.0);
-    // A tiny negative angle would be rounded up to 360 itself.
-    if turned >= 360.0 { 0.0 } else { turned }
 }

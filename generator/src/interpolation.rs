@@ -1,0 +1,237 @@
+//! What lies between two values, and between two distributions. Which values a drift takes when is in `drift.rs`.
+
+use driftworld_spec::{
+    ChannelSpread, Channels, Color, Distribution, Number, Parameter, ParameterType, Spread, Value, Variant,
+};
+
+/// The value between two, or `None` if there is nothing between them. `listed`: the domain is a list of choices.
+pub(crate) fn interpolate(
+    parameter: &Parameter,
+    listed: bool,
+    from: &Value,
+    to: &Value,
+    t: f64,
+    (a, b): (&Variant, &Variant),
+) -> Option<Value> {
+    let straight = |from: f64, to: f64| from + (to - from) * t;
+    match (from, to) {
+        (Value::Color(from), Value::Color(to)) => Some(Value::Color(from.mix(*to, t))),
+        (Value::Point(from), Value::Point(to)) => {
+            Some(Value::Point([straight(from[0], to[0]), straight(from[1], to[1])]))
+        }
+        (Value::Vector(from), Value::Vector(to)) => Some(Value::Vector(
+            from.iter().zip(to).map(|(from, to)| straight(*from, *to)).collect(),
+        )),
+        (Value::Distribution(from), Value::Distribution(to)) => {
+            between_distributions(&a.settle(from), &b.settle(to), t)
+                .map(|between| Value::Distribution(Box::new(literal(&between))))
+        }
+        _ if listed => None,
+        (Value::Number(from), Value::Number(to)) if parameter.kind == ParameterType::Heading => {
+            if let Some([low, high]) = parameter.range.filter(|[low, high]| high - low < 360.0) {
+                // Within the arc that the parameter declares, which may be the longer way.
+                let along = |degrees: f64| (degrees - low).rem_euclid(360.0).min(high - low);
+                return Some(Value::Number(
+                    (low + straight(along(*from), along(*to))).rem_euclid(360.0),
+                ));
+            }
+            let turn = (to - from + 180.0).rem_euclid(360.0) - 180.0;
+            Some(Value::Number((from + turn * t).rem_euclid(360.0)))
+        }
+        (Value::Number(from), Value::Number(to)) => Some(Value::Number(straight(*from, *to))),
+        (Value::Integer(from), Value::Integer(to)) => {
+            Some(Value::Integer(straight(*from as f64, *to as f64).round() as i64))
+        }
+        _ => None,
+    }
+}
+
+/// A distribution as documents have it.
+fn literal(distribution: &Distribution) -> Distribution<Number> {
+    let mapped: Result<_, std::convert::Infallible> = distribution.try_map(&mut |number| Ok(Number::Literal(*number)));
+    match mapped {
+        Ok(literal) => literal,
+        Err(never) => match never {},
+    }
+}
+
+/// Distributions of one family interpolate number by number; others are mixed, where both draw numbers, points or colours.
+fn between_distributions(from: &Distribution, to: &Distribution, t: f64) -> Option<Distribution> {
+    let (from, to) = (comparable(from, to), comparable(to, from));
+    if skeleton(&from) == skeleton(&to) {
+        let mut ends = Vec::new();
+        map(&to, |number| {
+            ends.push(number);
+            number
+        });
+        let mut ends = ends.into_iter();
+        let between = map(&from, |number| {
+            let end = ends.next().expect("equal skeletons have equally many numbers");
+            number + (end - number) * t
+        });
+        return Some(colored(whole(between), &from, &to, t));
+    }
+    let alike = if from.draws_colors() || to.draws_colors() {
+        from.yields(ParameterType::Color) && to.yields(ParameterType::Color)
+    } else {
+        from.is_planar() == to.is_planar() && (from.is_planar() || from.mean().is_some() == to.mean().is_some())
+    };
+    alike.then(|| Distribution::Mixture {
+        parts: vec![from, to],
+        weights: Some(vec![1.0 - t, t]),
+    })
+}
+
+/// A distribution as the other is written, where its family can be written in several ways: a Gaussian by its covariance, a
+/// spread of channels for each of them, the ends that are meant where none are given.
+fn comparable(distribution: &Distribution, other: &Distribution) -> Distribution {
+    let each = |spread: &ChannelSpread| ChannelSpread::Each(spread.to_array());
+    match (distribution, other) {
+        (Distribution::ColorNormal { mean, std }, Distribution::ColorNormal { .. }) => Distribution::ColorNormal {
+            mean: mean.clone(),
+            std: each(std),
+        },
+        (
+            Distribution::ColorPerturb {
+                value,
+                noise,
+                low,
+                high,
+                channels,
+            },
+            Distribution::ColorPerturb { .. },
+        ) => Distribution::ColorPerturb {
+            value: value.clone(),
+            noise: each(noise),
+            low: Some(low.clone().unwrap_or(Channels([0.0; 3]))),
+            high: Some(high.clone().unwrap_or(Channels([1.0; 3]))),
+            channels: *channels,
+        },
+        (Distribution::ColorHsv { hue, saturation, value }, Distribution::ColorHsv { .. }) => Distribution::ColorHsv {
+            hue: hue.or(Some([0.0, 360.0])),
+            saturation: saturation.or(Some([0.0, 1.0])),
+            value: value.or(Some([0.0, 1.0])),
+        },
+        (Distribution::Gaussian { mean, .. }, Distribution::Gaussian { .. })
+            if skeleton(distribution) != skeleton(other) =>
+        {
+            Distribution::Gaussian {
+                mean: *mean,
+                std: None::<Spread>,
+                correlation: None,
+                covariance: distribution.gaussian_covariance(),
+            }
+        }
+        _ => distribution.clone(),
+    }
+}
+
+/// A distribution of colours between two of its family: its colours in Oklab, its hues the shorter way round.
+fn colored(between: Distribution, from: &Distribution, to: &Distribution, t: f64) -> Distribution {
+    use Distribution::{ColorHsv, ColorNormal, ColorPerturb, ColorUniform, Mixture};
+    let color = |a: &Channels, b: &Channels| {
+        if a == b {
+            a.clone()
+        } else {
+            Channels::from(Color(a.0).mix(Color(b.0), t))
+        }
+    };
+    match (between, from, to) {
+        (ColorUniform { channels, .. }, ColorUniform { from: a, to: b, .. }, ColorUniform { from: c, to: d, .. }) => {
+            ColorUniform {
+                from: color(a, c),
+                to: color(b, d),
+                channels,
+            }
+        }
+        (ColorNormal { std, .. }, ColorNormal { mean: a, .. }, ColorNormal { mean: b, .. }) => {
+            ColorNormal { mean: color(a, b), std }
+        }
+        (
+            ColorPerturb {
+                noise,
+                low,
+                high,
+                channels,
+                ..
+            },
+            ColorPerturb { value: a, .. },
+            ColorPerturb { value: b, .. },
+        ) => ColorPerturb {
+            value: color(a, b),
+            noise,
+            low,
+            high,
+            channels,
+        },
+        (
+            ColorHsv { saturation, value, .. },
+            ColorHsv { hue: Some([a, b]), .. },
+            ColorHsv { hue: Some([c, d]), .. },
+        ) => {
+            let (middle, other) = (f64::midpoint(*a, *b), f64::midpoint(*c, *d));
+            let turn = (other - middle + 180.0).rem_euclid(360.0) - 180.0;
+            let (middle, half) = (middle + turn * t, 0.5 * ((b - a) + ((d - c) - (b - a)) * t));
+            // Where a document may have them, which is within a turn of 0..360.
+            let middle = middle.rem_euclid(360.0);
+            ColorHsv {
+                hue: Some([middle - half, middle + half]),
+                saturation,
+                value,
+            }
+        }
+        (Mixture { parts, weights }, Mixture { parts: a, .. }, Mixture { parts: b, .. }) => Mixture {
+            parts: parts
+                .into_iter()
+                .zip(a.iter().zip(b))
+                .map(|(part, (a, b))| colored(part, a, b, t))
+                .collect(),
+            weights,
+        },
+        (other, ..) => other,
+    }
+}
+
+fn map(distribution: &Distribution, mut f: impl FnMut(f64) -> f64) -> Distribution {
+    let mapped: Result<_, std::convert::Infallible> = distribution.try_map(&mut |number| Ok(f(*number)));
+    match mapped {
+        Ok(mapped) => mapped,
+        Err(never) => match never {},
+    }
+}
+
+/// The distribution but for its numbers.
+fn skeleton(distribution: &Distribution) -> Distribution {
+    map(distribution, |_| 0.0)
+}
+
+/// Rounds the numbers that a family wants whole.
+fn whole(distribution: Distribution) -> Distribution {
+    match distribution {
+        Distribution::IntegerUniform { low, high } => Distribution::IntegerUniform {
+            low: low.round(),
+            high: high.round(),
+        },
+        Distribution::Binomial { n, p } => Distribution::Binomial { n: n.round(), p },
+        Distribution::Grid {
+            low,
+            high,
+            columns,
+            rows,
+            jitter,
+            order,
+        } => Distribution::Grid {
+            low,
+            high,
+            columns: columns.round(),
+            rows: rows.round(),
+            jitter,
+            order,
+        },
+        Distribution::Mixture { parts, weights } => Distribution::Mixture {
+            parts: parts.into_iter().map(whole).collect(),
+            weights,
+        },
+        other => other,
+    }
+}
