@@ -1,4 +1,5 @@
 //! The one error type of this crate: what can be wrong with a log, a record or the options.
+//! Over 400 lines, for it is one enum: a message and its fields for each mistake.
 //!
 //! Not here: warnings about logs that can still be read, see `LogWarning`.
 
