@@ -91,7 +91,7 @@ fn limits_are_those_of_the_code() {
 fn limits_of_what_is_read_are_on_the_page() {
     let page = read("docs/limits.md");
     for file in [
-        "spec/src/document/mod.rs",
+        "spec/src/limits.rs",
         "spec/src/error.rs",
         "spec/src/task/family.rs",
         "metrics/src/log/json_file.rs",

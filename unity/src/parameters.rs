@@ -72,9 +72,8 @@ impl Parameters {
     }
 
     /// The world with the numbers laid over it, checked as a document would be; else what is wrong with it.
-    pub(crate) fn try_world(&self, mut world: World) -> Result<World, String> {
-        self.apply(&mut world);
-        World::from_json("world", &world.to_json()).map_err(|error| {
+    pub(crate) fn try_world(&self, world: World) -> Result<World, String> {
+        world.edit(|world| self.apply(world)).map_err(|error| {
             let first = error.problems().first();
             first.map_or_else(
                 || error.to_string(),
@@ -95,9 +94,9 @@ fn check(known: &'static str, number: f64) -> Result<(), String> {
         }
         _ => {}
     }
-    let mut world = World::default();
-    Parameters(BTreeMap::from([(known, number)])).apply(&mut world);
-    World::from_json("world", &world.to_json()).map(drop).map_err(|error| {
+    let parameters = Parameters(BTreeMap::from([(known, number)]));
+    let world = World::default().edit(|world| parameters.apply(world));
+    world.map(drop).map_err(|error| {
         let first = error.problems().first();
         first.map_or_else(|| error.to_string(), |problem| problem.expected.clone())
     })

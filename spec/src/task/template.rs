@@ -10,7 +10,7 @@ use crate::distribution::{Distribution, Number, ParamRef};
 use crate::schema::document::of_type;
 use crate::schema::part;
 use crate::value::{ParameterType, Value};
-use crate::world::{FieldPlace, Object, Place, World, places_of};
+use crate::world::{FieldPlace, Object, Place, Setter, World, places_of};
 
 /// Where a value comes from: a parameter, or a draw.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -48,7 +48,7 @@ pub struct Hole<T> {
     pub range: [f64; 2],
     /// The way to it in a `T`.
     steps: Vec<usize>,
-    set: fn(&mut T, &[usize], &Value) -> Option<()>,
+    set: Setter<T>,
 }
 
 impl<T> Clone for Hole<T> {
@@ -135,13 +135,14 @@ fn hole<T: Place>((pointer, source): &Opening, schema: &Json) -> Option<Hole<T>>
     let words: Vec<&str> = pointer.split('/').skip(1).collect();
     let mut steps = Vec::new();
     let kind = T::find(&words, &mut steps)?;
+    let (set, steps) = T::setter(steps);
     Some(Hole {
         pointer: pointer.clone(),
         source: source.clone(),
         kind,
         range: range_at(schema, pointer),
         steps,
-        set: T::set,
+        set,
     })
 }
 

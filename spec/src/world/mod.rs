@@ -25,7 +25,7 @@ pub use agent::{ActionModel, ActionSpace, AgentParams, Modality};
 pub use environment::{Enclosure, EnvironmentParams, Region, Wall};
 pub use features::StateFeature;
 pub use fields::{Compared, Comparison, Field, FieldPlace};
-pub(crate) use fields::{Fields, Place, places_of};
+pub(crate) use fields::{Fields, Place, Setter, places_of};
 use fields::{fields, word};
 pub use object::{Model, MotionModel, Object, Pushable, Respawn, Stimulus};
 pub use progress::{LastEvent, ObjectProgress, Origin, Progress, RailsProgress};

@@ -8,9 +8,9 @@ mod place;
 
 use serde::Serialize;
 
-use crate::value::{ParameterType, Value};
+use crate::value::ParameterType;
 pub use comparison::Comparison;
-pub(crate) use place::{Place, word};
+pub(crate) use place::{Place, Setter, word};
 
 /// What the table says of a field.
 #[derive(Clone, Copy, Debug)]
@@ -132,7 +132,7 @@ pub(crate) struct Row<T> {
     /// Writes its value as JSON.
     pub(crate) write: fn(&T, &mut Vec<u8>),
     /// Puts a value at a place in it.
-    pub(crate) set: fn(&mut T, &[usize], &Value) -> Option<()>,
+    pub(crate) set: Setter<T>,
     pub(crate) find: fn(&[&str], &mut Vec<usize>) -> Option<ParameterType>,
     pub(crate) list: fn(String, &Field, bool, &mut Vec<FieldPlace>),
 }

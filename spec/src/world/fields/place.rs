@@ -5,6 +5,9 @@ use super::{Field, FieldPlace, Fields};
 use crate::color::Color;
 use crate::value::{ParameterType, Value};
 
+/// Puts a value at the place in a `T` that steps lead to. `None` if the value cannot stand there.
+pub(crate) type Setter<T> = fn(&mut T, &[usize], &Value) -> Option<()>;
+
 /// What stands at a place of a world: it can be set from the value of a parameter, or what is in it can.
 pub(crate) trait Place: Sized {
     /// The type of parameter that the whole of it can be; `None` if only what is in it can.
@@ -45,6 +48,11 @@ pub(crate) trait Place: Sized {
         Some(())
     }
 
+    /// What puts values at the place that steps lead to, and the steps that it needs: it takes the first by itself.
+    fn setter(steps: Vec<usize>) -> (Setter<Self>, Vec<usize>) {
+        (Self::set, steps)
+    }
+
     fn list(pointer: String, field: &Field, is_key: bool, found: &mut Vec<FieldPlace>) {
         let kind = Self::KIND.filter(|_| field.fixed.is_none());
         found.push(FieldPlace {
@@ -72,6 +80,11 @@ impl<T: Fields> Place for T {
     fn set_inside(&mut self, steps: &[usize], value: &Value) -> Option<()> {
         let (number, rest) = steps.split_first()?;
         (T::ROWS.get(*number)?.set)(self, rest, value)
+    }
+
+    fn setter(mut steps: Vec<usize>) -> (Setter<Self>, Vec<usize>) {
+        // There is one: a part of a world is no place that a value fills as a whole.
+        (T::ROWS[steps.remove(0)].set, steps)
     }
 
     fn list_inside(pointer: &str, whole: &Field, found: &mut Vec<FieldPlace>) {
