@@ -4,7 +4,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// An element of the decision process that a parameter touches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema, strum::IntoStaticStr,
+)]
 pub enum Element {
     /// The states: what is where.
     S,
@@ -35,12 +37,6 @@ impl Element {
 
     /// The letter by which documents name the element.
     pub fn letter(self) -> &'static str {
-        match self {
-            Self::S => "S",
-            Self::A => "A",
-            Self::T => "T",
-            Self::R => "R",
-            Self::O => "O",
-        }
+        self.into()
     }
 }

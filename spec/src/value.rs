@@ -8,8 +8,9 @@ use crate::describe::plain_number;
 use crate::distribution::{Distribution, Number};
 
 /// The type of a parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, strum::IntoStaticStr)]
 #[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
 pub enum ParameterType {
     /// A finite real number.
     Number,
@@ -34,17 +35,7 @@ pub enum ParameterType {
 impl ParameterType {
     /// The type's name as documents write it.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Number => "number",
-            Self::Integer => "integer",
-            Self::Boolean => "boolean",
-            Self::String => "string",
-            Self::Color => "color",
-            Self::Point => "point",
-            Self::Heading => "heading",
-            Self::Vector => "vector",
-            Self::Distribution => "distribution",
-        }
+        self.into()
     }
 
     /// Whether a value of this type can stand where `other` is wanted.

@@ -41,7 +41,8 @@ use crate::value::Value;
 /// assert_eq!(light.mean(), Some(2.0));
 /// assert!((light.quantile(0.5).unwrap() - 2.0).abs() < 1e-12);
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 #[serde(
     rename_all = "snake_case",
     deny_unknown_fields,
@@ -427,37 +428,7 @@ fn gaussian_needs_one_spread(schema: &mut schemars::Schema) {
 impl<N> Distribution<N> {
     /// The name as documents write it.
     pub fn name(&self) -> &'static str {
-        match self {
-            Self::Constant { .. } => "constant",
-            Self::Choice { .. } => "choice",
-            Self::Uniform { .. } => "uniform",
-            Self::IntegerUniform { .. } => "integer_uniform",
-            Self::Normal { .. } => "normal",
-            Self::TruncatedNormal { .. } => "truncated_normal",
-            Self::LogNormal { .. } => "log_normal",
-            Self::Exponential { .. } => "exponential",
-            Self::Beta { .. } => "beta",
-            Self::Triangular { .. } => "triangular",
-            Self::Perturb { .. } => "perturb",
-            Self::VonMises { .. } => "von_mises",
-            Self::Bernoulli { .. } => "bernoulli",
-            Self::Binomial { .. } => "binomial",
-            Self::Poisson { .. } => "poisson",
-            Self::Geometric { .. } => "geometric",
-            Self::Dirichlet { .. } => "dirichlet",
-            Self::Box { .. } => "box",
-            Self::Disc { .. } => "disc",
-            Self::Annulus { .. } => "annulus",
-            Self::Gaussian { .. } => "gaussian",
-            Self::Points { .. } => "points",
-            Self::Grid { .. } => "grid",
-            Self::PoissonDisc { .. } => "poisson_disc",
-            Self::ColorUniform { .. } => "color_uniform",
-            Self::ColorNormal { .. } => "color_normal",
-            Self::ColorPerturb { .. } => "color_perturb",
-            Self::ColorHsv { .. } => "color_hsv",
-            Self::Mixture { .. } => "mixture",
-        }
+        self.into()
     }
 
     /// The names of the distributions that place objects, as messages list them.

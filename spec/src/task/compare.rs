@@ -46,8 +46,9 @@ impl Default for Compare {
 }
 
 /// A measure of how far two values, or two distributions, are apart.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum MeasureName {
     /// Numbers: the difference over the declared range. What numbers have if nothing is said.
     Difference,
@@ -65,9 +66,11 @@ pub enum MeasureName {
     Oklab,
     /// Distributions of numbers or colours: least work. What they have if nothing is said.
     #[serde(rename = "wasserstein_1")]
+    #[strum(serialize = "wasserstein_1")]
     Wasserstein1,
     /// Distributions of numbers or colours: least squared work, its root.
     #[serde(rename = "wasserstein_2")]
+    #[strum(serialize = "wasserstein_2")]
     Wasserstein2,
     /// Distributions: the largest difference of the probabilities that they give to any set.
     TotalVariation,
@@ -80,20 +83,7 @@ pub enum MeasureName {
 impl MeasureName {
     /// The name as documents write it.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Difference => "difference",
-            Self::LogRatio => "log_ratio",
-            Self::SameOrNot => "same_or_not",
-            Self::Srgb => "srgb",
-            Self::Cie76 => "cie76",
-            Self::Ciede2000 => "ciede2000",
-            Self::Oklab => "oklab",
-            Self::Wasserstein1 => "wasserstein_1",
-            Self::Wasserstein2 => "wasserstein_2",
-            Self::TotalVariation => "total_variation",
-            Self::Hellinger => "hellinger",
-            Self::JensenShannon => "jensen_shannon",
-        }
+        self.into()
     }
 
     /// What measures there are for colours out of a continuum, which have no probabilities to compare; `None` if this is one.
