@@ -95,6 +95,21 @@ fn difference(a: &Trace, b: &Trace) -> Option<String> {
     Some(format!("step {number}: {apart:?}"))
 }
 
+/// The scene has nothing of its own to say about an object.
+fn expect_scene_of_state(environment: &Environment) {
+    let items = &environment.scene().items;
+    for (item, object) in items.iter().zip(environment.objects()) {
+        let shown = (item.position, item.heading_deg, item.reward, item.visible);
+        let state = (
+            object.position,
+            object.heading_deg,
+            object.reward as f32,
+            object.present,
+        );
+        assert_eq!(shown, state);
+    }
+}
+
 fn go_on(environment: &mut Environment, actions: &[Action]) -> Trace {
     let mut trace = Vec::new();
     for action in actions {
@@ -111,6 +126,7 @@ fn go_on(environment: &mut Environment, actions: &[Action]) -> Trace {
         let items = environment.scene().items.iter().enumerate();
         told.extend(items.map(|(index, item)| format!("item {index} {:?} {}", item.position, item.heading_deg)));
         trace.push(told);
+        expect_scene_of_state(environment);
     }
     trace
 }
