@@ -202,13 +202,13 @@ impl<'a> ImagesMut<'a> {
         let rest = Self {
             size: self.size,
             supersampling: self.supersampling,
-            rgb: cut(&mut self.rgb, 3 * pixels),
-            depth: cut(&mut self.depth, pixels),
-            depth_millimetres: cut(&mut self.depth_millimetres, pixels),
-            depth_gray: cut(&mut self.depth_gray, pixels),
-            category: cut(&mut self.category, pixels),
-            class: cut(&mut self.class, pixels),
-            instance: cut(&mut self.instance, pixels),
+            rgb: self.rgb.split_off_mut(3 * pixels..).unwrap_or_default(),
+            depth: self.depth.split_off_mut(pixels..).unwrap_or_default(),
+            depth_millimetres: self.depth_millimetres.split_off_mut(pixels..).unwrap_or_default(),
+            depth_gray: self.depth_gray.split_off_mut(pixels..).unwrap_or_default(),
+            category: self.category.split_off_mut(pixels..).unwrap_or_default(),
+            class: self.class.split_off_mut(pixels..).unwrap_or_default(),
+            instance: self.instance.split_off_mut(pixels..).unwrap_or_default(),
         };
         (self, rest)
     }
@@ -254,15 +254,6 @@ pub(super) fn filled<T: Clone>(value: T, length: usize) -> Result<Vec<T>, EnvErr
     })?;
     buffer.resize(length, value);
     Ok(buffer)
-}
-
-/// Cuts a buffer after so many, and hands back the rest; nothing of an empty one.
-#[expect(clippy::mut_mut, reason = "the slice itself gets shorter")]
-pub(super) fn cut<'a, T>(all: &mut &'a mut [T], at: usize) -> &'a mut [T] {
-    let at = at.min(all.len());
-    let (first, rest) = std::mem::take(all).split_at_mut(at);
-    *all = first;
-    rest
 }
 
 fn wanted<T>(all: &mut [T]) -> Option<&mut [T]> {

@@ -1,7 +1,7 @@
 //! What comes out of a batch: observations, rewards and flags, one buffer each. Images are in `images.rs`.
 
 use super::depth::DepthForm;
-use super::images::{ImageLayout, Images, ImagesMut, cut, filled};
+use super::images::{ImageLayout, Images, ImagesMut, filled};
 use crate::EnvError;
 
 /// Observations, rewards and flags of all environments, environment after environment.
@@ -82,12 +82,15 @@ impl OutputsMut<'_> {
         let (images, more_images) = self.images.split(num_envs);
         let rest = Self {
             images: more_images,
-            states: cut(&mut self.states, num_envs * self.state_len),
+            states: self
+                .states
+                .split_off_mut(num_envs * self.state_len..)
+                .unwrap_or_default(),
             state_len: self.state_len,
-            rewards: cut(&mut self.rewards, num_envs),
-            terminated: cut(&mut self.terminated, num_envs),
-            truncated: cut(&mut self.truncated, num_envs),
-            success: cut(&mut self.success, num_envs),
+            rewards: self.rewards.split_off_mut(num_envs..).unwrap_or_default(),
+            terminated: self.terminated.split_off_mut(num_envs..).unwrap_or_default(),
+            truncated: self.truncated.split_off_mut(num_envs..).unwrap_or_default(),
+            success: self.success.split_off_mut(num_envs..).unwrap_or_default(),
         };
         (Self { images, ..self }, rest)
     }

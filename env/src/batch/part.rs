@@ -1,6 +1,5 @@
 //! The work of a step or a reset, shared among threads: each takes a part of the environments.
 
-use super::images::cut;
 use super::options::{Autoreset, GoOn};
 use super::outputs::OutputsMut;
 use super::slot::Slot;
@@ -59,10 +58,10 @@ impl Part<'_> {
         let (outputs, more_outputs) = self.outputs.split(num_envs);
         let (finals, more_finals) = self.finals.map(|finals| finals.split(num_envs)).unzip();
         let rest = Self {
-            slots: cut(&mut self.slots, num_envs),
+            slots: self.slots.split_off_mut(num_envs..).unwrap_or_default(),
             outputs: more_outputs,
             finals: more_finals,
-            renderers: cut(&mut self.renderers, num_renderers),
+            renderers: self.renderers.split_off_mut(num_renderers..).unwrap_or_default(),
             drawing: self.drawing,
         };
         (
