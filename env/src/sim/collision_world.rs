@@ -266,15 +266,6 @@ impl CollisionWorld {
         }
     }
 
-    /// Whether the straight way of an object's body between two places leads through something solid.
-    pub(super) fn leads_through(&self, from: [f32; 2], to: [f32; 2], object: u32) -> bool {
-        let way = Vector::new(to[0] - from[0], to[1] - from[1], 0.0);
-        let ray = Ray::new(Vector::new(from[0], from[1], 0.05), way);
-        let own = self.handles.get(object as usize).copied().flatten();
-        let hit = |query: QueryPipeline| query.cast_ray(&ray, 1.0, false).is_some();
-        self.queries_but(WALL, own).any(hit)
-    }
-
     /// Questions about bodies of these groups, one body left aside: one for each tree that they are in.
     pub(super) fn queries_but(
         &self,

@@ -9,7 +9,7 @@ use driftworld_spec::World;
 use rapier3d::prelude::*;
 
 use super::body_shape::body_shape;
-use super::collision_world::{EDGE, slot};
+use super::collision_world::{CollisionWorld, EDGE, slot};
 use super::encounters::Encounters;
 use super::groups::{SOLID, WALL};
 use super::neighbours::{MARGIN, standing_reach, with_neighbours};
@@ -269,7 +269,7 @@ fn read_back(
         let speeds = [moved.linvel().x, moved.linvel().y, moved.angvel().z];
         let [x, y, turn_speed] = speeds;
         let sound = (at.x + at.y + x + y + turn_speed).is_finite();
-        if !sound || views.bodies.leads_through(own.position, position, object as u32) {
+        if !sound || leads_through(&views.bodies, own.position, position, object as u32) {
             pushed.stop();
             continue;
         }
@@ -284,6 +284,15 @@ fn read_back(
             views.sync_object(object, &world.objects[object], own);
         }
     }
+}
+
+/// Whether the straight way of an object's body between two places leads through a wall.
+fn leads_through(bodies: &CollisionWorld, from: [f32; 2], to: [f32; 2], object: u32) -> bool {
+    let way = Vector::new(to[0] - from[0], to[1] - from[1], 0.0);
+    let ray = Ray::new(Vector::new(from[0], from[1], 0.05), way);
+    let own = bodies.handles.get(object as usize).copied().flatten();
+    let hit = |query: QueryPipeline| query.cast_ray(&ray, 1.0, false).is_some();
+    bodies.queries_but(WALL, own).any(hit)
 }
 
 /// Friction with the ground: it slows what slides and what turns, down to rest.
