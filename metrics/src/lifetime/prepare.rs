@@ -13,8 +13,8 @@ use crate::{BlockSubtype, MetricsError, Options};
 
 impl Lifetime {
     /// Takes the complete rows that have a number in the performance column, forms regimes, and preprocesses them:
-    /// smoothing, clamping, normalisation, in that order. Which experts a task is compared with, [`experts_serving`] says; others
-    /// are left aside. Several logs of one task are several runs of its expert.
+    /// smoothing, clamping, normalisation, in that order. [`experts_serving`](crate::experts_serving) says which experts a
+    /// task is compared with; others are left aside. Several logs of one task are several runs of its expert.
     ///
     /// # Errors
     /// [`MetricsError::UnknownColumn`], [`MetricsError::NoUsableRows`], [`MetricsError::TooManyRegimes`],
