@@ -7,10 +7,10 @@ use std::sync::Arc;
 /// The error behind a failure, for programs that ask it more than its text.
 pub type Cause = Arc<dyn Error + Send + Sync>;
 
-/// Told of what is odd while something is worked on, from any thread.
+/// Receives what is odd while something is worked on, from any thread.
 pub type Warn<'a> = &'a (dyn Fn(String) + Sync);
 
-/// Stands around the name of an argument in a text; no text of others has it, for it is escaped there.
+/// Stands around the name of an argument in a text. In texts of others it means nothing, unless a name stands between two.
 const MARK: char = '\u{1}';
 
 /// The name of an argument in the text of a failure, such as `window_length`: the command writes `--window-length`,
@@ -54,11 +54,26 @@ impl FailureText {
     }
 
     fn with(&self, named: impl Fn(&str) -> String) -> String {
-        let parts = self.0.split(MARK).enumerate();
-        // Names stand between marks, so that every second part is one.
-        let parts = parts.map(|(index, part)| if index % 2 == 1 { named(part) } else { part.to_owned() });
-        parts.collect()
+        let (mut shown, mut rest) = (String::with_capacity(self.0.len()), self.0.as_str());
+        while let Some((before, behind)) = rest.split_once(MARK) {
+            shown.push_str(before);
+            rest = match behind.split_once(MARK) {
+                Some((name, behind)) if is_name(name) => {
+                    shown.push_str(&named(name));
+                    behind
+                }
+                _ => {
+                    shown.push(MARK);
+                    behind
+                }
+            };
+        }
+        shown + rest
     }
+}
+
+fn is_name(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_lowercase() || byte == b'_')
 }
 
 impl From<String> for FailureText {
@@ -76,7 +91,7 @@ impl Failure {
         Self::Input(FailureText(text.into()), None)
     }
 
-    /// An error that is told in other words than its own.
+    /// An error in other words than its own.
     pub(crate) fn because(text: impl Into<String>, error: impl Error + Send + Sync + 'static) -> Self {
         Self::Input(FailureText(text.into()), Some(Arc::new(error)))
     }
@@ -136,5 +151,28 @@ mod tests {
             failure.to_string(),
             "window_length: found 0, expected 1 or more; leave noise out"
         );
+    }
+    /// Every text of up to four of these letters: a mark, one that no name has, and one that an option begins with.
+    fn texts() -> Vec<String> {
+        let mut all = vec![String::new()];
+        let mut longest = all.clone();
+        for _ in 0..4 {
+            let longer = |text: &String| [MARK, 'A', '-'].map(|letter| format!("{text}{letter}"));
+            longest = longest.iter().flat_map(longer).collect();
+            all.extend(longest.iter().cloned());
+        }
+        all
+    }
+
+    #[test]
+    fn texts_of_others_stay_as_they_are_beside_a_name() {
+        let shown = |text: String| FailureText::from(text).for_command();
+        for before in texts() {
+            assert_eq!(shown(before.clone()), before);
+            for behind in texts() {
+                let text = format!("{before}{}{behind}", argument("window_length"));
+                assert_eq!(shown(text), format!("{before}--window-length{behind}"));
+            }
+        }
     }
 }
