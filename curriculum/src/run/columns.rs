@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use super::episode::Experience;
 use super::gap::Gap;
-use super::plan::Planned;
+use super::planned::Planned;
 
 /// The columns that every experience is logged with, beside those that the format asks for.
 ///

@@ -9,6 +9,7 @@ mod in_order;
 mod journal;
 mod log_names;
 mod plan;
+mod planned;
 mod rollout;
 mod summary;
 mod undrawable;

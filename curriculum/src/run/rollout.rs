@@ -80,7 +80,7 @@ pub fn run_rollout<R: Rollout>(
     Ok(journal.summary().clone())
 }
 
-/// Runs these experiences, and logs each as soon as it is over. `block` is the one that the rollout was last told of.
+/// Runs these experiences, and logs each as soon as it is over. `block` is the last that the rollout began.
 pub(super) fn run_range<R: Rollout>(
     plan: &Plan,
     numbers: Range<u64>,

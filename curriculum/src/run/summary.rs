@@ -2,7 +2,7 @@
 
 use driftworld_spec::BlockKind;
 
-use super::plan::Planned;
+use super::planned::Planned;
 
 /// How far a run has come.
 #[derive(Clone, Debug, PartialEq)]

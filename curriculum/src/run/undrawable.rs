@@ -6,7 +6,8 @@ use driftworld_generator::{GeneratorError, Sampler};
 use driftworld_spec::Variant;
 use serde::Serialize;
 
-use super::plan::{Plan, Planned};
+use super::plan::Plan;
+use super::planned::Planned;
 
 /// The most experiences of a drift whose variants are looked at, and the most failures that are told one by one.
 const MOST_ON_THE_WAY: u32 = 100_000;

@@ -1,0 +1,242 @@
+//! [`Planned`]: a regime of a plan. Its experiences by their numbers: worlds, variants on the way of a drift, seeds, labels,
+//! and what its rows say.
+
+use std::sync::Arc;
+
+use driftworld_env::Label;
+use driftworld_generator::{Drift, GeneratorError, Sampler, Schedule};
+use driftworld_metrics::TaskParams;
+use driftworld_spec::{BlockKind, Phase, RegimeDrift, Variant, World};
+use serde_json::{Map, Value, json};
+use sha2::{Digest, Sha256};
+
+use super::gap::Subject;
+use crate::CurriculumError;
+
+/// A regime of a plan.
+pub(super) struct Planned {
+    pub(super) block: usize,
+    pub(super) regime: usize,
+    pub(super) kind: BlockKind,
+    pub(super) phase: Phase,
+    /// Its name in tables: `task#variant`.
+    pub(super) id: String,
+    pub(super) log_name: String,
+    /// The number of its first experience over the whole lifetime.
+    pub(super) first: u64,
+    pub(super) count: u32,
+    pub(super) seed: u64,
+    pub(super) first_index: u64,
+    pub(super) max_steps: Option<u32>,
+    pub(super) source: Source,
+    /// How many regimes of learning before it begin with the same variant under the same seed.
+    pub(super) learned_before: u64,
+    /// The regime that the agent learned in last before this one.
+    pub(super) learned: Option<usize>,
+    /// The label of its variant, and of the one that its drift leads to.
+    pub(super) labels: Option<[Label; 2]>,
+}
+
+/// Where its worlds come from.
+pub(super) enum Source {
+    Variant(Variant),
+    Drift {
+        from: Variant,
+        to: Variant,
+        way: Box<Drift>,
+        drift: Box<RegimeDrift>,
+    },
+    World {
+        world: Arc<World>,
+        path: String,
+    },
+}
+
+/// What one experience is made of.
+pub(super) struct Assignment {
+    pub(super) world: World,
+    /// The variant, where it is another in each experience.
+    pub(super) between: Option<Variant>,
+}
+
+impl Planned {
+    /// The names of the variants that it begins with and ends with, which are one unless it drifts.
+    pub(super) fn ends(&self) -> [String; 2] {
+        match &self.source {
+            Source::Drift { from, to, .. } => [from.id(), to.id()],
+            _ => [self.id.clone(), self.id.clone()],
+        }
+    }
+
+    /// The label of experience `number`: in a drift that of the nearer end, by how far the drift has come; in the middle the
+    /// one that it leads to.
+    pub(super) fn label(&self, number: u64) -> Option<&Label> {
+        let [from, to] = self.labels.as_ref()?;
+        let Source::Drift { drift, .. } = &self.source else {
+            return Some(from);
+        };
+        let come = Schedule::from(drift.schedule).at(drift.progress((number - self.first) as u32, self.count));
+        Some(if come < 0.5 { from } else { to })
+    }
+
+    pub(super) fn wrong(&self, number: u64, source: GeneratorError) -> CurriculumError {
+        CurriculumError::World {
+            block: self.block,
+            regime: self.regime,
+            experience: number,
+            variant: self.id.clone(),
+            progress: self.progress(number),
+            source,
+        }
+    }
+
+    /// Whether its worlds are drawn, not read from a file.
+    pub(super) fn is_drawn(&self) -> bool {
+        !matches!(self.source, Source::World { .. })
+    }
+
+    /// What tells its drift from others between the same variants; nothing where it does not drift.
+    pub(super) fn way(&self) -> String {
+        match &self.source {
+            Source::Drift { drift, .. } => format!(" {drift:?}"),
+            _ => String::new(),
+        }
+    }
+
+    /// The number of an experience's world under its seed.
+    pub(super) fn index_of(&self, number: u64) -> u64 {
+        self.first_index + (number - self.first)
+    }
+
+    /// The sampler of its worlds, where they are all drawn from one variant.
+    pub(super) fn sampler(&self) -> Option<Sampler> {
+        match &self.source {
+            Source::Variant(variant) => Some(Sampler::new(variant, self.seed)),
+            _ => None,
+        }
+    }
+
+    /// What experience `number` of the lifetime is made of. `sampler` is this regime's own.
+    pub(super) fn assignment(&self, number: u64, sampler: Option<&Sampler>) -> Result<Assignment, CurriculumError> {
+        self.draw(number, sampler).map_err(|source| self.wrong(number, source))
+    }
+
+    /// As [`Planned::assignment`], with the error as the generator says it.
+    pub(super) fn draw(&self, number: u64, sampler: Option<&Sampler>) -> Result<Assignment, GeneratorError> {
+        let index = self.index_of(number);
+        let between = self.variant_of(number)?;
+        let mut world = match &self.source {
+            Source::World { world, .. } => World::clone(world),
+            Source::Variant(variant) => match sampler {
+                Some(sampler) => sampler.world(index)?,
+                None => Sampler::new(variant, self.seed).world(index)?,
+            },
+            Source::Drift { from, .. } => Sampler::new(between.as_ref().unwrap_or(from), self.seed).world(index)?,
+        };
+        if let Some(max_steps) = self.max_steps {
+            world.limit_steps(max_steps);
+        }
+        Ok(Assignment { world, between })
+    }
+
+    /// The number that an agent begins an experience with.
+    ///
+    /// It is of the task, the seed and the world's number, and not of the variant: whoever acts by chance acts alike in two
+    /// variants under one seed. Every evaluation of a world has the same, so that an agent that has not changed earns the
+    /// same in it; what is learned in the same world again has another, so that a learner does not try the same again.
+    pub(super) fn chance(&self, number: u64) -> u64 {
+        let index = self.index_of(number);
+        let mut hash = Sha256::new();
+        let task = self.id.rsplit_once('#').map_or(self.id.as_str(), |(task, _)| task);
+        hash.update(task.as_bytes());
+        hash.update([0]);
+        hash.update(self.seed.to_le_bytes());
+        hash.update(index.to_le_bytes());
+        if self.kind == BlockKind::Learning {
+            hash.update(self.learned_before.to_le_bytes());
+        }
+        let digest = hash.finalize();
+        digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte))
+    }
+
+    /// The variant that an experience is of, where its regime drifts.
+    pub(super) fn variant_of(&self, number: u64) -> Result<Option<Variant>, GeneratorError> {
+        let Source::Drift { way, drift, .. } = &self.source else {
+            return Ok(None);
+        };
+        let experience = (number - self.first) as u32;
+        way.at(drift.progress(experience, self.count), self.index_of(number))
+            .map(Some)
+    }
+
+    /// What experience `number` is an experience of, under a name that is its own; `between` is its variant in a drift.
+    pub(super) fn subject<'a>(&'a self, number: u64, between: Option<&'a Variant>) -> (String, Subject<'a>) {
+        match (&self.source, between) {
+            (Source::World { world, .. }, _) => (self.id.clone(), Subject::World(world)),
+            (Source::Variant(variant), _) => (variant.id(), Subject::Variant(variant)),
+            // On the way, chance may have made another variant of each experience.
+            (Source::Drift { from, to, .. }, Some(variant)) if ![from.name(), to.name()].contains(&variant.name()) => {
+                (format!("{}/{number}", variant.id()), Subject::Variant(variant))
+            }
+            (Source::Drift { from, .. }, between) => {
+                let variant = between.unwrap_or(from);
+                (variant.id(), Subject::Variant(variant))
+            }
+        }
+    }
+
+    /// The variant of its last experience that has one, where it drifts: on the way of a drift the task may forbid some.
+    pub(super) fn last(&self) -> Option<Variant> {
+        let mut numbers = (self.first..self.first + u64::from(self.count)).rev();
+        numbers.find_map(|number| self.variant_of(number).transpose()?.ok())
+    }
+
+    /// The number of an experience's world among those of its variant and seed; NaN for a world from a file.
+    pub(super) fn world_index(&self, number: u64) -> f64 {
+        match self.source {
+            Source::Variant(_) | Source::Drift { .. } => self.index_of(number) as f64,
+            Source::World { .. } => f64::NAN,
+        }
+    }
+
+    /// How far on its way a drift is in an experience, 0..=1; 0 where nothing drifts.
+    pub(super) fn progress(&self, number: u64) -> f64 {
+        match &self.source {
+            Source::Drift { drift, .. } => drift.progress((number - self.first) as u32, self.count),
+            Source::Variant(_) | Source::World { .. } => 0.0,
+        }
+    }
+
+    /// What a log says of the experiences of this regime beside their numbers: the same of each, since programs that read
+    /// logs take experiences with other parameters for other regimes.
+    pub(super) fn params(&self) -> TaskParams {
+        let mut params = Map::new();
+        let mut say = |key: &str, value: Value| params.insert(key.to_owned(), value);
+        match &self.source {
+            Source::Variant(variant) => {
+                say("task", json!(variant.task().name()));
+                say("variant", json!(variant.name()));
+                say("seed", json!(self.seed));
+            }
+            Source::Drift { from, to, .. } => {
+                say("task", json!(from.task().name()));
+                say("variant", json!(from.name()));
+                say("to", json!(to.name()));
+                say("seed", json!(self.seed));
+            }
+            Source::World { path, .. } => {
+                let (task, variant) = self.id.split_once('#').unwrap_or((&self.id, ""));
+                say("task", json!(task));
+                say("variant", json!(variant));
+                say("world", json!(path));
+            }
+        }
+        if let Some(max_steps) = self.max_steps {
+            say("max_steps", json!(max_steps));
+        }
+        if self.phase == Phase::PreDeployment {
+            say("phase", json!("pre_deployment"));
+        }
+        TaskParams::from(params)
+    }
+}
