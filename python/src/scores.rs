@@ -87,7 +87,7 @@ pub(crate) fn report(py: Python<'_>, logs: Vec<PathBuf>, options: Bound<'_, PyDi
             ..FigureOptions::default()
         },
         scoring: scoring(logs, &options)?,
-        ..ReportRequest::of([PathBuf::new()])
+        ..ReportRequest::of::<PathBuf>([])
     };
     if !shown.is_empty() {
         request.figures.retain(|figure| shown.contains(figure));

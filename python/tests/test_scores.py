@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import copy
 import json
+import pickle
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -158,6 +161,32 @@ def test_scores_at_given_ranges_can_be_asked_again(logs: list[Path], tmp_path: P
     saved = json.loads((tmp_path / "results" / "one_metrics.json").read_text(encoding="utf-8"))
     assert saved["avg_train_perf"] == found["avg_train_perf"] != metrics(logs[0])["avg_train_perf"]
     assert len(found.regimes()) == 3 * 2 + 2
+
+
+@pytest.mark.parametrize("copied", [lambda found: pickle.loads(pickle.dumps(found)), copy.deepcopy], ids=["pickle", "deepcopy"])
+def test_copies_of_scores_say_and_save_the_same(
+    logs: list[Path], tmp_path: Path, copied: Callable[[Metrics], Metrics]
+) -> None:
+    pytest.importorskip("pandas", reason="data frames are pandas'")
+    found = metrics(logs, common_ranges=True)
+    again = copied(found)
+    assert again == found and again.regimes().equals(found.regimes())
+    found.save(tmp_path / "first")
+    again.save(tmp_path / "second")
+    texts = [{path.name: path.read_bytes() for path in (tmp_path / name).iterdir()} for name in ("first", "second")]
+    assert texts[0] == texts[1]
+
+
+def test_regimes_are_those_that_are_saved(logs: list[Path], tmp_path: Path) -> None:
+    pandas = pytest.importorskip("pandas", reason="data frames are pandas'")
+    found = metrics(logs)
+    found.save(tmp_path, name="all")
+    saved = pandas.read_csv(tmp_path / "all_regime.tsv", sep="\t")
+    frame = found.regimes()
+    assert set(saved.columns) <= set(frame.columns)
+    for column in saved.columns:
+        if column != "task_params":
+            pandas.testing.assert_series_equal(frame[column], saved[column], check_dtype=False)
 
 
 def test_a_tiny_number_below_zero_is_a_number(logs: list[Path]) -> None:

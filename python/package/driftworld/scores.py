@@ -121,7 +121,7 @@ class Metrics:
         Raises:
             ImportError: If pandas is not installed.
         """
-        return _pandas().DataFrame(self._native().regimes())
+        return _pandas().DataFrame(self._handle().regimes())
 
     def save(self, folder: PathLike, *, name: str | None = None) -> None:
         """Saves the results as ``driftworld metrics --do-save`` does: of one lifetime ``NAME_metrics.json``, ``NAME_regime.tsv``
@@ -131,9 +131,9 @@ class Metrics:
             folder: Where; made if need be.
             name: The log's, or ``ll_metrics`` for several, if not given.
         """
-        self._native().save(folder, name)
+        self._handle().save(folder, name)
 
-    def _native(self) -> _native.Scores:
+    def _handle(self) -> _native.Scores:
         """The scores themselves; a copy in another process scores the logs again."""
         return self._scores if self._scores is not None else _native.Scores.of(*self._asked)[0]
 
