@@ -51,7 +51,7 @@ impl Files {
     }
 
     /// What was written, in words.
-    pub(crate) fn told(&self) -> String {
+    pub(crate) fn summary(&self) -> String {
         let (folder, kilobytes) = (self.folder.shown(), self.bytes.div_ceil(1000));
         format!("{folder}: {} figures, {kilobytes} kB", self.count)
     }

@@ -51,7 +51,7 @@ pub(crate) fn shown(trials: &[Trial]) -> String {
 }
 
 /// That some worlds cannot be drawn, in a few words; nothing where all can.
-pub(crate) fn told(trials: &[Trial]) -> Option<String> {
+pub(crate) fn summary(trials: &[Trial]) -> Option<String> {
     let failed: u64 = trials.iter().map(Trial::num_failed).sum();
     let worlds: u64 = trials.iter().map(|trial| trial.worlds).sum();
     (failed > 0).then(|| format!("{failed} of {worlds} worlds cannot be drawn"))

@@ -202,7 +202,7 @@ impl Verdict {
             return Ok(());
         }
         let (path, kind) = (self.path.shown(), checked.kind.name());
-        match trials::told(&found.trials) {
+        match trials::summary(&found.trials) {
             Some(told) => output::note(format!("{path}: a {kind} of which {told}")),
             None => output::line(format!("{path}: a valid {kind}"))?,
         }

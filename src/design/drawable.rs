@@ -30,12 +30,12 @@ impl Drawable {
             tasks::check_classes(name, task, &self.classes)?;
         }
         let found = plan.try_worlds(self.worlds, &mut self.tried);
-        let Some(told) = trials::told(&found) else {
+        let Some(summary) = trials::summary(&found) else {
             return Ok(());
         };
         let failed: Vec<_> = found.into_iter().filter(|trial| trial.num_failed() > 0).collect();
         Err(Failure::input(format!(
-            "{}: {told}, so the scenario is not written\n{}\nmend the task; or write it as it is with {} 0, and leave such \
+            "{}: {summary}, so the scenario is not written\n{}\nmend the task; or write it as it is with {} 0, and leave such \
              experiences out with driftworld run {}",
             scenario.name,
             trials::shown(&failed),

@@ -8,11 +8,11 @@ mod words;
 
 use driftworld_curriculum::{Control, Design, control, design as lay_out, design_control, experts};
 use driftworld_report::picture;
-use driftworld_spec::Scenario;
+use driftworld_spec::{Scenario, ScenarioForm};
 use std::path::Path;
 
 pub use choose::{Chosen, DEFAULT_STEPS, DEFAULT_TOLERANCE, Evidence};
-pub use request::{DesignForm, DesignOrder, DesignRequest, MAX_LIFETIMES, MAX_TRIED};
+pub use request::{DesignOrder, DesignRequest, MAX_LIFETIMES, MAX_TRIED};
 pub use words::{element, schedule};
 
 use crate::{Failure, output_file};
@@ -75,7 +75,7 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
             };
             (0..lifetimes).map(lifetime).collect::<Result<Vec<_>, _>>()?
         }
-        (None, Some(DesignForm::Expert)) => experts(&picked, options)?,
+        (None, Some(ScenarioForm::Expert)) => experts(&picked, options)?,
         (None, _) => vec![lay_out(&picked, options)?],
     };
     let mut controls = Vec::new();

@@ -15,9 +15,6 @@ pub const MAX_LIFETIMES: u64 = 10_000;
 /// The most worlds of a regime that are drawn to see whether they can be.
 pub const MAX_TRIED: u32 = 1_000_000;
 
-/// How learning blocks are arranged, by the words of scenarios.
-pub type DesignForm = ScenarioForm;
-
 /// The order of the variants, where no method finds it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DesignOrder {
@@ -96,13 +93,13 @@ impl DesignRequest {
         }
     }
 
-    pub(super) fn form(&self) -> Option<DesignForm> {
+    pub(super) fn form(&self) -> Option<ScenarioForm> {
         self.design.form
     }
 
     /// Whether there are several scenarios, each in a file of its own.
     pub fn is_of_several(&self) -> bool {
-        self.form() == Some(DesignForm::Expert) || self.lifetimes.is_some()
+        self.form() == Some(ScenarioForm::Expert) || self.lifetimes.is_some()
     }
 
     pub(super) fn catalogue(&self) -> Result<Catalogue, Failure> {
@@ -169,7 +166,7 @@ impl DesignRequest {
         within("lifetimes", self.lifetimes.unwrap_or(1), 1..=MAX_LIFETIMES)?;
         within("worlds", self.worlds.into(), 0..=MAX_TRIED.into())?;
         let [lifetimes, form, controls, drift] = ["lifetimes", "form", "controls", "drift"].map(argument);
-        if self.lifetimes.is_some() && self.form() != Some(DesignForm::Permuted) {
+        if self.lifetimes.is_some() && self.form() != Some(ScenarioForm::Permuted) {
             return Err(Failure::usage(format!(
                 "{lifetimes} are of the permuted form: add {form} permuted"
             )));
@@ -179,13 +176,13 @@ impl DesignRequest {
                 "{controls} are of one scenario: leave them out, or {lifetimes} and {form} expert"
             )));
         }
-        if self.form() == Some(DesignForm::Permuted) && self.controls {
+        if self.form() == Some(ScenarioForm::Permuted) && self.controls {
             return Err(Failure::usage(format!(
                 "the permuted form draws its own order, and {controls} are of an order that was chosen: leave one of them \
                  out; {lifetimes} are each other's controls"
             )));
         }
-        if self.form() == Some(DesignForm::Expert) && self.design.drifting.is_some() {
+        if self.form() == Some(ScenarioForm::Expert) && self.design.drifting.is_some() {
             return Err(Failure::usage(format!(
                 "an expert learns one variant alone: leave {drift} out"
             )));

@@ -64,10 +64,10 @@ pub struct Page {
     pub figures: Option<String>,
 }
 
-/// Writes the page of lifetimes. `warn` is told what is odd, log by log.
+/// Writes the page of lifetimes. `warn` receives what is odd, log by log.
 ///
 /// # Errors
-/// [`Failure`] where a log cannot be read or scored (all of them are told), or a figure cannot be written.
+/// [`Failure`] where a log cannot be read or scored (it names all of them), or a figure cannot be written.
 pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Failure> {
     let asked = &request.scoring;
     let logs = log_folders::below(&asked.logs)?;
@@ -135,7 +135,7 @@ pub fn write_report(request: &ReportRequest, warn: Warn<'_>) -> Result<Page, Fai
     Ok(Page {
         html: report.to_html()?,
         num_lifetimes: logs.len(),
-        figures: files.map(|files| files.told()),
+        figures: files.map(|files| files.summary()),
     })
 }
 

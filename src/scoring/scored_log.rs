@@ -15,12 +15,12 @@ pub(crate) struct ScoredLog {
     pub(crate) log: Log,
     pub(crate) lifetime: Lifetime,
     pub(crate) metrics: LifetimeMetrics,
-    /// What is odd about it, which was told already.
+    /// What is odd about it, which `warn` received already.
     pub(crate) warnings: Vec<String>,
 }
 
 impl ScoredLog {
-    /// Reads a log and scores it; `name` tells it from others, by default its folder's.
+    /// Reads a log and scores it; `name` distinguishes it from others, by default its folder's.
     pub(crate) fn read(
         folder: &Path,
         name: Option<&str>,
@@ -76,8 +76,8 @@ fn missing_numbers(log: &Log, column: &str) -> Option<String> {
         .then(|| format!("{missing} of {complete} complete rows have no number in column {column} and are left out"))
 }
 
-/// Reads and scores many logs and keeps of each what `keep` makes of it. Where several cannot be scored, every one is
-/// told, and the first is the cause.
+/// Reads and scores many logs and keeps of each what `keep` makes of it. The failure names every log that cannot be
+/// scored, with the first error as its cause.
 pub(super) fn each_log<T: Send>(
     logs: &[PathBuf],
     experts: &Experts,

@@ -30,15 +30,13 @@ pub struct Scores {
     recursive: bool,
 }
 
-/// Scores the logs that a request names. `warn` is told what is odd, log by log.
+/// Scores the logs that a request names. `warn` receives what is odd, log by log.
 ///
 /// # Errors
-/// [`Failure`] where a log cannot be read or scored, or the request contradicts itself; of several logs all that fail
-/// are told.
+/// [`Failure`] where a log cannot be read or scored, or the request contradicts itself; of several logs it names all that
+/// fail.
 pub fn score(request: &ScoringRequest, warn: Warn<'_>) -> Result<Scores, Failure> {
-    let setup = Setup::new(request.folders()?, request)?;
-    let lifetimes = setup.each(warn, |log| Ok(log.metrics))?;
-    Scores::new(request, setup, lifetimes, warn)
+    score_looking(request, warn, |_| Ok(()))
 }
 
 /// The same, and hands each log with its lifetime to `look`, from any thread.

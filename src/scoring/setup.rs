@@ -57,7 +57,7 @@ fn with_common_ranges(logs: &[PathBuf], experts: &Experts, mut options: Options)
         let lifetime = Lifetime::prepare(&log, &experts.of(&log, &options).ok()?, &options).ok()?;
         lifetime.normalization_data_range().cloned()
     };
-    // What cannot be read or scored is told when all are scored.
+    // What cannot be read or scored is reported when all are scored.
     let own: Vec<_> = logs.par_iter().filter_map(own).collect();
     let mut common = DataRanges::new();
     for (task, range) in own.into_iter().flatten() {

@@ -124,7 +124,7 @@ impl Metrics {
             files.lock().unwrap_or_else(PoisonError::into_inner).write(&drawn)
         })?;
         let files = files.into_inner().unwrap_or_else(PoisonError::into_inner);
-        output::note(format!("wrote {}", files.told()));
+        output::note(format!("wrote {}", files.summary()));
         Ok(scores)
     }
 
