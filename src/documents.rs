@@ -15,7 +15,7 @@ use crate::contents::{Contents, OtherContents};
 use crate::tasks::TaskError;
 use crate::top_level::TopLevel;
 
-/// Why a document cannot be had from its file.
+/// Why a document cannot be read from its file.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum DocumentError {

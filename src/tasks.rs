@@ -19,7 +19,7 @@ pub const BUILT_IN: [(&str, &str); 6] = [
     ("blue_red_green", include_str!("../examples/tasks/blue_red_green.json")),
 ];
 
-/// Why a task cannot be had by its name.
+/// Why no task is found by its name.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TaskError {

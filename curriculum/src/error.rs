@@ -172,7 +172,7 @@ pub enum CurriculumError {
         /// How far from the first anything is that was tried.
         farthest: f64,
     },
-    /// A distance or an order cannot be had.
+    /// A distance or an order cannot be computed.
     #[error(transparent)]
     Similarity(#[from] SimilarityError),
     /// A variant cannot be made.

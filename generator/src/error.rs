@@ -112,7 +112,7 @@ pub enum GeneratorError {
         /// The other.
         to: String,
     },
-    /// A variant on the way of a drift cannot be had.
+    /// A variant on the way of a drift does not exist.
     #[error("on the way of the drift: {0}")]
     Between(#[source] SpecError),
     /// A wanted distance has no parameter to change.

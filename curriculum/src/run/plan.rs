@@ -69,7 +69,7 @@ pub struct ExperienceSpec<'a> {
 }
 
 impl Plan {
-    /// Finds everything that a scenario names, so that what cannot be had is known before anything is lived.
+    /// Finds everything that a scenario names, so that what is missing is known before anything is run.
     ///
     /// # Errors
     /// [`CurriculumError::Unknown`], [`CurriculumError::WorldFile`], [`CurriculumError::World`] where the first world of a

@@ -124,7 +124,7 @@ impl Images {
     /// Those of environments that have not begun.
     ///
     /// # Errors
-    /// [`EnvError::BatchMemory`] where memory cannot be had.
+    /// [`EnvError::BatchMemory`] where memory is not available.
     pub(super) fn new(layout: ImageLayout, num_envs: usize, form: DepthForm) -> Result<Self, EnvError> {
         let pixels = |modality: Modality| {
             let wanted = usize::from(layout.modalities.contains(&modality));
@@ -244,7 +244,7 @@ impl<'a> ImagesMut<'a> {
 /// A buffer of so many of a value.
 ///
 /// # Errors
-/// [`EnvError::BatchMemory`] where memory cannot be had: the buffer is the caller's to choose, so that is no reason to
+/// [`EnvError::BatchMemory`] where memory is not available: the buffer is the caller's to choose, so that is no reason to
 /// end all.
 pub(super) fn filled<T: Clone>(value: T, length: usize) -> Result<Vec<T>, EnvError> {
     let mut buffer = Vec::new();

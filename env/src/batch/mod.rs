@@ -233,7 +233,7 @@ impl Batch {
     ///
     /// # Errors
     /// [`EnvError::BatchLength`] unless there is one answer for each environment; [`EnvError::BatchWorld`] and
-    /// [`EnvError::BatchImages`] for the first environment whose world cannot be had: all others have begun.
+    /// [`EnvError::BatchImages`] for the first environment that gets no world: all others have begun.
     pub fn reset_where(&mut self, chosen: &[bool]) -> Result<(), EnvError> {
         self.reset_where_while(chosen, &always)
     }

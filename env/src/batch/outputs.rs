@@ -38,7 +38,7 @@ impl Outputs {
     /// Those of environments that have not begun.
     ///
     /// # Errors
-    /// [`EnvError::BatchMemory`] where memory cannot be had.
+    /// [`EnvError::BatchMemory`] where memory is not available.
     pub(super) fn new(
         layout: &ImageLayout,
         form: DepthForm,
