@@ -9,7 +9,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let world = generator::sample(&variant, 7, 0)?;
     println!("world {} has {} objects", &world.hash()[..12], world.objects.len());
 
-    let mut environment = Environment::new(world)?;
+    let mut environment = Environment::new(world);
     for _ in 0..10 {
         let step = environment.step(Action::Continuous([5.0, 30.0, 0.0]))?;
         println!("reward {:6.2}  events {:?}", step.reward, step.events);

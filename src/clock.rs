@@ -22,7 +22,8 @@ pub enum Clock {
 /// The variable says something that is no time.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{VARIABLE}: found {found:?}, expected a time in UTC such as 2026-01-31T12:00:00Z, from the year 1 to 9999; unset it for the clock's own"
+    "{VARIABLE}: found {found:?}, expected a UTC time such as 2026-01-31T12:00:00Z, in the years 1 to 9999; unset it \
+     to use the system clock"
 )]
 pub struct ClockError {
     /// What it says.

@@ -104,20 +104,20 @@ impl Contents {
         let path = path.shown();
         match self {
             Self::Task if wanted.contains(&Self::Scenario) => {
-                format!("make one of its variants by `driftworld curriculum {path} -o scenario.json`")
+                format!("`driftworld curriculum {path} -o scenario.json` makes one from its variants")
             }
             Self::Task if wanted.contains(&Self::World) => {
-                format!("draw one by `driftworld sample {path} -o world.json`")
+                format!("`driftworld sample {path} -o world.json` draws one")
             }
             Self::Task if wanted.contains(&Self::Matrix) => {
-                format!("make one by `driftworld order {path} --matrix matrix.json`")
+                format!("`driftworld order {path} --matrix matrix.json` writes one")
             }
-            Self::Scenario if wanted.contains(&Self::Log) => format!("make one by `driftworld run {path} --logs DIR`"),
+            Self::Scenario if wanted.contains(&Self::Log) => format!("`driftworld run {path} --logs DIR` writes one"),
             Self::Task => format!("`driftworld sample {path}` draws its worlds"),
             Self::World => format!("`driftworld render {path}` draws it"),
-            Self::Scenario => format!("`driftworld run {path}` lives it"),
-            Self::Maps => format!("`driftworld sample TASK --maps {path}` draws worlds in its layouts"),
-            Self::Settings => format!("`driftworld metrics LOG --load-settings {path}` scores by them"),
+            Self::Scenario => format!("`driftworld run {path}` runs it"),
+            Self::Maps => format!("`driftworld sample TASK --maps {path}` draws worlds with its layouts"),
+            Self::Settings => format!("`driftworld metrics LOG --load-settings {path}` scores with them"),
             Self::Matrix => format!("`driftworld order --from-matrix {path}` orders its items"),
             Self::Log => "`driftworld metrics DIR` scores the log in the folder DIR".to_owned(),
             Self::Folder => "name a file in it".to_owned(),
@@ -194,7 +194,7 @@ mod tests {
         let other = OtherContents::check(path, Some(Contents::Task), &[Contents::Scenario]).unwrap();
         assert_eq!(
             other.to_string(),
-            "a.json: found a task spec, expected a scenario; make one of its variants by `driftworld curriculum a.json -o scenario.json`"
+            "a.json: found a task spec, expected a scenario; `driftworld curriculum a.json -o scenario.json` makes one from its variants"
         );
     }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use driftworld_curriculum::{CurriculumError, log_name};
 use driftworld_files::FileError;
 use driftworld_spec::maps::MapLibrary;
-use driftworld_spec::{Classes, MAX_BYTES, Scenario, SpecError, TaskSpec, World, nearest};
+use driftworld_spec::{Classes, MAX_BYTES, Scenario, SpecError, TaskSpec, World, did_you_mean};
 use driftworld_text::one_line;
 
 use crate::contents::{Contents, OtherContents};
@@ -129,7 +129,7 @@ impl FromStr for Kind {
     fn from_str(word: &str) -> Result<Self, String> {
         let words = Self::ALL.map(Self::word);
         Self::ALL.into_iter().find(|kind| kind.word() == word).ok_or_else(|| {
-            let near = nearest(word, words).map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
+            let near = did_you_mean(word, words);
             format!("kind: found {word:?}, expected one of {}{near}", words.join(", "))
         })
     }
@@ -167,7 +167,7 @@ pub fn check(
             }
             Err(error) => Some(error),
         },
-        Kind::World => told(
+        Kind::World => take_warnings(
             World::from_json_with(name, text, Some(classes)).map(|world| {
                 let odd = world.remarks(name, text);
                 (world, odd)
@@ -180,7 +180,7 @@ pub fn check(
             let read = Scenario::from_json_with(name, text, |called| {
                 let unchecked = |error| {
                     format!(
-                        "{}: the variants of {} are not checked: {error}",
+                        "{}: the variants of {} were not checked: {error}",
                         one_line(name),
                         one_line(called)
                     )
@@ -199,8 +199,8 @@ pub fn check(
                 Err(error) => Some(error),
             }
         }
-        Kind::L2ExplorerWorld => told(World::from_l2explorer(name, text), &mut warnings),
-        Kind::L2ExplorerScenario => told(Scenario::from_l2explorer(name, text), &mut warnings),
+        Kind::L2ExplorerWorld => take_warnings(World::from_l2explorer(name, text), &mut warnings),
+        Kind::L2ExplorerScenario => take_warnings(Scenario::from_l2explorer(name, text), &mut warnings),
     };
     Checked {
         kind,
@@ -218,14 +218,18 @@ fn alike_in_logs(document: &str, task: &TaskSpec) -> Vec<String> {
         let name = log_name(task.name(), variant);
         let other = known.insert(name.clone(), variant)?;
         Some(format!(
-            "{document}: the variants {other:?} and {variant:?} have one name in logs, {name}, so no scenario can hold both; rename one"
+            "{document}: the variants {other:?} and {variant:?} have the same name in logs, {name}, so no scenario \
+             can have both; rename one"
         ))
     });
     alike.collect()
 }
 
 /// What is wrong with a document; what is odd about it goes to the warnings.
-fn told<T, W: ToString>(read: Result<(T, Vec<W>), SpecError>, warnings: &mut Vec<String>) -> Option<SpecError> {
+fn take_warnings<T, W: ToString>(
+    read: Result<(T, Vec<W>), SpecError>,
+    warnings: &mut Vec<String>,
+) -> Option<SpecError> {
     match read {
         Ok((_, found)) => {
             warnings.extend(found.iter().map(ToString::to_string));

@@ -20,6 +20,7 @@ pub use driftworld_report as report;
 pub use driftworld_similarity as similarity;
 pub use driftworld_spec as spec;
 
+pub mod behavior;
 mod checksum;
 pub mod clock;
 pub mod columns;
@@ -29,6 +30,8 @@ pub mod contents;
 pub mod design;
 pub mod distances;
 pub mod documents;
+pub mod dynamics;
+pub mod elements;
 mod failure;
 mod figure_files;
 mod libraries;

@@ -42,8 +42,8 @@ pub(crate) fn below(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         too_many(argument, found.len())?;
         if found.len() == before {
             return Err(Failure::input(format!(
-                "{}: found no log, expected a folder with logger_info.json, or folders of such up to {MOST_LEVELS} levels \
-                 below; `driftworld run … --logs DIR` writes them",
+                "{}: found no log, expected a folder with logger_info.json, or such folders up to {MOST_LEVELS} \
+                 levels below; `driftworld run … --logs DIR` writes one",
                 argument.shown()
             )));
         }
@@ -61,14 +61,14 @@ pub(crate) fn named(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         let path = folder.shown();
         return Err(Failure::input(match below.first() {
             Some(first) => format!(
-                "{path}: found a folder of {} logs such as {}, expected one log; name that, or take all with {}",
+                "{path}: found a folder of {} logs such as {}, expected one log; name one, or use all with {}",
                 below.len(),
                 first.shown(),
                 argument("recursive")
             ),
             None => format!(
-                "{path}: found no log, expected a folder with logger_info.json and WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv; \
-                 `driftworld run … --logs DIR` writes such"
+                "{path}: found no log, expected a folder with logger_info.json and \
+                 WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv; `driftworld run … --logs DIR` writes one"
             ),
         }));
     }
@@ -191,7 +191,8 @@ impl Search {
             return Ok(());
         }
         Err(Failure::input(format!(
-            "{}: found more than {MOST_FOLDERS} folders on the search for logs, expected at most that; name a folder nearer to the logs",
+            "{}: found more than {MOST_FOLDERS} folders in the search for logs, expected at most that; name a folder \
+             closer to the logs",
             folder.shown()
         )))
     }

@@ -25,7 +25,7 @@ fn format(option: &str, path: &Path) -> Result<Format, Failure> {
         Some("json") => Ok(Format::Json),
         Some("npy") => Ok(Format::Npy),
         _ => Err(Failure::usage(format!(
-            "{}: found {}, expected a name that ends with .csv, .json or .npy",
+            "{}: found {}, expected a name that ends in .csv, .json or .npy",
             argument(option),
             path.shown()
         ))),

@@ -34,6 +34,18 @@ impl From<Modality> for Kind {
     }
 }
 
+impl From<Kind> for Modality {
+    fn from(kind: Kind) -> Self {
+        match kind {
+            Kind::Rgb => Self::Rgb,
+            Kind::Depth => Self::Depth,
+            Kind::Segmentation => Self::Segmentation,
+            Kind::Class => Self::Class,
+            Kind::Instance => Self::Instance,
+        }
+    }
+}
+
 impl Kind {
     /// All of them.
     pub(crate) const ALL: [Self; 5] = [Self::Rgb, Self::Depth, Self::Segmentation, Self::Class, Self::Instance];

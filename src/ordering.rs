@@ -38,7 +38,8 @@ impl OrderRequest {
         seed: u64,
         firsts: &[usize],
     ) -> Result<(Method, Ordering), Failure> {
-        if self.start.is_some() || firsts.is_empty() || firsts.len() == matrix.len() {
+        let method = self.method.unwrap_or_else(|| Method::default_for(matrix.len()));
+        if self.start.is_some() || !method.seeks_from_a_first() || firsts.is_empty() || firsts.len() == matrix.len() {
             return self.order(matrix, seed);
         }
         let last = self.options(matrix, seed)?.last;

@@ -14,7 +14,7 @@ use crate::{Failure, overwrite};
 pub(crate) fn create(path: &Path) -> Result<AtomicFile, Failure> {
     if path == Path::new("-") {
         let advice = "expected the path of a file; give /dev/stdout for standard output";
-        return Err(Failure::usage(format!("found - as the file to write, {advice}")));
+        return Err(Failure::usage(format!("found - as the file to write; {advice}")));
     }
     overwrite::refuse_log_files(path)?;
     AtomicFile::create(path).map_err(|error| unwritable(path, &error))
@@ -38,7 +38,7 @@ pub(crate) fn write_picture(path: &Path, picture: &Picture) -> Result<(), Failur
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if OTHERS.iter().any(|other| ending.eq_ignore_ascii_case(other)) {
         return Err(Failure::usage(format!(
-            "{}: found a name that ends with .{ending}, expected .png: pictures are written as PNG",
+            "{}: found a name that ends in .{ending}, expected .png; pictures are written as PNG",
             path.shown()
         )));
     }

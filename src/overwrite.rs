@@ -27,7 +27,7 @@ pub(crate) fn refuse_log_files(target: &Path) -> Result<(), Failure> {
     match folder.ancestors().find(is_log) {
         None => Ok(()),
         Some(log) => Err(Failure::input(format!(
-            "{}: found a name that is part of the log {}, expected another file; the log would be lost",
+            "{}: found a file of the log {}, expected another file; the log would be overwritten",
             target.shown(),
             log.shown()
         ))),
@@ -43,7 +43,7 @@ pub(crate) fn refuse_inputs<'a>(target: &Path, names: impl IntoIterator<Item = &
     let is_read = |name: &str| is_target(name) || is_target(tasks::split(name).0);
     if target_itself.is_file() && names.into_iter().any(is_read) {
         return Err(Failure::input(format!(
-            "{}: found the file that is read, expected another to write to; it would be lost",
+            "{}: found the input file, expected another file to write; the input would be overwritten",
             target.shown()
         )));
     }

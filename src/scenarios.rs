@@ -133,7 +133,7 @@ impl ScenarioFile {
         }
         if beside.is_file() {
             warn(format!(
-                "{}: there is no such file; {} is lived, which lies beside the scenario",
+                "{}: no such file; using {} beside the scenario",
                 meant.shown(),
                 beside.shown()
             ));
@@ -150,8 +150,8 @@ impl ScenarioFile {
         let stand_in = self.nearest(&[&meant, &beside]);
         match (stand_in, missing) {
             (Some(file), Missing::StandIn) => {
-                let lived = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                let note = format!("not there; {lived} stood in for it");
+                let used = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                let note = format!("not there; {used} stood in for it");
                 warn(format!("{}: {note}", named.shown()));
                 Ok(FoundWorld {
                     world: self.read_world(&file)?,
@@ -159,13 +159,13 @@ impl ScenarioFile {
                 })
             }
             (stand_in, _) => {
-                let how = if self.original {
+                let option = if self.original {
                     "without --no-stand-in"
                 } else {
                     "with --stand-in"
                 };
                 let advice = stand_in.map_or_else(String::new, |file| {
-                    format!("; or let {} stand in for it {how}", file.shown())
+                    format!("; or use {} instead {option}", file.shown())
                 });
                 Err(format!(
                     "found no file {:?}, looked for {looked}, expected a world file; put it there{advice}",
@@ -227,7 +227,7 @@ impl Named {
     /// # Errors
     /// As [`Plan::with_undrawable`], also where something is not among them.
     pub fn plan(&self, scenario: &Scenario, undrawable: Undrawable) -> Result<Plan, CurriculumError> {
-        let missing = |name: &str| format!("found {name:?}, expected what the scenario was read with");
+        let missing = |name: &str| format!("found {name:?}, expected a task that the scenario was read with");
         let mut sources = Sources {
             task: &mut |name| self.tasks.get(name).cloned().ok_or_else(|| missing(name)),
             world: &mut |path| self.worlds.get(path).cloned().ok_or_else(|| missing(path)),

@@ -7,7 +7,7 @@ use crate::contents::Contents;
 use crate::documents::{self, DocumentError};
 use driftworld_env::Catalogue;
 use driftworld_files::FileError;
-use driftworld_spec::{Classes, DEFAULT_VARIANT, SpecError, TaskSpec, Variant, nearest};
+use driftworld_spec::{Classes, DEFAULT_VARIANT, SpecError, TaskSpec, Variant, did_you_mean};
 
 /// The tasks that are built in: name and text. The files are `examples/tasks/`.
 pub const BUILT_IN: [(&str, &str); 6] = [
@@ -27,7 +27,7 @@ pub enum TaskError {
     #[error(
         "found task {name:?}, expected the path of a task spec or one of {}{}",
         built_in_names().join(", "),
-        did_you_mean(name)
+        did_you_mean(name, built_in_names())
     )]
     Unknown {
         /// The name asked for.
@@ -48,7 +48,7 @@ pub enum TaskError {
 pub fn classes(catalogue: &Catalogue) -> Classes {
     catalogue
         .classes()
-        .with_advice("name the library that has it: --assets LIBRARY, in Python assets=LIBRARY")
+        .with_advice("give the library that has it with --assets LIBRARY, in Python assets=LIBRARY")
 }
 
 /// Refuses a task with objects of a class that is not known.
@@ -71,10 +71,6 @@ pub fn check_classes(name: &str, task: &TaskSpec, classes: &Classes) -> Result<(
 /// The names of the built-in tasks.
 pub fn built_in_names() -> Vec<&'static str> {
     BUILT_IN.iter().map(|(name, _)| *name).collect()
-}
-
-fn did_you_mean(name: &str) -> String {
-    nearest(name, built_in_names()).map_or_else(String::new, |near| format!("; did you mean {near:?}?"))
 }
 
 /// A name cut into task and variant: `find_objects#red` is `("find_objects", Some("red"))`.
@@ -172,7 +168,8 @@ mod tests {
         assert_eq!(
             variant("find_objects#rde").unwrap_err().to_string(),
             "find_objects: found variant \"rde\", expected one of blue, red, green, dusk, huddle, penalty, \
-             spheres, clearing, wide, modest, poor, half, interact, near, held, long_held, slim, slow, stiff, waypoints; did you mean \"red\"?"
+             spheres, clearing, wide, modest, poor, half, interact, near, held, long_held, slim, slow, stiff, \
+             waypoints; did you mean \"red\"?"
         );
     }
 }

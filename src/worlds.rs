@@ -27,7 +27,7 @@ pub(crate) fn world_file(path: &Path, l2explorer: bool) -> Result<(World, Vec<Wa
         Ok(world) => Ok((world, Vec::new())),
         Err(error) => Err(match World::from_l2explorer(&name, &text) {
             Ok(_) => Failure::input(format!(
-                "{error}\nhint: this reads as a map of L2Explorer; add {}",
+                "{error}\nhint: this looks like a map of L2Explorer; add {}",
                 argument("l2explorer")
             )),
             Err(_) => error.into(),
@@ -66,7 +66,7 @@ pub(crate) fn maps(path: &Path) -> Result<MapLibrary, Failure> {
             if library.layouts().any(|known| known.id == layout.id) {
                 let id = layout.id;
                 return Err(Failure::input(format!(
-                    "{}: found map {id}, which another file of the folder has too, expected each number once",
+                    "{}: found map {id}, which another file in the folder also has, expected each number once",
                     file.shown()
                 )));
             }
@@ -126,7 +126,7 @@ impl WorldRequest {
         expect_world_or_task(&self.world)?;
         if self.is_file() {
             return Err(Failure::input(format!(
-                "{}: is one world, not a variant that has worlds by number; name a world file",
+                "{}: found a single world, expected a variant to draw worlds from, or a world file",
                 self.world
             )));
         }
@@ -140,11 +140,11 @@ impl WorldRequest {
     /// Another world, by the same options: a file, or the first world of a variant.
     pub(crate) fn named(&self, name: &str, warn: Warn<'_>) -> Result<World, Failure> {
         let maps = self.maps.as_deref().map(maps).transpose()?;
-        let mut world = world(name, self.seed, 0, self.l2explorer, warn)?;
-        if let Some(maps) = maps {
-            maps.apply(&mut world);
-        }
-        Ok(world)
+        let world = world(name, self.seed, 0, self.l2explorer, warn)?;
+        Ok(match maps {
+            Some(maps) => world.with_maps(&maps),
+            None => world,
+        })
     }
 
     fn is_file(&self) -> bool {

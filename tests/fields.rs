@@ -21,7 +21,7 @@ fn full() -> Json {
     world["agent_params"]["interact"] = json!(true);
     // The limit that holds is that of steps, on which how long they last has a part.
     world["max_steps"] = json!(100);
-    world["agent_params"]["modalities"] = json!(["rgb", "depth"]);
+    world["agent_params"]["modalities"] = json!(["rgb"]);
     world["objects"] = read("fixtures_with_every_key")["objects"].take();
     world["objects"].as_array_mut().expect("it is a list").truncate(1);
     world
@@ -155,18 +155,58 @@ fn change(world: &mut Json, place: &FieldPlace, full: &Json) -> bool {
     true
 }
 
+/// A world whose object moves in a way in which what stands at a place is read.
+fn read_by(pointer: &str) -> Json {
+    let mut full = full();
+    let motion = match pointer.split('/').nth(3) {
+        Some("pushable") => "stationary",
+        Some("sight_range") => "predator",
+        _ => return full,
+    };
+    full["objects"][0]["motion_model"] = json!(motion);
+    full["objects"][0]["solid"] = json!(true);
+    full
+}
+
+#[test]
+fn what_nothing_reads_of_an_object_is_no_distance() {
+    let read = |json: &Json| World::from_json("world", &json.to_string()).unwrap_or_else(|error| panic!("{error}"));
+    let with = |motion: &str, changes: &[(&str, Json)]| {
+        let mut world = full();
+        let object = &mut world["objects"][0];
+        object["motion_model"] = json!(motion);
+        for (key, value) in changes {
+            object[*key] = value.clone();
+        }
+        read(&world)
+    };
+    let d = |a: &World, b: &World| world_distance(a, b, &Weights::default()).total;
+    let (stands, hunts) = (with("stationary", &[]), with("predator", &[]));
+    assert_eq!(
+        d(
+            &stands,
+            &with("stationary", &[("speed", json!(9)), ("sight_range", json!(9))])
+        ),
+        0.0
+    );
+    assert!(d(&hunts, &with("predator", &[("speed", json!(9))])) > 0.0);
+    let unpaid = [("reward_stimulus", json!([])), ("reward_once_stimulus", json!([]))];
+    let at = |reward: i32| [&unpaid[..], &[("reward", json!(reward))]].concat();
+    assert_eq!(d(&with("stationary", &at(5)), &with("stationary", &at(-50))), 0.0);
+}
+
 #[test]
 fn worlds_that_differ_in_one_place_differ_in_the_comparisons_that_it_names_and_in_no_other() {
-    let full = full();
     let read =
         |name: &str, json: &Json| World::from_json(name, &json.to_string()).unwrap_or_else(|error| panic!("{error}"));
-    let world = read("full", &full);
-    assert_eq!(world_distance(&world, &world, &Weights::default()).total, 0.0);
     let mut wrong = Vec::new();
     for place in World::places()
         .iter()
         .filter(|place| place.field.compared != Compared::AsPart)
     {
+        let full = read_by(&place.pointer);
+        let world = read("full", &full);
+        assert_eq!(world_distance(&world, &world, &Weights::default()).total, 0.0);
         let mut changed = full.clone();
         if !change(&mut changed, place, &full) {
             continue;

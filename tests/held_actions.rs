@@ -4,7 +4,7 @@
 use driftworld::env::{Action, Environment};
 use driftworld::generator::Sampler;
 use driftworld::similarity::{Weights, world_distance};
-use driftworld::spec::{ActionModel, Element, StateFeature, Variant, World};
+use driftworld::spec::{ActionModel, Element, StateFeature, Variant, WorldDraft};
 use driftworld::tasks;
 
 /// What an episode came to: the agent at its end, its seconds, what it paid, whether a limit cut it off.
@@ -17,8 +17,8 @@ struct Course {
 }
 
 /// An episode of one motion from the first step to the last.
-fn live(world: &World, motion: [f64; 3]) -> Course {
-    let mut environment = Environment::new(world.clone()).unwrap_or_else(|error| panic!("{error}"));
+fn live(world: &WorldDraft, motion: [f64; 3]) -> Course {
+    let mut environment = Environment::new(world.clone().check().expect("the world is sound"));
     let mut truncated = false;
     while !environment.ended() {
         let step = environment.step(Action::Continuous(motion));
@@ -33,10 +33,9 @@ fn live(world: &World, motion: [f64; 3]) -> Course {
     }
 }
 
-fn draw(variant: &Variant) -> World {
-    let mut world = Sampler::new(variant, 5)
-        .world(1)
-        .unwrap_or_else(|error| panic!("{error}"));
+fn draw(variant: &Variant) -> WorldDraft {
+    let world = Sampler::new(variant, 5).world(1);
+    let mut world = world.unwrap_or_else(|error| panic!("{error}")).into_draft();
     world.agent_params.action_model = ActionModel::ByVelocity;
     world
 }
@@ -92,14 +91,14 @@ fn held_variants_differ_from_the_first_in_the_transitions_alone() {
     let mut compared = 0;
     for task in tasks::built_in_names() {
         let variants = tasks::variants(task).expect("built-in tasks are sound");
-        let first = draw(&variants[0]);
+        let first = draw(&variants[0]).check().expect("the world is sound");
         for held in variants.iter().filter(|variant| variant.name().ends_with("held")) {
-            let mut world = draw(held);
+            let world = draw(held).check().expect("the world is sound");
             assert!(world.agent_params.frame_skip > 1, "{}", held.id());
             let distance = world_distance(&first, &world, &Weights::default());
             assert_eq!(distance.differs_in(), [Element::T], "{}", held.id());
-            world.agent_params.frame_skip = 1;
-            assert_eq!(world, first, "{}", held.id());
+            let world = world.edit(|world| world.agent_params.frame_skip = 1);
+            assert_eq!(world.as_ref(), Ok(&first), "{}", held.id());
             compared += 1;
         }
     }
@@ -108,13 +107,13 @@ fn held_variants_differ_from_the_first_in_the_transitions_alone() {
 
 #[test]
 fn steps_left_count_the_steps_that_a_limit_of_seconds_leaves() {
-    let mut world = World {
+    let mut world = WorldDraft {
         max_seconds: 1.0,
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.agent_params.frame_skip = 4;
     world.agent_params.state_features = vec![StateFeature::StepsLeft];
-    let mut environment = Environment::new(world).unwrap_or_else(|error| panic!("{error}"));
+    let mut environment = Environment::new(world.check().expect("the world is sound"));
     let mut left = vec![environment.state_vector()[0]];
     while !environment.ended() {
         environment

@@ -5,7 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use driftworld::env::{Action, Agent, Environment, RandomAgent};
 use driftworld::generator::Sampler;
-use driftworld::spec::{ActionModel, MotionModel, Object, Pushable, Respawn, Stimulus, Variant, Wall, World};
+use driftworld::spec::{
+    ActionModel, MotionModel, Object, Pushable, Respawn, Stimulus, Variant, Wall, World, WorldDraft,
+};
 use driftworld::tasks;
 use serde_json::Value;
 
@@ -148,11 +150,12 @@ fn worlds() -> Vec<World> {
     for (number, task) in tasks::built_in_names().into_iter().enumerate() {
         let variants = tasks::variants(task).expect("built-in tasks are sound");
         let variant = &variants[(7 * number + 3) % variants.len()];
-        let mut world = draw(variant, number as u64, 5);
-        spice(&mut world);
-        // Every other one has none, so that the places of things decide.
-        world.seed = world.seed.filter(|_| number % 2 == 0);
-        worlds.push(world);
+        let world = draw(variant, number as u64, 5).edit(|world| {
+            spice(world);
+            // Every other one has none, so that the places of things decide.
+            world.seed = world.seed.filter(|_| number % 2 == 0);
+        });
+        worlds.push(world.expect("the world is sound"));
     }
     worlds
 }
@@ -163,7 +166,7 @@ fn draw(variant: &Variant, seed: u64, index: u64) -> World {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn spice(world: &mut World) {
+fn spice(world: &mut WorldDraft) {
     world.agent_params.action_model = ActionModel::ByVelocity;
     // Endings are judged apart.
     world.limit_steps(0);
@@ -210,7 +213,7 @@ fn spice(world: &mut World) {
 /// All ways of an episode, as bits: the agent's and every object's place and heading, and whether it is there, step by step.
 /// The agent acts by chance, by its own count.
 fn ways(world: &World, seed: u64) -> Vec<Vec<u32>> {
-    let mut environment = Environment::new(world.clone()).unwrap_or_else(|error| panic!("{error}"));
+    let mut environment = Environment::new(world.clone());
     let mut agent = RandomAgent::new(seed);
     let mut ways = Vec::with_capacity(STEPS);
     while ways.len() < STEPS && !environment.ended() {
@@ -348,12 +351,14 @@ fn every_key_of_a_world_is_judged_and_what_moves_nothing_moves_nothing() {
                 *tried.entry(key.clone()).or_default() += 1;
             }
         }
-        changed.max_steps = changed.max_steps.max(1000);
-        if changed.max_seconds > 0.0 {
-            changed.max_seconds = 1e6;
-        }
-        (changed.rules.success, changed.rules.failure) = (Vec::new(), Vec::new());
-        let after = ways(&changed, seed);
+        let changed = changed.edit(|world| {
+            world.max_steps = world.max_steps.max(1000);
+            if world.max_seconds > 0.0 {
+                world.max_seconds = 1e6;
+            }
+            (world.rules.success, world.rules.failure) = (Vec::new(), Vec::new());
+        });
+        let after = ways(&changed.expect("the world is sound"), seed);
         if parting(&before, &after).is_some() || after.len() < STEPS {
             let guilty = keys.iter().filter_map(|key| {
                 let alone = change(world, key, &examples_of(key))?;
@@ -396,7 +401,7 @@ fn what_pays_and_the_light_leave_wandering_balls_where_they_are() {
     let task = tasks::variants("moving_object").expect("it is built in");
     let places = |name: &str| {
         let variant = task.iter().find(|variant| variant.name() == name).expect("it is there");
-        let mut environment = Environment::new(draw(variant, 3, 0)).unwrap_or_else(|error| panic!("{error}"));
+        let mut environment = Environment::new(draw(variant, 3, 0));
         for _ in 0..60 {
             environment
                 .step(Action::Continuous([0.0; 3]))

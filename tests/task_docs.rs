@@ -29,7 +29,7 @@ fn tables(task: &std::sync::Arc<TaskSpec>) -> String {
     );
     for variant in &variants {
         let changed = changed(&variants[0], variant);
-        let elements = Element::ALL.into_iter().filter(|element| {
+        let elements = Element::WITH_FINE.into_iter().filter(|element| {
             let touched = |(name, _): &(&String, String)| task.parameters()[*name].affects.contains(element);
             changed.iter().any(touched)
         });

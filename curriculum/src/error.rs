@@ -17,7 +17,7 @@ pub enum CurriculumError {
     #[error("design: found no variants, expected at least 1")]
     NoVariants,
     /// A number of experiences that a regime cannot have.
-    #[error("design: found {found} {kind} experiences a regime, expected 1 to {limit}")]
+    #[error("design: found {found} {kind} experiences per regime, expected 1 to {limit}")]
     BadCount {
         /// Learning or evaluation.
         kind: &'static str,
@@ -67,7 +67,8 @@ pub enum CurriculumError {
     NoWay,
     /// A drift would lead from one task to another.
     #[error(
-        "design: found a drift from {from} to {to}, expected two variants of one task; leave the drift out, or one of them"
+        "design: found a drift from {from} to {to}, expected two variants of one task; leave the drift out, or one of \
+         them"
     )]
     DriftBetweenTasks {
         /// Where it begins.
@@ -85,8 +86,8 @@ pub enum CurriculumError {
     },
     /// Two experts would have one name.
     #[error(
-        "experts: found {a} and {b}, which would both be named {name}, expected a name for each; leave one of them out, or \
-         give it another name"
+        "experts: found {a} and {b}, which would both be named {name}, expected different names; leave one out, or \
+         rename it"
     )]
     SameName {
         /// The one.
@@ -106,7 +107,8 @@ pub enum CurriculumError {
     },
     /// A search for a sequence of steps was ended before it was over.
     #[error(
-        "steps from {anchor}: found at most {found} of {distance} ± {tolerance} in {limit} comparisons, expected {wanted}; ask \
+        "steps from {anchor}: found at most {found} of {distance} ± {tolerance} in {limit} comparisons, expected \
+         {wanted}; ask \
          for fewer or larger steps, or a larger tolerance"
     )]
     StepsGivenUp {
@@ -125,7 +127,8 @@ pub enum CurriculumError {
     },
     /// Not enough variants differ in an element alone.
     #[error(
-        "probing the {element}: found {found} variants that differ from {anchor} in it alone, expected {wanted}; ask for \
+        "probing the {element}: found {found} variants that differ from {anchor} in it alone, expected {wanted}; ask \
+         for \
          fewer, or give the task parameters that affect it alone"
     )]
     TooFew {
@@ -140,7 +143,8 @@ pub enum CurriculumError {
     },
     /// Numbers that make no sequence of steps.
     #[error(
-        "steps: found {count} steps of {distance} ± {tolerance}, expected 1 to {limit} steps, a distance above 0 and at \
+        "steps: found {count} steps of {distance} ± {tolerance}, expected 1 to {limit} steps, a distance above 0 and \
+         at \
          most 1, and a tolerance below it"
     )]
     BadSteps {
@@ -155,7 +159,8 @@ pub enum CurriculumError {
     },
     /// A sequence of steps ends too soon.
     #[error(
-        "steps from {anchor}: found at most {found} of {distance} ± {tolerance}, expected {wanted}; the farthest variant is \
+        "steps from {anchor}: found at most {found} of {distance} ± {tolerance}, expected {wanted}; the farthest \
+         variant is \
          {farthest:.4} away: ask for fewer or smaller steps, a larger tolerance, or another start"
     )]
     TooFewSteps {
@@ -180,7 +185,8 @@ pub enum CurriculumError {
     Generator(#[from] GeneratorError),
     /// Two variants would have the same name in the log.
     #[error(
-        "found {a} and {b}, which are both {name:?} in a log, expected names that differ in the letters a to z and digits, which are all that logs keep; rename one",
+        "found {a} and {b}, which are both {name:?} in a log, expected names that differ in the letters a to z and \
+         digits, since logs keep nothing else; rename one",
         a = one_line(a),
         b = one_line(b)
     )]
@@ -193,7 +199,8 @@ pub enum CurriculumError {
         name: String,
     },
     /// A task or variant of the scenario is not to be had.
-    #[error("block {block}, regime {regime}: {task}#{variant}: {reason}", task = one_line(task), variant = one_line(variant))]
+    #[error("block {block}, regime {regime}: {task}#{variant}: \
+         {reason}", task = one_line(task), variant = one_line(variant))]
     Unknown {
         /// The block, from 0.
         block: usize,
@@ -226,8 +233,8 @@ pub enum CurriculumError {
     },
     /// A log that is to be taken up was written by another run.
     #[error(
-        "{}: {place}: found {found}, expected {expected} as in this run; \
-         go on with what the log was begun with, or choose another folder",
+        "{}: {place}: found {found}, expected {expected} as in this run; continue with what the log was started with, \
+         or choose another folder",
         path.shown(),
         place = one_line(place),
         found = one_line(found),
@@ -262,7 +269,8 @@ pub enum CurriculumError {
     },
     /// A variant that was named for a probe differs in something else.
     #[error(
-        "probing the {element}: found {a} and {b}, which differ in {differs}, expected variants that differ in the {element} alone; \
+        "probing the {element}: found {a} and {b}, which differ in {differs}, expected variants that differ in the \
+         {element} alone; \
          name others, or the task to have them chosen"
     )]
     NotAlone {
@@ -276,7 +284,8 @@ pub enum CurriculumError {
         differs: String,
     },
     /// A world of the scenario cannot be drawn.
-    #[error("block {block}, regime {regime}, experience {experience}, {variant}{}: {source}", on_its_way(*progress), variant = one_line(variant))]
+    #[error("block {block}, regime {regime}, experience {experience}, {variant}{}: \
+         {source}", on_its_way(*progress), variant = one_line(variant))]
     World {
         /// The block, from 0.
         block: usize,
@@ -315,8 +324,8 @@ pub enum CurriculumError {
     /// Logs and distances speak of different variants.
     #[error(
         "transfer: found {found} variants that are both in the logs ({logs}) and in the distance matrix ({matrix}), \
-         expected at least 2; measure the distances of the variants that were lived: task#variant there is task_variant \
-         in a log, letters and digits alone",
+         expected at least 2; measure the distances of the variants that were run: task#variant in a matrix is \
+         task_variant in a log, letters and digits only",
         logs = one_line(logs),
         matrix = one_line(matrix)
     )]
@@ -330,7 +339,8 @@ pub enum CurriculumError {
     },
     /// Too few pairs of variants with a transfer.
     #[error(
-        "transfer: found {forward} forward and {backward} backward pairs of variants with a transfer, expected at least \
+        "transfer: found {forward} forward and {backward} backward pairs of variants with a transfer, expected at \
+         least \
          {needed} in one direction; log a lifetime of 3 or more variants of the matrix, all evaluated before and after \
          each is learned, or add lifetimes in other orders"
     )]
@@ -373,163 +383,4 @@ impl CurriculumError {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::collections::BTreeSet;
-    use strum::VariantNames;
-
-    #[test]
-    #[expect(clippy::too_many_lines, reason = "one case for each error")]
-    fn every_error_has_its_message() {
-        let errors = [
-            CurriculumError::NoVariants,
-            CurriculumError::BadCount {
-                kind: "learning",
-                found: 0,
-                limit: 10,
-            },
-            CurriculumError::BadSeed { found: 9, limit: 8 },
-            CurriculumError::BadBlocks { found: 9, limit: 8 },
-            CurriculumError::BadForm {
-                form: "alternating",
-                variants: 3,
-                blocks: Some(4),
-                expected: "2 variants".into(),
-            },
-            CurriculumError::NoSuchPlace { found: 4, last: 3 },
-            CurriculumError::NoWay,
-            CurriculumError::DriftBetweenTasks {
-                from: "t#v".into(),
-                to: "u#v".into(),
-            },
-            CurriculumError::SeveralTasks {
-                a: "t#v".into(),
-                b: "u#v".into(),
-            },
-            CurriculumError::SameName {
-                a: "t#v".into(),
-                b: "u#v".into(),
-                name: "c-v".into(),
-            },
-            CurriculumError::BadProbe { found: 1, limit: 9 },
-            CurriculumError::StepsGivenUp {
-                anchor: "t#v".into(),
-                distance: 0.002,
-                tolerance: 0.0001,
-                found: 2,
-                wanted: 3,
-                limit: 9,
-            },
-            CurriculumError::TooFew {
-                anchor: "t#v".into(),
-                element: "reward",
-                found: 1,
-                wanted: 4,
-            },
-            CurriculumError::BadSteps {
-                distance: 2.0,
-                tolerance: 0.1,
-                count: 3,
-                limit: 1000,
-            },
-            CurriculumError::TooFewSteps {
-                anchor: "t#v".into(),
-                distance: 0.25,
-                tolerance: 0.01,
-                found: 2,
-                wanted: 3,
-                farthest: 0.5,
-            },
-            CurriculumError::Similarity(SimilarityError::Empty),
-            CurriculumError::Generator(GeneratorError::DifferentTasks {
-                from: "t#v".into(),
-                to: "u#v".into(),
-            }),
-            CurriculumError::SameLogName {
-                a: "a#b_c".into(),
-                b: "a#bc".into(),
-                name: "a_bc".into(),
-            },
-            CurriculumError::Unknown {
-                block: 1,
-                regime: 0,
-                task: "t".into(),
-                variant: "v".into(),
-                reason: "no such task".into(),
-            },
-            CurriculumError::WorldFile {
-                block: 1,
-                regime: 0,
-                reason: "maps/yard.json: not there".into(),
-            },
-            CurriculumError::NoSuchExperience { found: 9, total: 9 },
-            CurriculumError::OtherRun {
-                path: "logs/run".into(),
-                place: "/agent".into(),
-                found: "\"random\"".into(),
-                expected: "\"onrails\"".into(),
-            },
-            CurriculumError::OtherRow {
-                path: "logs/run".into(),
-                row: 7,
-                found: "experience 9 in block 1-test, t_v {}".into(),
-                expected: "experience 7 in block 0-train, t_v {}".into(),
-            },
-            CurriculumError::NotAlone {
-                a: "t#blue".into(),
-                b: "t#dusk".into(),
-                element: "reward",
-                differs: "reward, observation".into(),
-            },
-            CurriculumError::World {
-                block: 1,
-                regime: 0,
-                experience: 37,
-                variant: "t#v..w".into(),
-                progress: 0.25,
-                source: GeneratorError::TooMany {
-                    variant: "t#v".into(),
-                    seed: 1,
-                    index: 2,
-                    found: 9,
-                    limit: 8,
-                },
-            },
-            CurriculumError::Episode {
-                block: 1,
-                regime: 0,
-                experience: 5,
-                source: EnvError::Ended,
-            },
-            CurriculumError::NoEvaluations { logs: 2 },
-            CurriculumError::NoCommonNames {
-                found: 0,
-                logs: "t_x, t_y".into(),
-                matrix: "t#a, t#b".into(),
-            },
-            CurriculumError::TooFewTransfers {
-                forward: 1,
-                backward: 0,
-                needed: 3,
-            },
-            CurriculumError::Relabelling {
-                source: SimilarityError::MantelCount {
-                    what: "relabellings",
-                    found: 0,
-                    limit: 9,
-                },
-            },
-            CurriculumError::Log(MetricsError::LogExists {
-                path: "logs/run".into(),
-            }),
-        ];
-        let said: Vec<String> = errors
-            .iter()
-            .map(|error| format!("{}: {error}", error.code()))
-            .collect();
-        insta::assert_snapshot!(said.join("\n"));
-        let covered: BTreeSet<&str> = errors.iter().map(CurriculumError::code).collect();
-        let all: BTreeSet<&str> = CurriculumError::VARIANTS.iter().copied().collect();
-        assert_eq!(covered, all, "every code has a case here");
-    }
-}
+mod tests;

@@ -4,18 +4,20 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use driftworld_env::{Agent, Environment, OnRailsAgent};
-use driftworld_spec::{MotionModel, Object, Stimulus, World};
+use driftworld_spec::{MotionModel, Object, Stimulus, World, WorldDraft};
 
 /// A world of the built-in task `moving_object#wandering`; its balls move as is said.
 fn moving_object(motion: MotionModel) -> World {
     let text = include_str!("scenes/moving_object.json");
-    let mut world = World::from_json("moving_object.json", text).expect("the scene is sound");
-    for ball in &mut world.objects {
-        if ball.motion_model != MotionModel::Stationary {
-            ball.motion_model = motion;
+    let world = World::from_json("moving_object.json", text).expect("the scene is sound");
+    let moved = world.edit(|world| {
+        for ball in &mut world.objects {
+            if ball.motion_model != MotionModel::Stationary {
+                ball.motion_model = motion;
+            }
         }
-    }
-    world
+    });
+    moved.expect("the scene is sound")
 }
 
 /// Two hundred solid cubes that pay, scattered over an arena of 100 × 100 m without chance.
@@ -29,10 +31,11 @@ fn crowd() -> World {
         cube.destroy_stimulus = vec![Stimulus::AgentCollide];
         cube
     };
-    World {
+    let world = WorldDraft {
         objects: (1..=200).map(cube).collect(),
-        ..World::default()
-    }
+        ..WorldDraft::default()
+    };
+    world.check().expect("the scene is sound")
 }
 
 fn steps(c: &mut Criterion) {
@@ -44,13 +47,13 @@ fn steps(c: &mut Criterion) {
         ("balls come", MotionModel::Predator),
     ] {
         let start = moving_object(motion);
-        let mut environment = Environment::new(start.clone()).expect("the scene is sound");
+        let mut environment = Environment::new(start.clone());
         let mut agent = OnRailsAgent::new();
         group.bench_function(name, |bench| {
             bench.iter(|| {
                 let action = agent.act(&environment);
                 if environment.step(action).expect("the action is sound").ended() {
-                    environment.reset(start.clone()).expect("the scene is sound");
+                    environment.reset(start.clone());
                     agent.begin(0);
                 }
             });
@@ -60,7 +63,7 @@ fn steps(c: &mut Criterion) {
 }
 
 fn choices(c: &mut Criterion) {
-    let environment = Environment::new(crowd()).expect("the scene is sound");
+    let environment = Environment::new(crowd());
     // An agent that knows nothing of the world yet: the dearest of its choices.
     c.bench_function("on rails, a choice among 200 targets", |bench| {
         bench.iter(|| black_box(OnRailsAgent::new().act(&environment)));

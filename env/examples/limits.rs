@@ -5,10 +5,12 @@ use std::error::Error;
 use std::time::{Duration, Instant};
 
 use driftworld_env::{Action, Environment, Target};
-use driftworld_spec::{ActionModel, Modality, MotionModel, Object, Pushable, Respawn, StateFeature, Stimulus, World};
+use driftworld_spec::{
+    ActionModel, Modality, MotionModel, Object, Pushable, Respawn, StateFeature, Stimulus, WorldDraft,
+};
 
 /// What is done in one step of a case.
-type Case = (&'static str, usize, fn(usize) -> World);
+type Case = (&'static str, usize, fn(usize) -> WorldDraft);
 
 const CASES: [Case; 14] = [
     ("pushable-heap", 100_000, pushable_heap),
@@ -41,11 +43,11 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Steps a world for some steps or some seconds, and prints what they took.
 #[expect(clippy::print_stdout, reason = "an example shows what it finds")]
-fn measure(name: &str, world: World) -> Result<(), Box<dyn Error>> {
+fn measure(name: &str, world: WorldDraft) -> Result<(), Box<dyn Error>> {
     const STEPS: usize = 20;
-    let count = world.objects.len();
+    let (count, world) = (world.objects.len(), world.check()?);
     let begun = Instant::now();
-    let mut environment = Environment::new(world)?;
+    let mut environment = Environment::new(world);
     let reset = begun.elapsed();
     let mut times = Vec::new();
     let begun = Instant::now();
@@ -100,11 +102,11 @@ fn peak_memory() -> String {
     line.map_or_else(|| "unknown".to_owned(), |line| line.trim().to_owned())
 }
 
-fn world(objects: Vec<Object>) -> World {
-    let mut world = World {
+fn world(objects: Vec<Object>) -> WorldDraft {
+    let mut world = WorldDraft {
         objects,
         seed: Some(1),
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.environment_params.map_size = [100.0, 100.0];
     world.agent_params.modalities = vec![Modality::Rgb, Modality::Segmentation];
@@ -131,27 +133,27 @@ fn mover(class: &str, at: [f64; 2], motion_model: MotionModel, speed: f64) -> Ob
     object
 }
 
-fn pushable_heap(count: usize) -> World {
+fn pushable_heap(count: usize) -> WorldDraft {
     world((0..count).map(|_| pushable([0.0, 0.9], 0.5)).collect())
 }
 
-fn pushable_field(count: usize) -> World {
+fn pushable_field(count: usize) -> WorldDraft {
     world(field(count, 1.1).map(|at| pushable(at, 0.5)).collect())
 }
 
 /// Everything slides, and nothing comes to rest.
-fn pushable_ice(count: usize) -> World {
+fn pushable_ice(count: usize) -> WorldDraft {
     let mut world = world(field(count, 0.02).map(|at| pushable(at, 0.0)).collect());
     world.agent_params.max_linear_speed = 100.0;
     world
 }
 
-fn predators(count: usize) -> World {
+fn predators(count: usize) -> WorldDraft {
     let at = |at| mover("barrel", at, MotionModel::Predator, 5.0);
     world(field(count, 0.15).map(at).collect())
 }
 
-fn ghost_predators(count: usize) -> World {
+fn ghost_predators(count: usize) -> WorldDraft {
     let mut world = predators(count);
     for object in &mut world.objects {
         (object.solid, object.reward) = (false, 1.0);
@@ -160,12 +162,12 @@ fn ghost_predators(count: usize) -> World {
     world
 }
 
-fn mover_heap(count: usize) -> World {
+fn mover_heap(count: usize) -> WorldDraft {
     let at = |_| mover("cube", [10.0, 10.0], MotionModel::RandomWaypoint, 5.0);
     world((0..count).map(at).collect())
 }
 
-fn mover_field(count: usize) -> World {
+fn mover_field(count: usize) -> WorldDraft {
     let at = |at| {
         let mut object = mover("cube", at, MotionModel::RandomWaypoint, 5.0);
         object.scale = 0.1;
@@ -174,7 +176,7 @@ fn mover_field(count: usize) -> World {
     world(field(count, 0.3).map(at).collect())
 }
 
-fn solid_heap(count: usize) -> World {
+fn solid_heap(count: usize) -> WorldDraft {
     world(
         (0..count)
             .map(|k| Object::new("cube", [0.0, 0.9 + 1e-5 * k as f64]))
@@ -183,7 +185,7 @@ fn solid_heap(count: usize) -> World {
 }
 
 /// Thin posts that the agent meets one after another.
-fn posts(count: usize) -> World {
+fn posts(count: usize) -> WorldDraft {
     let at = |at: [f64; 2]| {
         let mut object = Object::new("barrel", at);
         object.scale = 0.01;
@@ -195,7 +197,7 @@ fn posts(count: usize) -> World {
     world
 }
 
-fn ranges(count: usize) -> World {
+fn ranges(count: usize) -> WorldDraft {
     let at = |at| {
         let mut object = Object::new("coin", at);
         (object.solid, object.reward, object.range_stimulus_distance) = (false, 1.0, 1000.0);
@@ -207,7 +209,7 @@ fn ranges(count: usize) -> World {
 }
 
 /// Everything has been eaten, and comes back where something else stands.
-fn returning(count: usize) -> World {
+fn returning(count: usize) -> WorldDraft {
     let mut world = ranges(count);
     for object in &mut world.objects {
         object.coordinates = [5.0, 5.0];
@@ -221,7 +223,7 @@ fn returning(count: usize) -> World {
 }
 
 /// All places of a sequence at once, and a state that asks for the nearest.
-fn sequence(count: usize) -> World {
+fn sequence(count: usize) -> WorldDraft {
     let mut world = ranges(count);
     for (index, object) in world.objects.iter_mut().enumerate() {
         object.order = Some(index as u32 + 1);
@@ -231,7 +233,7 @@ fn sequence(count: usize) -> World {
     world
 }
 
-fn rails(count: usize) -> World {
+fn rails(count: usize) -> WorldDraft {
     let mut world = world(
         field(count, 0.3)
             .map(|at| {
@@ -247,7 +249,7 @@ fn rails(count: usize) -> World {
 }
 
 /// Targets that each take all of the ground.
-fn rails_large(count: usize) -> World {
+fn rails_large(count: usize) -> WorldDraft {
     let mut world = rails(count);
     for object in &mut world.objects {
         object.scale = 100.0;

@@ -192,6 +192,30 @@ pub enum EnvError {
         /// The most photographs there can be.
         most: usize,
     },
+    /// A setting of an abstraction that cannot be.
+    #[error("abstraction: found {what} {found}, expected a number above 0, at most {most}")]
+    BadAbstraction {
+        /// Which setting.
+        what: &'static str,
+        /// Its value.
+        found: f64,
+        /// The most that it may be.
+        most: f64,
+    },
+    /// An abstraction of more states than there may be.
+    #[error("abstraction: found {found} states, expected at most {most}; use larger cells, or a smaller area")]
+    TooManyStates {
+        /// How many there would be.
+        found: usize,
+        /// The most there can be.
+        most: usize,
+    },
+    /// A world that would be made of others is not sound.
+    #[error("world: {problem}")]
+    BadWorld {
+        /// What is wrong with it.
+        problem: SpecError,
+    },
     /// A picture of a size that cannot be.
     #[error("picture: found {width} × {height} pixels, expected 1 to 4096 each way")]
     PictureSize {
@@ -319,6 +343,23 @@ mod tests {
                 objects: 86,
                 views: 1000,
                 most: 50_000,
+            },
+            EnvError::BadAbstraction {
+                what: "cell",
+                found: 0.0,
+                most: 1e6,
+            },
+            EnvError::TooManyStates {
+                found: 2_000_001,
+                most: 1_048_576,
+            },
+            EnvError::BadWorld {
+                problem: driftworld_spec::WorldDraft {
+                    max_seconds: -1.0,
+                    ..driftworld_spec::WorldDraft::default()
+                }
+                .check()
+                .expect_err("time does not run back"),
             },
             EnvError::PictureSize { width: 0, height: 5000 },
             EnvError::BadScript {

@@ -4,12 +4,15 @@
 //! picture of it. Units are SI, x is east, y north, z up, headings are degrees clockwise from +y. Nothing here reads
 //! files, samples worlds or learns.
 
+mod abstraction;
 mod agents;
 mod assets;
 mod batch;
+mod behavior;
 mod camera;
 mod channel;
 mod error;
+mod experiment;
 mod photograph;
 mod polygon;
 mod render;
@@ -17,6 +20,9 @@ mod scene;
 mod sim;
 mod vector;
 
+pub use abstraction::{
+    Abstraction, MAX_ABSTRACT_STATES, MAX_MACRO_SECONDS, NUM_HEADINGS, NUM_MACRO_ACTIONS, StateGrid, WorldAbstraction,
+};
 pub use agents::{Agent, Label, OnRailsAgent, RandomAgent, ScriptedAgent};
 pub use assets::{
     Asset, Catalogue, ColliderShape, FIRST_LIBRARY_CLASS, Library, LibraryModel, MAX_LIBRARY_MODELS, MAX_MODEL_LEVELS,
@@ -32,9 +38,11 @@ pub use batch::{
     Autoreset, Batch, BatchOptions, DepthForm, Episode, GoOn, ImageLayout, Images, MAX_BATCH_BYTES, MAX_ENVS, Outputs,
     WorldSource,
 };
+pub use behavior::{ExpertRun, Expertise, MAX_EXPERT_STEPS};
 pub use camera::Camera;
 pub use channel::{Category, Channel, Channels, Level, MAX_MESSAGE_BYTES, Outgoing, Received, Screenshot};
 pub use error::EnvError;
+pub use experiment::{Experiment, Findings, MAX_EXPERIMENT_STEPS, Policy, Proof, Witness};
 pub use photograph::{MAX_PHOTOGRAPHS, Photograph, Studio};
 pub use render::{
     AdapterReport, CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE,

@@ -1,7 +1,7 @@
 //! Photographs of a world's objects, one at a time, from around and above: what `collect_images` asks for. Files, and
 //! how pictures are written into them, are the caller's.
 
-use driftworld_spec::{EnvironmentParams, World};
+use driftworld_spec::{EnvironmentParams, World, WorldDraft};
 
 use crate::EnvError;
 use crate::assets::Catalogue;
@@ -39,16 +39,17 @@ pub struct Photograph {
 /// # Example
 /// ```
 /// use driftworld_env::Studio;
-/// use driftworld_spec::{ImageParams, Object, World};
-/// let world = World {
+/// use driftworld_spec::{ImageParams, Object, WorldDraft};
+/// let world = WorldDraft {
 ///     image_params: Some(ImageParams { zoom: 1.5, yaw_subdivisions: 4, vertical_subdivisions: 3 }),
 ///     objects: vec![Object::new("barrel", [3.0, 4.0])],
-///     ..World::default()
+///     ..WorldDraft::default()
 /// };
+/// let world = world.check()?;
 /// let photographs = Studio::new(&world)?.photographs();
 /// assert_eq!(photographs.len(), 12);
 /// assert_eq!((photographs[5].yaw_deg, photographs[5].elevation_deg), (90.0, 45.0));
-/// # Ok::<(), driftworld_env::EnvError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Studio {
@@ -86,11 +87,12 @@ impl Studio {
                 most: MAX_PHOTOGRAPHS,
             });
         }
-        let backdrop = World {
+        let backdrop = WorldDraft {
             environment_params: backdrop(&world.environment_params),
             objects: world.objects.clone(),
-            ..World::default()
+            ..WorldDraft::default()
         };
+        let backdrop = backdrop.check_in_range().expect("it has the objects of a world");
         let mut scene = Scene::from_world_with(&backdrop, catalogue);
         for item in &mut scene.items {
             (item.position, item.heading_deg, item.visible) = ([0.0; 2], 0.0, false);
@@ -214,15 +216,16 @@ mod tests {
     use driftworld_spec::{ImageParams, Object};
 
     fn world(zoom: f64, yaws: u32, elevations: u32, objects: Vec<Object>) -> World {
-        World {
+        let world = WorldDraft {
             image_params: Some(ImageParams {
                 zoom,
                 yaw_subdivisions: yaws,
                 vertical_subdivisions: elevations,
             }),
             objects,
-            ..World::default()
-        }
+            ..WorldDraft::default()
+        };
+        world.check().expect("the world is sound")
     }
 
     fn take(studio: &mut Studio, photograph: &Photograph) -> Frame {
@@ -255,9 +258,11 @@ mod tests {
             })
             .collect();
         for (width, field_of_view) in [(None, 60.0), (Some(40), 100.0), (Some(160), 20.0)] {
-            let mut world = world(1.05, 3, 3, Vec::clone(&objects));
-            world.agent_params.observation_width = width;
-            world.agent_params.field_of_view = field_of_view;
+            let world = world(1.05, 3, 3, Vec::clone(&objects)).edit(|world| {
+                world.agent_params.observation_width = width;
+                world.agent_params.field_of_view = field_of_view;
+            });
+            let world = world.expect("the world is sound");
             let mut studio = Studio::new(&world).expect("there are few photographs");
             for photograph in studio.photographs() {
                 let (pixels, whole) = subject(&take(&mut studio, &photograph));
@@ -298,11 +303,12 @@ mod tests {
         let mut other = car.clone();
         (other.coordinates, other.heading) = ([40.0, -3.0], 77.0);
         let mut alone = Studio::new(&world(2.0, 5, 2, vec![car])).expect("few photographs");
-        let mut crowd = world(2.0, 5, 2, vec![Object::new("building", [40.0, -3.0]), other]);
-        crowd.environment_params.predefined_map = 2;
-        crowd.environment_params.light_intensity = 0.1;
-        crowd.environment_params.fog_distance = Some(1.0);
-        let mut crowd = Studio::new(&crowd).expect("few photographs");
+        let crowd = world(2.0, 5, 2, vec![Object::new("building", [40.0, -3.0]), other]).edit(|world| {
+            world.environment_params.predefined_map = 2;
+            world.environment_params.light_intensity = 0.1;
+            world.environment_params.fog_distance = Some(1.0);
+        });
+        let mut crowd = Studio::new(&crowd.expect("the world is sound")).expect("few photographs");
         let (all, of_two) = (alone.photographs(), crowd.photographs());
         for (photograph, same) in all.iter().zip(&of_two[10..]) {
             let (one, two) = (take(&mut alone, photograph), take(&mut crowd, same));
@@ -336,13 +342,11 @@ mod tests {
 
     #[test]
     fn a_world_for_photographs_says_so_when_it_runs() {
-        let world = World {
+        let world = WorldDraft {
             game_mode: driftworld_spec::GameMode::CollectImages,
-            ..World::default()
+            ..WorldDraft::default()
         };
-        let warnings = crate::Environment::new(world)
-            .expect("every checked world starts")
-            .warnings();
+        let warnings = crate::Environment::new(world.check().expect("the world is sound")).warnings();
         assert_eq!(warnings, [crate::Warning::ForPhotographs]);
         assert!(warnings[0].to_string().contains("driftworld photograph"));
     }

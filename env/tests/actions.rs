@@ -1,10 +1,11 @@
 //! Actions in all their forms, and what the rules make of a step: frame skip, penalties out of order, shaping.
 
 use driftworld_env::{Action, EnvError, Environment, Obstacle, Warning};
-use driftworld_spec::{ActionModel, ActionSpace, EndCondition, Object, Shaping, StateFeature, Stimulus, World};
+use driftworld_spec::{ActionModel, ActionSpace, EndCondition, Object, Shaping, StateFeature, Stimulus, WorldDraft};
 
-fn start(world: World) -> Environment {
-    Environment::new(world).expect("every checked world starts")
+fn start(world: WorldDraft) -> Environment {
+    let world = world.check().expect("the world is sound");
+    Environment::new(world)
 }
 
 fn coin(at: [f64; 2], reward: f64) -> Object {
@@ -29,8 +30,8 @@ fn drive(environment: &mut Environment, speed: f64, steps: usize) -> f64 {
     (0..steps).map(|_| step().expect("the episode goes on").reward).sum()
 }
 
-fn with_actions(actions: ActionSpace) -> World {
-    let mut world = World::default();
+fn with_actions(actions: ActionSpace) -> WorldDraft {
+    let mut world = WorldDraft::default();
     world.agent_params.actions = actions;
     world
 }
@@ -92,9 +93,9 @@ fn the_default_table_has_six_moves_and_interact() {
 #[test]
 fn without_interact_the_third_number_does_nothing() {
     let paid = |interact: bool| {
-        let mut world = World {
+        let mut world = WorldDraft {
             objects: vec![button()],
-            ..World::default()
+            ..WorldDraft::default()
         };
         world.agent_params.interact = interact;
         start(world)
@@ -108,10 +109,10 @@ fn without_interact_the_third_number_does_nothing() {
 #[test]
 fn a_held_action_lasts_several_time_steps_and_is_one_step() {
     let run = |frame_skip: u32, steps: usize| {
-        let mut world = World {
+        let mut world = WorldDraft {
             max_steps: 20,
             objects: vec![coin([0.0, 3.4], 2.0)],
-            ..World::default()
+            ..WorldDraft::default()
         };
         world.agent_params.frame_skip = frame_skip;
         world.rules.step_reward = -0.5;
@@ -139,9 +140,9 @@ fn a_held_action_lasts_several_time_steps_and_is_one_step() {
 
 #[test]
 fn who_interacts_while_an_action_is_held_interacts_once() {
-    let mut world = World {
+    let mut world = WorldDraft {
         objects: vec![button()],
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.agent_params.frame_skip = 5;
     let step = start(world)
@@ -156,9 +157,9 @@ fn what_is_touched_before_its_turn_costs_the_penalty() {
     second.order = Some(2);
     let mut first = coin([0.0, -2.0], 5.0);
     first.order = Some(1);
-    let mut world = World {
+    let mut world = WorldDraft {
         objects: vec![first, second],
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.rules.order_penalty = -3.0;
     let mut environment = start(world);
@@ -170,9 +171,9 @@ fn what_is_touched_before_its_turn_costs_the_penalty() {
 #[test]
 fn shaping_pays_the_same_in_all_whatever_way_an_episode_ends_by_itself() {
     let total = |turn: f64, conditions: Vec<EndCondition>| {
-        let mut world = World {
+        let mut world = WorldDraft {
             objects: vec![coin([0.0, 4.0], 1.0)],
-            ..World::default()
+            ..WorldDraft::default()
         };
         world.objects[0].tag = Some("goal".to_owned());
         world.rules.shaping = Some(Shaping {
@@ -213,10 +214,10 @@ fn shaping_pays_the_same_in_all_whatever_way_an_episode_ends_by_itself() {
 
 #[test]
 fn the_state_vector_holds_what_was_asked_for() {
-    let mut world = World {
+    let mut world = WorldDraft {
         max_steps: 10,
         objects: vec![coin([3.0, 0.0], 2.0), coin([-20.0, 0.0], 2.0)],
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.objects[1].tag = Some("home".to_owned());
     world.rules.success = vec![EndCondition::Touch("home".to_owned())];
@@ -266,7 +267,7 @@ fn the_state_vector_holds_what_was_asked_for() {
 
 #[test]
 fn who_starts_in_a_wall_is_told() {
-    let mut world = World::default();
+    let mut world = WorldDraft::default();
     world.agent_params.coordinates = [49.9, 0.0];
     let warnings = start(world).warnings();
     assert_eq!(
@@ -283,7 +284,7 @@ fn who_starts_in_a_wall_is_told() {
 
 #[test]
 fn a_place_beyond_all_measure_is_walked_towards() {
-    let mut world = World::default();
+    let mut world = WorldDraft::default();
     world.agent_params.action_model = ActionModel::ByWaypoint;
     let mut environment = start(world);
     for far in [1e20, 1e39, f64::MAX] {
@@ -301,9 +302,9 @@ fn a_key_that_is_destroyed_opens_the_door_and_a_door_before_its_turn_stays() {
     (key.order, key.destroy_stimulus) = (Some(1), vec![Stimulus::AgentCollide]);
     let mut door = coin([0.0, -2.0], 5.0);
     (door.order, door.destroy_stimulus) = (Some(2), vec![Stimulus::AgentCollide]);
-    let mut environment = start(World {
+    let mut environment = start(WorldDraft {
         objects: vec![key, door],
-        ..World::default()
+        ..WorldDraft::default()
     });
     assert_eq!(
         drive(&mut environment, -10.0, 3),
@@ -318,9 +319,9 @@ fn a_key_that_is_destroyed_opens_the_door_and_a_door_before_its_turn_stays() {
 fn an_arm_that_did_not_pay_may_pay_later() {
     let mut arm = coin([0.0, 2.0], 1.0);
     arm.reward_probability = 0.3;
-    let mut environment = start(World {
+    let mut environment = start(WorldDraft {
         objects: vec![arm],
-        ..World::default()
+        ..WorldDraft::default()
     });
     let mut paid = 0.0;
     for step in 0..120 {

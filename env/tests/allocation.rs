@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use driftworld_env::{Action, Autoreset, Batch, BatchOptions, Environment};
-use driftworld_spec::{Modality, MotionModel, Object, Pushable, Stimulus, World};
+use driftworld_spec::{Modality, MotionModel, Object, Pushable, Stimulus, World, WorldDraft};
 
 /// The system's allocator, counting how often it is asked for memory.
 struct Counting;
@@ -55,7 +55,8 @@ static ALLOCATOR: Counting = Counting;
 /// The bench's scene, with something that moves, something that pays by the way, and a hunt without end.
 fn world() -> World {
     let text = include_str!("../benches/scenes/arena_20.json");
-    let mut world = World::from_json("arena_20.json", text).expect("the bench's scene is sound");
+    let scene = World::from_json("arena_20.json", text).expect("the bench's scene is sound");
+    let mut world = scene.into_draft();
     world.agent_params.modalities = vec![
         Modality::Rgb,
         Modality::Depth,
@@ -75,7 +76,7 @@ fn world() -> World {
             (object.motion_model, object.speed) = (MotionModel::RandomWaypoint, 3.0);
         }
     }
-    world
+    world.check().expect("the world is sound")
 }
 
 /// The bench's scene, with something that could be pushed, at rest and out of reach.
@@ -87,7 +88,7 @@ fn world_with_a_far_body() -> World {
         mass: 10.0,
         friction: 0.5,
     });
-    world.objects.push(far);
+    world.push(far).expect("the body is sound");
     world
 }
 
@@ -141,11 +142,11 @@ fn heaps_take_memory_in_proportion() {
             });
             body
         };
-        let world = World {
+        let world = WorldDraft {
             objects: (0..count).map(body).collect(),
-            ..World::default()
+            ..WorldDraft::default()
         };
-        let mut environment = Environment::new(world).expect("every checked world starts");
+        let mut environment = Environment::new(world.check().expect("the world is sound"));
         let before = LIVE.load(Ordering::Relaxed);
         PEAK.store(before, Ordering::Relaxed);
         for _ in 0..3 {

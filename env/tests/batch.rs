@@ -6,12 +6,12 @@ use std::sync::Arc;
 use driftworld_env::{
     Action, Autoreset, Batch, BatchOptions, CpuRenderer, EnvError, Environment, Episode, Frame, WorldSource,
 };
-use driftworld_spec::{Modality, MotionModel, Object, Stimulus, World};
+use driftworld_spec::{Modality, MotionModel, Object, Stimulus, World, WorldDraft};
 
 const NUM_ENVS: usize = 5;
 
 /// A small world that depends on the episode: things to bump into, one that hunts, an end by limit or by touch.
-fn world(episode: Episode) -> World {
+fn draft(episode: Episode) -> WorldDraft {
     let shift = (episode.env * 3 + episode.index as usize * 7) as f64;
     let mut target = Object::new("cube", [0.0, 2.0 + shift % 5.0]);
     target.reward = 1.0 + shift;
@@ -20,10 +20,10 @@ fn world(episode: Episode) -> World {
     let mut hunter = Object::new("barrel", [6.0, shift % 4.0 - 2.0]);
     hunter.motion_model = MotionModel::Predator;
     hunter.speed = 2.0;
-    let mut world = World {
+    let mut world = WorldDraft {
         max_steps: 9 + episode.env as u32,
         objects: vec![target, hunter, Object::new("tree", [-4.0, 9.0])],
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.environment_params.map_size = [30.0, 30.0];
     world.agent_params.observation_size = 24;
@@ -35,6 +35,10 @@ fn world(episode: Episode) -> World {
     ];
     world.rules.success = vec![driftworld_spec::EndCondition::AllCollected];
     world
+}
+
+fn world(episode: Episode) -> World {
+    draft(episode).check().expect("the world is sound")
 }
 
 fn source() -> WorldSource {
@@ -97,7 +101,7 @@ fn a_batch_is_so_many_environments() {
         for num_threads in [1, 2, 3] {
             let mut batch = batch(autoreset, num_threads);
             let mut alone: Vec<Environment> = (0..NUM_ENVS)
-                .map(|env| Environment::new(world(Episode { env, index: 0 })).expect("the world is sound"))
+                .map(|env| Environment::new(world(Episode { env, index: 0 })))
                 .collect();
             let mut episodes = [0; NUM_ENVS];
             for step in 0..60 {
@@ -110,7 +114,6 @@ fn a_batch_is_so_many_environments() {
                             env,
                             index: episodes[env],
                         }))
-                        .expect("the world is sound")
                     };
                     let outputs = batch.outputs();
                     if alone[env].ended() {
@@ -193,9 +196,8 @@ fn one_bad_action_changes_no_environment() {
 fn each_environment_may_have_a_task_of_its_own() {
     let mut batch = batch(Autoreset::NextStep, 1);
     let other: WorldSource = Arc::new(|episode| {
-        let mut world = world(episode);
-        world.rules.step_reward = -5.0;
-        Ok(world)
+        let changed = world(episode).edit(|world| world.rules.step_reward = -5.0);
+        changed.map_err(|error| error.to_string())
     });
     batch
         .set_source(2, Arc::clone(&other), Some(100))
@@ -218,10 +220,9 @@ fn each_environment_may_have_a_task_of_its_own() {
 fn a_world_that_cannot_be_had_stops_its_environment_alone() {
     let source: WorldSource = Arc::new(|episode| match episode {
         Episode { env: 1, index: 1 } => Err("the well is dry".to_owned()),
-        _ => Ok(World {
-            max_steps: 1,
-            ..world(episode)
-        }),
+        _ => Ok(world(episode)
+            .edit(|world| world.max_steps = 1)
+            .expect("one step is sound")),
     });
     let options = BatchOptions {
         autoreset: Autoreset::NextStep,
@@ -244,9 +245,9 @@ fn a_world_that_cannot_be_had_stops_its_environment_alone() {
 #[test]
 fn worlds_of_a_batch_make_the_same_images() {
     let source: WorldSource = Arc::new(|episode| {
-        let mut world = world(episode);
+        let mut world = draft(episode);
         world.agent_params.observation_size = 24 + episode.env as u32;
-        Ok(world)
+        Ok(world.check().expect("the world is sound"))
     });
     let Err(error) = Batch::new(2, source, BatchOptions::default()) else {
         panic!("the images differ");
@@ -265,9 +266,9 @@ fn options(autoreset: Autoreset) -> BatchOptions {
 #[test]
 fn outputs_that_take_too_much_are_refused_before_they_are_taken() {
     let large = |episode: Episode| {
-        let mut world = world(episode);
+        let mut world = draft(episode);
         world.agent_params.observation_size = 4096;
-        world
+        world.check().expect("the world is sound")
     };
     // Colour, metres, categories and objects: 12 bytes a pixel, 201 MB an environment; 85 of them are 17.1 GB, 16 GiB
     // are 17.18 GB.

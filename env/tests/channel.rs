@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use driftworld_env::Channel::{Debug, Reset, State};
 use driftworld_env::{Action, Category, Channel, Channels, Environment, MAX_MESSAGE_BYTES, Outgoing};
-use driftworld_spec::{Object, World};
+use driftworld_spec::{Object, WorldDraft};
 use serde_json::{Value, json};
 
 const NOW: &str = "2026-01-01T00:00:00";
@@ -12,12 +12,13 @@ const NOW: &str = "2026-01-01T00:00:00";
 fn start() -> (Environment, Channels) {
     let mut tree = Object::new("tree", [3.0, 4.0]);
     tree.unique_name = Some("oak".to_owned());
-    let world = World {
+    let world = WorldDraft {
         objects: vec![tree],
-        ..World::default()
+        ..WorldDraft::default()
     };
+    let world = world.check().expect("the world is sound");
     let channels = Channels::new(&world);
-    (Environment::new(world).expect("every checked world starts"), channels)
+    (Environment::new(world), channels)
 }
 
 fn ask(environment: &mut Environment, channels: &mut Channels, message: &Value) -> Vec<Outgoing> {
@@ -321,7 +322,7 @@ fn tokens_look_like_uuids_never_repeat_and_are_the_same_each_time() {
 #[test]
 fn remarks_come_when_their_category_is_on() {
     let (mut environment, mut channels) = start();
-    for category in Category::ALL {
+    for &category in Category::ALL {
         channels.set_active(category, true);
     }
     let reset = json!({ "action": "reset_environment", "payload": { "max_steps": "1", "objects": [

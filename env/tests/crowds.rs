@@ -2,7 +2,7 @@
 //! is pointed out.
 
 use driftworld_env::{Action, Environment, Warning};
-use driftworld_spec::{MotionModel, Object, Pushable, Respawn, Stimulus, World};
+use driftworld_spec::{MotionModel, Object, Pushable, Respawn, Stimulus, World, WorldDraft};
 use proptest::prelude::*;
 
 /// A way to make the body of a crowd.
@@ -52,22 +52,23 @@ fn returning(at: [f64; 2]) -> Object {
 }
 
 /// Bodies within so many metres of a place in front of the agent.
-fn crowd(makes: &[Make], count: usize, spread: f64) -> World {
+fn crowd(makes: &[Make], count: usize, spread: f64) -> WorldDraft {
     let at = |k: usize| {
         let share = |step: f64| spread * ((k as f64 * step).fract() - 0.5);
         [share(0.618_034), 1.2 + share(0.754_878)]
     };
-    let mut world = World {
+    let mut world = WorldDraft {
         objects: (0..count).map(|k| makes[k % makes.len()](at(k))).collect(),
         seed: Some(7),
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.environment_params.map_size = [60.0, 60.0];
     world
 }
 
-fn start(world: World) -> Environment {
-    Environment::new(world).expect("every checked world starts")
+fn start(world: WorldDraft) -> Environment {
+    let world = world.check().expect("the world is sound");
+    Environment::new(world)
 }
 
 fn go(environment: &mut Environment, steps: u32) -> f64 {
@@ -151,10 +152,10 @@ proptest! {
         let moment = here.snapshot();
         let paid = go(&mut here, 3);
         let there = World::from_json("state", &written).expect("a state is a sound world");
-        let mut there = start(there);
+        let mut there = start(there.into_draft());
         prop_assert_eq!(go(&mut there, 3), paid);
         prop_assert!(places(&there) == places(&here), "after a state");
-        here.restore(&moment).expect("every moment can be gone back to");
+        here.restore(&moment);
         prop_assert_eq!(go(&mut here, 3), paid);
         prop_assert!(places(&there) == places(&here), "after a snapshot");
     }

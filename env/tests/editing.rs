@@ -1,17 +1,17 @@
 //! Changing a world from outside while it runs: spawning, destroying, teleporting, and going back to a moment.
 
 use driftworld_env::{Action, EnvError, Environment, Obstacle};
-use driftworld_spec::{Object, Respawn, Stimulus, World};
+use driftworld_spec::{Object, Respawn, Stimulus, WorldDraft};
 
 const AHEAD: Action = Action::Continuous([10.0, 0.0, 0.0]);
 const STAY: Action = Action::Continuous([0.0; 3]);
 
 fn start(objects: Vec<Object>) -> Environment {
-    let world = World {
+    let world = WorldDraft {
         objects,
-        ..World::default()
+        ..WorldDraft::default()
     };
-    Environment::new(world).expect("every checked world starts")
+    Environment::new(world.check().expect("the world is sound"))
 }
 
 fn coin(metres: f64) -> Object {
@@ -119,7 +119,7 @@ trait Again {
 
 impl Again for Environment {
     fn clone_of_start(&self) -> Environment {
-        Environment::new(self.world().clone()).expect("every checked world starts")
+        Environment::new(self.world().clone())
     }
 }
 
@@ -130,12 +130,12 @@ fn a_moment_comes_back_with_what_was_spawned_and_destroyed_since() {
     environment.spawn(coin(1.0)).expect("the coin is sound");
     environment.destroy(1).expect("it is there");
     reward(&mut environment, AHEAD);
-    environment.restore(&moment).expect("every moment comes back");
+    environment.restore(&moment);
     assert_eq!(environment.objects().len(), 2);
     assert!(environment.objects()[1].present && environment.observe().instance.contains(&2));
     assert_eq!(reward(&mut environment, AHEAD), 3.0);
     let mut other = start(Vec::new());
-    other.restore(&moment).expect("also in another environment");
+    other.restore(&moment);
     assert_eq!(reward(&mut other, AHEAD), 3.0);
 }
 

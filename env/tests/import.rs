@@ -8,7 +8,7 @@ use driftworld_env::{
     Action, Asset, Batch, BatchOptions, Catalogue, ColliderKind, ColliderShape, Environment, ImportOptions, ImportSize,
     ImportWarning, Imported, Library, LibraryModel, Paint,
 };
-use driftworld_spec::{Model, Object, World};
+use driftworld_spec::{Model, Object, WorldDraft};
 use serde_json::{Value, json};
 
 fn options(class: &str) -> ImportOptions {
@@ -347,14 +347,15 @@ fn libraries_stand_in_front_of_what_is_built_in() {
 #[test]
 fn batches_and_spawned_objects_use_the_library() {
     let (_, catalogue) = catalogue("screen");
-    let world = World {
+    let world = WorldDraft {
         objects: vec![Object::new("screen", [0.0, 5.0])],
-        ..World::default()
+        ..WorldDraft::default()
     };
-    let mut alone = Environment::with_catalogue(world.clone(), catalogue.clone()).expect("the world starts");
+    let world = world.check().expect("the world is sound");
+    let mut alone = Environment::with_catalogue(world.clone(), catalogue.clone());
     let index = alone.spawn(Object::new("screen", [3.0, 3.0])).expect("there is room");
     assert!(alone.scene().items[index].asset.known);
-    alone.reset(world.clone()).expect("the world starts anew");
+    alone.reset(world.clone());
     let source = Arc::new(move |_| Ok(world.clone()));
     let options = BatchOptions {
         num_threads: 1,

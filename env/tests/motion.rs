@@ -1,7 +1,7 @@
 //! Objects that move by themselves and objects that come back. What touching them does is tested in `simulation.rs`.
 
 use driftworld_env::{Action, Environment};
-use driftworld_spec::{MotionModel, Object, Respawn, Stimulus, Wall, World};
+use driftworld_spec::{MotionModel, Object, Respawn, Stimulus, Wall, WorldDraft};
 
 const STAND: Action = Action::Continuous([0.0, 0.0, 0.0]);
 
@@ -13,12 +13,17 @@ fn mover(model: MotionModel, at: [f64; 2], speed: f64) -> Object {
 }
 
 fn start(objects: Vec<Object>) -> Environment {
-    let mut world = World {
+    let mut world = WorldDraft {
         objects,
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.environment_params.map_size = [40.0, 40.0];
-    Environment::new(world).unwrap_or_else(|error| panic!("{error}"))
+    begin(&world)
+}
+
+fn begin(world: &WorldDraft) -> Environment {
+    let world = world.clone().check().expect("the world is sound");
+    Environment::new(world)
 }
 
 fn position(environment: &Environment, index: usize) -> [f32; 2] {
@@ -116,9 +121,9 @@ fn a_turn_rate_makes_a_wide_bend() {
 
 #[test]
 fn wanderers_cover_the_arena_stay_in_it_and_out_of_walls() {
-    let mut world = World {
+    let mut world = WorldDraft {
         objects: vec![mover(MotionModel::RandomWaypoint, [10.0, 10.0], 8.0)],
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.environment_params.map_size = [40.0, 40.0];
     let block = vec![[-3.0, -15.0], [3.0, -15.0], [3.0, -5.0], [-3.0, -5.0]];
@@ -127,8 +132,8 @@ fn wanderers_cover_the_arena_stay_in_it_and_out_of_walls() {
         height: None,
         color: None,
     });
-    let walk = |world: &World| -> Vec<[f32; 2]> {
-        let mut environment = Environment::new(world.clone()).unwrap_or_else(|error| panic!("{error}"));
+    let walk = |world: &WorldDraft| -> Vec<[f32; 2]> {
+        let mut environment = begin(world);
         (0..3000)
             .map(|_| {
                 step(&mut environment);
@@ -156,8 +161,8 @@ fn wanderers_cover_the_arena_stay_in_it_and_out_of_walls() {
     world.seed = Some(1);
     let seeded = walk(&world);
     world.objects.insert(0, Object::new("tree", [-17.0, 17.0]));
-    let after_the_tree = |world: &World| -> Vec<[f32; 2]> {
-        let mut environment = Environment::new(world.clone()).unwrap_or_else(|error| panic!("{error}"));
+    let after_the_tree = |world: &WorldDraft| -> Vec<[f32; 2]> {
+        let mut environment = begin(world);
         (0..100)
             .map(|_| (step(&mut environment), position(&environment, 1)).1)
             .collect()
@@ -212,9 +217,9 @@ fn nothing_that_moves_leaves_the_arena_or_passes_a_wall() {
     {
         let mut moving = mover(model, [-9.0 + number as f64 * 0.7, 6.0], 4.0 + 2.0 * number as f64);
         moving.class = if number % 2 == 0 { "barrel" } else { "rock" }.to_owned();
-        let mut world = World {
+        let mut world = WorldDraft {
             objects: vec![moving],
-            ..World::default()
+            ..WorldDraft::default()
         };
         world.environment_params.map_size = [24.0, 24.0];
         world.environment_params.walls = vec![Wall {
@@ -223,7 +228,7 @@ fn nothing_that_moves_leaves_the_arena_or_passes_a_wall() {
             color: None,
         }];
         world.agent_params.coordinates = [3.0, -6.0];
-        let mut environment = Environment::new(world).unwrap_or_else(|error| panic!("{error}"));
+        let mut environment = begin(&world);
         for turn in 0..150 {
             environment
                 .step(Action::Continuous([5.0, f64::from(turn % 40) * 9.0 - 180.0, 0.0]))
@@ -243,17 +248,17 @@ fn what_comes_back_comes_back_outside_of_regions() {
         radius: 12.0,
     });
     for seed in 0..30 {
-        let mut world = World {
+        let mut world = WorldDraft {
             seed: Some(seed),
             objects: vec![coin.clone()],
-            ..World::default()
+            ..WorldDraft::default()
         };
         world.environment_params.walls = vec![Wall {
             polygon: vec![[4.0, -20.0], [20.0, -20.0], [20.0, 20.0], [4.0, 20.0]],
             height: None,
             color: None,
         }];
-        let mut environment = Environment::new(world).unwrap_or_else(|error| panic!("{error}"));
+        let mut environment = begin(&world);
         for _ in 0..12 {
             environment
                 .step(Action::Continuous([10.0, 0.0, 0.0]))

@@ -14,7 +14,7 @@ use driftworld_env::{
     Action, Autoreset, Batch, BatchOptions, Camera, CpuRenderer, EnvError, Environment, Episode, Frame, GpuChoice,
     GpuRenderer, Images, Picture, RendererKind, RendererReport, Scene, Target,
 };
-use driftworld_spec::{Color, Modality, Object, Wall, World};
+use driftworld_spec::{Color, Modality, Object, Wall, World, WorldDraft};
 
 /// A renderer on this machine's adapter, if there is one.
 fn gpu() -> Option<GpuRenderer> {
@@ -49,7 +49,7 @@ fn worlds() -> Vec<(String, World)> {
         "generator/tests/golden/get_to_goal-hazards-7-2.json",
     ];
     let mut worlds: Vec<_> = files.map(|file| (file.to_owned(), world(file))).into();
-    let mut foggy = world(files[1]);
+    let mut foggy = world(files[1]).into_draft();
     foggy.environment_params.fog_distance = Some(50.0);
     foggy.environment_params.light_intensity = 0.6;
     foggy.environment_params.walls = [-12.0, 3.0, 14.0]
@@ -59,19 +59,22 @@ fn worlds() -> Vec<(String, World)> {
             color: Some(Color([0.7, 0.3, 0.2])),
         })
         .to_vec();
-    worlds.push(("fog, dusk, walls".to_owned(), foggy));
-    let mut zoo = World::default();
+    worlds.push((
+        "fog, dusk, walls".to_owned(),
+        foggy.check().expect("the world is sound"),
+    ));
+    let mut zoo = WorldDraft::default();
     let classes: Vec<_> = driftworld_env::classes().map(|(class, _)| class.to_owned()).collect();
     let made_up = (0..40).map(|number| format!("thing{number}"));
     for (k, class) in classes.into_iter().chain(made_up).enumerate() {
         let angle = k as f64 * 0.7;
         let away = 4.0 + k as f64 * 0.3;
         let mut object = Object::new(&class, [away * angle.sin(), away * angle.cos()]);
-        object.heading = 37.0 * k as f64;
+        object.heading = (37.0 * k as f64) % 360.0;
         object.scale = 2.0;
         zoo.objects.push(object);
     }
-    worlds.push(("every class".to_owned(), zoo));
+    worlds.push(("every class".to_owned(), zoo.check().expect("the world is sound")));
     worlds
 }
 
@@ -203,9 +206,9 @@ fn pictures_of_256_pixels_are_alike() {
 fn stepped(autoreset: Autoreset, num_threads: usize, renderer: RendererKind) -> Batch {
     let world = world("generator/tests/golden/find_objects-huddle-7-1.json");
     let source = Arc::new(move |episode: Episode| {
-        let mut world = world.clone();
+        let mut world = world.clone().into_draft();
         world.max_steps = 3 + episode.env as u32;
-        world.agent_params.heading = 60.0 * (episode.env as f64 + episode.index as f64);
+        world.agent_params.heading = (60.0 * (episode.env as f64 + episode.index as f64)) % 360.0;
         world.agent_params.observation_size = 48;
         world.agent_params.supersampling = 2;
         world.agent_params.modalities = vec![
@@ -215,7 +218,7 @@ fn stepped(autoreset: Autoreset, num_threads: usize, renderer: RendererKind) -> 
             Modality::Class,
             Modality::Instance,
         ];
-        Ok(world)
+        Ok(world.check().expect("the world is sound"))
     });
     let options = BatchOptions {
         autoreset,

@@ -4,15 +4,19 @@ use driftworld_env::{
     CATEGORY_BUILDING, CATEGORY_MAP, CATEGORY_NEGATIVE, CATEGORY_NEUTRAL, CATEGORY_POSITIVE, CATEGORY_SKY, Camera,
     CpuRenderer, FAR_DEPTH, Frame, Scene, Target, asset, category_color, classes, depth_to_gray, top_down,
 };
-use driftworld_spec::{Color, Model, Object, World};
+use driftworld_spec::{Color, Model, Object, World, WorldDraft};
 
-fn draw(world: &World, camera: &Camera, width: u32, height: u32) -> Frame {
+fn draw(world: &WorldDraft, camera: &Camera, width: u32, height: u32) -> Frame {
     let mut frame = Frame::new(width, height);
-    CpuRenderer::new().render(&Scene::from_world(world), camera, &mut frame);
+    CpuRenderer::new().render(
+        &Scene::from_world(&world.clone().check().expect("the world is sound")),
+        camera,
+        &mut frame,
+    );
     frame
 }
 
-fn ahead(world: &World) -> Frame {
+fn ahead(world: &WorldDraft) -> Frame {
     draw(world, &Camera::first_person([0.0, 0.0], 0.0, 1.0, 60.0), 64, 64)
 }
 
@@ -24,9 +28,9 @@ fn centre<T: Copy>(values: &[T]) -> T {
 fn a_box_is_as_far_as_it_stands() {
     let mut object = Object::new("cube", [0.0, 10.0]);
     object.scale = 4.0;
-    let frame = ahead(&World {
+    let frame = ahead(&WorldDraft {
         objects: vec![object],
-        ..World::default()
+        ..WorldDraft::default()
     });
     // Its front face is half of 4 × 0.9 m before its centre.
     assert!((centre(&frame.depth) - 8.2).abs() < 1e-3, "{}", centre(&frame.depth));
@@ -44,9 +48,9 @@ fn categories_are_those_of_the_reward() {
         let mut object = Object::new(class, [0.0, 30.0]);
         object.scale = 8.0;
         object.reward = reward;
-        let frame = ahead(&World {
+        let frame = ahead(&WorldDraft {
             objects: vec![object],
-            ..World::default()
+            ..WorldDraft::default()
         });
         assert_eq!(centre(&frame.category), category, "{class} worth {reward}");
     }
@@ -55,7 +59,7 @@ fn categories_are_those_of_the_reward() {
 
 #[test]
 fn sky_is_above_and_ground_below_and_walls_between() {
-    let frame = ahead(&World::default());
+    let frame = ahead(&WorldDraft::default());
     assert_eq!((frame.category[32], frame.depth[32]), (CATEGORY_SKY, FAR_DEPTH));
     assert_eq!(frame.category[63 * 64 + 32], CATEGORY_MAP);
     let below = frame.depth[63 * 64 + 32];
@@ -69,9 +73,9 @@ fn sky_is_above_and_ground_below_and_walls_between() {
 
 #[test]
 fn a_wall_hides_what_is_behind_it() {
-    let mut world = World {
+    let mut world = WorldDraft {
         objects: vec![Object::new("cube", [0.0, 20.0])],
-        ..World::default()
+        ..WorldDraft::default()
     };
     assert!(ahead(&world).instance.contains(&1));
     let polygon = vec![[-5.0, 10.0], [5.0, 10.0], [5.0, 11.0], [-5.0, 11.0]];
@@ -86,7 +90,7 @@ fn a_wall_hides_what_is_behind_it() {
 #[test]
 fn dusk_is_darker_than_day() {
     let light = |intensity| {
-        let mut world = World::default();
+        let mut world = WorldDraft::default();
         world.environment_params.light_intensity = intensity;
         ahead(&world).rgb.iter().map(|byte| u64::from(*byte)).sum::<u64>()
     };
@@ -97,9 +101,9 @@ fn dusk_is_darker_than_day() {
 
 #[test]
 fn odd_sizes_and_odd_places_are_drawn_without_panic() {
-    let mut world = World {
+    let mut world = WorldDraft {
         objects: vec![Object::new("building", [0.0, 0.0]); 3],
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.objects[1].scale = 100.0;
     world.objects[2].scale = 0.01;
@@ -123,14 +127,19 @@ fn odd_sizes_and_odd_places_are_drawn_without_panic() {
             assert!(frame.depth.iter().all(|depth| depth.is_finite() && *depth >= 0.0));
         }
     }
-    let flat = World {
+    let flat = WorldDraft {
         environment_params: driftworld_spec::EnvironmentParams {
             wall_height: 0.0,
             ..Default::default()
         },
-        ..World::default()
+        ..WorldDraft::default()
     };
-    top_down(&Scene::from_world(&flat), 33, 20, Some(([0.0, 0.0], 10.0)));
+    top_down(
+        &Scene::from_world(&flat.check().expect("the world is sound")),
+        33,
+        20,
+        Some(([0.0, 0.0], 10.0)),
+    );
 }
 
 #[test]
@@ -172,9 +181,9 @@ fn models_of_a_class_look_different() {
         let mut object = Object::new(class, [0.0, 8.0]);
         object.scale = if class == "fence" { 2.5 } else { 1.0 };
         object.model = Model(number.to_string());
-        ahead(&World {
+        ahead(&WorldDraft {
             objects: vec![object],
-            ..World::default()
+            ..WorldDraft::default()
         })
         .rgb
     };
@@ -207,9 +216,9 @@ fn the_golden_picture_is_drawn_as_it_was() {
         object.model = Model(model.to_string());
         object
     };
-    let mut world = World {
+    let mut world = WorldDraft {
         objects: places.map(object).to_vec(),
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.objects[2].color = Color::from_name("blue");
     world.objects[2].reward = 1.0;
@@ -279,12 +288,12 @@ fn crowded() -> Scene {
         object.color = (k % 2 == 0).then(|| Color([0.9, 0.2, k as f64 / 69.0]));
         object
     });
-    let mut world = World {
+    let mut world = WorldDraft {
         objects: objects.collect(),
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.environment_params.predefined_map = 2;
-    Scene::from_world(&world)
+    Scene::from_world(&world.check().expect("the world is sound"))
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Pushing things: how far they go, what holds them, and that nothing is pushed through a wall.
 
 use driftworld_env::{Action, Environment, Warning};
-use driftworld_spec::{MotionModel, Object, Pushable, Stimulus, World};
+use driftworld_spec::{MotionModel, Object, Pushable, Stimulus, WorldDraft};
 use proptest::prelude::*;
 
 const AHEAD: Action = Action::Continuous([2.0, 0.0, 0.0]);
@@ -14,12 +14,12 @@ fn body(at: [f64; 2], mass: f64, friction: f64) -> Object {
 }
 
 fn start(objects: Vec<Object>) -> Environment {
-    let mut world = World {
+    let mut world = WorldDraft {
         objects,
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.environment_params.map_size = [20.0, 20.0];
-    Environment::new(world).expect("every checked world starts")
+    Environment::new(world.check().expect("the world is sound"))
 }
 
 fn go(environment: &mut Environment, action: Action, steps: usize) {
@@ -127,10 +127,10 @@ proptest! {
         side in -0.6f64..0.6,
         turns in proptest::collection::vec(-40.0f64..40.0, 60),
     ) {
-        let mut world = World { objects: vec![body([side, 2.0], mass, friction), body([side, 3.5], mass, friction)], ..World::default() };
+        let mut world = WorldDraft { objects: vec![body([side, 2.0], mass, friction), body([side, 3.5], mass, friction)], ..WorldDraft::default() };
         world.environment_params.map_size = [12.0, 12.0];
         world.agent_params.max_linear_speed = 40.0;
-        let mut environment = Environment::new(world).expect("every checked world starts");
+        let mut environment = Environment::new(world.check().expect("the world is sound"));
         for turn in turns {
             environment.step(Action::Continuous([speed, turn, 0.0])).expect("the episode goes on");
             for index in 0..2 {
@@ -158,13 +158,13 @@ fn what_is_pushed_comes_as_far_at_any_time_step() {
                 mass: 5.0,
                 friction: 0.5,
             });
-            let mut world = World {
+            let mut world = WorldDraft {
                 objects: vec![body],
-                ..World::default()
+                ..WorldDraft::default()
             };
             world.agent_params.coordinates = [0.0, -1.2];
             world.agent_params.time_step = seconds;
-            let mut environment = Environment::new(world).expect("a sound world starts");
+            let mut environment = Environment::new(world.check().expect("the world is sound"));
             let first = f64::from(environment.agent().position[1]);
             let steps = (4.0 / seconds).round() as usize;
             for _ in 0..steps {

@@ -2,7 +2,9 @@
 //! exactly.
 
 use driftworld_env::{Action, Agent, EnvError, Environment, OnRailsAgent, RandomAgent, Step, Warning};
-use driftworld_spec::{ActionModel, ActionSpace, EndCondition, MotionModel, Object, Shaping, Stimulus, Wall, World};
+use driftworld_spec::{
+    ActionModel, ActionSpace, EndCondition, MotionModel, Object, Shaping, Stimulus, Wall, WorldDraft,
+};
 use proptest::prelude::*;
 
 const AHEAD: Action = Action::Continuous([10.0, 0.0, 0.0]);
@@ -19,14 +21,15 @@ fn cube(metres: f64) -> Object {
 }
 
 fn environment(objects: Vec<Object>) -> Environment {
-    start(World {
+    start(WorldDraft {
         objects,
-        ..World::default()
+        ..WorldDraft::default()
     })
 }
 
-fn start(world: World) -> Environment {
-    Environment::new(world).expect("every checked world starts")
+fn start(world: WorldDraft) -> Environment {
+    let world = world.check().expect("the world is sound");
+    Environment::new(world)
 }
 
 fn step(environment: &mut Environment, action: Action) -> Step {
@@ -122,9 +125,9 @@ fn what_is_not_solid_is_touched_in_passing_at_any_speed() {
     let mut object = cube(5.0);
     object.solid = false;
     object.reward_stimulus = vec![Stimulus::AgentCollide];
-    let mut world = World {
+    let mut world = WorldDraft {
         objects: vec![object],
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.agent_params.max_linear_speed = 100.0;
     let mut environment = start(world);
@@ -165,9 +168,9 @@ fn a_bandit_arm_pays_at_its_odds_and_the_same_each_time() {
 
 #[test]
 fn shaping_pays_the_way_that_was_won_and_nothing_over_a_round_trip() {
-    let mut world = World {
+    let mut world = WorldDraft {
         objects: vec![cube(10.0)],
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.rules.shaping = Some(Shaping {
         toward: Some("cube".to_owned()),
@@ -185,10 +188,10 @@ fn endings_are_told_apart() {
     let touch = |success: Vec<EndCondition>, failure: Vec<EndCondition>| {
         let mut object = cube(2.2);
         object.reward_once_stimulus = vec![Stimulus::AgentCollide];
-        let mut world = World {
+        let mut world = WorldDraft {
             objects: vec![object],
             max_steps: 2,
-            ..World::default()
+            ..WorldDraft::default()
         };
         world.rules.success = success;
         world.rules.failure = failure;
@@ -215,7 +218,7 @@ fn endings_are_told_apart() {
 
 #[test]
 fn a_world_without_targets_is_not_a_success_from_the_start() {
-    let mut world = World::default();
+    let mut world = WorldDraft::default();
     world.rules.success = vec![EndCondition::AllCollected];
     assert!(!step(&mut start(world), STAY).terminated);
 }
@@ -237,7 +240,7 @@ fn an_action_that_cannot_be_is_refused_and_changes_nothing() {
         Err(EnvError::NotDiscrete { found: 0 })
     );
     assert_eq!((continuous.agent(), continuous.num_steps()), (before, 0));
-    let mut world = World::default();
+    let mut world = WorldDraft::default();
     world.agent_params.actions = ActionSpace::Discrete(vec![[10.0, 0.0, 0.0], [0.0, 90.0, 0.0]]);
     let mut discrete = start(world);
     let beyond = discrete.step(Action::Discrete(2)).expect_err("the table has two rows");
@@ -252,7 +255,7 @@ fn an_action_that_cannot_be_is_refused_and_changes_nothing() {
 #[test]
 fn every_action_model_moves_as_it_says() {
     let after = |model, numbers| {
-        let mut world = World::default();
+        let mut world = WorldDraft::default();
         world.agent_params.action_model = model;
         let mut environment = start(world);
         step(&mut environment, Action::Continuous(numbers));
@@ -271,9 +274,9 @@ fn every_action_model_moves_as_it_says() {
 fn on_rails_the_agent_tours_by_itself() {
     let mut object = cube(6.0);
     object.reward_once_stimulus = vec![Stimulus::AgentCollide];
-    let mut world = World {
+    let mut world = WorldDraft {
         objects: vec![object],
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.agent_params.action_model = ActionModel::OnRails;
     let mut environment = start(world);
@@ -297,7 +300,7 @@ fn warnings_name_what_is_not_as_its_author_may_think() {
 
 #[test]
 fn the_agent_slides_along_a_wall() {
-    let mut world = World::default();
+    let mut world = WorldDraft::default();
     world.agent_params.coordinates = [0.0, 48.0];
     world.agent_params.heading = 45.0;
     let mut environment = start(world);
@@ -313,9 +316,9 @@ fn the_agent_slides_along_a_wall() {
 #[test]
 fn a_start_inside_a_body_or_outside_the_arena_is_survived() {
     for coordinates in [[0.0, 0.0], [300.0, 300.0], [49.9, 49.9]] {
-        let mut world = World {
+        let mut world = WorldDraft {
             objects: vec![Object::new("building", [0.0, 0.0])],
-            ..World::default()
+            ..WorldDraft::default()
         };
         world.agent_params.coordinates = coordinates;
         let mut environment = start(world);
@@ -349,7 +352,7 @@ proptest! {
         speed in 0.1..100.0_f64,
         seconds in 0.001..10.0_f64,
     ) {
-        let mut world = World::default();
+        let mut world = WorldDraft::default();
         world.environment_params.map_size = [20.0, 12.0];
         // A thin pillar and a long thin wall.
         world.environment_params.walls = vec![
@@ -396,7 +399,7 @@ fn bits(environment: &Environment) -> Vec<u32> {
 }
 
 /// A small world with something of everything.
-fn arena() -> World {
+fn arena() -> WorldDraft {
     let mut objects = vec![
         cube(4.0),
         Object::new("tree", [3.0, 3.0]),
@@ -408,9 +411,9 @@ fn arena() -> World {
     barrel.reward = -2.0;
     barrel.reward_stimulus = vec![Stimulus::AgentCollide];
     objects.push(barrel);
-    let mut world = World {
+    let mut world = WorldDraft {
         objects,
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.environment_params.map_size = [14.0, 14.0];
     world.agent_params.observation_size = 32;
@@ -419,9 +422,9 @@ fn arena() -> World {
 
 #[test]
 fn resetting_is_starting_anew() {
-    let mut used = start(World::default());
+    let mut used = start(WorldDraft::default());
     rewards(&mut used, &[AHEAD; 5]);
-    used.reset(arena()).expect("every checked world starts");
+    used.reset(arena().check().expect("the world is sound"));
     let mut fresh = start(arena());
     for action in [AHEAD; 12] {
         assert_eq!(step(&mut used, action), step(&mut fresh, action));

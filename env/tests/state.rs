@@ -3,8 +3,8 @@
 
 use driftworld_env::{Action, Agent, EnvError, Environment, RandomAgent};
 use driftworld_spec::{
-    ActionModel, ActionSpace, EndCondition, MotionModel, Object, Progress, Pushable, Respawn, Shaping, StateFeature,
-    Stimulus, Wall, World,
+    ActionModel, ActionSpace, EndCondition, MotionModel, Object, ObjectProgress, Progress, Pushable, Respawn, Shaping,
+    StateFeature, Stimulus, Wall, World, WorldDraft,
 };
 use proptest::prelude::*;
 
@@ -44,10 +44,10 @@ fn world(action_model: ActionModel, frame_skip: u32) -> World {
     });
     let mut drum = object("geometric", [-1.0, 3.1]);
     (drum.model.0, drum.pushable) = ("3".to_owned(), box_.pushable);
-    let mut world = World {
+    let mut world = WorldDraft {
         max_steps: 200,
         objects: vec![coin, arm, first, second, wanderer, patrol, hunter, box_, drum],
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.environment_params.map_size = [16.0, 16.0];
     world.environment_params.walls = vec![Wall {
@@ -75,11 +75,11 @@ fn world(action_model: ActionModel, frame_skip: u32) -> World {
         discount: 0.95,
     });
     world.rules.success = vec![EndCondition::ReturnAtLeast(60.0)];
-    world
+    world.check().expect("the world is sound")
 }
 
 fn start(world: World) -> Environment {
-    Environment::new(world).expect("every checked world starts")
+    Environment::new(world)
 }
 
 /// All that can be told of a step and of the moment after it; numbers as they are written, which is exact.
@@ -164,9 +164,8 @@ proptest! {
         model in model(),
         own_seed in prop::option::of(0u64..4),
     ) {
-        let mut begun = world(model, frame_skip);
-        begun.seed = own_seed;
-        let mut environment = start(begun);
+        let begun = world(model, frame_skip).edit(|world| world.seed = own_seed);
+        let mut environment = start(begun.expect("every seed is sound"));
         let actions = actions(seed, &environment, before + after);
         go_on(&mut environment, &actions[..before]);
         if before % 2 == 1 && !environment.ended() {
@@ -189,7 +188,7 @@ proptest! {
         let resumed = go_on(&mut resumed, &actions[before..]);
         prop_assert_eq!(difference(&resumed, &uninterrupted), None, "from the state");
 
-        environment.restore(&snapshot).expect("every moment comes back");
+        environment.restore(&snapshot);
         prop_assert_eq!(&environment.observe().rgb, &picture);
         let restored = go_on(&mut environment, &actions[before..]);
         prop_assert_eq!(difference(&restored, &uninterrupted), None, "from the snapshot");
@@ -220,9 +219,8 @@ fn a_state_says_what_is_now_and_keeps_what_was_at_the_start() {
 
 #[test]
 fn an_ended_episode_stays_ended() {
-    let mut short = world(ActionModel::ByVelocity, 1);
-    short.max_steps = 1;
-    let mut environment = start(short);
+    let short = world(ActionModel::ByVelocity, 1).edit(|world| world.max_steps = 1);
+    let mut environment = start(short.expect("one step is sound"));
     environment
         .step(Action::Continuous([0.0; 3]))
         .expect("the first step is allowed");
@@ -234,13 +232,13 @@ fn an_ended_episode_stays_ended() {
 fn what_stands_far_outside_can_be_written_down_and_read() {
     let mut prey = Object::new("barrel", [290.0, 0.0]);
     (prey.motion_model, prey.speed) = (MotionModel::Prey, 50.0);
-    let mut outside = World {
+    let mut outside = WorldDraft {
         objects: vec![prey],
-        ..World::default()
+        ..WorldDraft::default()
     };
     outside.agent_params.coordinates = [280.0, 0.0];
     outside.agent_params.heading = 90.0;
-    let mut environment = start(outside);
+    let mut environment = start(outside.check().expect("the world is sound"));
     for _ in 0..60 {
         environment
             .step(Action::Continuous([10.0, 0.0, 0.0]))
@@ -266,14 +264,14 @@ fn a_state_without_its_seed_takes_that_of_its_world() {
         let mut wanderer = Object::new("barrel", [3.0, 3.0]);
         (wanderer.motion_model, wanderer.speed) = (MotionModel::RandomWaypoint, 1.0);
         wanderer.tag = Some(tag.to_owned());
-        let mut environment = start(World {
+        let world = WorldDraft {
             seed,
             objects: vec![wanderer],
-            ..World::default()
-        });
-        let mut state = environment.state();
+            ..WorldDraft::default()
+        };
+        let mut state = start(world.check().expect("the world is sound")).state().into_draft();
         state.progress.as_mut().expect("a state has progress").seed = None;
-        environment = start(state);
+        let mut environment = start(state.check().expect("the world is sound"));
         environment
             .step(Action::Continuous([0.0; 3]))
             .expect("the episode goes on");
@@ -304,19 +302,23 @@ fn a_world_whose_progress_is_a_seed_alone_is_at_its_start() {
         barrel.reward_stimulus = vec![Stimulus::AgentCollide];
         let mut wanderer = Object::new("rock", [5.0, 5.0]);
         (wanderer.motion_model, wanderer.speed) = (MotionModel::RandomWaypoint, 2.0);
-        World {
+        let world = WorldDraft {
             objects: vec![barrel, wanderer],
-            ..World::default()
-        }
+            ..WorldDraft::default()
+        };
+        world.check().expect("the world is sound")
     };
-    let seeded = |letter: char| {
-        let mut world = touched();
-        world.progress = Some(Progress {
-            seed: Some(letter.to_string().repeat(64)),
-            ..Progress::default()
+    let with_seed = |seed: String| {
+        let seeded = touched().edit(|world| {
+            world.progress = Some(Progress {
+                seed: Some(seed),
+                objects: vec![ObjectProgress::default(); 2],
+                ..Progress::default()
+            });
         });
-        world
+        seeded.expect("the progress fits the world")
     };
+    let seeded = |letter: char| with_seed(letter.to_string().repeat(64));
     let live = |world: World| {
         let mut environment = start(world);
         let rewards: Vec<f64> = (0..5)
@@ -324,12 +326,7 @@ fn a_world_whose_progress_is_a_seed_alone_is_at_its_start() {
             .collect();
         (rewards, environment.scene().items[1].position)
     };
-    let own = touched().hash_of_places();
-    let mut as_its_own = touched();
-    as_its_own.progress = Some(Progress {
-        seed: Some(own),
-        ..Progress::default()
-    });
+    let as_its_own = with_seed(touched().hash_of_places());
     assert_eq!(live(as_its_own), live(touched()));
     assert_eq!(live(seeded('a')).0, live(touched()).0);
     assert_ne!(live(seeded('a')).1, live(seeded('b')).1);

@@ -4,7 +4,7 @@
 #![expect(clippy::disallowed_methods, reason = "compared within a tolerance")]
 
 use driftworld_env::{Action, Environment};
-use driftworld_spec::{MotionModel, Object, Pushable, Wall, World};
+use driftworld_spec::{MotionModel, Object, Pushable, Wall, WorldDraft};
 use proptest::prelude::*;
 
 /// A wall of this length in metres through a point, turned by degrees clockwise from +y.
@@ -29,14 +29,15 @@ fn direction(bearing_deg: f64) -> [f64; 2] {
     [bearing.sin(), bearing.cos()]
 }
 
-fn arena(metres: f64) -> World {
-    let mut world = World::default();
+fn arena(metres: f64) -> WorldDraft {
+    let mut world = WorldDraft::default();
     world.environment_params.map_size = [metres, metres];
     world
 }
 
-fn start(world: World) -> Environment {
-    Environment::new(world).expect("a sound world starts")
+fn start(world: WorldDraft) -> Environment {
+    let world = world.check().expect("the world is sound");
+    Environment::new(world)
 }
 
 fn go(environment: &mut Environment, speed: f64) -> [f64; 2] {
@@ -69,7 +70,7 @@ proptest! {
         at in (-40.0..40.0_f64, -40.0..40.0_f64),
     ) {
         let (along, normal) = (direction(bearing), direction(bearing + 90.0));
-        let mut world = arena(400.0);
+        let mut world = arena(300.0);
         world.environment_params.walls = vec![wall([at.0, at.1], bearing, length)];
         let agent = &mut world.agent_params;
         agent.agent_width = width;
@@ -80,7 +81,7 @@ proptest! {
         let sign = angle.signum();
         let behind = sign * length * 0.4;
         agent.coordinates = [0, 1].map(|axis| [at.0, at.1][axis] - along[axis] * behind + normal[axis] * distance);
-        agent.heading = bearing - 90.0 + angle;
+        agent.heading = (bearing - 90.0 + angle).rem_euclid(360.0);
         let meant = speed * seconds * angle.to_radians().sin();
         let steps = ((length * 0.7 / meant.abs()).floor() as usize).min(200);
         prop_assume!(steps > 0);
@@ -108,14 +109,14 @@ proptest! {
         class in prop::sample::select(vec!["ball", "cube", "barrel", "rock"]),
     ) {
         let (along, normal) = (direction(bearing), direction(bearing + 90.0));
-        let mut world = arena(500.0);
+        let mut world = arena(300.0);
         world.environment_params.walls = vec![wall([0.0; 2], bearing, length)];
-        world.agent_params.coordinates = [-240.0, -240.0];
+        world.agent_params.coordinates = [-145.0, -145.0];
         let sign = angle.signum();
         let mut mover = Object::new(class, [0, 1].map(|axis| normal[axis] * 2.0 - along[axis] * sign * length * 0.4));
         mover.motion_model = MotionModel::Patrol;
         mover.speed = speed;
-        mover.heading = bearing - 90.0 + angle;
+        mover.heading = (bearing - 90.0 + angle).rem_euclid(360.0);
         // Far behind the wall: the way there changes by less than a degree.
         let far = direction(bearing - 90.0 + angle).map(|part| part * 2e4);
         let from = mover.coordinates;
@@ -154,7 +155,7 @@ proptest! {
         speed in 0.5..30.0_f64,
     ) {
         // Two walls from one point, the agent between them on its way to it.
-        let mut world = arena(400.0);
+        let mut world = arena(300.0);
         let axis = direction(bearing);
         let polygon = |turn: f64| {
             let way = direction(bearing + turn).map(|part| part * 150.0);
@@ -170,7 +171,7 @@ proptest! {
         let room = (width / 2.0 + 0.05) / (opening / 2.0).to_radians().sin();
         prop_assume!(room < 100.0);
         agent.coordinates = axis.map(|part| part * (room + 10.0));
-        agent.heading = bearing + 180.0 + off * opening;
+        agent.heading = (bearing + 180.0 + off * opening).rem_euclid(360.0);
         let mut environment = start(world);
         let mut last = [0.0; 2];
         for _ in 0..((room + 20.0) / speed * 10.0 * 2.0) as usize + 200 {
@@ -219,17 +220,17 @@ fn the_walks_of_the_audit_go_on() {
 fn a_body_that_slides_into_a_wall_keeps_what_leads_along_it() {
     for (class, friction) in [("ball", 0.0), ("cube", 0.0), ("barrel", 0.0)] {
         for heading in [10.0_f64, 30.0, 45.0, 60.0, 80.0] {
-            let mut world = arena(580.0);
+            let mut world = arena(300.0);
             world.environment_params.walls = vec![Wall {
-                polygon: vec![[-250.0, 6.0], [250.0, 6.0], [250.0, 7.0], [-250.0, 7.0]],
+                polygon: vec![[-150.0, 6.0], [150.0, 6.0], [150.0, 7.0], [-150.0, 7.0]],
                 height: None,
                 color: None,
             }];
-            let mut body = Object::new(class, [-200.0, 0.0]);
+            let mut body = Object::new(class, [-140.0, 0.0]);
             body.pushable = Some(Pushable { mass: 5.0, friction });
             body.heading = heading;
             let way = direction(heading);
-            world.agent_params.coordinates = [-200.0 - way[0] * 1.5, -way[1] * 1.5];
+            world.agent_params.coordinates = [-140.0 - way[0] * 1.5, -way[1] * 1.5];
             world.agent_params.heading = heading;
             world.objects = vec![body];
             let mut environment = start(world);
@@ -267,7 +268,7 @@ fn a_pushed_body_slides_along_a_wall() {
     // A body that the agent pushes slantwise at a wall goes on along it.
     for (class, friction) in [("ball", 0.0), ("cube", 0.0), ("ball", 0.5), ("cube", 0.5)] {
         for heading in [20.0_f64, 35.0, 60.0, 75.0] {
-            let mut world = arena(400.0);
+            let mut world = arena(300.0);
             world.environment_params.walls = vec![Wall {
                 polygon: vec![[-150.0, 10.0], [150.0, 10.0], [150.0, 11.0], [-150.0, 11.0]],
                 height: None,
@@ -376,7 +377,7 @@ fn rolling_round_a_body_takes_its_time_at_any_time_step() {
             for scale in [1.0, 20.0] {
                 let mut barrel = Object::new("barrel", [0.0, 0.0]);
                 barrel.scale = scale;
-                let mut world = arena(500.0);
+                let mut world = arena(300.0);
                 world.objects = vec![barrel];
                 world.agent_params.time_step = seconds;
                 let reach = {

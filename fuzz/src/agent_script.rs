@@ -21,7 +21,7 @@ pub(crate) fn check(bytes: &[u8]) {
         Err(error) => return refusal::message(&error.to_string()),
     };
     let start = World::from_json("small", WORLD).unwrap_or_else(|_| small());
-    let mut environment = Environment::new(start).expect("the world can start");
+    let mut environment = Environment::new(start);
     agent.begin(1);
     for _ in 0..STEPS {
         if environment.ended() {
@@ -37,7 +37,6 @@ pub(crate) fn check(bytes: &[u8]) {
 }
 
 fn small() -> World {
-    let mut small = World::default();
-    small.agent_params.observation_size = 8;
-    small
+    let small = World::default().edit(|world| world.agent_params.observation_size = 8);
+    small.expect("pictures may be that small")
 }

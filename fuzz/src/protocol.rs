@@ -2,6 +2,7 @@
 //! reset to, or another text, on the channel for resets.
 
 use arbitrary::Unstructured;
+use driftworld_spec::World;
 use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
 use driftworld_unity::protocol::{AgentActionProto, CommandProto, UnityMessageProto, UnityRlInputProto};
 use driftworld_unity::{BEHAVIOR, Screenshots, Session, Setup, Turn};
@@ -25,10 +26,13 @@ const LONGEST_TEXT: usize = 16_000;
 /// A session in a small world, whose screenshots go nowhere that is kept.
 fn session() -> (Session, tempfile::TempDir) {
     let folder = tempfile::tempdir().expect("there is room for screenshots");
-    let mut setup = Setup::default();
-    setup.world.agent_params.observation_size = 8;
+    let world = World::default().edit(|world| world.agent_params.observation_size = 8);
+    let setup = Setup {
+        world: world.expect("pictures may be that small"),
+        ..Setup::default()
+    };
     let clock = || "2026-01-01T00:00:00Z".to_owned();
-    let session = Session::new(setup, Screenshots::new(folder.path()), clock).expect("the world can start");
+    let session = Session::new(setup, Screenshots::new(folder.path()), clock);
     (session, folder)
 }
 

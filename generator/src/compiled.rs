@@ -2,7 +2,7 @@
 
 use driftworld_spec::{
     Count, Distribution, Facing, Hole, Object, ParameterType, PlacedGroup, Resolved, Role, Source, Template, Value,
-    Variant, World,
+    Variant, WorldDraft,
 };
 
 use crate::draw::draw;
@@ -14,7 +14,7 @@ use crate::stream::{Rng, Stream};
 #[derive(Debug)]
 pub(crate) struct Compiled {
     pub(crate) parameters: Vec<Randomized>,
-    pub(crate) world: Filled<World>,
+    pub(crate) world: Filled<WorldDraft>,
     pub(crate) fixtures: Vec<Filled<Object>>,
     pub(crate) groups: Vec<Group>,
     /// How many objects room is made for.

@@ -9,8 +9,8 @@ use driftworld_spec::SpecError;
 pub enum GeneratorError {
     /// A draw fell outside what its place in the world allows.
     #[error(
-        "{variant}, seed {seed}, index {index} ({place}): drew {found}, expected a number in {low}..{high}; \
-         use a distribution with bounds, such as truncated_normal"
+        "{variant}, seed {seed}, index {index} ({place}): drew {found}, expected a number in {low}..{high}; use a \
+         bounded distribution, such as truncated_normal"
     )]
     OutOfRange {
         /// The variant.
@@ -30,7 +30,8 @@ pub enum GeneratorError {
     },
     /// An object found no place within the tries it has.
     #[error(
-        "{variant}, seed {seed}, index {index}: group {group:?}, object {object} of {count}: found no free place in {}; {reason}",
+        "{variant}, seed {seed}, index {index}: group {group:?}, object {object} of {count}: found no free place in \
+         {}; {reason}",
         tried(*tries)
     )]
     NoPlace {
@@ -53,8 +54,8 @@ pub enum GeneratorError {
     },
     /// The agent starts outside the arena or in a region that cannot be entered.
     #[error(
-        "{variant}, seed {seed}, index {index}: found the agent's start at {start:?} in {}, expected free ground inside the arena; \
-         move agent_params.coordinates, or widen what they are drawn from",
+        "{variant}, seed {seed}, index {index}: found the agent's start at {start:?} in {}, expected free space \
+         inside the arena; move agent_params.coordinates, or widen their distribution",
         tried(*tries)
     )]
     NoStart {
@@ -71,8 +72,8 @@ pub enum GeneratorError {
     },
     /// A condition that the task states holds in none of the tries.
     #[error(
-        "{variant}, seed {seed}, index {index}: found no values in {tries} tries for which {requirement:?} holds, as \"require\" \
-         states; the last were {values}; widen the distributions, or loosen the requirement"
+        "{variant}, seed {seed}, index {index}: found no values in {tries} tries for which {requirement:?} holds, as \
+         \"require\" states; the last were {values}; widen the distributions, or relax the requirement"
     )]
     Requirement {
         /// The variant.
@@ -102,9 +103,22 @@ pub enum GeneratorError {
         /// How many a world holds.
         limit: usize,
     },
+    /// Values were drawn that a world cannot have at once, as large pictures with much supersampling.
+    #[error("{variant}, seed {seed}, index {index}: drew values that do not go together: {source}")]
+    Clash {
+        /// The variant.
+        variant: String,
+        /// The seed.
+        seed: u64,
+        /// The world's number.
+        index: u64,
+        /// What is wrong with the world.
+        source: SpecError,
+    },
     /// Two variants of different tasks have nothing between them.
     #[error(
-        "found {from} and {to}, expected two variants of one task; drift within a task, and switch between tasks in a curriculum"
+        "found {from} and {to}, expected two variants of one task; a drift stays within a task, a curriculum switches \
+         between tasks"
     )]
     DifferentTasks {
         /// The one.
@@ -117,7 +131,8 @@ pub enum GeneratorError {
     Between(#[source] SpecError),
     /// A wanted distance has no parameter to change.
     #[error(
-        "{variant}: found no {asked}, expected at least one variant parameter to change; name them, or another element"
+        "{variant}: found no {asked}, expected at least one variant parameter to change; name parameters, or another \
+         element"
     )]
     NothingToVary {
         /// The variant.
@@ -127,7 +142,8 @@ pub enum GeneratorError {
     },
     /// No variant is as far as wanted.
     #[error(
-        "{variant}: found at most {farthest:.6} ({values}), expected a distance of {target}; ask for less, or vary more parameters"
+        "{variant}: found at most {farthest:.6} ({values}), expected a distance of {target}; ask for less, or vary \
+         more parameters"
     )]
     TooFar {
         /// The variant that the distance is from.
@@ -222,6 +238,15 @@ mod tests {
                 index: 2,
                 found: 100_001,
                 limit: 100_000,
+            },
+            GeneratorError::Clash {
+                variant: "t#v".into(),
+                seed: 1,
+                index: 2,
+                source: SpecError::Values {
+                    variant: "t#v".into(),
+                    problems: Vec::new(),
+                },
             },
             GeneratorError::DifferentTasks {
                 from: "t#v".into(),

@@ -1,11 +1,11 @@
 //! Variant, seed and index to a concrete world; the variants between two variants, and those at a wanted distance.
 
 mod at_distance;
+mod clearance;
 mod compiled;
 mod draw;
 mod drift;
 mod error;
-mod free_space;
 mod interpolation;
 mod philox;
 mod placement;

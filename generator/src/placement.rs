@@ -1,9 +1,9 @@
-//! Finding a free place for each object. Where a place lies is drawn in `draw.rs`; distances to walls are in `free_space.rs`.
+//! Placing objects: a free place for each. Candidates are drawn in `draw.rs`; the distance to walls is in `clearance.rs`.
 
 use driftworld_spec::{Distribution, Turns};
 
+use crate::clearance::FreeSpace;
 use crate::draw::{self, Place};
-use crate::free_space::FreeSpace;
 use crate::spatial_hash::SpatialHash;
 use crate::stream::Rng;
 
@@ -265,7 +265,7 @@ impl Tried {
         let tries = self.failed.iter().sum();
         if tries == 0 {
             // Only where places are taken in turn, and others that found theirs taken went on to those that were left.
-            let reason = "every place of the list is taken; add places, or lower the count".to_owned();
+            let reason = "every place in the list is taken; add places, or lower the count".to_owned();
             return (tries, reason);
         }
         (tries, reason(self.failed, self.closest))

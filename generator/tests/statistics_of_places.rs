@@ -31,7 +31,7 @@ fn places(placement: &str) -> (Vec<[f64; 2]>, Distribution) {
     let worlds = (0..200).map(|index| world(&sampler, index));
     (
         worlds
-            .flat_map(|world| world.objects.into_iter().map(|object| object.coordinates))
+            .flat_map(|world| world.into_draft().objects.into_iter().map(|object| object.coordinates))
             .collect(),
         law,
     )

@@ -70,12 +70,12 @@ fn any_order_of_drawing_gives_the_same_worlds() {
 fn variants_share_their_chance() {
     let task = example("find_objects");
     let (blue, penalty) = (world(&task, "red", 7, 5), world(&task, "penalty", 7, 5));
-    let mut paid = blue.clone();
+    let mut paid = blue.into_draft();
     for object in paid.objects.iter_mut().filter(|object| object.reward == 100.0) {
         object.reward = -100.0;
     }
     assert_eq!(
-        paid, penalty,
+        paid, *penalty,
         "variants that differ in what they pay differ in nothing else"
     );
 }
@@ -195,6 +195,28 @@ fn a_draw_outside_the_range_of_its_place_is_an_error_that_names_it() {
         .find_map(|index| sample(&variant, 0, index).err())
         .expect("half of the draws are negative");
     assert!(matches!(error, GeneratorError::OutOfRange { .. }));
+    insta::assert_snapshot!(error);
+}
+
+#[test]
+fn draws_that_do_not_go_together_are_an_error_that_says_why() {
+    let fine = load(
+        r#"{ "name": "fine", "world": { "agent_params": {
+             "observation_size": { "integer_uniform": { "low": 84, "high": 4096 } },
+             "supersampling": { "integer_uniform": { "low": 1, "high": 4 } } } } }"#,
+    );
+    let variant = fine.variant("default").expect("it is always there");
+    let worlds: Vec<_> = (0..100).map(|index| sample(&variant, 0, index)).collect();
+    let sound = worlds
+        .iter()
+        .flatten()
+        .find(|world| world.agent_params.observation_size > 1000);
+    assert!(sound.is_some(), "large pictures alone are sound");
+    let error = worlds
+        .into_iter()
+        .find_map(Result::err)
+        .expect("some pictures are too fine");
+    assert!(matches!(error, GeneratorError::Clash { .. }));
     insta::assert_snapshot!(error);
 }
 

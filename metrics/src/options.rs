@@ -171,7 +171,7 @@ pub struct Noise {
     pub seed: u64,
 }
 
-/// Smallest and largest performance a task can have, in the unit of the log.
+/// Smallest and largest performance a task can have, in the log's unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DataRange {
@@ -328,7 +328,8 @@ mod tests {
                 data_range: Some([("a".to_owned(), range)].into()),
                 ..Options::default()
             },
-            "option data_range: found 2e0 to 1e0 for task a, expected two numbers below 1e100 in magnitude, the smaller one first",
+            "option data_range: found 2e0 to 1e0 for task a, expected two numbers below 1e100 in magnitude, the \
+             smaller one first",
         );
         let range = DataRange {
             min: f64::NAN,

@@ -147,15 +147,15 @@ fn a_table_that_is_no_table_is_refused_with_its_place() {
     check(
         format!("{HEADER}{ROW}0\t1\tw\ttra"),
         "metrics/torn-last-line",
-        "LOG/w/0-train/data-log.tsv:3: found a last line without a line end, expected whole rows; its writer was \
-         stopped in the middle of it: delete that line, or continue the log, which does so: `driftworld run … --resume`, \
-         LogWriter::resume",
+        "LOG/w/0-train/data-log.tsv:3: found a last line without a line end, expected complete rows; its writer was \
+         interrupted: delete that line, or continue the log, which deletes it (`driftworld run … --resume`, \
+         LogWriter::resume)",
     );
     check(
         format!("{HEADER}{ROW}").replace('\n', "\r"),
         "metrics/carriage-returns",
-        "LOG/w/0-train/data-log.tsv:1: found lines that end with a carriage return alone, expected a line feed at the end of each, \
-         alone or behind it; save the file with such line ends",
+        "LOG/w/0-train/data-log.tsv:1: found lines that end in a lone carriage return, expected LF or CRLF; save the \
+         file with such line ends",
     );
     check(
         [HEADER.as_bytes(), b"0\t\xff\n"].concat(),
@@ -170,7 +170,7 @@ fn a_table_that_is_no_table_is_refused_with_its_place() {
         ),
         "metrics/block-order",
         "LOG/w/0-train/data-log.tsv:3, column block_num: found 0, expected at least 1: \
-         read in order of exp_num, block numbers never fall",
+         in order of exp_num, block numbers never decrease",
     );
 }
 
@@ -214,7 +214,8 @@ fn a_directory_that_is_no_log_is_told_what_it_lacks() {
     );
     fs::write(base.path().join("logger_info.json"), "{\"metrics_columns\"").unwrap();
     check(
-        "LOG/logger_info.json:1:18: found EOF while parsing an object, expected a JSON object with the list metrics_columns",
+        "LOG/logger_info.json:1:18: found EOF while parsing an object, expected a JSON object with the list \
+         metrics_columns",
     );
     fs::write(
         base.path().join("logger_info.json"),

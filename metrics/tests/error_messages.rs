@@ -30,13 +30,13 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
         (
             E::LogExists { path: "run".into() },
             "metrics/log-exists",
-            "run: found a directory that is not empty, expected a new or an empty one; choose another name, or continue \
-             the log that is there with LogWriter::resume",
+            "run: found a directory that is not empty, expected a new or an empty one; choose another name, or \
+             continue its log with LogWriter::resume",
         ),
         (
             E::InUse { path: "run".into() },
             "metrics/in-use",
-            "run: found a log that another run is writing, expected one that nobody writes; wait for that run, or choose \
+            "run: found a log that another run is writing, expected one not in use; wait for that run, or choose \
              another name",
         ),
         (
@@ -47,9 +47,7 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
                 bytes: 3456,
             },
             "metrics/folder-lost",
-            "run: found no directory, expected the directory that this log has been written to: it was removed, renamed or \
-             replaced meanwhile; with it went 12 rows in 3456 bytes; put that directory back and continue the log, or begin a \
-             new one",
+            "run: found no directory, expected the directory of this log: it was removed, renamed or replaced during the run, and with it 12 rows in 3456 bytes; put it back and continue the log, or start a new one",
         ),
         (
             E::FileLost {
@@ -59,9 +57,9 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
                 bytes: 3456,
             },
             "metrics/file-lost",
-            "run/w/0-train/data-log.tsv: found 3 rows in 900 bytes, expected the 12 rows in 3456 bytes that were written: it was \
-             cut, removed or replaced meanwhile; put it back and continue the log, or begin a new one; a log that only its last \
-             rows are missing from can be continued as it is",
+            "run/w/0-train/data-log.tsv: found 3 rows in 900 bytes, expected the 12 rows in 3456 bytes that were \
+             written: it was truncated, removed or replaced during the run; put it back and continue the log, or \
+             start a new one; a log that lacks only its last rows can be continued as it is",
         ),
         (
             E::InfoFileChanged {
@@ -70,8 +68,7 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
                 expected: 210,
             },
             "metrics/info-file-changed",
-            "run/w/0-train/data-log.tsv: found 3 bytes, expected the 210 bytes that this log was begun with; put the file back, for \
-             without it the rows cannot be read",
+            "run/w/0-train/data-log.tsv: found 3 bytes, expected the 210 bytes that this log was started with; put the file back: without it, the rows cannot be read",
         ),
         (
             E::NotADirectory {
@@ -144,7 +141,8 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
                 found: text("0 0 worker-default"),
             },
             "metrics/no-header",
-            "run/w/0-train/data-log.tsv:1: found \"0 0 worker-default\", which has none of the standard columns, expected a \
+            "run/w/0-train/data-log.tsv:1: found \"0 0 worker-default\", which has none of the standard columns, \
+             expected a \
              header line that begins with block_num",
         ),
         (
@@ -153,7 +151,8 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
                 found: text("\"block_num,exp_num\""),
             },
             "metrics/no-tabs",
-            "run/w/0-train/data-log.tsv:1: found the header \"block_num,exp_num\" without a tab, expected a tab between columns",
+            "run/w/0-train/data-log.tsv:1: found the header \"block_num,exp_num\" without a tab, expected a tab \
+             between columns",
         ),
         (
             E::MissingColumn {
@@ -180,7 +179,7 @@ fn all() -> Vec<(MetricsError, &'static str, &'static str)> {
             },
             "metrics/other-columns",
             "run/w/0-train/data-log.tsv:1: found the columns a, b, expected a, c to continue this log; only logs of \
-             format 1.1 written by one writer can be continued, begin a new one",
+             format 1.1 written by one writer can be continued; start a new one",
         ),
     ];
     errors.extend(of_rows());
@@ -217,21 +216,21 @@ fn of_rows() -> Vec<(MetricsError, &'static str, &'static str)> {
         (
             E::TornLastLine { path: path(), line: 3 },
             "metrics/torn-last-line",
-            "run/w/0-train/data-log.tsv:3: found a last line without a line end, expected whole rows; its writer was \
-             stopped in the middle of it: delete that line, or continue the log, which does so: `driftworld run … --resume`, \
-             LogWriter::resume",
+            "run/w/0-train/data-log.tsv:3: found a last line without a line end, expected complete rows; its writer \
+             was interrupted: delete that line, or continue the log, which deletes it (`driftworld run … --resume`, \
+             LogWriter::resume)",
         ),
         (
             E::CarriageReturns { path: path(), line: 1 },
             "metrics/carriage-returns",
-            "run/w/0-train/data-log.tsv:1: found lines that end with a carriage return alone, expected a line feed at the end of each, \
-             alone or behind it; save the file with such line ends",
+            "run/w/0-train/data-log.tsv:1: found lines that end in a lone carriage return, expected LF or CRLF; save \
+             the file with such line ends",
         ),
         (
             E::OpenQuote { path: path(), line: 7 },
             "metrics/open-quote",
-            "run/w/0-train/data-log.tsv:7: found a quote that opens a cell and is never closed, expected another at the \
-             end of the cell; the rows after it were taken for a part of it",
+            "run/w/0-train/data-log.tsv:7: found a quote that opens a cell and is never closed, expected another at \
+             the end of the cell; the rows after it were read as part of the cell",
         ),
         (
             E::NotUtf8 { path: path(), line: 3 },
@@ -246,8 +245,8 @@ fn of_rows() -> Vec<(MetricsError, &'static str, &'static str)> {
                 expected: 1,
             },
             "metrics/block-order",
-            "run/w/0-train/data-log.tsv:3, column block_num: found 0, expected at least 1: read in order of exp_num, \
-             block numbers never fall",
+            "run/w/0-train/data-log.tsv:3, column block_num: found 0, expected at least 1: in order of exp_num, block \
+             numbers never decrease",
         ),
     ]
 }
@@ -265,7 +264,8 @@ fn of_order() -> Vec<(MetricsError, &'static str, &'static str)> {
                 expected: 3,
             },
             "metrics/number-falls",
-            "run/w/0-train/data-log.tsv:7, column exp_num: found 2, expected at least 3 as in the row above: numbers never fall",
+            "run/w/0-train/data-log.tsv:7, column exp_num: found 2, expected at least 3 as in the row above: numbers \
+             never decrease",
         ),
         (
             E::ColumnsDiffer {
@@ -296,8 +296,8 @@ fn of_order() -> Vec<(MetricsError, &'static str, &'static str)> {
                 worker: text("w"),
             },
             "metrics/row-after-complete",
-            "run/w/0-train/data-log.tsv:7: found another row of experience 2 of w after its complete one, expected the \
-             complete row to be the last: give the next experience a number of its own",
+            "run/w/0-train/data-log.tsv:7: found another row of experience 2 of w after its complete one, expected \
+             the complete row to be the last: give the next experience a new number",
         ),
         (
             E::Record {
@@ -312,7 +312,8 @@ fn of_order() -> Vec<(MetricsError, &'static str, &'static str)> {
         (
             E::Timestamp { found: text("\"now\"") },
             "metrics/timestamp",
-            "timestamp: found \"now\", expected YYYYMMDDTHHMMSS.ffffff as in 20200913T122640.000000, a day that exists",
+            "timestamp: found \"now\", expected YYYYMMDDTHHMMSS.ffffff as in 20200913T122640.000000, on an existing \
+             day",
         ),
     ]
 }
@@ -337,7 +338,8 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
                 column: text("regime_num"),
             },
             "metrics/table-column",
-            "log run: found a column regime_num of its own, expected another name: a table of logs has a column of that name; \
+            "log run: found a column regime_num of its own, expected another name: a table of logs has a column of \
+             that name; \
              rename it in the log's files and in logger_info.json",
         ),
         (
@@ -371,7 +373,8 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
                 found: "nothing",
             },
             "metrics/no-ste-data",
-            "data: found nothing, expected a folder of single-task experts as TASK/RUN/logger_info.json; store an expert's log \
+            "data: found nothing, expected a folder of single-task experts as TASK/RUN/logger_info.json; store an \
+             expert's log \
              there first",
         ),
         (
@@ -379,8 +382,8 @@ fn of_scoring() -> Vec<(MetricsError, &'static str, &'static str)> {
                 path: "data/taskinfo/a_1.pickle".into(),
             },
             "metrics/ste-pickle",
-            "data/taskinfo/a_1.pickle: found a pickle of l2metrics, expected folders of logs: reading a pickle runs the programs \
-             in it; store the logs it was made from again, and take it out of this folder",
+            "data/taskinfo/a_1.pickle: found a pickle of l2metrics, expected folders of logs: reading a pickle can \
+             run code; store the original logs instead, and remove the pickle from this folder",
         ),
         (
             E::TooManyRegimes {

@@ -53,7 +53,8 @@ fn the_bytes_are_those_of_the_format() {
         .unwrap();
     let read = |path: &str| fs::read_to_string(dir.join(path)).unwrap();
     let header = "block_num\texp_num\tworker_id\tblock_type\tblock_subtype\ttask_name\ttask_params\texp_status\ttimestamp\tSteps\treward\n";
-    let row = "0\t0\tworker-default\ttrain\twake\tfind_red\t\"{\"\"a\"\": 1, \"\"b\"\": \"\"x y\"\"}\"\tcomplete\t20200913T122640.000000\t12.0\t0.5\n";
+    let row = "0\t0\tworker-default\ttrain\twake\tfind_red\t\"{\"\"a\"\": 1, \"\"b\"\": \"\"x \
+         y\"\"}\"\tcomplete\t20200913T122640.000000\t12.0\t0.5\n";
     assert_eq!(read("worker-default/0-train/data-log.tsv"), format!("{header}{row}"));
     let row = "1\t1\tworker-default\ttest\twake\tfind_red\t{}\tcomplete\t20200913T122640.000001\tnan\t0.5\n";
     assert_eq!(read("worker-default/1-test/data-log.tsv"), format!("{header}{row}"));
@@ -84,8 +85,8 @@ fn a_directory_that_holds_anything_is_not_written_into() {
     assert_eq!(
         error.to_string(),
         format!(
-            "{}: found a directory that is not empty, expected a new or an empty one; choose another name, or continue \
-             the log that is there with LogWriter::resume",
+            "{}: found a directory that is not empty, expected a new or an empty one; choose another name, or \
+             continue its log with LogWriter::resume",
             base.path().display()
         )
     );
@@ -114,12 +115,12 @@ fn an_interrupted_log_is_continued_where_it_stopped() {
     let message = |writer: &mut LogWriter, record: &Record| writer.write(record).unwrap_err().to_string();
     assert_eq!(
         message(&mut writer, &record(2, 7, BlockType::Train)),
-        "record of experience 7, block_num: found 2, expected at least 3, the number before it: numbers never fall"
+        "record of experience 7, block_num: found 2, expected at least 3, the number before it: numbers never decrease"
     );
     assert_eq!(
         message(&mut writer, &record(3, 6, BlockType::Test)),
-        "record of experience 6, exp_num: found another row by worker-default, expected no row after the complete one: \
-         give the next experience a number of its own"
+        "record of experience 6, exp_num: found another row by worker-default, expected no row after the complete \
+         one: give the next experience a new number"
     );
     assert_eq!(
         message(&mut writer, &record(3, 7, BlockType::Test).with_metric("steps", 1.0)),
@@ -224,7 +225,8 @@ fn records_that_break_a_rule_are_refused_and_nothing_is_written() {
     );
     check(
         record(0, 4, BlockType::Train).with_metric("exp_num", 1.0),
-        "record of experience 4, metrics: found \"exp_num\", expected a name that is not empty and not a standard column's",
+        "record of experience 4, metrics: found \"exp_num\", expected a name that is not empty and not a standard \
+         column's",
     );
     assert_eq!(
         fs::read_dir(base.path()).unwrap().count(),

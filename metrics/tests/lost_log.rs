@@ -169,7 +169,7 @@ proptest! {
         // in its place.
         if mishap.is_of_the_folder() {
             prop_assert_eq!(listed(base.path()), left);
-            prop_assert!(message.contains(&format!("with it went {written} row")), "{}", message);
+            prop_assert!(message.contains(&format!("and with it {written} row")), "{}", message);
         } else {
             let of_the_file = |found: &[(PathBuf, Option<Vec<u8>>)]| {
                 found.iter().find(|(path, _)| *path == file).cloned()

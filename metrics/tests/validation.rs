@@ -94,11 +94,13 @@ fn every_fault_of_every_row_is_listed_and_the_other_rows_are_read() {
         problems,
         [
             "LOG/w/0-train/data-log.tsv:2, column block_type: found \"eval\", expected one of train, test",
-            "LOG/w/0-train/data-log.tsv:2, column reward: found \"much\", expected a finite number, or nothing for a missing one",
+            "LOG/w/0-train/data-log.tsv:2, column reward: found \"much\", expected a finite number, or nothing for a \
+             missing one",
             "LOG/w/0-train/data-log.tsv:4: found 3 cells, expected 10 as in the header; is a tab or a quote missing?",
             "LOG/w/0-train/data-log.tsv:5, column exp_status: found \"done\", expected one of complete, incomplete",
-            "LOG/w/0-train/data-log.tsv:6: found a last line without a line end, expected whole rows; its writer was stopped in \
-             the middle of it: delete that line, or continue the log, which does so: `driftworld run … --resume`, LogWriter::resume",
+            "LOG/w/0-train/data-log.tsv:6: found a last line without a line end, expected complete rows; its writer \
+             was interrupted: delete that line, or continue the log, which deletes it (`driftworld run … --resume`, \
+             LogWriter::resume)",
             "LOG/w/1-train/data-log.tsv:1: found an empty file, expected a header line that begins with block_num",
         ]
     );
@@ -152,21 +154,22 @@ fn numbers_that_fall_are_faults_and_time_that_does_is_odd() {
     check(
         [HEADER, &row(0, 2, "complete"), &row(0, 1, "complete"), &early, &earlier].concat(),
         &[
-            "LOG/w/0-train/data-log.tsv:3, column exp_num: found 1, expected at least 2 as in the row above: numbers never fall",
+            "LOG/w/0-train/data-log.tsv:3, column exp_num: found 1, expected at least 2 as in the row above: numbers \
+             never decrease",
         ],
         &[
-            "LOG/w/0-train/data-log.tsv:3, column timestamp: found 20200913T122640.000001, expected not earlier than \
-             20200913T122640.000002 in the row above; it counts all the same",
+            "LOG/w/0-train/data-log.tsv:3, column timestamp: found 20200913T122640.000001, expected at least 20200913T122640.000002 as in the row above; kept",
         ],
     );
     check(
         [HEADER, &row(1, 1, "complete"), &row(0, 2, "complete")].concat(),
         &[
-            "LOG/w/0-train/data-log.tsv:3, column block_num: found 0, expected at least 1 as in the row above: numbers never fall",
+            "LOG/w/0-train/data-log.tsv:3, column block_num: found 0, expected at least 1 as in the row above: \
+             numbers never decrease",
             "LOG/w/0-train/data-log.tsv:3, column block_num: found 0, expected at least 1: \
-             read in order of exp_num, block numbers never fall",
+             in order of exp_num, block numbers never decrease",
         ],
-        &["LOG/w/0-train/data-log.tsv:2: found a row of another folder, expected it in w/1-train; read all the same"],
+        &["LOG/w/0-train/data-log.tsv:2: found a row of another folder, expected it in w/1-train; kept"],
     );
 }
 
@@ -182,12 +185,14 @@ fn an_experience_has_one_complete_row_and_it_is_the_last() {
         ]
         .concat(),
         &[
-            "LOG/w/0-train/data-log.tsv:2: found experience 0 of w without a complete row, expected exactly one: it is not scored",
-            "LOG/w/0-train/data-log.tsv:4: found another row of experience 1 of w after its complete one, expected the complete \
-             row to be the last: give the next experience a number of its own",
+            "LOG/w/0-train/data-log.tsv:2: found experience 0 of w without a complete row, expected exactly one: it \
+             is not scored",
+            "LOG/w/0-train/data-log.tsv:4: found another row of experience 1 of w after its complete one, expected \
+             the complete row to be the last: give the next experience a new number",
         ],
         &[
-            "LOG/w/0-train/data-log.tsv:5: found experience 2 without a complete row, the last of its worker; left out until it has one",
+            "LOG/w/0-train/data-log.tsv:5: found experience 2 without a complete row, the last of its worker; ignored \
+             until it has one",
         ],
     );
     let two_workers = row(0, 0, "complete").replace("\tw\t", "\tv\t");
@@ -206,7 +211,8 @@ fn files_have_the_same_columns_and_those_of_their_version() {
     let (problems, warnings, _) = validate(&[("w/0-train", first), ("w/1-train", other)], "1.0");
     let columns = HEADER.trim_end().replace('\t', ", ");
     let expected = format!(
-        "LOG/w/1-train/data-log.tsv:1: found the columns {columns}, steps, expected {columns} as in LOG/w/0-train/data-log.tsv"
+        "LOG/w/1-train/data-log.tsv:1: found the columns {columns}, steps, expected {columns} as in \
+         LOG/w/0-train/data-log.tsv"
     );
     assert_eq!(problems, [expected]);
     let version =
@@ -220,7 +226,8 @@ fn files_have_the_same_columns_and_those_of_their_version() {
         old,
         &[],
         &[
-            "LOG/w/0-train/data-log.tsv:1: found no column block_subtype, expected one in a log of format 1.1; read as wake",
+            "LOG/w/0-train/data-log.tsv:1: found no column block_subtype, expected one in a log of format 1.1; read \
+             as wake",
         ],
     );
 }
@@ -235,8 +242,8 @@ fn odd_names_and_metrics_without_numbers_are_told() {
         .concat(),
         &[],
         &[
-            "column reward: found no number in any row, expected some; it cannot be scored",
-            "task_name: found \"a\", expected TASK_VARIANT, letters and digits on both sides; used as it is",
+            "column reward: found no number in any row, expected at least one; it cannot be scored",
+            "task_name: found \"a\", expected TASK_VARIANT, with letters and digits on both sides; used as is",
         ],
     );
 }
@@ -277,13 +284,14 @@ fn a_quote_that_is_never_closed_is_told_from_a_torn_row() {
     check(
         [HEADER, &open, &row(0, 1, "complete"), &row(0, 2, "complete")].concat(),
         &[
-            "LOG/w/0-train/data-log.tsv:2: found a quote that opens a cell and is never closed, expected another at the end of \
-             the cell; the rows after it were taken for a part of it",
+            "LOG/w/0-train/data-log.tsv:2: found a quote that opens a cell and is never closed, expected another at \
+             the end of the cell; the rows after it were read as part of the cell",
         ],
         &[],
     );
-    let torn = "LOG/w/0-train/data-log.tsv:3: found a last line without a line end, expected whole rows; its writer was stopped \
-                in the middle of it: delete that line, or continue the log, which does so: `driftworld run … --resume`, LogWriter::resume";
+    let torn = "LOG/w/0-train/data-log.tsv:3: found a last line without a line end, expected complete rows; its \
+         writer was interrupted: delete that line, or continue the log, which deletes it (`driftworld run … \
+         --resume`, LogWriter::resume)";
     check(
         [HEADER, &row(0, 0, "complete"), "0\t1\tw\ttrain\twake\t\"a\n"].concat(),
         &[torn],
@@ -320,8 +328,8 @@ fn rows_in_the_folder_of_another_worker_or_block_are_odd() {
     assert_eq!(
         warnings,
         [
-            "LOG/w/1-train/data-log.tsv:3: found a row of another folder, expected it in v/1-train; read all the same",
-            "LOG/w/7-test/data-log.tsv:2: found a row of another folder, expected it in w/0-train; read all the same",
+            "LOG/w/1-train/data-log.tsv:3: found a row of another folder, expected it in v/1-train; kept",
+            "LOG/w/7-test/data-log.tsv:2: found a row of another folder, expected it in w/0-train; kept",
         ]
     );
 }

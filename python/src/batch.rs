@@ -1,33 +1,25 @@
 //! [`PyBatch`]: environments that step together, with their buffers as arrays. Single environments are batches of one.
 //!
 //! Spaces, infos and Gymnasium's rules are in `package/driftworld/envs/`.
-#![expect(unsafe_code, reason = "arrays are views on the buffers of the batch that keeps them")]
 
 use std::num::NonZeroU32;
 use std::str::FromStr;
-use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 use driftworld_env::{
-    Action, Autoreset, Batch, BatchOptions, Catalogue, DepthForm, EnvError, Event, GoOn, Library, Outputs,
-    RendererKind, WorldSource, top_down,
+    Action, Batch, BatchOptions, Catalogue, EnvError, Event, GoOn, Library, RendererKind, WorldSource, top_down,
 };
-use driftworld_spec::{Modality, World};
-use numpy::ndarray::{ArrayView, Ix4};
-use numpy::{Element, PyArray1, PyArray4, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use driftworld_spec::World;
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
+use crate::action::{no_row, number_action, row_action};
 use crate::errors::{Error, Result};
-use crate::interruptible::run_cancellable;
+use crate::interruptible::run_between_envs;
 use crate::supply::{PyStream, Stream, Supply, overrides_of};
-
-/// From so many environments on, Ctrl-C ends making and resetting them: fewer are done before anybody waits.
-const MANY: usize = 32;
-
-/// The row that stands for every number that is none: no table is as long.
-const NO_ROW: usize = usize::MAX;
+use crate::views::views;
 
 /// Environments that step together.
 #[pyclass(name = "Batch", module = "driftworld._native", frozen)]
@@ -78,10 +70,10 @@ impl PyBatch {
             |stream: &Bound<'_, PyStream>| Arc::new(Supply::new(stream.get().0.clone(), Arc::clone(&overrides)));
         let supplies: Vec<Arc<Supply>> = streams.iter().map(supply).collect();
         let options = BatchOptions {
-            autoreset: autoreset_of(autoreset)?,
+            autoreset: word("autoreset_mode", autoreset, "next_step, same_step or disabled")?,
             num_threads,
             renderer: RendererKind::from_str(renderer)?,
-            depth: depth_of(depth)?,
+            depth: word("depth", depth, "uint8, uint16 or float32")?,
             max_episode_steps,
         };
         let make = |go_on: GoOn<'_>| {
@@ -93,7 +85,7 @@ impl PyBatch {
             let source: WorldSource = Arc::new(move |episode| worlds[episode.env].world());
             Batch::with_catalogue_while(supplies.len(), source, options, &catalogue, go_on)
         };
-        let batch = interruptibly(py, supplies.len(), make)?;
+        let batch = run_between_envs(py, supplies.len(), make)?;
         let actions = Vec::with_capacity(supplies.len());
         Ok(Self {
             stepping: Mutex::new(Stepping { batch, actions }),
@@ -166,7 +158,7 @@ impl PyBatch {
         let mut stepping = self.lock()?;
         let batch = &mut stepping.batch;
         let count = chosen.iter().filter(|is_chosen| **is_chosen).count();
-        interruptibly(py, count, |go_on| batch.reset_where_while(&chosen, go_on))
+        run_between_envs(py, count, |go_on| batch.reset_where_while(&chosen, go_on))
     }
 
     /// One step with actions of numbers, `(num_envs, 3)` or without interaction `(num_envs, 2)`.
@@ -174,10 +166,12 @@ impl PyBatch {
         let mut stepping = self.lock()?;
         let actions = actions.as_array();
         stepping.actions.clear();
-        stepping.actions.extend(actions.rows().into_iter().map(|row| {
-            let number = |column: usize| row.get(column).copied().unwrap_or(0.0);
-            Action::Continuous([number(0), number(1), number(2)])
-        }));
+        stepping.actions.extend(
+            actions
+                .rows()
+                .into_iter()
+                .map(|row| number_action(|column| row.get(column).copied())),
+        );
         self.go(py, &mut stepping)?;
         Ok(stepping.stepped(py))
     }
@@ -187,9 +181,7 @@ impl PyBatch {
         let mut stepping = self.lock()?;
         let rows = actions.as_array();
         stepping.actions.clear();
-        // What is no row is an error where the action counts, which the batch knows.
-        let row = |row: &i64| Action::Discrete(usize::try_from(*row).unwrap_or(NO_ROW));
-        stepping.actions.extend(rows.iter().map(row));
+        stepping.actions.extend(rows.iter().copied().map(row_action));
         let done = self.go(py, &mut stepping);
         done.map_err(|error| match &error {
             Error::Env(EnvError::BatchAction { env, error: inner }) => no_row(inner, rows.get(*env)).unwrap_or(error),
@@ -201,13 +193,12 @@ impl PyBatch {
 
     /// One step of the only environment, by numbers: reward, terminated, truncated, success, and whether anything happened.
     fn step_one_by_numbers(&self, py: Python<'_>, numbers: Vec<f64>) -> Result<(f64, bool, bool, bool, bool)> {
-        let number = |column: usize| numbers.get(column).copied().unwrap_or(0.0);
-        self.step_one(py, Action::Continuous([number(0), number(1), number(2)]))
+        self.step_one(py, number_action(|column| numbers.get(column).copied()))
     }
 
     /// The same by a row of the table.
     fn step_one_by_row(&self, py: Python<'_>, row: i64) -> Result<(f64, bool, bool, bool, bool)> {
-        let done = self.step_one(py, Action::Discrete(usize::try_from(row).unwrap_or(NO_ROW)));
+        let done = self.step_one(py, row_action(row));
         done.map_err(|error| match &error {
             Error::Env(inner) => no_row(inner, Some(&row)).unwrap_or(error),
             _ => error,
@@ -386,105 +377,20 @@ impl Stepping {
     }
 }
 
-/// Does what Ctrl-C may end between environments, where there are enough of them that somebody waits.
-fn interruptibly<T: Send>(
-    py: Python<'_>,
-    num_envs: usize,
-    work: impl FnOnce(GoOn<'_>) -> std::result::Result<T, EnvError> + Send,
-) -> Result<T> {
-    if num_envs < MANY {
-        return Ok(py.detach(|| work(&|| true))?);
-    }
-    Ok(run_cancellable(py, |stop| work(&|| !stop.load(Ordering::Relaxed)))??)
-}
-
-/// The error of an action that is no row's number, told with the number that was found.
-fn no_row(error: &EnvError, row: Option<&i64>) -> Option<Error> {
-    let (EnvError::NoSuchAction { found: NO_ROW, last }, Some(row)) = (error, row) else {
-        return None;
-    };
-    let message =
-        format!("action: found row {row}, expected 0 to {last} of the world's action table; nothing was changed");
-    Some(PyValueError::new_err(message).into())
-}
-
-/// Arrays over the buffers of observations that a batch keeps; what writes into them is the batch alone.
-fn views<'py>(batch: &Bound<'py, PyBatch>, outputs: &Outputs) -> Result<Bound<'py, PyDict>> {
-    let images = &outputs.images;
-    let num_envs = outputs.rewards.len();
-    let (height, width) = (images.layout.height as usize, images.layout.width as usize);
-    let views = PyDict::new(batch.py());
-    for modality in &images.layout.modalities {
-        let shape = [num_envs, height, width, if *modality == Modality::Rgb { 3 } else { 1 }];
-        match modality {
-            Modality::Rgb => views.set_item("rgb", view(batch, &images.rgb, shape)?)?,
-            Modality::Segmentation => views.set_item("segmentation", view(batch, &images.category, shape)?)?,
-            Modality::Class => views.set_item("class", view(batch, &images.class, shape)?)?,
-            Modality::Instance => views.set_item("instance", view(batch, &images.instance, shape)?)?,
-            Modality::Depth if !images.depth_gray.is_empty() => {
-                views.set_item("depth", view(batch, &images.depth_gray, shape)?)?;
-            }
-            Modality::Depth if !images.depth_millimetres.is_empty() => {
-                views.set_item("depth", view(batch, &images.depth_millimetres, shape)?)?;
-            }
-            Modality::Depth => views.set_item("depth", view(batch, &images.depth, shape)?)?,
-        }
-    }
-    let shape = [num_envs, 1, 1, outputs.state_len];
-    views.set_item("state", view(batch, &outputs.states, shape)?)?;
-    Ok(views)
-}
-
-fn view<'py, T: Element>(
-    batch: &Bound<'py, PyBatch>,
-    buffer: &[T],
-    shape: [usize; 4],
-) -> Result<Bound<'py, PyArray4<T>>> {
-    let array: ArrayView<'_, T, Ix4> = ArrayView::from_shape(shape, buffer)
-        .map_err(|error| PyRuntimeError::new_err(format!("a buffer is not as its layout says: {error}")))?;
-    // SAFETY: the buffer belongs to the batch, which the array keeps alive as its base, and is made once: a batch writes into its
-    // buffers and never replaces them.
-    let view = unsafe { PyArray4::borrow_from_array(&array, batch.clone().into_any()) };
-    // For good: NumPy makes no array writable whose base is neither an array nor a buffer.
-    Ok(view
-        .readwrite()
-        .make_nonwriteable()
-        .as_any()
-        .cast::<PyArray4<T>>()
-        .map_err(PyErr::from)?
-        .clone())
-}
-
 /// An event as a dictionary.
 fn to_py<'py>(py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyDict>> {
-    let told = PyDict::new(py);
-    told.set_item("object", event.object)?;
-    told.set_item("tag", event.tag.as_deref())?;
+    let dictionary = PyDict::new(py);
+    dictionary.set_item("object", event.object)?;
+    dictionary.set_item("tag", event.tag.as_deref())?;
     let stimulus = serde_json::to_value(event.stimulus).unwrap_or_default();
-    told.set_item("stimulus", stimulus.as_str())?;
-    told.set_item("reward", event.reward)?;
-    told.set_item("destroyed", event.destroyed)?;
-    Ok(told)
+    dictionary.set_item("stimulus", stimulus.as_str())?;
+    dictionary.set_item("reward", event.reward)?;
+    dictionary.set_item("destroyed", event.destroyed)?;
+    Ok(dictionary)
 }
 
-fn autoreset_of(name: &str) -> Result<Autoreset> {
-    match name {
-        "next_step" => Ok(Autoreset::NextStep),
-        "same_step" => Ok(Autoreset::SameStep),
-        "disabled" => Ok(Autoreset::Disabled),
-        _ => Err(unknown("autoreset_mode", name, "next_step, same_step or disabled")),
-    }
-}
-
-fn depth_of(name: &str) -> Result<DepthForm> {
-    match name {
-        "float32" => Ok(DepthForm::Metres),
-        "uint16" => Ok(DepthForm::Millimetres),
-        "uint8" => Ok(DepthForm::Gray),
-        _ => Err(unknown("depth", name, "uint8, uint16 or float32")),
-    }
-}
-
-fn unknown(option: &str, found: &str, expected: &str) -> Error {
-    PyValueError::new_err(format!("{option}: found {found:?}, expected {expected}")).into()
+/// The value of an option that is one of a few words.
+fn word<T: FromStr>(option: &str, found: &str, expected: &str) -> Result<T> {
+    let unknown = |_| PyValueError::new_err(format!("{option}: found {found:?}, expected {expected}"));
+    Ok(found.parse().map_err(unknown)?)
 }

@@ -149,17 +149,17 @@ impl PyPlan {
         let label = spec.label.map(
             |label| json!({ "number": label.number, "of": label.of, "name": label.name, "observed": label.observed }),
         );
-        let told = json!({
+        let dictionary = json!({
             "number": number.0, "block": spec.block, "regime": spec.regime, "learning": spec.kind == BlockKind::Learning,
             "variant": spec.variant, "seed": spec.seed, "index": spec.index, "progress": spec.progress,
-            "chance": spec.chance, "label": label,
+            "chance": spec.agent_seed, "label": label,
         });
-        Ok(json_to_py(py, &told)?)
+        Ok(json_to_py(py, &dictionary)?)
     }
 
     /// The world of experience `number`; one without any limit has one of steps here.
     fn world(&self, py: Python<'_>, number: Whole) -> Result<PyStream> {
-        Ok(handle(py.detach(|| self.plan.world(number.0))?))
+        handle(py.detach(|| self.plan.world(number.0))?)
     }
 
     /// Draws so many worlds of each regime, and says how often that fails, and why: a list of dictionaries.
@@ -222,8 +222,8 @@ impl PyJournal {
 
     /// How many experiences are in the log.
     fn __len__(&mut self) -> Result<usize> {
-        let lived = self.open()?.num_experiences();
-        Ok(usize::try_from(lived).unwrap_or(usize::MAX))
+        let logged = self.open()?.num_experiences();
+        Ok(usize::try_from(logged).unwrap_or(usize::MAX))
     }
 
     /// Ends the log: asks the disk to have all of it. Does nothing a second time.
@@ -241,14 +241,15 @@ impl PyJournal {
 }
 
 /// A world on its way to Python; one without any limit gets one of steps.
-fn handle(mut world: World) -> PyStream {
-    if world.step_limit().is_none() {
-        world.max_steps = MOST_STEPS;
-    }
-    PyStream(Stream::World {
+fn handle(world: World) -> Result<PyStream> {
+    let world = match world.step_limit() {
+        Some(_) => world,
+        None => world.edit(|world| world.max_steps = MOST_STEPS)?,
+    };
+    Ok(PyStream(Stream::World {
         world: Arc::new(world),
         name: "world".to_owned(),
-    })
+    }))
 }
 
 /// An agent of Python's with its environment: what it does is in `package/driftworld/lifetimes.py`.
@@ -265,7 +266,7 @@ impl Rollout for PythonRollout<'_> {
     fn experience(&mut self, number: u64, world: World) -> Result<Option<Experience>> {
         let agent = &world.agent_params;
         let time = (agent.time_step, agent.frame_skip.max(1), world.max_seconds);
-        let outcome = self.0.call_method1("experience", (number, handle(world), time))?;
+        let outcome = self.0.call_method1("experience", (number, handle(world)?, time))?;
         let (reward, success, steps, seconds, truncated) = outcome.extract()?;
         Ok(Some(Experience {
             reward,

@@ -57,6 +57,7 @@ fn request(tasks: Vec<String>, options: &Options<'_>) -> Result<DesignRequest> {
             "order",
             &[
                 ("gradual", DesignOrder::Gradual),
+                ("outward", DesignOrder::Outward),
                 ("abrupt", DesignOrder::Abrupt),
                 ("path", DesignOrder::Path),
                 ("farthest", DesignOrder::Farthest),
@@ -64,6 +65,15 @@ fn request(tasks: Vec<String>, options: &Options<'_>) -> Result<DesignRequest> {
             ],
         )?,
         probe: options.read("probe", design::element)?,
+        modalities: options
+            .json("modalities")?
+            .map(serde_json::from_value)
+            .transpose()
+            .map_err(|error| {
+                options.refuse(format!(
+                    "modalities: {error}, expected a list of kinds of images, such as [\"rgb\"]"
+                ))
+            })?,
         variants: options.whole("variants")?,
         step_distance: options.number("step_distance")?,
         tolerance: options.number("tolerance")?,
@@ -82,7 +92,9 @@ fn blocks(options: &Options<'_>) -> Result<Design> {
     let after = options.list("evaluate_after", "a list of whole numbers, such as [0, 2]")?;
     let evaluation = options.choice("evaluate", &[("every", Evaluate::Every), ("ends", Evaluate::Ends)])?;
     if after.is_some() && evaluation.is_some() {
-        return Err(options.refuse("evaluate_after: found evaluate, too, expected one of the two".to_owned()));
+        return Err(
+            options.refuse("evaluate_after: found together with evaluate, expected only one of the two".to_owned())
+        );
     }
     let schedule = options.read("drift", design::schedule)?;
     let mixes = options.flag("mix")?;

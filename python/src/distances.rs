@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use driftworld::distances::{Sample, Side, between, variant_matrix_while};
-use driftworld_similarity::{DistanceMatrix, Method, OrderOptions, SimilarityError, Weights, classical_map, order};
+use driftworld::distances::{By, Sample, Side, between, variant_matrix_while};
+use driftworld_similarity::{
+    DistanceMatrix, Method, OrderOptions, SimilarityError, Weights, classical_map, order, share_of_shorter_orders,
+};
 use driftworld_spec::{Element, Variant, World};
 use numpy::{PyArray2, PyReadonlyArray2, ToPyArray};
 use pyo3::exceptions::PyValueError;
@@ -16,7 +18,7 @@ use serde_json::json;
 use crate::document::{Whole, json_to_py, to_py};
 use crate::errors::Result;
 use crate::interruptible::{run_cancellable, run_detached};
-use crate::task::PyVariant;
+use crate::variant::PyVariant;
 
 /// What elements weigh, by letters or names.
 type Weighing = Option<BTreeMap<String, f64>>;
@@ -30,6 +32,11 @@ pub(crate) enum Compared<'py> {
 
 /// How far apart two are: the JSON of `driftworld distance --json` as a dictionary.
 #[pyfunction]
+#[pyo3(signature = (a, b, weights, worlds, seed, index, by=None))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "they are the arguments of a function of Python"
+)]
 pub(crate) fn distance<'py>(
     py: Python<'py>,
     a: Compared<'py>,
@@ -38,6 +45,7 @@ pub(crate) fn distance<'py>(
     worlds: Option<Whole>,
     seed: Whole,
     index: Whole,
+    by: Option<&str>,
 ) -> Result<Bound<'py, PyAny>> {
     let worlds = worlds.map(|worlds| worlds.0);
     if let Some(worlds) = worlds.filter(|worlds| !(1..=100_000).contains(worlds)) {
@@ -51,11 +59,18 @@ pub(crate) fn distance<'py>(
         worlds,
         seed: seed.0,
         index: index.0,
+        by: named(by)?,
     };
     let (distance, compared) = run_detached(py, move || between(&a, &b, &sample, |declared| over(&laid, declared)))??;
     let found = to_py(py, &distance)?;
     found.set_item("compared", compared)?;
     Ok(found)
+}
+
+/// What to compare by, by its name.
+fn named(by: Option<&str>) -> Result<Option<By>> {
+    let by = by.map(|name| By::from_name(name).map_err(|said| PyValueError::new_err(format!("by: {said}"))));
+    Ok(by.transpose()?)
 }
 
 impl Compared<'_> {
@@ -75,18 +90,21 @@ pub(crate) struct PyMatrix(Arc<DistanceMatrix>);
 impl PyMatrix {
     /// Measures every pair of variants, each under its label.
     #[staticmethod]
+    #[pyo3(signature = (labels, variants, weights, by=None))]
     fn measure(
         py: Python<'_>,
         labels: Vec<String>,
         variants: Vec<Bound<'_, PyVariant>>,
         weights: Weighing,
+        by: Option<&str>,
     ) -> Result<Self> {
-        let laid = laid(weights)?;
+        let (laid, by) = (laid(weights)?, named(by)?);
         let variants = variants.iter().map(|variant| variant.get().0.clone());
         let variants: Vec<(String, Variant)> = labels.into_iter().zip(variants).collect();
         let matrix = run_cancellable(py, |stop| {
             variant_matrix_while(
                 &variants,
+                by,
                 |declared| over(&laid, declared),
                 || !stop.load(Ordering::Relaxed),
             )
@@ -184,6 +202,7 @@ impl PyMatrix {
             "method": method, "order": labels, "indices": found.indices, "steps": found.steps, "length": found.length,
             "largest_step": found.largest_step(), "mean_step": found.mean_step(),
             "anchor_correlation": found.anchor_correlation,
+            "share_of_shorter_random_orders": share_of_shorter_orders(matrix, &found, seed.0),
         });
         Ok(json_to_py(py, &found)?)
     }

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 use crate::document::{Whole, from_python};
 use crate::errors::Result;
-use crate::task::PyVariant;
+use crate::variant::PyVariant;
 
 /// The way from one variant of a task to another: ``Drift(blue, dusk, schedule="cosine").at(0.25)``.
 ///

@@ -7,12 +7,18 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use std::{mem, process, thread};
 
+use driftworld_env::{EnvError, GoOn};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use crate::errors::Result;
+
 /// How often signals are looked for.
 const LOOK: Duration = Duration::from_millis(50);
+
+/// From so many environments on, Ctrl-C ends making and resetting them: fewer are done before anybody waits.
+const MANY_ENVS: usize = 32;
 
 /// The threads that work is shared among, one for each processor. Not rayon's common ones: those are made once, and in a process that
 /// was forked after that there are none of them, so that all work waits for ever.
@@ -28,7 +34,7 @@ pub(crate) fn workers(_held: Python<'_>) -> PyResult<Arc<ThreadPool>> {
     }
     let pool = ThreadPoolBuilder::new()
         .build()
-        .map_err(|error| PyRuntimeError::new_err(format!("threads: found none to be had: {error}")))?;
+        .map_err(|error| PyRuntimeError::new_err(format!("threads: could not start any: {error}")))?;
     let pool = Arc::new(pool);
     // The parent's threads are not in this process: nothing that is left of them may be touched.
     mem::forget(workers.replace((here, Arc::clone(&pool))));
@@ -55,6 +61,18 @@ pub(crate) fn run_cancellable<T: Send>(py: Python<'_>, work: impl FnOnce(&Atomic
         interrupt?;
         result.map_or_else(|panic| std::panic::resume_unwind(panic), Ok)
     })
+}
+
+/// Does what Ctrl-C may end between environments, where there are enough of them that somebody waits.
+pub(crate) fn run_between_envs<T: Send>(
+    py: Python<'_>,
+    num_envs: usize,
+    work: impl FnOnce(GoOn<'_>) -> std::result::Result<T, EnvError> + Send,
+) -> Result<T> {
+    if num_envs < MANY_ENVS {
+        return Ok(py.detach(|| work(&|| true))?);
+    }
+    Ok(run_cancellable(py, |stop| work(&|| !stop.load(Ordering::Relaxed)))??)
 }
 
 /// Does work that cannot be ended from outside: after Ctrl-C it is left to itself, and what it comes to is dropped.

@@ -3,6 +3,7 @@
 //! Values cross the border as JSON text, as arrays, or as handles; nothing here is an idea of its own.
 #![expect(clippy::needless_pass_by_value, reason = "PyO3 hands arguments over by value")]
 
+mod action;
 mod batch;
 mod classes;
 mod command;
@@ -11,15 +12,19 @@ mod design;
 mod distances;
 mod document;
 mod drift;
+mod elements;
 mod errors;
 mod files;
 mod interruptible;
 mod logs;
 mod options;
 mod overrides;
+mod portions;
 mod scores;
 mod supply;
 mod task;
+mod variant;
+mod views;
 
 use pyo3::prelude::*;
 
@@ -44,6 +49,8 @@ mod native {
     #[pymodule_export]
     use super::drift::PyDrift;
     #[pymodule_export]
+    use super::elements::elements;
+    #[pymodule_export]
     use super::files::write_file;
     #[pymodule_export]
     use super::logs::{PyLogFile, read_log, validate_log};
@@ -52,7 +59,9 @@ mod native {
     #[pymodule_export]
     use super::supply::PyStream;
     #[pymodule_export]
-    use super::task::{PyTask, PyVariant, built_in_names, load_variant, load_variants, variant_again};
+    use super::task::{PyTask, built_in_names};
+    #[pymodule_export]
+    use super::variant::{PyVariant, load_variant, load_variants, variant_again};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -1,11 +1,11 @@
 //! [`WorldOverrides`]: what an environment's options lay over each of its worlds. Where the worlds come from is in `supply.rs`.
 
-use driftworld_spec::{ActionModel, ActionSpace, AgentParams, Modality, SpecError, World};
+use driftworld_spec::{ActionModel, ActionSpace, AgentParams, Modality, SpecError, World, WorldDraft};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
 /// Options that stand in place of what worlds say; what is `None` stays as it is.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct WorldOverrides {
     modalities: Option<Vec<Modality>>,
@@ -19,8 +19,8 @@ pub(crate) struct WorldOverrides {
 }
 
 impl WorldOverrides {
-    /// Lays the options over a world, unchecked.
-    pub(crate) fn apply(&self, world: &mut World) {
+    /// Lays the options over a world.
+    pub(crate) fn apply(&self, world: &mut WorldDraft) {
         let agent = &mut world.agent_params;
         if let Some(modalities) = &self.modalities {
             agent.modalities.clone_from(modalities);
@@ -40,14 +40,20 @@ impl WorldOverrides {
         }
     }
 
+    /// Whether there are none.
+    pub(crate) fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+
     /// Whether a world is sound with these options, and what an environment of it looks like from outside.
     ///
     /// # Errors
     /// [`SpecError`] with every value out of its range.
-    pub(crate) fn checked_layout(&self, mut world: World) -> Result<Value, SpecError> {
-        self.apply(&mut world);
-        let world = World::from_json("options", &world.to_json())?;
-        Ok(layout(&world))
+    pub(crate) fn checked_layout(&self, world: World) -> Result<Value, SpecError> {
+        let mut draft = world.into_draft();
+        self.apply(&mut draft);
+        let text = serde_json::to_string(&draft).expect("a world has string keys only, which always serialise");
+        Ok(layout(&World::from_json("options", &text)?))
     }
 }
 

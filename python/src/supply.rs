@@ -3,14 +3,14 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use driftworld_generator::{Drift, GeneratorError, Sampler, Schedule, Switch};
-use driftworld_spec::{DriftSchedule, DriftSwitch, Progress, RegimeDrift, Variant, World};
+use driftworld_spec::{DriftSchedule, DriftSwitch, ObjectProgress, Progress, RegimeDrift, Variant, World};
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::errors::Result;
 use crate::overrides::WorldOverrides;
-use crate::task::PyVariant;
+use crate::variant::PyVariant;
 
 /// Worlds without end: number *i* under a seed.
 #[derive(Clone)]
@@ -245,22 +245,31 @@ impl Supply {
     /// The next world, with the options laid over it. After an error the same world is asked for again.
     pub(crate) fn world(&self) -> std::result::Result<World, String> {
         let mut state = self.lock();
-        let (mut world, origin) = state.draw().map_err(|error| error.to_string())?;
+        let (world, origin) = state.draw().map_err(|error| error.to_string())?;
         if state.given.take().is_none() {
             state.next = state.next.saturating_add(1);
             state.turn = state.turn.saturating_add(1);
         }
-        // Chance grows from the world as it was drawn: options such as a picture's size or a limit of steps move no object.
-        if world.progress.is_none() {
-            world.progress = Some(Progress {
-                seed: Some(origin.hash.clone()),
-                ..Progress::default()
-            });
-        }
+        // Without a seed, random numbers depend on where things are in the world as it was drawn, as they do everywhere:
+        // options laid over it change none.
+        let is_seedless = world.seed.is_none() && world.progress.is_none();
+        let hash = (is_seedless && !self.overrides.is_empty()).then(|| world.hash_of_places());
         state.origin = origin;
         drop(state);
-        self.overrides.apply(&mut world);
-        Ok(world)
+        if hash.is_none() && self.overrides.is_empty() {
+            return Ok(world);
+        }
+        let world = world.edit(|world| {
+            if hash.is_some() {
+                world.progress = Some(Progress {
+                    seed: hash,
+                    objects: vec![ObjectProgress::default(); world.objects.len()],
+                    ..Progress::default()
+                });
+            }
+            self.overrides.apply(world);
+        });
+        world.map_err(|error| error.to_string())
     }
 
     /// Where the last world came from.

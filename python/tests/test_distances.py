@@ -66,19 +66,19 @@ def test_worlds_are_compared_as_they_are(tmp_path: Path) -> None:
 
 def test_a_distance_is_a_number_where_one_is_wanted() -> None:
     near, far = distance(SOME[0], SOME[1]), distance(SOME[0], SOME[3])
-    assert near < far and max(near, far) is far and near < 0.9 and near != far and near == near.total
+    assert near < far and max(near, far) is far and near < 1.9 and near != far and near == near.total
     assert np.asarray([near, far]).sum() == near + far == near.total + far.total
     again = pickle.loads(pickle.dumps(far))
     assert again == far and again.parts == far.parts and again.elements == far.elements
     assert (
-        str(near) == str(near.total) and f"{near:.3f}" == f"{near.total:.3f}" and repr(near).startswith("Distance(0.0")
+        str(near) == str(near.total) and f"{near:.3f}" == f"{near.total:.3f}" and repr(near).startswith("Distance(1.0")
     )
 
 
 def test_a_distance_explains_itself() -> None:
     said = distance("find_objects#blue", "find_objects#dusk").explain()
     lines = said.splitlines()
-    assert lines[0] == "0.0656, parameter by parameter"
+    assert lines[0] == "1.4474, parameter by parameter"
     assert any(line.startswith("  O observation") for line in lines)
     assert any(line.startswith("light ") and line.endswith("%") for line in lines)
 
@@ -118,8 +118,10 @@ def test_a_matrix_takes_tasks_variants_and_names_each_once() -> None:
 
 
 def test_variants_of_several_tasks_are_compared_by_worlds() -> None:
-    matrix = distance_matrix(["find_objects#blue", "get_to_goal#plain"])
-    assert not matrix.is_metric and matrix[0, 1] == distance("find_objects#blue", "get_to_goal#plain").total
+    with pytest.raises(ValueError, match="by: found variants of several tasks"):
+        distance_matrix(["find_objects#blue", "get_to_goal#plain"])
+    matrix = distance_matrix(["find_objects#blue", "get_to_goal#plain"], by="worlds")
+    assert not matrix.is_metric and matrix[0, 1] == pytest.approx(distance("find_objects#blue", "get_to_goal#plain").total)
 
 
 @pytest.mark.parametrize("ending", ["csv", "json", "npy"])
@@ -138,7 +140,7 @@ def test_a_matrix_of_numbers_is_checked() -> None:
     for values in ([[0, 1], [2, 0]], [[0, -1], [-1, 0]], [[0, np.nan], [np.nan, 0]], [[0, 1, 2], [1, 0, 2]]):
         with pytest.raises(SimilarityError):
             DistanceMatrix(["a", "b"], values)
-    with pytest.raises(ValueError, match="ends with .csv"):
+    with pytest.raises(ValueError, match="ends in .csv"):
         distance_matrix(SOME[:2]).save("matrix.txt")
 
 

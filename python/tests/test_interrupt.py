@@ -11,7 +11,7 @@ import pytest
 CALLS = {
     "sample_many": "driftworld.variant('scavenger_hunt').sample_many_json(10**6)",
     "portions_quickly_drawn": "driftworld.TaskSpec.from_dict({'name': 'tiny'}).variant().sample_many_json(10**7)",
-    "distance_matrix": "driftworld.distance_matrix(variants)",
+    "distance_matrix": "driftworld.distance_matrix(variants, by='worlds')",
     "distance": "driftworld.distance('find_objects#blue', 'find_objects#red', worlds=100000)",
 }
 

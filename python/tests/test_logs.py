@@ -104,7 +104,7 @@ def test_a_log_goes_on_where_it_stopped(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        ({"exp_num": 0}, "numbers never fall"),
+        ({"exp_num": 0}, "numbers never decrease"),
         ({"block_type": "learn"}, "train"),
         ({"reward": math.inf}, "finite"),
         ({"worker_id": "a/b"}, "worker_id"),
@@ -138,7 +138,7 @@ def test_a_log_that_goes_away_is_an_error(tmp_path: Path) -> None:
     log.write(exp_num=0, **row, reward=1.0)
     (tmp_path / "log").rename(tmp_path / "away")
     for end in [lambda: log.write(exp_num=1, **row, reward=1.0), log.close]:
-        with pytest.raises(MetricsError, match="found no directory.* with it went 1 row") as refused:
+        with pytest.raises(MetricsError, match="found no directory.* with it 1 row") as refused:
             end()
         assert refused.value.code == "metrics/folder-lost"
     assert not (tmp_path / "log").exists()

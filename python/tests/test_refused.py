@@ -219,7 +219,7 @@ WRONG: dict[str, tuple[Callable[[Path], Any], str]] = {
     "learn much": (lambda log: Curriculum.design("find_objects#red", learn=2**70), "expected a smaller number"),
     "seed": (lambda log: Curriculum.design("find_objects#red", seed=-1), "seed: found -1, expected a whole number"),
     "drift": (lambda log: Curriculum.design("find_objects", drift="x"), "drift: found 'x', expected linear, cosine"),
-    "steps": (lambda log: Curriculum.design("find_objects#red", steps=3), "steps: found it without step_distance"),
+    "steps": (lambda log: Curriculum.design("find_objects#red", steps=3), "steps: found without step_distance"),
     "tolerance": (
         lambda log: Curriculum.design("find_objects#red", step_distance=0.1, steps=2, tolerance="a"),  # type: ignore[arg-type]
         "tolerance: found 'a', expected a number",

@@ -133,7 +133,7 @@ def test_a_log_that_is_not_there_is_named(tmp_path: Path) -> None:
 
 def test_warnings_are_pythons(logs: list[Path], tmp_path: Path) -> None:
     stranger = expert(tmp_path / "stranger", "other_task")
-    with pytest.warns(UserWarning, match="is left aside"):
+    with pytest.warns(UserWarning, match="is ignored"):
         metrics(logs[0], ste=stranger)
 
 

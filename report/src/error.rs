@@ -109,8 +109,8 @@ mod tests {
             },
             ReportError::TooManyLifetimes { found: 99, limit: 40 },
         ];
-        let told: Vec<String> = all.iter().map(|error| format!("{}: {error}", error.code())).collect();
-        insta::assert_snapshot!(told.join("\n"));
+        let lines: Vec<String> = all.iter().map(|error| format!("{}: {error}", error.code())).collect();
+        insta::assert_snapshot!(lines.join("\n"));
         assert!(
             all.iter()
                 .map(ReportError::code)

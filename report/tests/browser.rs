@@ -5,13 +5,13 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
-mod lived;
+mod lifetimes;
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use lived::Life;
+use lifetimes::Life;
 
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
@@ -196,7 +196,7 @@ fn nothing_is_wider_than_the_screen_and_every_word_can_be_read() {
         }
     };
     check(&Life::default().live().page(), "5", "0");
-    check(&lived::page_of_two(), "10", "2");
+    check(&lifetimes::page_of_two(), "10", "2");
     let life = Life {
         name: "a_name_that_is_much_longer_than_any_name_of_a_lifetime_needs_to_be_and_has_no_spaces",
         tasks: (0..12)

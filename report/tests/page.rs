@@ -2,10 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at its first surprise")]
 
-mod lived;
+mod lifetimes;
 
 use driftworld_report::{Chapter, ChapterOptions, Figure, FigureOptions, Figures, Report, Unit};
-use lived::Life;
+use lifetimes::Life;
 
 /// Every tag of a page or a drawing: its name, and whether it closes.
 fn tags(text: &str) -> Vec<(String, bool)> {
@@ -143,7 +143,7 @@ fn the_same_lifetime_gives_the_same_bytes() {
 
 #[test]
 fn several_lifetimes_have_an_index_a_chapter_each_and_intervals_together() {
-    let page = lived::page_of_two();
+    let page = lifetimes::page_of_two();
     assert_well_formed(&page);
     for part in [
         "<h1>Two &lt;lives&gt;</h1>",
@@ -277,7 +277,7 @@ fn captions_say_what_was_done_to_the_values() {
     assert!(page(true).contains("after smoothing, scaled to 1…101") && page(true).contains("Learning is smoothed"));
     assert!(!page(false).contains("smoothed") && !page(false).contains("after smoothing"));
     assert!(page(false).contains("Performance scaled to 1…101"));
-    assert!(page(true).contains("One lifetime cannot tell effect from chance"));
+    assert!(page(true).contains("One lifetime cannot distinguish an effect from noise"));
 }
 
 #[test]
@@ -290,8 +290,8 @@ fn sleep_is_counted_alike_everywhere_and_said() {
     assert!(page.contains("<dd>18 (9 asleep)</dd>"), "the facts");
     let blocks = "<td class=\"number\">6</td><td class=\"number\">180</td>";
     assert_eq!(count(&page, blocks), 3, "the table of tasks");
-    assert!(page.contains("Blocks asleep are drawn as those awake: 9 of learning, 0 of evaluation."));
-    assert!(page.contains("This lifetime sleeps: its evaluations awake are drawn, and left out of"));
+    assert!(page.contains("Sleep blocks are drawn like the others: 9 of learning, 0 of evaluation."));
+    assert!(page.contains("This lifetime has sleep phases: evaluations while awake are drawn, but do not count for"));
     assert!(!Life::default().live().page().contains("sleep"));
 }
 

@@ -2,7 +2,9 @@
 //!
 //! [`variant_distance`] compares two variants of a task by what they declare, [`world_distance`] two concrete worlds by what
 //! is in them; both explain themselves part by part. [`DistanceMatrix`] holds all distances among many, [`order`] puts the
-//! many into a path. The measures that they are made of stand alone, too. Nothing here draws worlds or pictures.
+//! many into a path. The measures that they are made of stand alone, too. [`Epic`] compares rewards by what they ask for,
+//! [`bisimulation`] and [`w1_mdp`] finite decision processes ([`Mdp`]) by what they pay and where they lead. Nothing here
+//! draws worlds or pictures.
 
 mod assignment;
 mod color;
@@ -11,11 +13,14 @@ mod correlation;
 pub mod distribution;
 mod error;
 mod matrix;
+mod mdp;
 mod metric_properties;
 mod occupancy;
 mod order;
 pub mod picture;
+mod reward;
 pub mod scalar;
+mod shares;
 mod split_mix;
 mod transport;
 
@@ -40,13 +45,23 @@ pub use error::SimilarityError;
 pub use matrix::{
     DistanceMatrix, Embedding, MAX_DISTANCE, MAX_FEATURES, MAX_ITEMS, PlanarMap, Triangles, Violation, classical_map,
 };
+pub use mdp::{
+    BestMatch, MAX_MDP_STATES, MAX_PAIRS, MAX_STATE_PAIRS, Mdp, PairedBisimulation, StateDistances, bisimulation,
+    paired_bisimulation, w1_mdp, w1_mdp_by_state, w1_mdp_pooled,
+};
 pub use metric_properties::MetricProperties;
 pub use occupancy::{
     BitGrid, Classes, Extent, Grid, GridShape, MAX_CELLS, Ospa, Raster, grid_chamfer_distance, grid_dice_distance,
     grid_earth_movers_distance, grid_earth_movers_hat, grid_hamming_distance, grid_hausdorff_95,
     grid_hausdorff_distance, grid_jaccard_distance, grid_ruzicka_distance, grid_sinkhorn, grid_sliced_wasserstein,
 };
-pub use order::{MAX_EXACT, MAX_LEAVES, Method, OrderOptions, Ordering, order};
+pub use order::{
+    MAX_EXACT, MAX_LEAVES, Method, NUM_RANDOM_ORDERS, OrderOptions, Ordering, order, share_of_shorter_orders,
+};
+pub use reward::{
+    Epic, MAX_REWARDS, RewardSamples, RewardTable, SampledReward, pearson_distance, world_rewards_distance,
+    world_sets_rewards_distance,
+};
 pub use transport::{
     MAX_DIRECTIONS, MAX_SINKHORN_STEPS, MAX_TRANSPORTED, Move, Sinkhorn, SinkhornSettings, TransportPlan,
     earth_movers_distance, optimal_transport, sinkhorn, sliced_wasserstein,

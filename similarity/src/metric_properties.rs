@@ -15,6 +15,8 @@ use serde::{Deserialize, Serialize};
 pub enum MetricProperties {
     /// 0 for equals, as far there as back, and no detour is shorter than the straight way.
     Metric,
+    /// As a metric, but unlike things may be 0 apart.
+    Pseudometric,
     /// 0 for equals and as far there as back; a detour may be shorter.
     #[default]
     Distance,
@@ -23,8 +25,13 @@ pub enum MetricProperties {
 }
 
 impl MetricProperties {
-    /// Whether the triangle inequality holds.
+    /// Whether it is a metric: 0 for equals only, and no detour is shorter.
     pub fn is_metric(self) -> bool {
         self == Self::Metric
+    }
+
+    /// Whether the triangle inequality holds: no detour is shorter than the straight way.
+    pub fn keeps_triangles(self) -> bool {
+        matches!(self, Self::Metric | Self::Pseudometric)
     }
 }

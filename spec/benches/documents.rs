@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use driftworld_spec::{Object, TaskSpec, World};
+use driftworld_spec::{Object, TaskSpec, World, WorldDraft};
 
 fn world_of(objects: u32) -> String {
     let objects = (0..objects).map(|number| {
@@ -13,11 +13,11 @@ fn world_of(objects: u32) -> String {
         object
     });
     let objects = objects.collect();
-    World {
+    let draft = WorldDraft {
         objects,
-        ..World::default()
-    }
-    .to_json()
+        ..WorldDraft::default()
+    };
+    draft.check().expect("the world is sound").to_json()
 }
 
 fn documents(c: &mut Criterion) {

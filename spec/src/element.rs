@@ -4,11 +4,15 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// An element of the decision process that a parameter touches.
+///
+/// Five are coarse. Two are fine, as the L2Explorer paper has them: the law of the initial state is part of [`Element::S`],
+/// the emission part of [`Element::O`]. Who says the coarse one allows for the fine one; who says the fine one alone says
+/// that nothing else changes.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema, strum::IntoStaticStr,
 )]
 pub enum Element {
-    /// The states: what is where.
+    /// The states: what is where. Covers `p`.
     S,
     /// The actions that the agent has.
     A,
@@ -16,13 +20,44 @@ pub enum Element {
     T,
     /// The rewards.
     R,
-    /// The observations: what the agent sees of a state.
+    /// The observations: what the agent sees of a state. Covers `phi`.
     O,
+    /// The law of the initial state, in a state space that stays: where things are at the start, and how many.
+    #[serde(rename = "p")]
+    #[strum(serialize = "p")]
+    P,
+    /// The emission φ, in an observation space that stays: how a state looks.
+    #[serde(rename = "phi")]
+    #[strum(serialize = "phi")]
+    Phi,
 }
 
 impl Element {
-    /// All elements, in the order in which tables show them.
+    /// The coarse elements, in the order in which tables show them: every distance is in one of these.
     pub const ALL: [Self; 5] = [Self::S, Self::A, Self::T, Self::R, Self::O];
+
+    /// The coarse elements, each followed by its fine one if it has one: what `affects` may list.
+    pub const WITH_FINE: [Self; 7] = [Self::S, Self::P, Self::A, Self::T, Self::R, Self::O, Self::Phi];
+
+    /// The coarse element that this one is, or is part of.
+    ///
+    /// ```
+    /// use driftworld_spec::Element;
+    /// assert_eq!((Element::P.coarse(), Element::Phi.coarse(), Element::R.coarse()), (Element::S, Element::O, Element::R));
+    /// ```
+    #[must_use]
+    pub const fn coarse(self) -> Self {
+        match self {
+            Self::P => Self::S,
+            Self::Phi => Self::O,
+            coarse => coarse,
+        }
+    }
+
+    /// Whether what changes `other` is allowed for by saying this element: the same, or its fine one.
+    pub fn covers(self, other: Self) -> bool {
+        self == other || self == other.coarse()
+    }
 
     /// The element in a word.
     pub fn name(self) -> &'static str {
@@ -32,11 +67,44 @@ impl Element {
             Self::T => "transition",
             Self::R => "reward",
             Self::O => "observation",
+            Self::P => "initial_state",
+            Self::Phi => "emission",
         }
     }
 
-    /// The letter by which documents name the element.
+    /// The letter, or short word, by which documents name the element: `S`, `A`, `T`, `R`, `O`, `p`, `phi`.
     pub fn letter(self) -> &'static str {
         self.into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_coarse_element_covers_its_fine_one_and_not_the_other_way() {
+        for (coarse, fine) in [(Element::S, Element::P), (Element::O, Element::Phi)] {
+            assert!(coarse.covers(fine) && coarse.covers(coarse) && fine.covers(fine));
+            assert!(!fine.covers(coarse));
+        }
+        let covered = |one: Element| {
+            Element::WITH_FINE
+                .into_iter()
+                .filter(|other| one.covers(*other))
+                .count()
+        };
+        assert_eq!(Element::WITH_FINE.map(covered), [2, 1, 1, 1, 1, 2, 1]);
+    }
+
+    #[test]
+    fn documents_name_elements_by_their_letters() {
+        for element in Element::WITH_FINE {
+            assert_eq!(serde_json::to_value(element).ok(), Some(element.letter().into()));
+        }
+        assert_eq!(
+            Element::WITH_FINE.map(Element::letter),
+            ["S", "p", "A", "T", "R", "O", "phi"]
+        );
     }
 }

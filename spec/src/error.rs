@@ -256,7 +256,8 @@ pub(crate) fn first_of<S: AsRef<str>>(known: &[S]) -> String {
     }
 }
 
-fn did_you_mean(word: &str, known: &[String]) -> String {
+/// The end of a message about a misspelt word, `; did you mean "red"?`; empty where no known word is near.
+pub fn did_you_mean<S: AsRef<str>>(word: &str, known: impl IntoIterator<Item = S>) -> String {
     nearest(word, known).map_or_else(String::new, |near| format!("; did you mean {near:?}?"))
 }
 

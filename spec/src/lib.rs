@@ -31,24 +31,25 @@ pub use distribution::{
     PlanarMoments, Spread, Turns,
 };
 pub use element::Element;
-pub use error::{MAX_PROBLEMS, Problem, SpecError, nearest};
+pub use error::{MAX_PROBLEMS, Problem, SpecError, did_you_mean, nearest};
 pub use limits::{MAX_BYTES, MAX_DEPTH, MAX_KEY_BYTES, MAX_SCENARIO_VALUES, MAX_VALUES, MAX_WORLD_VALUES};
 pub use names::sound_name;
 pub use oklab::{Oklab, linear_from_srgb};
 pub use scenario::{
-    Block, BlockKind, DriftSchedule, DriftSwitch, MAX_EXPERIENCES, Phase, Regime, RegimeDrift, Scenario,
-    ScenarioComplexity, ScenarioDifficulty, ScenarioForm, TaskLabel,
+    Block, BlockKind, DriftSchedule, DriftSwitch, MAX_EXPERIENCES, Phase, ProvenVariant, Regime, RegimeDrift, Scenario,
+    ScenarioComplexity, ScenarioDifficulty, ScenarioForm, ScenarioProof, TaskLabel,
 };
 pub use task::{
     Compare, Count, DEFAULT_VARIANT, Domain, ElementWeights, Facing, Group, Hole, KeepOut, MeasureName, Parameter,
-    PlacedGroup, Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template, Variant, VariantSpec,
+    PlacedGroup, Readers, Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template, Variant,
+    VariantSpec,
 };
 pub use value::{ParameterType, Value};
 pub use version::{SCENARIO_VERSION, TASK_VERSION, WORLD_VERSION};
 pub use warning::Warning;
 pub use world::{
     ActionModel, ActionSpace, AgentParams, Compared, Comparison, Enclosure, EndCondition, EnvironmentParams, Field,
-    FieldPlace, GameMode, ImageParams, LastEvent, MAX_OBJECTS, MAX_POINTS, MAX_SEED, Modality, Model, MotionModel,
-    Object, ObjectProgress, Origin, Progress, Pushable, RailsProgress, Region, Respawn, Rules, SameTexts, Shaping,
-    StateFeature, Stimulus, Wall, World,
+    FieldPlace, GameMode, ImageParams, LastEvent, LeafTexts, MAX_OBJECTS, MAX_POINTS, MAX_SEED, Modality, Model,
+    MotionModel, Object, ObjectProgress, Origin, Progress, Pushable, RailsProgress, Region, Respawn, Rules, Shaping,
+    StateFeature, Stimulus, Wall, World, WorldDraft,
 };

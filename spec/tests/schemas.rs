@@ -32,7 +32,7 @@ fn the_committed_reference_is_that_of_the_code() {
 #[test]
 fn what_the_types_write_the_schema_accepts() {
     let mut world = World::default();
-    world.objects.push(Object::new("tree", [1.0, 2.0]));
+    world.push(Object::new("tree", [1.0, 2.0])).expect("a tree is sound");
     let again = World::from_json("written", &world.to_json()).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(again, world);
 }

@@ -240,19 +240,19 @@ mod tests {
     use super::*;
     use arrow_array::cast::AsArray;
     use arrow_array::types::{Float64Type, UInt64Type};
-    use driftworld_spec::Object;
+    use driftworld_spec::{Object, WorldDraft};
 
     fn worlds(count: u64) -> Vec<World> {
         (0..count)
             .map(|index| {
-                let mut world = World::default();
+                let mut world = WorldDraft::default();
                 world.agent_params.heading = index as f64 % 360.0;
                 for number in 0..index % 4 {
                     let mut object = Object::new("tree", [number as f64, -2.5]);
                     object.tag = (number == 1).then(|| "trees".to_owned());
                     world.objects.push(object);
                 }
-                world
+                world.check().unwrap()
             })
             .collect()
     }

@@ -1,4 +1,4 @@
-//! `--agent`: which of the agents lives a scenario or a world, and how its name is read. What agents do is `env`'s.
+//! `--agent`: the agent that runs a scenario or a world, and how its name is read. What agents do is `env`'s.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -24,7 +24,7 @@ pub(crate) enum AgentArg {
 impl AgentArg {
     /// What the help says of the argument.
     pub(crate) const HELP: &'static str =
-        "Who lives it: random, onrails (knows the map and tours what pays), or scripted:FILE";
+        "The agent: random, onrails (knows the map and visits what pays), or scripted:FILE";
 
     /// What logs call the agent.
     pub(crate) fn name(&self) -> String {
@@ -35,7 +35,7 @@ impl AgentArg {
         }
     }
 
-    /// The agent at the start of its life.
+    /// The agent before its first step.
     pub(crate) fn agent(&self) -> Result<NamedAgent, Failure> {
         let (agent, script): (Box<dyn Agent>, _) = match self {
             Self::Random => (Box::new(RandomAgent::new(0)), None),
@@ -51,7 +51,7 @@ impl AgentArg {
     }
 }
 
-/// An agent that is ready to live.
+/// An agent that is ready to run.
 pub(crate) struct NamedAgent {
     /// What logs call it.
     pub(crate) name: String,

@@ -9,7 +9,7 @@ use clap::{Args, Subcommand};
 
 use super::output;
 
-/// Measure how fast this build is on this machine, on one core.
+/// Measure the speed of this build on this machine, on one core.
 #[derive(Args)]
 #[command(after_help = "Example:\n  driftworld bench generator --json")]
 pub(crate) struct Bench {
@@ -19,17 +19,18 @@ pub(crate) struct Bench {
 
 #[derive(Subcommand)]
 enum What {
-    /// Worlds drawn and documents checked, each second on one core.
+    /// Worlds drawn and documents checked per second, on one core.
     #[command(after_help = "Example:\n  driftworld bench generator --json")]
     Generator(Options),
-    /// Pairs of colours, grids, points and samples measured each second on one core; seconds for the distances among 1,000
-    /// worlds and for an order of 1,000 items.
+    /// Colours, grids, point sets and samples compared per second, on one core.
+    ///
+    /// Also times the distances among 1,000 worlds and an ordering of 1,000 items.
     #[command(after_help = "Example:\n  driftworld bench similarity --json")]
     Similarity(Options),
-    /// Steps with pictures, and resets, each second on one core; what a second core adds; memory.
+    /// Steps with rendering and resets per second on one core, scaling, and memory.
     #[command(after_help = "Example:\n  driftworld bench env --json")]
     Env(EnvOptions),
-    /// Writing, reading and scoring the log of a lifetime of 1,000,000 experiences, on one core.
+    /// Time to write, read and score a lifetime of 1,000,000 experiences, on one core.
     #[command(after_help = "Example:\n  driftworld bench metrics --quick --json")]
     Metrics(MetricsOptions),
 }
@@ -39,7 +40,7 @@ struct MetricsOptions {
     /// Print the figures as JSON.
     #[arg(long)]
     json: bool,
-    /// Take a lifetime of 20,000 experiences.
+    /// Use a lifetime of 20,000 experiences.
     #[arg(long)]
     quick: bool,
 }
@@ -49,7 +50,7 @@ struct Options {
     /// Print the figures as JSON.
     #[arg(long)]
     json: bool,
-    /// Seconds for each of five rounds of each figure; the median is reported.
+    /// Seconds per round. Each figure is the median of five rounds.
     #[arg(long, default_value_t = 0.4, value_parser = seconds)]
     seconds: f64,
 }
@@ -58,7 +59,9 @@ struct Options {
 struct EnvOptions {
     #[command(flatten)]
     options: Options,
-    /// What draws (cpu, gpu, auto). A graphics card is measured on whole batches, with all cores beside it.
+    /// Where to render: cpu, gpu or auto.
+    ///
+    /// A GPU is measured on whole batches, with all CPU cores in use.
     #[arg(long, default_value_t, value_name = "RENDERER")]
     renderer: RendererKind,
 }

@@ -16,17 +16,16 @@ use super::world_choice::WorldChoice;
 /// The longest line that is read, in bytes: a message may hold a whole world.
 const LONGEST_LINE: u64 = 64 << 20;
 
-/// Step through a world by hand: act, look, change it, send it messages.
+/// Step through a world by hand: act, observe, edit it, send it messages.
 ///
-/// On a terminal, lines can be edited, called back and completed (Tab). From a pipe or a script, each line is a command, `#`
-/// begins a comment, each command is shown before its answer, and the first error ends with exit code 1.
+/// On a terminal you can edit, recall and complete (Tab) lines. From a pipe or a script, each line is a command and `#`
+/// starts a comment. Each command is echoed before its answer. The first error ends the session with exit code 1.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld console find_objects#red --seed 7
   driftworld console world.json --script tour.txt --out pictures
   printf 'step 10 2 0 0\\nobjects\\n' | driftworld console find_objects
 
-/// Step through a world by hand: act, look, change it, send it messages.
 Type help for the commands.")]
 pub(crate) struct Console {
     #[command(flatten)]
@@ -34,10 +33,10 @@ pub(crate) struct Console {
     /// Read commands from this file.
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
-    /// Go on after an error of a script or a pipe; the exit code is 1 all the same.
+    /// Continue after an error in a script or pipe. The exit code is still 1.
     #[arg(long)]
     keep_going: bool,
-    /// The folder that screenshots and states are written into, and nowhere else.
+    /// Folder for screenshots and states. Nothing is written elsewhere.
     #[arg(long, default_value = "console-out", value_name = "FOLDER")]
     out: PathBuf,
 }
@@ -51,7 +50,7 @@ impl Console {
         let choice = self.choice.request();
         let warn = |text| output::warning(text);
         let world = choice.world(&warn)?;
-        let mut session = Session::new((choice, &warn), world, &self.out, Screen::of_this_terminal())?;
+        let mut session = Session::new((choice, &warn), world, &self.out, Screen::of_this_terminal());
         output::line(session.greeting())?;
         if let Some((path, text)) = script {
             let lines = text.lines().map(|line| Ok(line.to_owned()));

@@ -12,10 +12,10 @@ use super::world_choice::WorldChoice;
 use super::{Failure, output, overwrite};
 use crate::scenarios::{Missing, ScenarioFile};
 
-/// Write a world or a scenario in L2Explorer's form, or one of L2Explorer's in ours.
+/// Convert a world or a scenario to or from L2Explorer's format.
 ///
-/// What the other form cannot say is named in warnings on standard error. The original lives map files only: the worlds that a
-/// scenario of ours draws are written as maps into a folder beside the output.
+/// Warnings on standard error name everything that the other format cannot express. L2Explorer's scenarios use map
+/// files only, so the worlds that a scenario draws are written as maps into a folder beside the output.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld convert map.json --l2explorer -o world.json
@@ -25,10 +25,10 @@ use crate::scenarios::{Missing, ScenarioFile};
 pub(crate) struct Convert {
     #[command(flatten)]
     choice: WorldChoice,
-    /// The form to write.
+    /// The format to write.
     #[arg(long, value_enum, default_value_t = Form::World)]
     to: Form,
-    /// A file, or - for standard output.
+    /// File to write, or - for standard output.
     #[arg(short, long, default_value = "-", value_name = "FILE")]
     output: PathBuf,
 }
@@ -36,10 +36,10 @@ pub(crate) struct Convert {
 /// A form of documents.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Form {
-    /// Ours, in its current version; `ours` for short.
+    /// Driftworld's current format. `ours` for short.
     #[value(alias = "ours")]
     World,
-    /// L2Explorer's.
+    /// L2Explorer's format.
     L2explorer,
 }
 
@@ -71,7 +71,8 @@ impl Convert {
         let worlds: BTreeSet<&str> = worlds.filter_map(|regime| regime.world.as_deref()).collect();
         for world in worlds.into_iter().filter(|world| !folder.join(world).is_file()) {
             output::note(format!(
-                "warning: {}: names the world file {world:?}, which is not there from its folder; put it there, or beside it",
+                "warning: {}: names the world file {world:?}, which is missing; put it at that path from its folder, \
+                 or beside it",
                 self.output.shown()
             ));
         }

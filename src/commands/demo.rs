@@ -31,14 +31,14 @@ const TASK: &str = "find_objects";
 /// Its variants that the demo shows.
 const VARIANTS: [&str; 6] = ["blue", "red", "green", "dusk", "huddle", "penalty"];
 
-/// Go the whole way once: worlds, pictures, distances, a curriculum, a lifetime, its scores.
+/// Run the whole pipeline once: worlds, pictures, distances, a curriculum, a run, scores.
 #[derive(Args)]
 #[command(after_help = "Example:\n  driftworld demo -o demo-out")]
 pub(crate) struct Demo {
-    /// The folder for everything; what an earlier demo left there is replaced.
+    /// Output folder. Replaces what an earlier demo left there.
     #[arg(short, long, default_value = "demo-out", value_name = "DIR")]
     output: PathBuf,
-    /// The seed of the worlds.
+    /// Seed of the worlds.
     #[arg(long, default_value_t = 7)]
     seed: u64,
 }
@@ -58,13 +58,13 @@ impl Demo {
 
         heading(
             "1",
-            "One world of each variant, under one seed: what differs is what the variants say",
+            "One world of each variant under one seed: they differ only in what the variants set",
         )?;
         let shown = self.worlds(&variants)?;
         self.pictures(&shown)?;
 
         heading("2", "How far apart the variants are, from 0 to 1")?;
-        let matrix = labelled_matrix(&variants, Ok)?;
+        let matrix = labelled_matrix(&variants, None, Ok)?;
         let ordering = order(&matrix, Method::Exact, &OrderOptions::default().with_first(0))?;
         output::write(&folder.join("distances.csv"), matrix.to_csv().as_bytes())?;
         let short: Vec<String> = variants.iter().map(|(_, variant)| variant.name().to_owned()).collect();
@@ -76,11 +76,11 @@ impl Demo {
 
         heading(
             "3",
-            "A curriculum: the shortest way through them, evaluated before and after each block",
+            "A curriculum: the shortest path through them, with an evaluation before and after each block",
         )?;
         let scenario = self.scenario(&variants, &matrix, &ordering)?;
 
-        heading("4", "A lifetime: an agent that knows the map lives it")?;
+        heading("4", "A lifetime: an agent that knows the map runs it")?;
         let logs = folder.join("log");
         remove_old_log(&logs)?;
         let run = LifetimeRun {
@@ -91,10 +91,10 @@ impl Demo {
             jobs: processors(),
             catalogue: Catalogue::default(),
         };
-        let lived = run.run()?;
-        output::line(block_table(&lived))?;
+        let outcome = run.run()?;
+        output::line(block_table(&outcome))?;
 
-        heading("5", "What the lifetime is worth, by the metrics of lifelong learning")?;
+        heading("5", "The lifelong-learning metrics of the lifetime")?;
         let warn = |text| output::warning(text);
         let page = write_report(
             &ReportRequest {
@@ -108,8 +108,9 @@ impl Demo {
         scores.save(&folder.join("scores"), Some("demo"))?;
         output::line(scores.lifetimes.iter().map(summary).collect::<String>())?;
         output::line(
-            "\nThis agent knows the map and learns nothing: each evaluation repeats the last, so nothing is lost (maintenance 0) and\n\
-             nothing helps (transfer 1). A learner of your own shows what it keeps, and what carries over.",
+            "\nThis agent knows the map and learns nothing: each evaluation repeats the last, so nothing is lost \
+             (maintenance 0) and\n\
+             nothing transfers (transfer 1). Your own learner will show what it keeps, and what transfers.",
         )?;
 
         heading("", "Everything is in")?;
@@ -237,7 +238,7 @@ fn contents(folder: &Path) -> String {
         ("worlds/", "the worlds: driftworld render FILE draws one"),
         ("distances.csv", "the distance matrix"),
         ("distances.png", "the same as a heat map"),
-        ("scenario.json", "the curriculum: driftworld run FILE lives it"),
+        ("scenario.json", "the curriculum: driftworld run FILE runs it"),
         ("log/", "every experience, in l2logger's format"),
         ("report.html", "the lifetime on one page, for a browser"),
         ("scores/", "the metrics: driftworld metrics on the log prints them"),

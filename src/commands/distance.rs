@@ -2,7 +2,7 @@
 
 mod pictures;
 
-use crate::distances::{Sample, Side, between};
+use crate::distances::{By, Sample, Side, between};
 use crate::similarity::{Distance as Measured, Part};
 use crate::spec::Element;
 use crate::tasks;
@@ -17,35 +17,47 @@ use crate::{Failure, worlds};
 use super::output;
 use crate::table::table;
 
-/// Measure how far apart two variants or two worlds are.
+/// Measure the distance between two variants or two worlds.
 ///
-/// Two variants of one task are compared parameter by parameter, at the weights and by the measures that the task declares.
-/// Variants of different tasks are compared by worlds drawn from each under one seed, world files as they are: what stands
-/// where, what it pays, how it looks. All distances are in 0 to 1.
+/// Two variants of one task are compared parameter by parameter, with the task's own weights and measures. Variants of
+/// different tasks are compared by worlds drawn under one seed, and world files as they are: where objects are, what
+/// they pay, how they look.
+///
+/// A distance is a sum. By parameters, 1 is one parameter moved over its whole range. By worlds, each part has its own
+/// unit. See docs/similarity.md.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld distance find_objects#blue find_objects#dusk --explain
   driftworld distance find_objects#blue find_objects#dusk --pictures
+  driftworld distance get_to_goal#plain get_to_goal#soft --by rewards
   driftworld distance find_objects#blue get_to_goal#plain --explain --worlds 64
   driftworld distance a.json b.json --json")]
 pub(crate) struct Distance {
-    /// A task's variant, or a world file.
+    /// A variant of a task, or a world file.
     a: String,
-    /// Another.
+    /// The other variant or world file.
     b: String,
-    /// Compare how worlds look to an agent in them, by pictures from the same places.
+    /// Compare what an agent sees, in pictures from the same places.
     #[arg(long, conflicts_with_all = ["explain", "worlds", "WeightArgs"])]
     pictures: bool,
-    /// Show every part: what was compared, by which measure and how, its number, what it weighs, its share of the whole.
+    /// What to compare by: parameters, worlds or rewards.
+    ///
+    /// By default parameters for two variants of one task, else worlds. By rewards 0 is the same reward up to a factor, a
+    /// constant and potential shaping, and 1 the reverse.
+    #[arg(long, value_parser = By::from_name, value_name = "MEASURE", conflicts_with = "pictures")]
+    by: Option<By>,
+    /// Show every component with its measure, value, weight and share of the total.
     #[arg(long)]
     explain: bool,
-    /// Compare so many worlds of each even where both are variants of one task; 16 of each are compared where they are not.
+    /// Compare this many worlds of each variant.
+    ///
+    /// Without it, variants of one task are compared parameter by parameter, anything else by 16 worlds of each.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000), num_args = 0..=1, default_missing_value = "16")]
     worlds: Option<u64>,
-    /// The seed, where worlds are drawn from variants.
+    /// Seed for drawing worlds from variants.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// The number of the first world, where they are drawn from variants.
+    /// Index of the first world drawn.
     #[arg(long, default_value_t = 0)]
     index: u64,
     #[command(flatten)]
@@ -62,13 +74,17 @@ impl Distance {
             let (a, b) = (world(&self.a)?, world(&self.b)?);
             return pictures::run([&self.a, &self.b], [&a, &b], self.json);
         }
-        let (distance, how) = self.measure()?;
+        let (distance, comparison) = self.measure()?;
         if self.json {
             let mut found = serde_json::to_value(&distance)?;
-            found["compared"] = json!(how);
+            found["compared"] = json!(comparison);
             return output::json(&found);
         }
-        output::line(format!("{} to {}, {how}\n", one_line(&self.a), one_line(&self.b)))?;
+        output::line(format!(
+            "{} to {}, {comparison}\n",
+            one_line(&self.a),
+            one_line(&self.b)
+        ))?;
         output::line(by_element(&distance))?;
         if self.explain {
             output::line("")?;
@@ -82,6 +98,7 @@ impl Distance {
             worlds: self.worlds,
             seed: self.seed,
             index: self.index,
+            by: self.by,
         };
         let (a, b) = (self.side(&self.a)?, self.side(&self.b)?);
         Ok(between(&a, &b, &sample, |declared| self.weights.over(declared))?)
@@ -113,9 +130,9 @@ fn by_element(distance: &Measured) -> String {
     table(["element", "distance"], rows, &[1])
 }
 
-/// Every part, those that matter most first.
+/// Every part that differs, those that matter most first, and a line for all that do not.
 fn parts(distance: &Measured) -> String {
-    let mut parts: Vec<&Part> = distance.parts.iter().collect();
+    let (mut parts, equal): (Vec<&Part>, Vec<&Part>) = distance.parts.iter().partition(|part| part.raw != 0.0);
     parts.sort_by(|a, b| b.share.total_cmp(&a.share));
     let row = |part: &Part| {
         [
@@ -130,7 +147,16 @@ fn parts(distance: &Measured) -> String {
             format!("{:.1}%", 100.0 * part.share),
         ]
     };
-    table(
+    let mut names: Vec<&str> = equal.iter().map(|part| part.name.as_str()).collect();
+    names.dedup();
+    let equal = match names.as_slice() {
+        [] => String::new(),
+        names => format!("\nequal: {}", names.join(", ")),
+    };
+    if parts.is_empty() {
+        return equal.trim_start().to_owned();
+    }
+    let shown = table(
         [
             "what",
             "element",
@@ -143,5 +169,6 @@ fn parts(distance: &Measured) -> String {
         ],
         parts.into_iter().map(row).collect(),
         &[4, 5, 6, 7],
-    )
+    );
+    shown + &equal
 }

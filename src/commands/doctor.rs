@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use super::optional::FEATURES;
 use super::{Failure, output};
 
-/// Say which renderers work on this machine, and what is missing for the others.
+/// Report which renderers work on this machine, and what the others need.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld doctor
@@ -42,7 +42,7 @@ fn missing(report: &RendererReport) -> Vec<String> {
         for name in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
             if let Some(files) = std::env::var_os(name) {
                 let files = files.display().to_string();
-                missing.push(format!("{name} is set to {files:?}: only those drivers are looked for"));
+                missing.push(format!("{name} is set to {files:?}, so only those drivers are used"));
             }
         }
         missing.extend(vulkan_hints(
@@ -75,7 +75,8 @@ fn vulkan_hints(loaders: &[&Path], drivers: &[&Path]) -> Vec<String> {
     let mut hints = Vec::new();
     if !loaders.iter().any(|folder| folder.join("libvulkan.so.1").exists()) {
         hints.push(
-            "the Vulkan loader (libvulkan.so.1) is in none of the usual folders: on Debian and Ubuntu, apt-get install libvulkan1"
+            "found no Vulkan loader (libvulkan.so.1) in the usual folders; on Debian and Ubuntu: apt-get install \
+             libvulkan1"
                 .to_owned(),
         );
     }
@@ -85,8 +86,8 @@ fn vulkan_hints(loaders: &[&Path], drivers: &[&Path]) -> Vec<String> {
     };
     if !drivers.iter().any(holds_driver) {
         hints.push(
-            "no Vulkan driver is announced (a .json file in /usr/share/vulkan/icd.d or /etc/vulkan/icd.d): install your card's \
-             driver, or software in its place with apt-get install mesa-vulkan-drivers"
+            "found no Vulkan driver (a .json file in /usr/share/vulkan/icd.d or /etc/vulkan/icd.d); install your \
+             card's driver, or a software one with apt-get install mesa-vulkan-drivers"
                 .to_owned(),
         );
     }
@@ -103,9 +104,9 @@ fn as_text(report: &RendererReport, missing: &[String]) -> String {
     }
     let why = match (report.auto, report.adapters.is_empty()) {
         (RendererKind::Gpu, _) => "a graphics card that works",
-        _ if !report.has_gpu_feature => "this build has no graphics renderer",
+        _ if !report.has_gpu_feature => "this build has no GPU renderer",
         (_, true) => "there is no graphics adapter",
-        (_, false) => "no graphics card works, and software in its place is slower than the processor's own renderer",
+        (_, false) => "no GPU works; a software driver is slower than Driftworld's CPU renderer",
     };
     lines.push(format!("auto  takes {}: {why}", report.auto));
     for (title, has) in [("has", true), ("lacks", false)] {
@@ -200,7 +201,7 @@ mod tests {
                 "auto  takes gpu",
             ],
         );
-        check(&report(true, None), &["auto  takes cpu: no graphics card works"]);
+        check(&report(true, None), &["auto  takes cpu: no GPU works"]);
         check(
             &report(false, Some("is lost")),
             &["gpu   does not work: is lost: Card 1", "auto  takes cpu"],

@@ -21,7 +21,7 @@ const MAX_MAPS: u64 = 10_000;
 pub(crate) fn draw_maps(scenario: &mut Scenario, plan: &Plan, file: &Path) -> Result<(), Failure> {
     if file == Path::new("-") {
         return Err(Failure::usage(
-            "the scenario draws worlds, which become map files beside the output: name a file with -o",
+            "the scenario draws worlds, which are written as map files beside the output; name the output with -o",
         ));
     }
     let drawn: u64 = scenario
@@ -33,7 +33,7 @@ pub(crate) fn draw_maps(scenario: &mut Scenario, plan: &Plan, file: &Path) -> Re
         .sum();
     if drawn > MAX_MAPS {
         return Err(Failure::input(format!(
-            "found {drawn} experiences in drawn worlds, each of which becomes a map file, expected at most {MAX_MAPS}; \
+            "found {drawn} experiences in drawn worlds, each a map file of its own, expected at most {MAX_MAPS}; \
              convert a shorter scenario"
         )));
     }

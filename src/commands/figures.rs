@@ -4,20 +4,22 @@ use crate::Failure;
 use crate::report::{Figure, FigureOptions, ReportError, Unit};
 use clap::Args;
 
-/// What is drawn, and how.
+/// Which figures are drawn, and how.
 #[derive(Args)]
 #[command(next_help_heading = "Figures")]
 pub(crate) struct FigureChoice {
-    /// Which figures: all, or some of raw, lb (learning), eb (evaluation), ste (against the expert), timeline.
+    /// Figures to draw: all, or any of raw, lb, eb, ste, timeline.
+    ///
+    /// lb shows learning blocks, eb evaluation blocks, ste the comparison with single-task experts.
     #[arg(short = 'T', long, value_name = "TYPE", num_args = 1.., default_value = "all")]
     plot_types: Vec<String>,
-    /// What the horizontal axis counts: `exp_num`, or steps by the column `episode_step_count`.
+    /// Unit of the horizontal axis: `exp_num`, or `steps` (column `episode_step_count`).
     #[arg(short, long, value_name = "UNIT", default_value = "exp_num")]
     unit: String,
-    /// Do not join the means of evaluations across learning.
+    /// Do not connect evaluation means across learning blocks.
     #[arg(long)]
     no_show_eval_lines: bool,
-    /// Join them, as is done anyway.
+    /// Connect them. This is the default.
     #[arg(short = 'e', long, hide = true, conflicts_with = "no_show_eval_lines")]
     show_eval_lines: bool,
 }

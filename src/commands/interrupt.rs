@@ -72,7 +72,7 @@ pub(super) fn watch() -> Result<Watch, Failure> {
     let watched = WATCHED.get_or_init(|| follow_signals().map_err(|error| error.to_string()));
     match watched {
         Ok(()) => Ok(Watch(())),
-        Err(error) => Err(Failure::input(format!("signals cannot be looked for: {error}"))),
+        Err(error) => Err(Failure::input(format!("cannot watch for signals: {error}"))),
     }
 }
 

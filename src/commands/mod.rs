@@ -12,6 +12,7 @@ mod demo;
 mod distance;
 mod doctor;
 mod draw_maps;
+mod elements;
 mod figures;
 mod interrupt;
 mod logs;
@@ -81,7 +82,7 @@ fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, clap::Erro
     })
 }
 
-/// Typed task specs to worlds, distances, curricula, and a first-person environment for lifelong reinforcement learning.
+/// Lifelong reinforcement learning: task specs, worlds, distances, curricula, a first-person environment and metrics.
 #[derive(Parser)]
 #[command(name = "driftworld", version, arg_required_else_help = true)]
 enum Command {
@@ -96,6 +97,7 @@ enum Command {
     Assets(assets::Assets),
     Console(console::Console),
     Photograph(photograph::Photograph),
+    Elements(elements::Elements),
     Distance(distance::Distance),
     Order(order::Order),
     Curriculum(curriculum::Curriculum),
@@ -126,6 +128,7 @@ impl Command {
             Self::Assets(command) => command.run(),
             Self::Console(command) => command.run(),
             Self::Photograph(command) => command.run(),
+            Self::Elements(command) => command.run(),
             Self::Distance(command) => command.run(),
             Self::Order(command) => command.run(),
             Self::Curriculum(command) => command.run(),
@@ -167,7 +170,8 @@ fn translate_panics() {
         if text.starts_with("The global thread pool has not been initialized") {
             driftworld_atomic_files::remove_unfinished();
             output::to_standard_error(
-                "error: threads: found none to be had, expected one for each processor; end other programs, or allow more (`ulimit -u`)",
+                "error: threads: could not start any, expected one per processor; end other programs, or allow more \
+                 (`ulimit -u`)",
             );
             #[expect(clippy::exit, reason = "the work cannot go on, and was not begun")]
             std::process::exit(1);

@@ -20,25 +20,24 @@ use crate::modality::{Kind, metres_per_level, target};
 /// The longest part of a file name that comes from the document.
 const LONGEST_NAME: usize = 40;
 
-/// Photograph every object of a world from around and above.
+/// Photograph every object of a world from several sides and heights.
 ///
-/// Each object stands alone, in full daylight, on ground and under sky of the world's colours. How far, from how many
-/// sides and at how many heights is said by the world's `image_params`; how large, and with what field of view, by its
-/// `agent_params`.
+/// Each object stands alone in full daylight, with the world's ground and sky. The world's `image_params` set the
+/// camera distance, the number of sides and the heights. Its `agent_params` set the image size and the field of view.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld photograph world.json -o photographs
   driftworld photograph find_objects#red --seed 7 --modalities rgb,depth,instance -o photographs
 
-/// Photograph every object of a world from around and above.
-Depths are 16-bit, in the manifest's metres_per_level; classes and instances are 16-bit numbers, 0 where there is no object.")]
+Depth images are 16-bit, in units of the manifest's metres_per_level. Class and instance images are 16-bit,
+with 0 where there is no object.")]
 pub(crate) struct Photograph {
     #[command(flatten)]
     choice: WorldChoice,
-    /// Which images of each view; those of the world if not given.
+    /// Modalities to write [default: those of the world].
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     modalities: Vec<Kind>,
-    /// The folder for the pictures and manifest.json; pictures of the same name are replaced.
+    /// Folder for the pictures and manifest.json. Replaces pictures of the same name.
     #[arg(short, long, default_value = "photographs", value_name = "FOLDER")]
     output: PathBuf,
 }
@@ -85,7 +84,7 @@ impl Photograph {
         let world = self.choice.world()?;
         let kinds = self.kinds(&world)?;
         let mut studio = Studio::new(&world)?;
-        for warning in Environment::new(world.clone())?.warnings() {
+        for warning in Environment::new(world.clone()).warnings() {
             if matches!(warning, Warning::UnknownAsset { .. }) {
                 output::note(format!("warning: {warning}"));
             }
@@ -124,7 +123,7 @@ impl Photograph {
         kinds.dedup();
         if kinds.is_empty() {
             return Err(Failure::usage(
-                "the world has no agent_params.modalities; say which images with --modalities, such as --modalities rgb",
+                "the world has no agent_params.modalities; choose images with --modalities, such as --modalities rgb",
             ));
         }
         Ok(kinds)
@@ -226,6 +225,7 @@ fn safe(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::spec::{ImageParams, WorldDraft};
 
     #[test]
     fn names_of_a_document_cannot_lead_out_of_the_folder() {
@@ -250,16 +250,18 @@ mod tests {
 
     #[test]
     fn no_two_views_have_one_name() {
-        let world = World {
-            image_params: Some(crate::spec::ImageParams {
+        let world = WorldDraft {
+            image_params: Some(ImageParams {
                 zoom: 1.0,
                 yaw_subdivisions: 7,
                 vertical_subdivisions: 360,
             }),
             objects: vec![Object::new("cube", [0.0, 0.0]); 2],
-            ..World::default()
+            ..WorldDraft::default()
         };
-        let views = Studio::new(&world).expect("few photographs").photographs();
+        let views = Studio::new(&world.clone().check().expect("the world is sound"))
+            .expect("few photographs")
+            .photographs();
         let names: std::collections::BTreeSet<String> = views
             .iter()
             .map(|view| file_name(view, &world.objects[view.object], Kind::Depth, 2))

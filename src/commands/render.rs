@@ -12,7 +12,7 @@ use super::{Failure, output};
 use crate::report::picture::{Picture, SheetRow, sheet};
 use crate::views::Views;
 
-/// Draw what an agent sees of a world, and the world from above.
+/// Draw the agent's view of a world, and the world from above.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld render find_objects#dusk --seed 7 -o dusk.png
@@ -22,20 +22,21 @@ pub(crate) struct Render {
     choice: WorldChoice,
     #[command(flatten)]
     libraries: LibraryChoice,
-    /// Which picture.
+    /// The picture to draw.
     #[arg(long, value_enum, default_value_t = View::Sheet)]
     view: View,
     /// Height of each picture in pixels.
     #[arg(long, default_value_t = 360, value_parser = clap::value_parser!(u32).range(1..=4096))]
     size: u32,
-    /// Turn the first-person camera this many degrees clockwise from the agent's heading.
+    /// Turn the first-person camera clockwise from the agent's heading, in degrees.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     turn: f64,
-    /// What draws: the processor, a graphics card, or a graphics card if there is one (cpu, gpu, auto). Maps are always drawn by
-    /// the processor.
+    /// Where to render: cpu, gpu, or auto (gpu if there is one).
+    ///
+    /// Maps are always drawn on the CPU.
     #[arg(long, default_value_t, value_name = "RENDERER")]
     renderer: RendererKind,
-    /// The PNG file.
+    /// PNG file to write.
     #[arg(short, long, default_value = "world.png", value_name = "FILE")]
     output: PathBuf,
 }
@@ -43,7 +44,7 @@ pub(crate) struct Render {
 /// Which picture of a world.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum View {
-    /// All of them with titles.
+    /// All pictures, with titles.
     Sheet,
     /// From outside, above a corner.
     Overview,
@@ -61,7 +62,7 @@ impl Render {
     pub(crate) fn run(self) -> Result<(), Failure> {
         let world = self.choice.world()?;
         let catalogue = self.libraries.catalogue()?;
-        warn(&world, &catalogue)?;
+        warn(&world, &catalogue);
         output::write_picture_and_tell(&self.output, &self.picture(&world, &catalogue)?)
     }
 
@@ -115,13 +116,12 @@ impl Render {
 const MOST_WARNINGS: usize = 10;
 
 /// Says what the world asks for that is not as its author may think.
-fn warn(world: &World, catalogue: &Catalogue) -> Result<(), Failure> {
-    let warnings = Environment::with_catalogue(world.clone(), catalogue.clone())?.warnings();
+fn warn(world: &World, catalogue: &Catalogue) {
+    let warnings = Environment::with_catalogue(world.clone(), catalogue.clone()).warnings();
     for warning in warnings.iter().take(MOST_WARNINGS) {
         output::note(format!("warning: {warning}"));
     }
     if warnings.len() > MOST_WARNINGS {
         output::note(format!("warning: and {} more", warnings.len() - MOST_WARNINGS));
     }
-    Ok(())
 }

@@ -12,14 +12,14 @@ use super::figures::FigureChoice;
 use super::output;
 use super::scoring::{Intervals, Scoring};
 
-/// Show lifetimes on one page: metrics, curriculum, curves.
+/// Write an HTML report on lifetimes: metrics, curriculum, learning curves.
 ///
-/// The page is one HTML file that loads nothing and needs no network. Of several lifetimes each has a chapter, and together they
-/// have intervals; with --against, two agents are compared.
+/// The report is one HTML file. It loads nothing and needs no network. With several lifetimes, each has a chapter, and
+/// all together have confidence intervals. --against compares two agents.
 ///
-/// The timeline says how far apart neighbouring learning blocks are: by the matrix that --distances names, or else, for
-/// logs of `driftworld run`, as measured now from the scenario in the log: between variants of built-in tasks, and of
-/// those that --task names.
+/// The timeline shows the distance between neighbouring learning blocks. It comes from the matrix given by --distances.
+/// Without one, and for logs of `driftworld run`, it is measured from the scenario in the log. That covers variants of
+/// built-in tasks and of tasks given by --task.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld report demo-out/log -o report.html
@@ -27,29 +27,34 @@ use super::scoring::{Intervals, Scoring};
   driftworld report logs --task tasks/mine.json -o report.html
   driftworld report runs/mine --against runs/theirs --distances distances.csv")]
 pub(crate) struct Report {
-    /// Folders of logs in l2logger's format, or folders of such folders.
+    /// Folders of l2logger logs, or folders of such folders.
     #[arg(required = true, value_name = "LOGS")]
     logs: Vec<PathBuf>,
-    /// Folders of another agent's logs: how probably is a lifetime of the first better?
+    /// Logs of a second agent. Reports how likely the first agent is to be better.
     #[arg(long, value_name = "DIR", num_args = 1..)]
     against: Vec<PathBuf>,
-    /// The page to write; - for standard output.
+    /// The HTML file to write, or - for standard output.
     #[arg(short, long, value_name = "FILE", default_value = "report.html")]
     output: PathBuf,
-    /// What stands on top of the page [default: the lifetime's name].
+    /// Title of the report [default: the lifetime's name].
     #[arg(long, value_name = "WORDS")]
     title: Option<String>,
-    /// When the report was made, to be written on it; left out, the same logs give the same bytes.
+    /// Date to print on the report.
+    ///
+    /// Without it, the same logs always give the same bytes.
     #[arg(long, value_name = "WORDS")]
     date: Option<String>,
-    /// A distance matrix, as `driftworld order --matrix` writes it: .csv, .json or .npy.
+    /// A distance matrix from `driftworld order --matrix`: .csv, .json or .npy.
     #[arg(long, value_name = "FILE")]
     distances: Option<PathBuf>,
-    /// A task spec that the logs name, for the distances between their blocks; may be given several times. Logs may
-    /// name any file, so that only built-in tasks and these are looked at.
+    /// A task spec to measure distances with. Repeatable.
+    ///
+    /// Logs may name any file, so only built-in tasks and these specs are read.
     #[arg(long = "task", value_name = "FILE")]
     tasks: Vec<PathBuf>,
-    /// Write the figures into this folder too: `NAME_raw.png`, `NAME_raw.svg` and so on; NAME is the log's.
+    /// Also write the figures into this folder, as `NAME_raw.png`, `NAME_raw.svg` and so on.
+    ///
+    /// NAME is the name of the log.
     #[arg(long, value_name = "DIR")]
     plots: Option<PathBuf>,
     #[command(flatten)]

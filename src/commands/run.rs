@@ -20,19 +20,20 @@ use super::interrupt::Interrupt;
 use super::{Failure, output};
 use crate::table::table;
 
-/// The most experiences that are lived at the same time.
+/// The most experiences that run at the same time.
 const MAX_JOBS: usize = 256;
 
-/// Live a curriculum with an agent and log every experience.
+/// Run an agent through a curriculum and log every experience.
 ///
-/// The scenario is a file of ours, or one of L2Explorer's. Tasks and worlds that it names by their paths are looked for
-/// from its own folder first. A run that was interrupted, in whatever way, goes on with --resume at the first
-/// experience that is not in the log, and writes what it would have written undisturbed, to the byte but for the time
-/// stamps, which say when each experience ended: DRIFTWORLD_CLOCK=2026-01-31T12:00:00Z in the environment makes them
-/// all that time.
+/// The scenario is one of ours or of L2Explorer's. Relative paths of tasks and worlds are first resolved from the
+/// scenario's folder.
 ///
-/// Told to stop (Ctrl-C, SIGTERM, SIGHUP) it ends at the next step with exit code 1. It also does when the log is
-/// removed, renamed, replaced or cut meanwhile, and says what is lost.
+/// An interrupted run continues with --resume at the first experience missing from the log. The log is then the same,
+/// byte for byte, as that of an uninterrupted run, except for time stamps. To fix those too, set
+/// DRIFTWORLD_CLOCK=2026-01-31T12:00:00Z in the environment.
+///
+/// On Ctrl-C, SIGTERM or SIGHUP, the run stops at the next step with exit code 1. It also stops if the log is removed,
+/// renamed, replaced or truncated, and says what is lost.
 #[derive(Args)]
 #[command(after_help = "Example:
   driftworld run scenario.json --agent onrails --logs logs/first
@@ -44,17 +45,21 @@ pub(crate) struct Run {
     scenario: PathBuf,
     #[arg(long, default_value = "onrails", value_name = "AGENT", help = AgentArg::HELP)]
     agent: AgentArg,
-    /// A folder for the log; it must not hold anything yet, unless with --resume.
+    /// Folder for the log. Must be empty, unless --resume is given.
     #[arg(long, default_value = "logs/run", value_name = "DIR")]
     logs: PathBuf,
-    /// Go on with the log in the folder, or begin it if there is none.
+    /// Continue the log in the folder, or start a new one if there is none.
     #[arg(long)]
     resume: bool,
-    /// How many experiences are lived at the same time, from 1 to 256; as many as there are processors if not given. The log is the same.
+    /// Number of experiences to run in parallel, 1 to 256 [default: one per processor].
+    ///
+    /// The log does not depend on it.
     #[arg(long, value_name = "N", value_parser = jobs)]
     jobs: Option<NonZeroUsize>,
-    /// Leave out experiences whose worlds cannot be drawn: each has a row without numbers in the log, which says why, and is counted in the
-    /// summary. A run that stopped at one goes on with this and --resume.
+    /// Skip experiences whose worlds cannot be drawn.
+    ///
+    /// Each gets a row without numbers in the log, with the reason, and is counted in the summary. If a run stopped at
+    /// such an experience, continue it with this option and --resume.
     #[arg(long)]
     skip_undrawable: bool,
     #[command(flatten)]
@@ -66,13 +71,15 @@ pub(crate) struct Run {
     json: bool,
 }
 
-/// What becomes of world files that are nowhere.
+/// What happens if a world file is missing.
 #[derive(Args)]
 struct MissingChoice {
-    /// Live the world file with the nearest name in place of one that is nowhere, and say so in the log; always done for L2Explorer's scenarios.
+    /// If a world file is missing, use the one with the most similar name.
+    ///
+    /// The log says so. This is the default for L2Explorer's scenarios.
     #[arg(long)]
     stand_in: bool,
-    /// Refuse a world file that is nowhere also in one of L2Explorer's scenarios.
+    /// Fail if a world file is missing, also for L2Explorer's scenarios.
     #[arg(long, conflicts_with = "stand_in")]
     no_stand_in: bool,
 }
@@ -99,8 +106,8 @@ impl Run {
         let plan = file.plan_with(missing, undrawable, &mut output::warning);
         let mut plan = plan.map_err(|error| match &error {
             CurriculumError::World { .. } => Failure::input(format!(
-                "{error}\nnothing is lived: mend the task (driftworld validate SCENARIO --worlds 100 finds what cannot be drawn), or leave such \
-                 experiences out with --skip-undrawable"
+                "{error}\nnothing was run: fix the task (driftworld validate SCENARIO --worlds 100 finds what cannot \
+                 be drawn), or skip such experiences with --skip-undrawable"
             )),
             _ => error.into(),
         })?;
@@ -141,13 +148,13 @@ impl Run {
     }
 }
 
-/// What was left out, and why; nothing where all was lived.
+/// What was left out, and why; nothing where all was run.
 fn skipped(summary: &Summary) -> Option<String> {
     const SHOWN: usize = 10;
     if summary.skipped == 0 {
         return None;
     }
-    let told = summary.left_out.iter().take(SHOWN).map(|left_out| {
+    let shown = summary.left_out.iter().take(SHOWN).map(|left_out| {
         let way = if left_out.progress == 0.0 {
             String::new()
         } else {
@@ -162,10 +169,10 @@ fn skipped(summary: &Summary) -> Option<String> {
         "left out: {} experiences whose worlds cannot be drawn",
         summary.skipped
     )];
-    lines.extend(told);
+    lines.extend(shown);
     if summary.skipped > SHOWN as u64 {
         lines.push(format!(
-            "  and {} more; the log has them all",
+            "  and {} more; the log lists them all",
             summary.skipped - SHOWN as u64
         ));
     }
@@ -178,8 +185,8 @@ pub(crate) fn processors() -> NonZeroUsize {
 }
 
 /// What to do about a world that cannot be drawn once there is a log.
-const UNDRAWABLE: &str = "this one cannot be lived: go on with the same command, --resume and --skip-undrawable, which leaves such \
-     experiences out; or mend the task, and begin a new log";
+const UNDRAWABLE: &str = "this one cannot be run: to skip such experiences, repeat the command with --resume and \
+     --skip-undrawable; or fix the task and start a new log";
 
 /// How a log is begun.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -190,7 +197,7 @@ pub(crate) enum Start {
     Resumed,
 }
 
-/// A lifetime that is to be lived.
+/// A lifetime to run.
 pub(crate) struct LifetimeRun<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) agent: NamedAgent,
@@ -201,11 +208,13 @@ pub(crate) struct LifetimeRun<'a> {
 }
 
 impl LifetimeRun<'_> {
-    /// Lives it, with a bar on a terminal. Whatever stops it, the log holds whole experiences, and the message says how to go on.
+    /// Runs it, with a bar on a terminal. Whatever stops it, the log holds whole experiences, and the message says how
+    /// to go on.
     pub(crate) fn run(mut self) -> Result<Summary, Failure> {
         // Before there is a log, so that whoever sees one may ask for its end.
         let interrupt = Interrupt::listen(format!(
-            "interrupted in the middle of a step\n{}: each experience in it is whole; go on with the same command and --resume",
+            "interrupted in the middle of a step\n{}: all experiences in it are complete; continue with the same \
+             command and --resume",
             self.logs.shown()
         ));
         let clock = Clock::from_environment()?;
@@ -228,7 +237,7 @@ impl LifetimeRun<'_> {
             catalogue: self.catalogue.clone(),
             jobs: self.jobs,
         };
-        let lived = run(self.plan, self.agent.agent.as_mut(), &mut journal, &mut context);
+        let ran = run(self.plan, self.agent.agent.as_mut(), &mut journal, &mut context);
         bar.finish_and_clear();
         let done = journal.num_experiences();
         let finished = journal.finish();
@@ -237,14 +246,14 @@ impl LifetimeRun<'_> {
         {
             return Err(Failure::input(error.to_string()));
         }
-        match lived {
+        match ran {
             Ok(summary) if summary.finished => finished
                 .map(|()| summary)
                 .map_err(|error| self.stopped(&error.to_string(), done)),
             Ok(_) => Err(self.stopped("interrupted", done)),
             // The same command would stop there again, and again.
             Err(error @ CurriculumError::World { .. }) => Err(Failure::input(format!(
-                "{error}\n{}: holds {done} of {} experiences, each of them whole; {}",
+                "{error}\n{}: holds {done} of {} experiences, all complete; {}",
                 self.logs.shown(),
                 self.plan.num_experiences(),
                 UNDRAWABLE
@@ -260,7 +269,7 @@ impl LifetimeRun<'_> {
         };
         opened.map_err(|error| match error {
             CurriculumError::Log(MetricsError::LogExists { path }) => Failure::input(format!(
-                "{}: holds something already; choose a new folder with --logs, or go on with a log with --resume",
+                "{}: found a folder that is not empty; choose a new one with --logs, or continue its log with --resume",
                 path.shown()
             )),
             other => other.into(),
@@ -270,7 +279,7 @@ impl LifetimeRun<'_> {
     /// Why it stopped, what there is, and how to go on.
     fn stopped(&self, why: &str, done: u64) -> Failure {
         Failure::input(format!(
-            "{why}\n{}: holds {done} of {} experiences, each of them whole; go on with the same command and --resume",
+            "{why}\n{}: holds {done} of {} experiences, all complete; continue with the same command and --resume",
             self.logs.shown(),
             self.plan.num_experiences()
         ))
@@ -294,7 +303,7 @@ fn is_loss(error: &CurriculumError) -> bool {
 pub(crate) fn regimes(summary: &Summary) -> String {
     let rows = summary.regimes.iter().map(|regime| {
         // Where all was left out, there is nothing to tell.
-        let told = |number: f64, show: fn(f64) -> String| {
+        let shown = |number: f64, show: fn(f64) -> String| {
             if regime.experiences == 0 {
                 "-".to_owned()
             } else {
@@ -311,8 +320,8 @@ pub(crate) fn regimes(summary: &Summary) -> String {
             .to_owned(),
             regime.variant.clone(),
             regime.experiences.to_string(),
-            told(regime.mean_reward, |reward| format!("{reward:.1}")),
-            told(regime.success_rate, |rate| format!("{:.0}%", 100.0 * rate)),
+            shown(regime.mean_reward, |reward| format!("{reward:.1}")),
+            shown(regime.success_rate, |rate| format!("{:.0}%", 100.0 * rate)),
         ]
     });
     table(

@@ -28,8 +28,8 @@ const OBJECTS: u64 = 100_000;
 
 /// Draw worlds from a variant of a task.
 ///
-/// World number INDEX under a seed is always the same, whatever was drawn before it and on whatever machine. Worlds go to
-/// standard output, a file, a folder (one file each), JSON lines (--jsonl), or one table (a file ending in .parquet or .arrow).
+/// World INDEX under a seed is always the same, on every machine and in every order. Write worlds to standard output, a
+/// file, a folder (one file each), JSON lines (--jsonl), or a table (a file ending in .parquet or .arrow).
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld sample find_objects#red --seed 7 --index 12345 -o -
@@ -39,39 +39,45 @@ const OBJECTS: u64 = 100_000;
   driftworld sample find_objects#blue --drift-to red --schedule cosine --count 50 -o drift/
   driftworld sample my_task.json#night --maps my_maps.json --count 10 -o worlds/")]
 pub(crate) struct Sample {
-    /// A task's variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
+    /// The variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
     task: String,
-    /// The seed.
+    /// Seed of the worlds.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// The number of the first world.
+    /// Index of the first world.
     #[arg(long, default_value_t = 0)]
     index: u64,
-    /// How many worlds, from INDEX on.
+    /// Number of worlds, starting at INDEX.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     count: Option<u64>,
-    /// Only the I-th of N equal parts of the worlds, as 1/4 to 4/4: together the parts give what one run gives.
+    /// Draw only the I-th of N equal parts, 1/4 to 4/4.
+    ///
+    /// Together, the parts are the same as one run.
     #[arg(long, value_name = "I/N", requires = "count")]
     shard: Option<Shard>,
-    /// How the random numbers of randomized parameters are spread over the worlds.
+    /// How random numbers are spread over the worlds.
     #[arg(long, alias = "sampler", value_enum, default_value_t = SequenceName::Independent)]
     sequence: SequenceName,
-    /// Drift over the worlds to this variant of the task: the first world is of the one, the last of the other.
+    /// Drift to this variant of the task.
+    ///
+    /// The first world is of the variant given, the last of this one.
     #[arg(long, value_name = "VARIANT", requires = "count")]
     drift_to: Option<String>,
-    /// How the drift goes: linear, cosine, step:N, sawtooth:N.
+    /// Shape of the drift: linear, cosine, step:N or sawtooth:N.
     #[arg(long, value_parser = schedule, default_value = "linear", requires = "drift_to")]
     schedule: Schedule,
-    /// Values with nothing in between switch by chance, more likely as the drift goes on, not at a point.
+    /// Switch values that cannot be interpolated at random, not at a fixed point.
+    ///
+    /// The switch becomes more likely as the drift proceeds.
     #[arg(long, requires = "drift_to")]
     mix: bool,
-    /// Layouts in place of the built-in maps: a maps file, or a folder of them.
+    /// Use the layouts in this maps file, or folder of them, instead of the built-in maps.
     #[arg(long, value_name = "PATH")]
     maps: Option<PathBuf>,
-    /// One world a line instead of indented files.
+    /// Write one world per line instead of indented files.
     #[arg(long)]
     jsonl: bool,
-    /// A file, a folder for several worlds, or - for standard output.
+    /// File, folder for several worlds, or - for standard output.
     #[arg(short, long, default_value = "-", value_name = "PATH")]
     output: PathBuf,
 }
@@ -79,11 +85,11 @@ pub(crate) struct Sample {
 /// The names of [`Sequence`].
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum SequenceName {
-    /// Each world draws on its own.
+    /// Each world is drawn independently.
     Independent,
-    /// Sobol's sequence over the world's numbers, scrambled by the seed.
+    /// A Sobol sequence over world indices, scrambled by the seed.
     Sobol,
-    /// A Latin hypercube over INDEX to INDEX + COUNT.
+    /// A Latin hypercube over indices INDEX to INDEX + COUNT.
     #[value(alias = "latin-hypercube")]
     Lhs,
 }
@@ -104,7 +110,7 @@ impl std::str::FromStr for Shard {
             .and_then(|(part, parts)| Some((part.parse().ok()?, parts.parse().ok()?)));
         match numbers {
             Some((part, parts)) if 1 <= part && part <= parts => Ok(Self { part, parts }),
-            _ => Err("expected a part and how many there are, counted from 1, such as 1/4".to_owned()),
+            _ => Err("expected a part and the number of parts, counted from 1, such as 1/4".to_owned()),
         }
     }
 }
@@ -186,7 +192,7 @@ impl Sample {
         if let Some(format) = Format::of(&self.output) {
             if self.jsonl {
                 return Err(Failure::usage(
-                    "a table is not JSON lines: leave out --jsonl, or name a file ending in .jsonl",
+                    "--jsonl: found with a table as output; leave out --jsonl, or name a file ending in .jsonl",
                 ));
             }
             return self.table(&source, &variant, range, format);
@@ -199,7 +205,8 @@ impl Sample {
         }
         if self.output == Path::new("-") {
             return Err(Failure::usage(
-                "several worlds go to a folder (-o DIR), as one world a line (--jsonl), or to a table (-o FILE.parquet)",
+                "found several worlds for one document, expected a folder (-o DIR), one world per line (--jsonl), or \
+                 a table (-o FILE.parquet)",
             ));
         }
         self.files(&source, range)
@@ -327,7 +334,7 @@ fn each(
     mut take: impl FnMut((u64, String, World)) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     // Whoever is asked to stop gives up what is half written, and removes it.
-    let interrupt = Interrupt::listen("interrupted; what was half written is removed");
+    let interrupt = Interrupt::listen("interrupted; incomplete output was removed");
     let bar = output::progress(range.end - range.start, "sampling");
     let mut first = range.start;
     let mut chunk = 16;
@@ -342,7 +349,7 @@ fn each(
             if interrupt.is_asked() && index + 1 < range.end {
                 let done = index + 1 - range.start;
                 return Err(Failure::input(format!(
-                    "interrupted after {done} of {} worlds; what was half written is removed",
+                    "interrupted after {done} of {} worlds; incomplete output was removed",
                     range.end - range.start
                 )));
             }

@@ -10,20 +10,20 @@ use crate::{Failure, documents};
 
 use super::output;
 
-/// Write or check the JSON Schemas of the documents.
+/// Print, write or check the JSON Schemas of all documents.
 #[derive(Args)]
 #[command(after_help = "Example:\n  driftworld schema task > task.schema.json\n  driftworld schema -o schemas")]
 pub(crate) struct Schema {
-    /// Which schema to print: world, task or scenario.
+    /// The schema to print.
     #[arg(value_parser = ["world", "task", "scenario"], conflicts_with_all = ["output", "check", "reference"])]
     document: Option<String>,
-    /// Take the reference pages of the keys of a world, in Markdown, in place of the schemas.
+    /// Use the Markdown reference of a world's keys instead of the schemas.
     #[arg(long)]
     reference: bool,
     /// Write all schemas into this folder.
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Compare the schemas in this folder with the code's; exit code 1 if one is stale.
+    /// Compare the schemas in this folder with the code. Exit code 1 if one is stale.
     #[arg(long, value_name = "DIR", conflicts_with = "output")]
     check: Option<PathBuf>,
 }

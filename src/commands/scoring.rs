@@ -11,62 +11,66 @@ use crate::metrics::{
 use crate::scoring::{ScoringSettings, data_ranges};
 use clap::Args;
 
-/// How a lifetime is scored, and with which experts it is compared.
+/// How a lifetime is scored, and which experts it is compared with.
 #[derive(Args, Default)]
 #[command(next_help_heading = "Scoring")]
 pub(crate) struct Scoring {
-    /// Folders of single-task-expert logs to compare with.
+    /// Compare with the single-task experts logged in these folders.
     #[arg(long, value_name = "DIR", num_args = 1..)]
     ste: Vec<PathBuf>,
-    /// The folder where `driftworld metrics --ste-store-mode` keeps experts; those of the lifetime's tasks are taken.
+    /// Compare with the experts stored in this folder.
+    ///
+    /// `driftworld metrics --ste-store-mode` stores them. Experts for the lifetime's tasks are used.
     #[arg(long, value_name = "DIR")]
     ste_data: Option<PathBuf>,
-    /// The column that holds the performance [default: reward].
+    /// The column to score [default: reward].
     #[arg(short, long, value_name = "COLUMN")]
     perf_measure: Option<String>,
-    /// Whether variants of a task count as tasks: aware (default) or agnostic.
+    /// Score each variant (aware, the default) or whole tasks (agnostic).
     #[arg(short = 'r', long, value_name = "MODE")]
     variant_mode: Option<VariantMode>,
-    /// How several runs of an expert are brought together: metrics (default) or time.
+    /// How to combine several runs of an expert: metrics (default) or time.
     #[arg(short = 'v', long, value_name = "METHOD")]
     ste_averaging_method: Option<SteAveragingMethod>,
-    /// How the values of the tasks become the lifetime's: mean (default) or median.
+    /// How to aggregate over tasks: mean (default) or median.
     #[arg(short, long, value_name = "METHOD")]
     aggregation_method: Option<AggregationMethod>,
-    /// What maintenance compares with: mrlep (default), mrtlp or both.
+    /// The baseline of performance maintenance: mrlep (default), mrtlp or both.
     #[arg(short, long, value_name = "METHOD")]
     maintenance_method: Option<MaintenanceMethod>,
-    /// How transfer compares before and after: ratio (default), contrast or both.
+    /// How to compare performance before and after: ratio (default), contrast or both.
     #[arg(short, long, value_name = "METHOD")]
     transfer_method: Option<TransferMethod>,
-    /// How performances are scaled: task (default), run or none.
+    /// How to normalise performance: task (default), run or none.
     #[arg(short, long, value_name = "METHOD")]
     normalization_method: Option<NormalizationMethod>,
-    /// How learning curves are smoothed: flat (default), hanning, hamming, bartlett, blackman or none.
+    /// The smoothing window: flat (default), hanning, hamming, bartlett, blackman or none.
     #[arg(short = 'g', long, value_name = "METHOD")]
     smoothing_method: Option<SmoothingMethod>,
-    /// Smooth evaluations too.
+    /// Smooth evaluation blocks too.
     #[arg(short = 'G', long)]
     smooth_eval_data: bool,
-    /// How long the smoothing window is, in experiences [default: a fifth of a regime, at most 100].
+    /// Length of the smoothing window [default: a fifth of a regime, at most 100].
     #[arg(short, long, value_name = "N")]
     window_length: Option<usize>,
-    /// Clip performances to the given ranges, or else to the 0.1 and 0.9 quantiles of each task.
+    /// Clip performance to the given ranges, or else to each task's 0.1 and 0.9 quantiles.
     #[arg(short = 'x', long)]
     clamp_outliers: bool,
-    /// A JSON file with the range of each task: `{"find_red": {"min": 0, "max": 10}}`.
+    /// Read each task's range from a JSON file: `{"find_red": {"min": 0, "max": 10}}`.
     #[arg(short, long, value_name = "FILE")]
     data_range_file: Option<PathBuf>,
-    /// Add normal noise to every performance of the lifetime, in normalised units.
+    /// Add Gaussian noise to the performance, in normalised units.
     #[arg(short = 'N', long, num_args = 2, value_names = ["MEAN", "STD"], allow_negative_numbers = true)]
     noise: Option<Vec<f64>>,
-    /// What the noise is drawn from.
+    /// Seed of the noise.
     #[arg(long, value_name = "N", default_value_t = 0, requires = "noise")]
     noise_seed: u64,
-    /// Follow the published definitions where the reference's program departs from them; docs/metrics.md says where.
+    /// Follow the published definitions where the reference program differs.
+    ///
+    /// docs/metrics.md lists the differences.
     #[arg(long)]
     strict_definitions: bool,
-    /// Start from the settings in this JSON file, l2metrics' or ours; flags beside it win.
+    /// Read settings from a JSON file, l2metrics' or ours. Command-line options win.
     #[arg(short = 'c', long, value_name = "FILE")]
     load_settings: Option<PathBuf>,
 }
@@ -110,23 +114,25 @@ impl Scoring {
     }
 }
 
-/// How several lifetimes are put together, and how sure their numbers are.
+/// How several lifetimes are combined, and the confidence intervals.
 #[derive(Args)]
 #[command(next_help_heading = "Several lifetimes")]
 pub(crate) struct Intervals {
-    /// Scale each task by its range over all lifetimes, not each lifetime by its own; so it is with --against anyway.
+    /// Normalise each task by its range over all lifetimes. --against always does.
     #[arg(long)]
     pub(crate) common_ranges: bool,
-    /// How much of the bootstrap's distribution an interval holds.
+    /// Confidence level of the bootstrap intervals.
     #[arg(long, value_name = "SHARE", default_value_t = BootstrapOptions::default().confidence)]
     confidence: f64,
-    /// How many times lifetimes are drawn again; take 50000 for a figure to publish.
+    /// Number of bootstrap resamples. Use 50000 for a published figure.
     #[arg(long, value_name = "N", default_value_t = BootstrapOptions::default().resamples)]
     resamples: u32,
-    /// What is drawn again: runs (whole lifetimes) or strata (within each task, as rliable, as if a lifetime's tasks shared no luck).
+    /// What to resample: runs (whole lifetimes) or strata (within each task).
+    ///
+    /// `strata` does as rliable does: it treats the tasks of a lifetime as independent.
     #[arg(long, value_name = "WHAT", default_value_t = BootstrapOptions::default().resampling)]
     resampling: Resampling,
-    /// What the draws come from.
+    /// Seed of the bootstrap.
     #[arg(long, value_name = "N", default_value_t = 0)]
     bootstrap_seed: u64,
 }

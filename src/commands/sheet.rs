@@ -18,7 +18,7 @@ use crate::views::Views;
 /// The most variants that one picture shows.
 const MOST_VARIANTS: usize = 60;
 
-/// Draw one world of each of many variants: what the agent sees, and the world from above.
+/// Draw one world of each of several variants, from the agent's view and from above.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld sheet get_to_goal -o goal.png
@@ -32,25 +32,25 @@ pub(crate) struct Sheet {
         conflicts_with = "scenario"
     )]
     tasks: Vec<String>,
-    /// The variants that a scenario learns, in its order, in place of variants.
+    /// Draw the variants that this scenario learns, in order.
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
-    /// The seed of the worlds; 0 if not said, in a scenario each block's own.
+    /// Seed of the worlds [default: 0; in a scenario, each block's own].
     #[arg(long)]
     seed: Option<u64>,
-    /// The number of each variant's world; 0 if not said, in a scenario the first of each block.
+    /// Index of each variant's world [default: 0; in a scenario, the first of each block].
     #[arg(long)]
     index: Option<u64>,
-    /// Turn the first-person cameras this many degrees clockwise from the agent's heading.
+    /// Turn the first-person cameras clockwise from the agent's heading, in degrees.
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     turn: f64,
     /// Height of each picture in pixels.
     #[arg(long, default_value_t = 200, value_parser = clap::value_parser!(u32).range(32..=480))]
     size: u32,
-    /// How many variants stand side by side.
+    /// Number of variants per row.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=8))]
     columns: u8,
-    /// The PNG file.
+    /// PNG file to write.
     #[arg(short, long, default_value = "sheet.png", value_name = "FILE")]
     output: PathBuf,
 }
@@ -66,7 +66,7 @@ impl Sheet {
         };
         if variants.is_empty() || variants.len() > MOST_VARIANTS {
             return Err(Failure::input(format!(
-                "found {} variants, expected 1 to {MOST_VARIANTS} for one picture; name some as TASK#VARIANT",
+                "found {} variants, expected 1 to {MOST_VARIANTS} in one picture; name some as TASK#VARIANT",
                 variants.len()
             )));
         }
@@ -145,7 +145,8 @@ fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
     let text = documents::text_of(file, &[Contents::Scenario])?;
     if is_original(&text) {
         return Err(Failure::input(format!(
-            "{}: found a scenario of L2Explorer, which lives map files, expected one of ours; draw its maps with driftworld render --l2explorer",
+            "{}: found a scenario of L2Explorer, which uses map files, expected one of Driftworld; draw its maps with \
+             driftworld render --l2explorer",
             file.shown()
         )));
     }
@@ -158,7 +159,8 @@ fn learned(file: &Path) -> Result<Vec<Shown>, Failure> {
         for regime in &block.regimes {
             if let Some(world) = &regime.world {
                 return Err(Failure::input(format!(
-                    "{}: block {number} lives the world file {world}, expected variants of tasks; draw it with driftworld render",
+                    "{}: block {number}: found the world file {world}, expected variants of tasks; draw it with \
+                     driftworld render",
                     file.shown()
                 )));
             }

@@ -9,7 +9,7 @@ use serde_json::json;
 use super::{Failure, output};
 use crate::table::wide_table;
 
-/// List the built-in tasks, or show what varies in one.
+/// List the built-in tasks, or show what varies in a task.
 #[derive(Args)]
 #[command(after_help = "Example:\n  driftworld tasks\n  driftworld tasks show find_objects")]
 pub(crate) struct Tasks {
@@ -22,7 +22,7 @@ pub(crate) struct Tasks {
 
 #[derive(Subcommand)]
 enum Action {
-    /// Show parameter by parameter what a task fixes, varies and draws, and every variant's values.
+    /// Show a task's parameters, and their values in every variant.
     #[command(after_help = "Example:\n  driftworld tasks show find_objects")]
     Show {
         /// A built-in task, or the path of a task spec.

@@ -14,7 +14,7 @@ use serde_json::json;
 
 use super::{Failure, output};
 
-/// Let the original L2Explorer client run on Driftworld's environment instead of its Unity build.
+/// Run the original L2Explorer client on Driftworld instead of its Unity build.
 #[derive(Args)]
 #[command(after_help = "Examples:
   cargo build --release -p driftworld-unity
@@ -39,22 +39,22 @@ impl Unity {
     }
 }
 
-/// Copy `driftworld-unity` to `DIR/l2explorer.x86_64`, and print the two variables that the client reads.
+/// Install `driftworld-unity` as `DIR/l2explorer.x86_64`.
 ///
-/// Standard output holds two lines of shell and nothing else, for `eval`. What stands in DIR under that name is replaced if it is
-/// an earlier copy; anything else is left alone, for it may be a Unity build that nobody can get again.
+/// Prints two lines of shell for `eval`, which set the variables that the client reads. An earlier copy in DIR is
+/// replaced. Any other file of that name is kept, since it may be the original Unity build.
 #[derive(Args)]
 #[command(after_help = "Examples:
   eval \"$(driftworld unity install ~/l2explorer)\"
   driftworld unity install app --executable target/release/driftworld-unity")]
 struct Install {
-    /// The folder, made if it is missing.
+    /// The folder to install into. Created if missing.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// The executable to copy; without it, driftworld-unity is looked for beside this program, then in PATH.
+    /// The executable to copy [default: driftworld-unity beside this program, else in PATH].
     #[arg(long, value_name = "FILE")]
     executable: Option<PathBuf>,
-    /// Replace `DIR/l2explorer.x86_64` even if it is another program than ours.
+    /// Replace `DIR/l2explorer.x86_64` even if it is another program.
     #[arg(long)]
     force: bool,
     /// Print the paths and variables as JSON.
@@ -123,8 +123,9 @@ impl Install {
             return Ok(());
         }
         Err(Failure::input(format!(
-            "{shown}: found a program that is not Driftworld's, expected none, or an earlier copy of {EXECUTABLE}; it may be a Unity \
-             build that cannot be had again: name another folder, or replace it with --force"
+            "{shown}: found a program that is not Driftworld's, expected none, or an earlier copy of {EXECUTABLE}; it \
+             may be the original Unity build, which is no longer available: name another folder, or replace it with \
+             --force"
         )))
     }
 }
@@ -137,10 +138,16 @@ fn look_for_executable() -> Result<PathBuf, Failure> {
         .and_then(|program| program.parent().map(Path::to_path_buf));
     let path = env::var_os("PATH");
     find_in(beside.as_deref(), path.as_deref(), &name).ok_or_else(|| {
-        let beside = beside.map_or_else(String::new, |folder| format!("in {}, beside this program, nor ", folder.shown()));
+        let beside = beside.map_or_else(String::new, |folder| {
+            format!(
+                "in {}, beside this program, nor \
+             ",
+                folder.shown()
+            )
+        });
         Failure::input(format!(
-            "{name}: found neither {beside}in a folder of PATH; make it in a checkout of Driftworld with `{BUILD}`, and name it with \
-             --executable target/release/{name}"
+            "{name}: found neither {beside}in a folder of PATH; build it in a checkout of Driftworld with `{BUILD}`, \
+             and name it with --executable target/release/{name}"
         ))
     })
 }
@@ -159,7 +166,7 @@ fn check_source(source: &Path) -> Result<(), Failure> {
     }
     let found = if about.is_file() { "another file" } else { "no file" };
     Err(Failure::input(format!(
-        "{}: found {found}, expected the executable that `{BUILD}` makes, target/release/{EXECUTABLE}",
+        "{}: found {found}, expected the executable that `{BUILD}` builds, target/release/{EXECUTABLE}",
         source.shown()
     )))
 }
@@ -184,7 +191,7 @@ fn holds_marker(path: &Path) -> io::Result<bool> {
 fn target(folder: &Path) -> Result<PathBuf, Failure> {
     if fs::metadata(folder).is_ok_and(|found| !found.is_dir()) {
         return Err(Failure::input(format!(
-            "{}: found a file, expected a folder to install into, or a path where one can be made",
+            "{}: found a file, expected a folder to install into, or a path to create one",
             folder.shown()
         )));
     }
@@ -221,16 +228,16 @@ fn unreadable(path: &Path, error: &io::Error) -> Failure {
 /// Why the client will not find the copy, if it will not.
 fn odd_for_the_client(target: &Path) -> Option<String> {
     let folder = target.parent()?.to_str()?;
-    let advice = "install into a folder whose whole path is without it";
+    let advice = "install into a folder whose path does not contain it";
     if let Some(cut) = CUT_OUT.into_iter().find(|cut| folder.contains(cut)) {
         return Some(format!(
-            "{}: the client cuts \"{cut}\" out of paths, and will not find this one; {advice}",
+            "{}: the client removes \"{cut}\" from paths, and will not find this one; {advice}",
             target.shown()
         ));
     }
     let pattern = folder.chars().find(|letter| "*?[".contains(*letter))?;
     Some(format!(
-        "{}: the client takes \"{pattern}\" in paths for a pattern, and may find nothing or something else; {advice}",
+        "{}: the client reads \"{pattern}\" in paths as a pattern, and may find nothing or another file; {advice}",
         target.shown()
     ))
 }
@@ -312,11 +319,11 @@ mod tests {
     fn paths_that_the_client_breaks_are_known() {
         check_path("/home/me/l2explorer", None);
         check_path("/opt/x86_64/It's {here}, ok", None);
-        check_path("/home/me/.apps", Some("cuts \".app\" out"));
-        check_path("/srv/l2.x86_64", Some("cuts \".x86_64\" out"));
-        check_path("/srv/l2.x86", Some("cuts \".x86\" out"));
-        check_path("/srv/l2.exe/bin", Some("cuts \".exe\" out"));
-        check_path("/srv/[old]", Some("takes \"[\" in paths for a pattern"));
-        check_path("/srv/what?", Some("takes \"?\""));
+        check_path("/home/me/.apps", Some("removes \".app\""));
+        check_path("/srv/l2.x86_64", Some("removes \".x86_64\""));
+        check_path("/srv/l2.x86", Some("removes \".x86\""));
+        check_path("/srv/l2.exe/bin", Some("removes \".exe\""));
+        check_path("/srv/[old]", Some("reads \"[\" in paths as a pattern"));
+        check_path("/srv/what?", Some("reads \"?\""));
     }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::contents::Contents;
 use crate::curriculum::{Trial, Tried, Undrawable, try_worlds};
 use crate::documents::{self, Checked, Kind};
+use crate::elements::{ElementsOutcome, ElementsRequest, elements_of};
 use crate::scenarios::{Missing, ScenarioFile, task_from};
 use crate::spec::{Classes, Problem, SpecError, TaskSpec};
 use crate::tasks;
@@ -17,29 +18,37 @@ use crate::{Failure, trials, worlds};
 
 use super::output;
 
-/// Check task specs, worlds, scenarios and maps files, and name every problem with its place.
+/// Check task specs, worlds, scenarios and maps files.
 ///
-/// What a file is, is seen from its keys: "blocks" make a scenario, "scenario" one of L2Explorer's, "maps" a maps file, "name" a
-/// task spec, anything else a world. The variants that a scenario names are checked against its tasks, where those can be found.
+/// Reports every problem with its line and column. The keys of a file tell its kind: "blocks" for a scenario,
+/// "scenario" for one of L2Explorer's, "maps" for a maps file, "name" for a task spec, anything else for a world. The
+/// variants of a scenario are checked against its tasks if those can be found.
 ///
-/// With --worlds some worlds are drawn, too: of every variant of a task; of every regime of a scenario, along its drift where it has one,
-/// whose variants are looked at one by one. A task or scenario with a world that cannot be drawn is refused.
+/// --worlds also draws worlds: of every variant of a task, and of every regime of a scenario. Along a drift, the
+/// variants are checked one by one. A task or scenario fails if one of its worlds cannot be drawn.
+///
+/// --elements also tests which elements of the decision process the variants of a task change, as `driftworld elements`
+/// does. A task fails if that contradicts the `affects` of its parameters. A parameter that nothing reads is a warning.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld validate examples/tasks
   driftworld validate my_task.json scenario.json --worlds 100
+  driftworld validate my_task.json --elements
   driftworld validate --l2explorer map.json")]
 pub(crate) struct Validate {
-    /// Files, or folders of .json files.
+    /// Files to check, or folders of .json files.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// Read worlds as L2Explorer wrote them, with warnings.
+    /// Read worlds in L2Explorer's format, with warnings.
     #[arg(long)]
     l2explorer: bool,
-    /// Draw so many worlds of each variant and of each regime, and say how often that fails, and why.
+    /// Also draw this many worlds of each variant and regime, and report failures.
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1_000_000))]
     worlds: u32,
-    /// The seed that the worlds of a task's variants are drawn under; scenarios have their own.
+    /// Also test which elements of the decision process variants change, and fail on what contradicts `affects`.
+    #[arg(long)]
+    elements: bool,
+    /// Seed for worlds of a task's variants. Scenarios have their own.
     #[arg(long, default_value_t = 0)]
     seed: u64,
     #[command(flatten)]
@@ -49,7 +58,7 @@ pub(crate) struct Validate {
     json: bool,
 }
 
-/// What is judged; anything else that shows what it is, is refused as such.
+/// The kinds that are checked. Any other recognised kind is refused.
 const DOCUMENTS: [Contents; 4] = [Contents::Task, Contents::World, Contents::Scenario, Contents::Maps];
 
 /// What was found in one file.
@@ -65,6 +74,8 @@ struct Found {
     /// What else is wrong with a scenario, with its code.
     failure: Option<(&'static str, String)>,
     trials: Vec<Trial>,
+    /// What a task's variants were seen to change, where that was asked for.
+    elements: Option<ElementsOutcome>,
 }
 
 impl Validate {
@@ -124,11 +135,38 @@ impl Validate {
                 Err((code, why)) => failure = Some((code, format!("{name}: {why}"))),
             }
         }
+        let mut elements = None;
+        let is_drawn = trials.iter().all(|trial| trial.num_failed() == 0);
+        if self.elements && checked.kind == Kind::Task && checked.error.is_none() && failure.is_none() && is_drawn {
+            match self.try_elements(&name, &text) {
+                Ok(found) => elements = Some(found),
+                Err(why) => failure = Some(("document/elements", format!("{name}: {}", why.text().for_command()))),
+            }
+        }
         Ok(Found {
             checked,
             failure,
             trials,
+            elements,
         })
+    }
+
+    /// Tries what the variants of a valid task change.
+    fn try_elements(&self, name: &str, text: &str) -> Result<ElementsOutcome, Failure> {
+        let request = ElementsRequest {
+            seed: self.seed,
+            libraries: self.libraries.paths().to_vec(),
+            ..ElementsRequest::of(name)
+        };
+        // The name of a file may hold a `#`; all variants are meant.
+        let task = TaskSpec::from_json(name, text)?;
+        elements_of(
+            &task,
+            &ElementsRequest {
+                task: task.name().to_owned(),
+                ..request
+            },
+        )
     }
 
     /// Draws some worlds of what a valid document describes; else why that cannot begin, with the error's code.
@@ -150,7 +188,7 @@ impl Validate {
                 Ok(tried.collect())
             }
             Kind::Scenario | Kind::L2ExplorerScenario => {
-                // Warnings were told when the document was checked.
+                // Warnings were given when the document was checked.
                 let warn = &mut |_| {};
                 let file =
                     ScenarioFile::from_text(path, text, warn).map_err(|error| (error.code(), error.to_string()))?;
@@ -174,7 +212,17 @@ impl Validate {
 impl Found {
     fn is_valid(&self) -> bool {
         let is_drawn = self.trials.iter().all(|trial| trial.num_failed() == 0);
-        self.checked.error.is_none() && self.failure.is_none() && is_drawn
+        self.checked.error.is_none() && self.failure.is_none() && is_drawn && self.is_sound()
+    }
+
+    /// Whether what was tried contradicts nothing.
+    fn is_sound(&self) -> bool {
+        self.elements.as_ref().is_none_or(ElementsOutcome::is_sound)
+    }
+
+    /// What the experiment warns of, in sentences.
+    fn idle(&self) -> Vec<String> {
+        self.elements.iter().flat_map(ElementsOutcome::warnings).collect()
     }
 }
 
@@ -202,8 +250,17 @@ impl Verdict {
             return Ok(());
         }
         let (path, kind) = (self.path.shown(), checked.kind.name());
+        let idle = found.idle();
+        for warning in &idle {
+            output::warning(format!("{path}: {warning}"));
+        }
+        if let Some(elements) = found.elements.as_ref().filter(|elements| !elements.is_sound()) {
+            let found = elements.contradictions();
+            found.for_each(|contradiction| output::note(format!("{path}: {contradiction}")));
+            return Ok(());
+        }
         match trials::summary(&found.trials) {
-            Some(told) => output::note(format!("{path}: a {kind} of which {told}")),
+            Some(summary) => output::note(format!("{path}: a {kind} of which {summary}")),
             None => output::line(format!("{path}: a valid {kind}"))?,
         }
         if found.trials.is_empty() {
@@ -233,17 +290,27 @@ impl Verdict {
                 listed
             }
         });
-        let mut told = json!({
+        let mut report = json!({
             "file": self.path, "kind": checked.kind.name(), "valid": found.is_valid(),
             "problems": problems.unwrap_or_else(|| failure.collect()), "warnings": checked.warnings,
         });
         if checked.error.as_ref().is_some_and(SpecError::has_more) {
-            told["more_problems"] = json!(true);
+            report["more_problems"] = json!(true);
         }
         if !found.trials.is_empty() {
-            told["worlds"] = json!(found.trials);
+            report["worlds"] = json!(found.trials);
         }
-        told
+        if let Some(elements) = &found.elements {
+            let contradiction = |message: &str| json!({ "code": "task/elements", "message": message });
+            if let Some(problems) = report["problems"].as_array_mut() {
+                problems.extend(elements.contradictions().map(contradiction));
+            }
+            if let Some(warnings) = report["warnings"].as_array_mut() {
+                warnings.extend(found.idle().into_iter().map(Value::from));
+            }
+            report["elements"] = json!(elements);
+        }
+        report
     }
 }
 

@@ -1,41 +1,50 @@
 //! `driftworld vary`: a variant at a wanted distance from another. The search is the generator's, the distance `similarity`'s.
 
+use std::path::{Path, PathBuf};
+
 use crate::generator::{Subject, at_distance};
 use crate::similarity::{VariantMeasure, Weights};
-use crate::spec::{DEFAULT_VARIANT, Element, Variant, sound_name};
+use crate::spec::{DEFAULT_VARIANT, Element, TaskSpec, Variant, sound_name};
 use crate::tasks;
 use clap::Args;
-use serde_json::{Map, json};
+use driftworld_text::ShownPath;
+use serde_json::{Map, Value, json};
 
 use super::{Failure, output};
 
-/// Find a variant at a wanted distance from another.
+/// Find a variant at a given distance from another.
 ///
-/// One element of the decision process is changed, or some parameters.
-///
-/// Prints what the variant sets, ready to be pasted among the variants of the task spec.
+/// Changes one element of the decision process, or the parameters that you name, as few of them as will do. Prints the
+/// values that the variant sets, ready to paste into the task spec, and what stays as it is.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld vary find_objects#red --element R --distance 0.5
-  driftworld vary find_objects#red --parameters light,spread --distance 0.2 --name dim --json")]
+  driftworld vary find_objects#red --parameters light,spread --distance 0.2 --name dim --json
+  driftworld vary find_objects#red --element O --distance 1.5 -o my_task.json")]
 pub(crate) struct Vary {
-    /// A task's variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
+    /// The variant to start from: PATH, PATH#variant, or a built-in such as `find_objects#red`.
     variant: String,
-    /// Change the parameters that affect this element alone, and measure in it: S, A, T, R or O.
+    /// Change the parameters of this element, and measure the distance in it: S, A, T, R or O.
     #[arg(long, value_parser = element, required_unless_present = "parameters", conflicts_with = "parameters")]
     element: Option<Element>,
-    /// Change these parameters, and measure the whole distance.
+    /// Change these parameters, and measure the total distance.
     #[arg(long, value_delimiter = ',', value_name = "NAME,…")]
     parameters: Vec<String>,
-    /// The wanted distance, 0 to 1.
-    #[arg(long, value_parser = distance)]
+    /// The distance to reach: 0 or more, where 1 is one parameter moved over its whole range.
+    #[arg(long, value_parser = distance, allow_negative_numbers = true)]
     distance: f64,
-    /// How far off the distance may be.
+    /// How far the result may be from that distance.
     #[arg(long, default_value = "0.001", value_parser = distance, allow_negative_numbers = true)]
     tolerance: f64,
-    /// The new variant's name.
+    /// Name of the new variant.
     #[arg(long, default_value = "found", value_parser = name)]
     name: String,
+    /// Also write the task spec with the new variant at its end to this file.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Replace the file if it exists.
+    #[arg(long, requires = "output")]
+    force: bool,
     /// Print the result as JSON.
     #[arg(long)]
     json: bool,
@@ -51,8 +60,8 @@ fn element(text: &str) -> Result<Element, String> {
 fn distance(text: &str) -> Result<f64, String> {
     text.parse()
         .ok()
-        .filter(|distance| (0.0..=1.0).contains(distance))
-        .ok_or_else(|| "expected a number in 0..1".to_owned())
+        .filter(|distance: &f64| distance.is_finite() && *distance >= 0.0)
+        .ok_or_else(|| "expected a number, 0 or more".to_owned())
 }
 
 fn name(text: &str) -> Result<String, String> {
@@ -65,10 +74,14 @@ impl Vary {
         let task = from.task();
         if task.variant_names().contains(&self.name.as_str()) || self.name == DEFAULT_VARIANT {
             return Err(Failure::usage(format!(
-                "--name: found {:?}, which {} has already, expected a name that no variant has; pasted, it would take that one's place",
+                "--name: found {:?}, which {} already has, expected a name that no variant has; pasted, it would \
+                 replace that one",
                 self.name,
                 task.name()
             )));
+        }
+        if let Some(path) = &self.output {
+            self.refuse_existing(path)?;
         }
         let subject = match self.element {
             Some(element) => Subject::Element(element),
@@ -97,17 +110,60 @@ impl Vary {
             declared.insert("extends".to_owned(), json!(from.name()));
         }
         declared.extend(values);
+        if let Some(path) = &self.output {
+            output::write_or_print(path, &with_variant(&found.variant, &self.name, &declared)?)?;
+        }
+        let held = subject.parameters(&from).into_iter().filter_map(|name| {
+            let value = from
+                .value(name)
+                .filter(|value| found.variant.value(name) == Some(value))?;
+            Some((name, value))
+        });
+        let held: Vec<_> = held.collect();
         if self.json {
-            return output::json(
-                &json!({ "from": from.id(), "distance": found.distance, "variant": { self.name: declared } }),
-            );
+            let held: Map<_, _> = held
+                .into_iter()
+                .map(|(name, value)| (name.to_owned(), value.to_json()))
+                .collect();
+            return output::json(&json!({
+                "from": from.id(), "distance": found.distance, "variant": { self.name: declared }, "held": held,
+            }));
         }
         output::line(format!("{} from {}:", rounded(found.distance), from.id()))?;
         let entry = serde_json::to_string_pretty(&json!({ self.name: declared }))?;
         // Without the outer braces it can be pasted between two variants.
         let inner: Vec<&str> = entry.lines().skip(1).collect();
-        output::print_json(&(inner[..inner.len() - 1].join("\n") + "\n"))
+        output::print_json(&(inner[..inner.len() - 1].join("\n") + "\n"))?;
+        if held.is_empty() {
+            return Ok(());
+        }
+        let held: Vec<String> = held
+            .into_iter()
+            .map(|(name, value)| format!("{name} = {value}"))
+            .collect();
+        output::line(format!("holds: {}", held.join(", ")))
     }
+
+    /// Refuses a file that exists and may not be replaced.
+    fn refuse_existing(&self, path: &Path) -> Result<(), Failure> {
+        if self.force || output::is_stdout(path) || !path.is_file() {
+            return Ok(());
+        }
+        Err(Failure::input(format!(
+            "{}: found a file, expected none; name another file, or replace it with --force",
+            path.shown()
+        )))
+    }
+}
+
+/// The document of a variant's task with that variant at its end. What it declares makes the same variant again.
+fn with_variant(found: &Variant, name: &str, declared: &Map<String, Value>) -> Result<String, Failure> {
+    let mut document: Value = serde_json::from_str(&found.task().to_json())?;
+    document["variants"][name] = Value::Object(declared.clone());
+    let text = serde_json::to_string_pretty(&document)? + "\n";
+    let again = TaskSpec::from_json(name, &text)?.variant(name)?;
+    debug_assert_eq!(again.values(), found.values(), "it extends where the search began");
+    Ok(text)
 }
 
 fn rounded(distance: f64) -> String {

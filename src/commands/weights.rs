@@ -4,11 +4,12 @@ use crate::similarity::{MAX_WEIGHT, SimilarityError, Weights};
 use crate::spec::Element;
 use clap::Args;
 
-/// What elements weigh; shared by the commands that measure.
+/// The weights of elements; shared by the commands that measure.
 #[derive(Args, Clone, Default)]
 pub(crate) struct WeightArgs {
-    /// What an element weighs in the whole distance, over what the task says: S, A, T, R or O, and a number, such as R=2.
-    /// Repeatable.
+    /// Weight of an element in the total distance, such as R=2. Repeatable.
+    ///
+    /// Elements are S, A, T, R and O. The weight overrides the task's own.
     #[arg(long, value_name = "ELEMENT=WEIGHT", value_parser = weight)]
     weight: Vec<(Element, f64)>,
 }

@@ -12,18 +12,18 @@ use super::output;
 /// Which world a command is about: one of a file, or one drawn from a variant.
 #[derive(Args)]
 pub(crate) struct WorldChoice {
-    /// A world file, or a task's variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
+    /// A world file, or a variant: PATH, PATH#variant, or a built-in such as `find_objects#red`.
     world: String,
-    /// The seed, where the world is drawn from a variant.
+    /// Seed for drawing the world from a variant.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// The number of the world, where it is drawn from a variant.
+    /// Index of the world under the seed.
     #[arg(long, default_value_t = 0)]
     index: u64,
-    /// Read the world as L2Explorer wrote it, with warnings.
+    /// Read the world in L2Explorer's format, with warnings.
     #[arg(long)]
     l2explorer: bool,
-    /// Layouts in place of the built-in maps: a maps file, or a folder of them.
+    /// Use the layouts in this maps file, or folder of them, instead of the built-in maps.
     #[arg(long, value_name = "PATH")]
     maps: Option<PathBuf>,
 }

@@ -15,19 +15,19 @@ use crate::Failure;
 use crate::modality::Kind;
 
 /// Reads lines from a terminal.
-pub(crate) struct Editor(rustyline::Editor<Words, MemHistory>);
+pub(crate) struct Editor(rustyline::Editor<Completions, MemHistory>);
 
 impl Editor {
     pub(crate) fn new() -> Result<Self, Failure> {
         let config = Config::builder().auto_add_history(true).build();
         let mut editor = rustyline::Editor::with_history(config.clone(), MemHistory::with_config(&config))?;
-        editor.set_helper(Some(Words(Names::default())));
+        editor.set_helper(Some(Completions(Names::default())));
         Ok(Self(editor))
     }
 
     /// The next line that is neither empty nor a comment; none when the user leaves. Ctrl-C drops the line.
     pub(crate) fn read(&mut self, names: Names) -> Result<Option<String>, Failure> {
-        self.0.set_helper(Some(Words(names)));
+        self.0.set_helper(Some(Completions(names)));
         loop {
             match self.0.readline("driftworld> ") {
                 Ok(line) if line.trim().is_empty() || line.trim_start().starts_with('#') => {}
@@ -41,9 +41,9 @@ impl Editor {
 }
 
 /// What Tab completes.
-struct Words(Names);
+struct Completions(Names);
 
-impl Words {
+impl Completions {
     /// The words that may stand behind those that are there already.
     fn after(&self, before: &[&str]) -> Vec<String> {
         let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
@@ -52,7 +52,7 @@ impl Words {
             [] | ["help"] => COMMANDS.map(|(name, _, _)| name.to_owned()).into(),
             ["show"] => modalities().into(),
             ["screenshot", _] => modalities().into_iter().chain(["map".to_owned()]).collect(),
-            ["log"] => Category::ALL.map(|category| category.name().to_owned()).into(),
+            ["log"] => owned(&Category::names()),
             ["log", _] => owned(&["on", "off"]),
             ["state"] => owned(&["--json"]),
             ["action"] => owned(&["-c", "-a"]),
@@ -78,7 +78,7 @@ impl Words {
     }
 }
 
-impl Completer for Words {
+impl Completer for Completions {
     type Candidate = String;
 
     fn complete(&self, line: &str, pos: usize, _: &Context<'_>) -> rustyline::Result<(usize, Vec<String>)> {
@@ -97,15 +97,15 @@ impl Completer for Words {
     }
 }
 
-impl Hinter for Words {
+impl Hinter for Completions {
     type Hint = String;
 }
 
-impl Highlighter for Words {}
+impl Highlighter for Completions {}
 
-impl Validator for Words {}
+impl Validator for Completions {}
 
-impl Helper for Words {}
+impl Helper for Completions {}
 
 #[cfg(test)]
 mod tests {
@@ -114,7 +114,7 @@ mod tests {
     #[test]
     fn words_are_completed_by_what_stands_before_them() {
         let check = |line: &str, expected: &[&str]| {
-            let words = Words(Names {
+            let words = Completions(Names {
                 objects: vec!["oak".to_owned()],
                 snapshots: vec!["before".to_owned()],
             });

@@ -1,58 +1,52 @@
 //! What a line of the console says: a command and its arguments, checked as far as that goes without a world.
 
 use crate::env::{Action, Category};
-use crate::spec::nearest;
-use serde_json::{Map, Value, json};
+use crate::spec::did_you_mean;
 
 use crate::modality::Kind;
 
-/// The most steps of one command.
-const MOST_STEPS: u32 = 100_000;
+use super::arguments::{self, action, columns, number, object, screenshot, show, step, words};
 
 /// Every command: its name, its arguments, what it does.
 pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
     ("help", "[COMMAND]", "list the commands, or explain one"),
-    ("info", "", "the world and its episode, in short"),
-    (
-        "objects",
-        "",
-        "every object: where it is, what it is worth, whether it is there",
-    ),
+    ("info", "", "summarise the world and its episode"),
+    ("objects", "", "list the objects: position, reward, whether present"),
     (
         "state",
         "[--json | FILE]",
-        "the agent; the world as it is now as JSON, or written to a file",
+        "show the agent; with an argument, the current world as JSON, or write it to a file",
     ),
     (
         "step",
         "[N] [A B C | ROW]",
-        "N steps (1) of the action A B C (0 0 0), or of a row of the action table",
+        "take N steps (1) with action A B C (0 0 0), or with a row of the action table",
     ),
     (
         "action",
         "[-c N] -a A B C | ROW",
-        "the same, by options: -c how often, -a which action",
+        "the same with options: -c count, -a action",
     ),
     (
         "reset",
         "[INDEX | FILE]",
-        "back to the start; to world number INDEX of the variant; to another world",
+        "reset to the start, to world INDEX of the variant, or to another world",
     ),
     (
         "spawn",
         "CLASS X Y [KEY=VALUE ...] | JSON",
-        "put a new object into the world",
+        "add an object to the world",
     ),
     ("destroy", "INDEX | NAME", "take an object away for good"),
     ("teleport", "X Y [HEADING]", "put the agent somewhere else"),
-    ("show", "[MODALITY] [COLUMNS]", "what the agent sees, in the terminal"),
-    ("map", "[COLUMNS]", "the world from above, in the terminal"),
+    ("show", "[MODALITY] [COLUMNS]", "show the agent's view in the terminal"),
+    ("map", "[COLUMNS]", "show the world from above in the terminal"),
     (
         "screenshot",
         "FILE [MODALITY | map] [WIDTHxHEIGHT]",
-        "the same as a PNG file inside --out",
+        "write a picture into a PNG file inside --out",
     ),
-    ("snapshot", "[NAME]", "remember this moment, or list those remembered"),
+    ("snapshot", "[NAME]", "take a snapshot, or list the snapshots"),
     ("restore", "NAME", "go back to a moment"),
     (
         "send_message",
@@ -62,7 +56,7 @@ pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
     (
         "log",
         "[CATEGORY on|off]",
-        "show remarks: agent, communications, worldmaker, academy",
+        "show log messages: agent, communications, worldmaker, academy",
     ),
     ("quit", "", "leave; so does Ctrl-D"),
     ("exit", "", "the same"),
@@ -156,8 +150,8 @@ impl Line {
             ("restore", [name]) => Ok(Self::Restore((*name).to_owned())),
             ("send_message", [file]) => Ok(Self::Send((*file).to_owned())),
             ("log", []) => Ok(Self::Log(None)),
-            ("log", [category, "on"]) => Ok(Self::Log(Some((self::category(category)?, true)))),
-            ("log", [category, "off"]) => Ok(Self::Log(Some((self::category(category)?, false)))),
+            ("log", [category, "on"]) => Ok(Self::Log(Some((arguments::category(category)?, true)))),
+            ("log", [category, "off"]) => Ok(Self::Log(Some((arguments::category(category)?, false)))),
             ("quit" | "exit", []) => Ok(Self::Quit),
             (name, _) => Err(misused(name)),
         }
@@ -165,182 +159,14 @@ impl Line {
 }
 
 /// What to say about a command that is not known, or was called with other arguments than it takes.
-fn misused(name: &str) -> String {
+pub(super) fn misused(name: &str) -> String {
     let known = COMMANDS.map(|(name, _, _)| name);
     if let Some((name, usage, _)) = COMMANDS.iter().find(|(known, _, _)| *known == name) {
         let takes = if usage.is_empty() { "no arguments" } else { usage };
         return format!("{name}: expected {takes}");
     }
-    let near = nearest(name, known).map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
-    format!("found command {name:?}, expected one that help lists{near}")
-}
-
-/// A line cut at its blanks; what stands in quotes is one word.
-fn words(text: &str) -> Result<Vec<String>, String> {
-    let mut words = Vec::new();
-    let (mut word, mut quote) = (None::<String>, None);
-    for letter in text.chars() {
-        match quote {
-            Some(open) if letter == open => quote = None,
-            None if letter == '"' || letter == '\'' => {
-                quote = Some(letter);
-                word.get_or_insert_default();
-            }
-            None if letter.is_whitespace() => words.extend(word.take()),
-            _ => word.get_or_insert_default().push(letter),
-        }
-    }
-    if let Some(open) = quote {
-        return Err(format!("found {open} once, expected it twice: around a word"));
-    }
-    words.extend(word);
-    Ok(words)
-}
-
-fn number(word: &str) -> Result<f64, String> {
-    let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
-    number.ok_or_else(|| format!("found {word:?}, expected a number"))
-}
-
-fn count(word: &str) -> Result<u32, String> {
-    let count = word.parse().ok().filter(|count| (1..=MOST_STEPS).contains(count));
-    count.ok_or_else(|| format!("found {word:?}, expected how many steps, 1 to {MOST_STEPS}"))
-}
-
-fn columns(word: &str) -> Result<u32, String> {
-    let columns = word.parse().ok().filter(|columns| (8..=400).contains(columns));
-    columns.ok_or_else(|| format!("found {word:?}, expected how many columns, 8 to 400"))
-}
-
-fn category(word: &str) -> Result<Category, String> {
-    let names = Category::ALL.map(Category::name);
-    let near = || nearest(word, names).map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
-    Category::from_name(word).ok_or_else(|| {
-        format!(
-            "found category {word:?}, expected one of {}{}",
-            names.join(", "),
-            near()
-        )
-    })
-}
-
-fn step(words: &[&str]) -> Result<Line, String> {
-    let (count, numbers) = match words {
-        [] => (1, words),
-        [steps, rest @ ..] => (count(steps)?, rest),
-    };
-    let action = match numbers {
-        [] => Action::Continuous([0.0; 3]),
-        numbers => an_action(numbers).ok_or_else(|| misused("step"))??,
-    };
-    Ok(Line::Act { action, count })
-}
-
-fn action(words: &[&str]) -> Result<Line, String> {
-    let (count, words) = match words {
-        ["-c", steps, rest @ ..] | [rest @ .., "-c", steps] => (count(steps)?, rest),
-        _ => (1, words),
-    };
-    let ["-a", numbers @ ..] = words else {
-        return Err(misused("action"));
-    };
-    let action = an_action(numbers).ok_or_else(|| misused("action"))??;
-    Ok(Line::Act { action, count })
-}
-
-/// Three numbers, or one row.
-fn an_action(words: &[&str]) -> Option<Result<Action, String>> {
-    match words {
-        [row] => {
-            let row = row
-                .parse()
-                .map_err(|_| format!("found {row:?}, expected the number of a row"));
-            Some(row.map(Action::Discrete))
-        }
-        [a, b, c] => {
-            let numbers = [a, b, c].map(|word| number(word));
-            let [a, b, c] = numbers;
-            Some(a.and_then(|a| Ok(Action::Continuous([a, b?, c?]))))
-        }
-        _ => None,
-    }
-}
-
-fn picture(word: &str) -> Result<Picture, String> {
-    if word == "map" {
-        return Ok(Picture::Map);
-    }
-    let kind = Kind::ALL.into_iter().find(|kind| kind.name() == word);
-    let names = Kind::ALL.map(Kind::name);
-    let near = || nearest(word, names).map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
-    kind.map(Picture::Seen).ok_or_else(|| {
-        format!(
-            "found modality {word:?}, expected one of {}{}",
-            names.join(", "),
-            near()
-        )
-    })
-}
-
-fn show(words: &[&str]) -> Result<Line, String> {
-    let is_number = |word: &str| word.starts_with(|letter: char| letter.is_ascii_digit());
-    let (kind, width) = match words {
-        [width] if is_number(width) => (None, Some(*width)),
-        words => (words.first().copied(), words.get(1).copied()),
-    };
-    Ok(Line::Show {
-        picture: kind.map_or(Ok(Picture::Seen(Kind::Rgb)), picture)?,
-        columns: width.map(columns).transpose()?,
-    })
-}
-
-fn screenshot(file: &str, words: &[&str]) -> Result<Line, String> {
-    let (mut kind, mut size) = (Picture::Seen(Kind::Rgb), None);
-    for word in words {
-        if word.starts_with(|letter: char| letter.is_ascii_digit()) {
-            let sides = word
-                .split_once('x')
-                .and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
-            let sides = sides.ok_or_else(|| format!("found size {word:?}, expected WIDTHxHEIGHT such as 320x240"))?;
-            size = Some(sides);
-        } else {
-            kind = picture(word)?;
-        }
-    }
-    let file = file.to_owned();
-    Ok(Line::Screenshot {
-        file,
-        picture: kind,
-        size,
-    })
-}
-
-/// An object as JSON, from `key=value` words.
-fn object(class: &str, coordinates: [f64; 2], keys: &[&str]) -> Result<String, String> {
-    let mut object = Map::new();
-    object.insert("class".into(), json!(class));
-    object.insert("coordinates".into(), json!(coordinates));
-    for word in keys {
-        let (key, text) = word
-            .split_once('=')
-            .ok_or_else(|| format!("found {word:?}, expected KEY=VALUE such as reward=1"))?;
-        if object.insert(key.to_owned(), value(key, text)).is_some() {
-            return Err(format!("found {key} twice, expected it once"));
-        }
-    }
-    Ok(Value::Object(object).to_string())
-}
-
-/// A value as it is typed: JSON, a list with commas, or a plain word.
-fn value(key: &str, text: &str) -> Value {
-    let one = |text: &str| serde_json::from_str(text).unwrap_or_else(|_| json!(text));
-    match one(text) {
-        Value::String(text) if text.contains(',') => text.split(',').map(one).collect(),
-        single @ Value::String(_) if key.ends_with("_stimulus") => json!([single]),
-        // A model or a name may look like a number.
-        Value::Number(_) if ["model", "tag", "unique_name"].contains(&key) => json!(text),
-        other => other,
-    }
+    let near = did_you_mean(name, known);
+    format!("found command {name:?}, expected one listed by help{near}")
 }
 
 #[cfg(test)]
@@ -381,7 +207,8 @@ mod tests {
     #[test]
     fn an_object_is_spawned_by_words_or_by_json() {
         check(
-            "spawn barrel 1 -2.5 color=1,0,0 reward=1 reward_stimulus=AgentCollide model=2 tag='red things' solid=false",
+            "spawn barrel 1 -2.5 color=1,0,0 reward=1 reward_stimulus=AgentCollide model=2 tag='red things' \
+             solid=false",
             &Line::Spawn(
                 r#"{"class":"barrel","coordinates":[1.0,-2.5],"color":[1,0,0],"reward":1,"reward_stimulus":["AgentCollide"],"model":"2","tag":"red things","solid":false}"#
                     .to_owned(),
@@ -420,7 +247,7 @@ mod tests {
     #[test]
     fn a_misspelt_command_is_told_the_one_it_is_near_to() {
         refuse("telport 1 2", "did you mean \"teleport\"?");
-        refuse("xyzzy", "expected one that help lists");
+        refuse("xyzzy", "expected one listed by help");
         refuse("objects all", "objects: expected no arguments");
         refuse("log agnet on", "did you mean \"agent\"?");
         refuse("destroy 'oak", "found ' once");

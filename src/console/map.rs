@@ -59,24 +59,24 @@ pub(super) fn letters(environment: &Environment, columns: u32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spec::{Object, Stimulus, World};
+    use crate::spec::{Object, Stimulus, WorldDraft};
 
     #[test]
     fn what_pays_is_a_capital_and_the_agent_looks_its_way() {
         let mut coin = Object::new("barrel", [2.8, 2.8]);
         coin.reward = 1.0;
         coin.reward_stimulus = vec![Stimulus::AgentCollide];
-        let mut world = World {
+        let mut world = WorldDraft {
             objects: vec![
                 coin,
                 Object::new("tree", [-2.8, -2.8]),
-                Object::new("rock", [500.0, 0.0]),
+                Object::new("rock", [300.0, 0.0]),
             ],
-            ..World::default()
+            ..WorldDraft::default()
         };
         world.environment_params.map_size = [10.0, 10.0];
         world.agent_params.heading = 90.0;
-        let environment = Environment::new(world).expect("every checked world starts");
+        let environment = Environment::new(world.check().expect("the world is sound"));
         let expected = [
             "####################",
             "#                  #",

@@ -82,7 +82,7 @@ fn message(mut json: Value) -> (Channel, String) {
     let action = json.get("action").and_then(Value::as_str).unwrap_or_default();
     let action = action.trim().to_lowercase();
     // A misspelt action goes where it was meant to go, so that the answer can say how it is spelt.
-    let meant = || nearest(&action, Channel::ALL.into_iter().flat_map(Channel::actions));
+    let meant = || nearest(&action, Channel::ALL.iter().flat_map(|channel| channel.actions()));
     let channel = named
         .or_else(|| Channel::for_action(&action))
         .or_else(|| Channel::for_action(&meant()?));

@@ -1,6 +1,7 @@
 //! The console: a running world by hand, line by line. What a line says is in `line.rs`, what is done in `session.rs`; where
 //! lines come from, the command's.
 
+mod arguments;
 #[cfg(feature = "line-editor")]
 mod editor;
 mod line;

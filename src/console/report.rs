@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::spec::nearest;
+use crate::spec::did_you_mean;
 
 use super::line::COMMANDS;
 use super::session::{MOST_LINES, Session};
@@ -50,7 +50,8 @@ impl Session<'_> {
             Some(steps) => format!("at most {steps}"),
         };
         let mut text = format!(
-            "world      {}\nsteps      {}, {limit}\nreturn     {}{}\narena      {:?} m, map {}\nobjects    {}, of which {there} are there\n\
+            "world      {}\nsteps      {}, {limit}\nreturn     {}{}\narena      {:?} m, map {}\nobjects    {}, of \
+             which {there} are there\n\
              actions    {:?}, {} s each\npictures   {width} × {height} pixels: {}\nwatched    {}\nsnapshots  {}",
             world.hash(),
             self.environment.num_steps(),
@@ -106,9 +107,8 @@ pub(super) fn help(command: Option<&str>) -> Result<String, String> {
     };
     let found = COMMANDS.iter().find(|(name, _, _)| *name == command);
     found.map(line).ok_or_else(|| {
-        let near = nearest(command, COMMANDS.map(|(name, _, _)| name));
-        let near = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
-        format!("found command {command:?}, expected one that help lists{near}")
+        let near = did_you_mean(command, COMMANDS.map(|(name, _, _)| name));
+        format!("found command {command:?}, expected one listed by help{near}")
     })
 }
 

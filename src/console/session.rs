@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::env::{Action, Category, Channels, CpuRenderer, Environment, Event, Level, Snapshot, Step};
-use crate::spec::{Object, World, nearest};
+use crate::spec::{Object, World, did_you_mean};
 use driftworld_text::ShownPath;
 
 use super::line::Line;
@@ -60,23 +60,18 @@ pub(super) fn plain(error: impl std::error::Error) -> String {
 }
 
 impl<'a> Session<'a> {
-    pub(crate) fn new(
-        (choice, warn): (WorldRequest, Warn<'a>),
-        world: World,
-        out: &Path,
-        screen: Screen,
-    ) -> Result<Self, Failure> {
-        Ok(Self {
+    pub(crate) fn new((choice, warn): (WorldRequest, Warn<'a>), world: World, out: &Path, screen: Screen) -> Self {
+        Self {
             choice,
             warn,
             channels: Channels::new(&world),
-            environment: Environment::new(world.clone())?,
+            environment: Environment::new(world.clone()),
             start: world,
             snapshots: BTreeMap::new(),
             renderer: CpuRenderer::new(),
             folder: Folder::new(out),
             screen,
-        })
+        }
     }
 
     /// What stands above the first prompt.
@@ -160,7 +155,7 @@ impl<'a> Session<'a> {
         if left_out > 0 {
             lines.push(format!("… and {left_out} lines more"));
         }
-        let how = match (last.ended(), last.success, last.terminated) {
+        let outcome = match (last.ended(), last.success, last.terminated) {
             (false, ..) => "",
             (true, true, _) => ": success",
             (true, false, true) => ": failure",
@@ -168,7 +163,7 @@ impl<'a> Session<'a> {
         };
         let plural = if steps == 1 { "" } else { "s" };
         let (reward, agent) = (amount(reward), self.agent());
-        lines.push(format!("{steps} step{plural}, reward {reward}; {agent}{how}"));
+        lines.push(format!("{steps} step{plural}, reward {reward}; {agent}{outcome}"));
         Ok(lines.join("\n"))
     }
 
@@ -202,7 +197,7 @@ impl<'a> Session<'a> {
                 Err(_) => self.choice.named(text, self.warn).map_err(said)?,
             },
         };
-        self.environment.reset(world.clone()).map_err(plain)?;
+        self.environment.reset(world.clone());
         self.start = world;
         let hash = self.start.hash();
         let remark = self.remark(Category::Academy, format!("a new episode of world {hash:.12}"));
@@ -222,8 +217,7 @@ impl<'a> Session<'a> {
         let index = match object.parse() {
             Ok(index) => index,
             Err(_) => self.environment.find(object).ok_or_else(|| {
-                let near = nearest(object, self.names().objects);
-                let near = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
+                let near = did_you_mean(object, self.names().objects);
                 format!("found object {object:?}, expected an index or a unique_name{near}")
             })?,
         };
@@ -243,7 +237,7 @@ impl<'a> Session<'a> {
         };
         if self.snapshots.len() >= MOST_SNAPSHOTS && !self.snapshots.contains_key(&name) {
             return Err(format!(
-                "found {MOST_SNAPSHOTS} moments, expected fewer; use a name again"
+                "found {MOST_SNAPSHOTS} snapshots, expected fewer; reuse a name"
             ));
         }
         self.snapshots.insert(name.clone(), self.environment.snapshot());
@@ -252,13 +246,10 @@ impl<'a> Session<'a> {
 
     fn restore(&mut self, name: &str) -> Result<String, String> {
         let Some(moment) = self.snapshots.get(name) else {
-            let near = nearest(name, self.snapshots.keys());
-            let near = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
-            return Err(format!(
-                "found moment {name:?}, expected one that snapshot has made{near}"
-            ));
+            let near = did_you_mean(name, self.snapshots.keys());
+            return Err(format!("found snapshot {name:?}, expected an existing one{near}"));
         };
-        self.environment.restore(moment).map_err(plain)?;
+        self.environment.restore(moment);
         Ok(self.agent())
     }
 
@@ -266,9 +257,10 @@ impl<'a> Session<'a> {
         if let Some((category, active)) = change {
             self.channels.set_active(category, active);
         }
-        let state = |category: Category| if self.channels.is_active(category) { "on" } else { "off" };
-        Category::ALL
-            .map(|category| format!("{} {}", category.name(), state(category)))
-            .join(", ")
+        let state = |category| if self.channels.is_active(category) { "on" } else { "off" };
+        let each = Category::ALL
+            .iter()
+            .map(|&category| format!("{} {}", category.name(), state(category)));
+        each.collect::<Vec<_>>().join(", ")
     }
 }

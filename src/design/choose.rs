@@ -5,7 +5,7 @@ use driftworld_similarity::{DistanceMatrix, Method};
 use driftworld_spec::{DEFAULT_VARIANT, Element, Variant};
 
 use super::{DesignOrder, DesignRequest};
-use crate::distances::labelled_matrix;
+use crate::distances::{By, labelled_matrix};
 use crate::{Failure, argument, tasks};
 
 /// How far off a step may be where nobody says.
@@ -74,7 +74,7 @@ impl DesignRequest {
             let picked = if self.names_variants() && pool.len() > 1 {
                 if let Some(wanted) = self.variants.filter(|wanted| *wanted < pool.len()) {
                     return Err(Failure::usage(format!(
-                        "{}: found {wanted} and {} variants named, expected at least as many as are named; name fewer, or \
+                        "{}: found {wanted}, but {} variants are named, expected at least that many; name fewer, or \
                          leave it out",
                         argument("variants"),
                         pool.len()
@@ -90,13 +90,13 @@ impl DesignRequest {
                 probe(&task, &pool, &anchor, element, self.variants)?
             };
             let matrix = distances(&picked, Some(element))?;
-            // A method or an end that was asked for, or the order of a hypothesis: by default the gradual one.
+            // A method or an end that was asked for, or the order of a hypothesis: by default the outward one.
             let order = if self.ordering.method.is_some() || self.ordering.end.is_some() {
                 self.ordering.order(&matrix, self.design.seed)?.1.indices
             } else {
                 match self.order {
                     Some(DesignOrder::Named) => (0..picked.len()).collect(),
-                    order => arrange(&matrix, order.map_or(Hypothesis::Gradual, DesignOrder::hypothesis), 0)?,
+                    order => arrange(&matrix, order.map_or(Hypothesis::Outward, DesignOrder::hypothesis), 0)?,
                 }
             };
             return chosen(
@@ -106,7 +106,7 @@ impl DesignRequest {
                 Evidence::Probe { picked, element },
             );
         }
-        let matrix = labelled_matrix(&named, Ok)?;
+        let matrix = labelled_matrix(&named, Some(By::fitting(named.iter().map(|(_, variant)| variant))), Ok)?;
         let order = match self.order {
             Some(DesignOrder::Named) => {
                 let all = 0..matrix.len();
@@ -159,7 +159,8 @@ impl DesignRequest {
         let (task, first) = &named[0];
         if let Some((other, _)) = named.iter().find(|(other, _)| other != task) {
             return Err(Failure::input(format!(
-                "found variants of {task} and of {other}, expected those of one task: {} and {} measure within a task",
+                "found variants of {task} and of {other}, expected variants of one task; {} and {} measure within a \
+                 task",
                 argument("probe"),
                 argument("step_distance")
             )));

@@ -35,8 +35,8 @@ impl Drawable {
         };
         let failed: Vec<_> = found.into_iter().filter(|trial| trial.num_failed() > 0).collect();
         Err(Failure::input(format!(
-            "{}: {summary}, so the scenario is not written\n{}\nmend the task; or write it as it is with {} 0, and leave such \
-             experiences out with driftworld run {}",
+            "{}: {summary}, so the scenario is not written\n{}\nfix the task; or write it unchecked with {} 0, and \
+             skip such experiences with driftworld run {}",
             scenario.name,
             trials::shown(&failed),
             argument("worlds"),

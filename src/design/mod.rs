@@ -3,6 +3,7 @@
 
 mod choose;
 mod drawable;
+mod proof;
 mod request;
 mod words;
 
@@ -58,9 +59,10 @@ impl Designed {
 pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
     request.check()?;
     let chosen = request.choose()?;
+    let proof = request.prove(&chosen)?;
     let mut drawable = Drawable::new(request.worlds, &request.catalogue()?);
     let (options, picked) = (&request.design, chosen.in_order(&chosen.order));
-    let scenarios = match (request.lifetimes, request.form()) {
+    let mut scenarios = match (request.lifetimes, request.form()) {
         (Some(lifetimes), _) => {
             let lifetime = |lifetime| {
                 let name = format!("{}-{}", options.name, lifetime + 1);
@@ -79,7 +81,7 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
         (None, _) => vec![lay_out(&picked, options)?],
     };
     let mut controls = Vec::new();
-    for kind in Control::ALL.into_iter().filter(|_| request.controls) {
+    for &kind in Control::ALL.iter().filter(|_| request.controls) {
         let order = control(&chosen.matrix, &chosen.order, kind, options.seed)?;
         let name = format!("{}-{}", options.name, kind.name());
         // By their places in the order that the design itself has.
@@ -93,6 +95,9 @@ pub fn design(request: &DesignRequest) -> Result<Designed, Failure> {
                 ..options.clone()
             },
         )?);
+    }
+    for scenario in scenarios.iter_mut().chain(&mut controls) {
+        scenario.proof.clone_from(&proof);
     }
     for scenario in scenarios.iter().chain(&controls) {
         drawable.check(scenario)?;

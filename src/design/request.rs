@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use driftworld_curriculum::{Design, Hypothesis};
 use driftworld_env::Catalogue;
-use driftworld_spec::{Element, ScenarioForm};
+use driftworld_spec::{Element, Modality, ScenarioForm};
 
 use crate::ordering::OrderRequest;
 use crate::{Failure, argument, libraries};
@@ -18,8 +18,10 @@ pub const MAX_TRIED: u32 = 1_000_000;
 /// The order of the variants, where no method finds it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DesignOrder {
-    /// By growing distance from the first: the unlike come last.
+    /// In small steps: the shortest path from the first, and of equally short ones that whose largest step is smallest.
     Gradual,
+    /// By growing distance from the first: the unlike come last.
+    Outward,
     /// The longest path from the first: neighbours as unlike as can be.
     Abrupt,
     /// The shortest path from the first: neighbours as alike as can be.
@@ -34,7 +36,8 @@ impl DesignOrder {
     /// The order by distances that is meant.
     pub(super) fn hypothesis(self) -> Hypothesis {
         match self {
-            Self::Gradual | Self::Named => Hypothesis::Gradual,
+            Self::Gradual => Hypothesis::Gradual,
+            Self::Outward | Self::Named => Hypothesis::Outward,
             Self::Abrupt => Hypothesis::Abrupt,
             Self::Path => Hypothesis::Path,
             Self::Farthest => Hypothesis::Farthest,
@@ -53,6 +56,8 @@ pub struct DesignRequest {
     pub order: Option<DesignOrder>,
     /// Probe one element: variants that differ from the start in it and in nothing else.
     pub probe: Option<Element>,
+    /// Which images the learner of a probe has; those that the task's worlds ask for where nobody says.
+    pub modalities: Option<Vec<Modality>>,
     /// How many variants the probe takes; all that are declared, and at least 4, where nobody says.
     pub variants: Option<usize>,
     /// Make a sequence of variants of which each is this far from the one before: in the probed element, or in all.
@@ -81,6 +86,7 @@ impl DesignRequest {
             ordering: OrderRequest::default(),
             order: None,
             probe: None,
+            modalities: None,
             variants: None,
             step_distance: None,
             tolerance: None,
@@ -113,6 +119,7 @@ impl DesignRequest {
     pub fn check(&self) -> Result<(), Failure> {
         let given = [
             ("variants", self.variants.is_some()),
+            ("modalities", self.modalities.is_some()),
             ("probe", self.probe.is_some()),
             ("order", self.order.is_some()),
             ("method", self.ordering.method.is_some()),
@@ -126,14 +133,13 @@ impl DesignRequest {
         let is_given = |name: &str| given.iter().any(|(known, is_given)| *known == name && *is_given);
         for (one, needed) in [
             ("variants", "probe"),
+            ("modalities", "probe"),
             ("tolerance", "step_distance"),
             ("steps", "step_distance"),
         ] {
             if is_given(one) && !is_given(needed) {
                 let (one, needed) = (argument(one), argument(needed));
-                return Err(Failure::usage(format!(
-                    "{one}: found it without {needed}, expected both"
-                )));
+                return Err(Failure::usage(format!("{one}: found without {needed}, expected both")));
             }
         }
         for (one, other) in [
@@ -148,7 +154,7 @@ impl DesignRequest {
             if is_given(one) && is_given(other) {
                 let (one, other) = (argument(one), argument(other));
                 return Err(Failure::usage(format!(
-                    "{one}: found {other}, too, expected one of the two"
+                    "{one}: found together with {other}, expected only one of the two"
                 )));
             }
         }
@@ -168,23 +174,25 @@ impl DesignRequest {
         let [lifetimes, form, controls, drift] = ["lifetimes", "form", "controls", "drift"].map(argument);
         if self.lifetimes.is_some() && self.form() != Some(ScenarioForm::Permuted) {
             return Err(Failure::usage(format!(
-                "{lifetimes} are of the permuted form: add {form} permuted"
+                "{lifetimes}: found without {form} permuted, expected both; only the permuted form has several \
+                 lifetimes"
             )));
         }
         if self.is_of_several() && self.controls {
             return Err(Failure::usage(format!(
-                "{controls} are of one scenario: leave them out, or {lifetimes} and {form} expert"
+                "{controls}: found with several scenarios, expected one; leave out {controls}, or {lifetimes} and \
+                 {form} expert"
             )));
         }
         if self.form() == Some(ScenarioForm::Permuted) && self.controls {
             return Err(Failure::usage(format!(
-                "the permuted form draws its own order, and {controls} are of an order that was chosen: leave one of them \
-                 out; {lifetimes} are each other's controls"
+                "{controls}: found with {form} permuted, which has a random order, expected an order that was chosen; \
+                 leave one of them out ({lifetimes} of the permuted form control each other)"
             )));
         }
         if self.form() == Some(ScenarioForm::Expert) && self.design.drifting.is_some() {
             return Err(Failure::usage(format!(
-                "an expert learns one variant alone: leave {drift} out"
+                "{drift}: found with {form} expert, which learns one variant alone; leave {drift} out"
             )));
         }
         Ok(())

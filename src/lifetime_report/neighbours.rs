@@ -11,7 +11,7 @@ use driftworld_similarity::DistanceMatrix;
 use driftworld_spec::{BlockKind, Scenario, TaskSpec, Variant};
 use driftworld_text::ShownPath;
 
-use crate::distances::variant_matrix;
+use crate::distances::{By, variant_matrix};
 use crate::{Failure, argument, matrix_file, tasks};
 
 /// Variants beyond these are not measured in passing.
@@ -42,7 +42,7 @@ struct Ends {
 }
 
 /// Distances of neighbours, and a sentence about them.
-type Told = (Option<Vec<Option<f64>>>, String);
+type Distances = (Option<Vec<Option<f64>>>, String);
 
 impl Neighbours {
     /// Of the matrix in a file, or else to be measured.
@@ -68,17 +68,18 @@ impl Neighbours {
     }
 
     /// The distances between neighbouring learning blocks of a lifetime.
-    pub(super) fn of(&mut self, log: &Log, lifetime: &Lifetime) -> Told {
+    pub(super) fn of(&mut self, log: &Log, lifetime: &Lifetime) -> Distances {
         if self.mode == VariantMode::Agnostic {
-            let why = "No distances between blocks: the lifetime was scored by tasks without their variants, and distances are between variants.";
+            let why = "No distances between blocks: the lifetime was scored by whole tasks (variant mode agnostic), \
+                 and distances are between variants.";
             return (None, why.to_owned());
         }
         if let Some(named) = &self.given {
-            return named.told(lifetime);
+            return named.distances(lifetime);
         }
         let Some(scenario) = log.scenario_info.extra.get("scenario").map(ToString::to_string) else {
             let why =
-                "No distances between blocks: the log does not say which scenario was lived, and no matrix was given.";
+                "No distances between blocks: the log does not say which scenario was run, and no matrix was given.";
             return (None, why.to_owned());
         };
         let measured = self
@@ -86,14 +87,14 @@ impl Neighbours {
             .entry(scenario)
             .or_insert_with_key(|scenario| measure(scenario, &self.tasks));
         match measured {
-            Ok(named) => named.told(lifetime),
+            Ok(named) => named.distances(lifetime),
             Err(why) => (None, format!("No distances between blocks: {why}.")),
         }
     }
 }
 
 impl Named {
-    fn told(&self, lifetime: &Lifetime) -> Told {
+    fn distances(&self, lifetime: &Lifetime) -> Distances {
         let apart = |[a, b]: [&str; 2]| {
             let of = |name: &str| self.index.get(name).copied();
             Some(self.matrix.get(of(a)?.last, of(b)?.first))
@@ -110,7 +111,7 @@ impl Named {
             return (None, why);
         }
         let drifts = if self.drifts() > 0 {
-            " Of a block that drifts, its beginning is held against the block before, and its end against the one after."
+            " The beginning of a drifting block is compared with the block before, its end with the block after."
         } else {
             ""
         };
@@ -141,7 +142,7 @@ impl Tasks {
         let read = |path: &PathBuf| {
             let name = path.to_str().ok_or_else(|| {
                 Failure::usage(format!(
-                    "{}: found {}, expected a name that is UTF-8",
+                    "{}: found {}, expected a UTF-8 name",
                     argument("task"),
                     path.shown()
                 ))
@@ -170,7 +171,7 @@ impl Tasks {
 /// Measures the variants that a scenario learns, or says why that cannot be done.
 fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
     let scenario = Scenario::from_json_with("scenario_info.json", scenario, |task| tasks.task(task))
-        .map_err(|_| "the scenario in the log is not one of this version's".to_owned())?;
+        .map_err(|_| "the scenario in the log is not of this version".to_owned())?;
     let mut variants: Vec<(String, Variant)> = Vec::new();
     let mut place = |variant: Variant| {
         let name = log_name(variant.task().name(), variant.name());
@@ -188,11 +189,12 @@ fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
     {
         let task = tasks.task(&regime.task).ok_or_else(|| {
             format!(
-                "the log names the task {:?}, which is not built in, and files that a log names are not opened; name it with --task FILE",
+                "the log names the task {:?}, which is not built in; files that a log names are not opened, so give \
+                 it with --task FILE",
                 regime.task
             )
         })?;
-        let lost = |name: &str| format!("the task {} has no variant {name} as it was lived", regime.task);
+        let lost = |name: &str| format!("the task {} has no longer the variant {name} that was run", regime.task);
         let begins = regime.resolve(&task).map_err(|_| lost(regime.variant_name()))?;
         let ends = regime.resolve_end(&task).map_err(|_| lost("its drift leads to"))?;
         // As `driftworld run` names a block in its log.
@@ -205,14 +207,20 @@ fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
         index.insert(name, Ends { first, last });
         if first.max(last) >= MOST_MEASURED {
             return Err(format!(
-                "more than {MOST_MEASURED} variants were learnt; measure them with driftworld order --matrix FILE and give --distances FILE"
+                "more than {MOST_MEASURED} variants were learnt; measure them with driftworld order --matrix FILE and \
+                 give --distances FILE"
             ));
         }
     }
     if variants.is_empty() {
-        return Err("the scenario was lived in world files, not in variants of tasks".to_owned());
+        return Err("the scenario ran world files, not variants of tasks".to_owned());
     }
-    let matrix = variant_matrix(&variants, Ok).map_err(|error| error.to_string())?;
+    let matrix = variant_matrix(
+        &variants,
+        Some(By::fitting(variants.iter().map(|(_, variant)| variant))),
+        Ok,
+    )
+    .map_err(|error| error.to_string())?;
     Ok(Named {
         matrix,
         index,

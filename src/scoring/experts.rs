@@ -50,14 +50,14 @@ impl Experts {
             .iter()
             .enumerate()
             .filter(|(index, _)| !taken.contains(index));
-        let told = |(_, expert): (usize, &SteLog)| {
+        let warning = |(_, expert): (usize, &SteLog)| {
             let (name, task) = (&expert.log().run_id, expert.task_name());
             format!(
-                "the expert {name} of {task} is left aside: the lifetime has no such task, but {}",
+                "the expert {name} of {task} is ignored: the lifetime has no such task, only {}",
                 tasks.join(", ")
             )
         };
-        strangers.map(told).collect()
+        strangers.map(warning).collect()
     }
 
     /// The experts of the tasks that a lifetime has.

@@ -44,12 +44,12 @@ impl ScoringRequest {
         }
         if named.is_empty() {
             let hint = if self.settings.experts.len() > 1 {
-                format!("; {} took all folders behind it: name the log before", argument("ste"))
+                format!("; {} took all folders after it: put the log before it", argument("ste"))
             } else {
                 String::new()
             };
             return Err(Failure::usage(format!(
-                "found no DIR, expected the folder of a log, or several{hint}"
+                "found no DIR, expected one or more folders of logs{hint}"
             )));
         }
         if self.recursive {

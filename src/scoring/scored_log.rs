@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use driftworld_metrics::{ExpStatus, Lifetime, LifetimeMetrics, Log, MetricsError, Options, Scorer, read_log};
-use driftworld_spec::nearest;
+use driftworld_spec::did_you_mean;
 use driftworld_text::ShownPath;
 use rayon::prelude::*;
 
@@ -54,8 +54,7 @@ fn without_column(error: MetricsError) -> Failure {
     let MetricsError::UnknownColumn { column, available, .. } = &error else {
         return error.into();
     };
-    let near = nearest(column, available.split(", "));
-    let advice = near.map_or_else(String::new, |near| format!("; did you mean {near:?}?"));
+    let advice = did_you_mean(column, available.split(", "));
     Failure::because(format!("{}: {error}{advice}", argument("perf_measure")), error)
 }
 
@@ -73,7 +72,7 @@ fn missing_numbers(log: &Log, column: &str) -> Option<String> {
         .filter(|(status, number)| is_complete(status) && number.is_nan())
         .count();
     (missing > 0)
-        .then(|| format!("{missing} of {complete} complete rows have no number in column {column} and are left out"))
+        .then(|| format!("{missing} of {complete} complete rows have no number in column {column} and are ignored"))
 }
 
 /// Reads and scores many logs and keeps of each what `keep` makes of it. The failure names every log that cannot be

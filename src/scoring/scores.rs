@@ -111,7 +111,7 @@ impl Scores {
 impl Serialize for Scores {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
-        struct Together<'a> {
+        struct ComparedLifetimes<'a> {
             #[serde(flatten)]
             comparison: &'a Comparison,
             lifetimes: &'a [LifetimeMetrics],
@@ -121,7 +121,7 @@ impl Serialize for Scores {
         match (&self.comparison, self.lifetimes.as_slice()) {
             (None, [lifetime]) => lifetime.serialize(serializer),
             (None, lifetimes) => lifetimes.serialize(serializer),
-            (Some(comparison), lifetimes) => Together {
+            (Some(comparison), lifetimes) => ComparedLifetimes {
                 comparison,
                 lifetimes,
                 lifetimes_against: &self.lifetimes_against,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use driftworld_metrics::{DataRange, DataRanges, Definitions, Noise, Options};
-use driftworld_spec::nearest;
+use driftworld_spec::did_you_mean;
 use driftworld_text::{ShownPath, one_line};
 use serde_json::{Map, Value, json};
 
@@ -66,9 +66,7 @@ pub(super) fn load(path: &Path) -> Result<Loaded, Failure> {
     });
     let known = || known.as_object().into_iter().flat_map(|known| known.keys());
     if let Some(strange) = settings.keys().find(|key| known().all(|known| known != *key)) {
-        let near = nearest(strange, known())
-            .map(|near| format!("; did you mean {near:?}?"))
-            .unwrap_or_default();
+        let near = did_you_mean(strange, known());
         return Err(Failure::input(format!(
             "{}: found the setting {strange:?}, expected one of l2metrics{near}",
             path.shown()

@@ -72,8 +72,8 @@ fn with_common_ranges(logs: &[PathBuf], experts: &Experts, mut options: Options)
 pub(crate) fn own_scale(options: &Options) -> Option<String> {
     let is_own = options.normalization_method != NormalizationMethod::Off && options.data_range.is_none();
     is_own.then(|| {
-        "Each lifetime is scaled by its own smallest and largest performance: levels (avg_train_perf, avg_eval_perf) of \
-         one say nothing beside another's. --common-ranges, -d and -n none give one scale."
+        "Each lifetime is scaled by its own smallest and largest performance, so levels (avg_train_perf, \
+         avg_eval_perf) cannot be compared between lifetimes. Use --common-ranges, -d or -n none for one scale."
             .to_owned()
     })
 }

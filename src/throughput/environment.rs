@@ -36,17 +36,19 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
     }
     let square = arena(ARENA_20, [84, 84])?;
     let wide = arena(ARENA_20, [160, 120])?;
-    let mut small = arena(ARENA_8, [64, 64])?;
-    small.agent_params.modalities = vec![Modality::Rgb];
+    let small = in_color(arena(ARENA_8, [64, 64])?)?;
     let one = steps(&square, NUM_ENVS, 1, round)?;
-    let mut environment = Environment::new(square.clone())?;
+    let mut environment = Environment::new(square.clone());
     let mut figures = rates([
         ("steps_per_second_per_core_84", one),
         ("steps_per_second_per_core_160x120", steps(&wide, NUM_ENVS, 1, round)?),
         ("steps_per_second_per_core_64_rgb", steps(&small, NUM_ENVS, 1, round)?),
         (
             "resets_per_second_per_core",
-            rate(round, |_| environment.reset(square.clone()))?,
+            rate(round, |_| {
+                environment.reset(square.clone());
+                Ok::<_, Failure>(())
+            })?,
         ),
     ]);
     // One core again, so that both are measured in the same state of the machine.
@@ -63,8 +65,7 @@ pub(crate) fn measure(round: Duration, renderer: RendererKind) -> Result<Figures
 /// Steps with pictures of a graphics card, each second, in batches; all threads step.
 fn measure_graphics(round: Duration) -> Result<Figures, Failure> {
     let square = arena(ARENA_20, [84, 84])?;
-    let mut colors = square.clone();
-    colors.agent_params.modalities = vec![Modality::Rgb];
+    let colors = in_color(square.clone())?;
     let steps = |world: &World, num_envs| steps_of(batch_drawn_by(world, num_envs, 0, RendererKind::Gpu)?, round);
     Ok(rates([
         ("gpu_steps_per_second_84_batch_256", steps(&square, 256)?),
@@ -74,13 +75,19 @@ fn measure_graphics(round: Duration) -> Result<Figures, Failure> {
     ]))
 }
 
+/// A scene with colour alone.
+fn in_color(world: World) -> Result<World, Failure> {
+    Ok(world.edit(|world| world.agent_params.modalities = vec![Modality::Rgb])?)
+}
+
 /// A scene with colour, depth and class segmentation at this width and height.
 fn arena(text: &str, [width, height]: [u32; 2]) -> Result<World, Failure> {
-    let mut world = World::from_json("arena.json", text)?;
-    world.agent_params.observation_size = height;
-    world.agent_params.observation_width = (width != height).then_some(width);
-    world.agent_params.modalities = vec![Modality::Rgb, Modality::Depth, Modality::Class];
-    Ok(world)
+    let world = World::from_json("arena.json", text)?;
+    Ok(world.edit(|world| {
+        world.agent_params.observation_size = height;
+        world.agent_params.observation_width = (width != height).then_some(width);
+        world.agent_params.modalities = vec![Modality::Rgb, Modality::Depth, Modality::Class];
+    })?)
 }
 
 fn batch(world: &World, num_envs: usize, num_threads: usize) -> Result<Batch, Failure> {

@@ -18,8 +18,7 @@ pub(crate) fn measure(round: Duration) -> Result<Figures, Failure> {
     let settlement = TaskSpec::from_json("settlement.json", SETTLEMENT)?.variant("near")?;
     let of_86 = Sampler::new(&settlement, 7);
     let find_objects = Sampler::new(&tasks::variant("find_objects#red")?, 7);
-    let mut small = of_86.world(0)?;
-    small.objects.truncate(30);
+    let small = of_86.world(0)?.edit(|world| world.objects.truncate(30))?;
     let text = small.to_json();
     Ok(rates([
         (

@@ -44,7 +44,7 @@ fn a_model_is_packed_once_and_lives_in_worlds() {
     assert!((model.asset().height - 10.2).abs() < 1e-3, "{} m", model.asset().height);
 
     let catalogue = Catalogue::default().with_library(&library);
-    let mut environment = Environment::with_catalogue(world(), catalogue).expect("the world starts");
+    let mut environment = Environment::with_catalogue(world(), catalogue);
     assert_eq!(environment.warnings(), [], "its class is known");
     // Straight ahead stands a tower of 4 m across, 18 m away.
     for _ in 0..60 {
@@ -67,17 +67,17 @@ fn a_model_is_packed_once_and_lives_in_worlds() {
     assert!(seen > 84 * 84 / 4, "it sees {seen} pixels of it");
 
     let moment = environment.snapshot();
-    let mut other = Environment::new(World::default()).expect("the world starts");
-    other.restore(&moment).expect("moments can be gone back to");
+    let mut other = Environment::new(World::default());
+    other.restore(&moment);
     assert_eq!(
         other.observe().rgb,
         environment.observe().rgb,
         "a moment brings its library along"
     );
-    environment.reset(world()).expect("the world starts anew");
+    environment.reset(world());
     assert_eq!(environment.warnings(), [], "and so does a reset");
     let unknown = |warning: &Warning| matches!(warning, Warning::UnknownAsset { .. });
-    let without = Environment::new(world()).expect("the world starts").warnings();
+    let without = Environment::new(world()).warnings();
     assert_eq!(without.len(), 3);
     assert!(without.iter().all(unknown), "without the library: {without:?}");
 }

@@ -5,7 +5,7 @@ use std::process::Stdio;
 use crate::terminal::{driftworld_in, root, scratch, succeed, succeed_in};
 
 /// Every subcommand, as it prints something: results, messages, or both.
-const COMMANDS: [&str; 33] = [
+const COMMANDS: [&str; 34] = [
     "--help",
     "run --help",
     "nonsense",
@@ -17,6 +17,7 @@ const COMMANDS: [&str; 33] = [
     "sample find_objects --count 50 --jsonl",
     "sample nowhere",
     "vary find_objects#red --element R --distance 0.1",
+    "elements blue_red_green --worlds 1",
     "convert find_objects --to l2explorer",
     "render find_objects --size 32 -o a.png",
     "sheet find_objects#red --size 32 -o b.png",

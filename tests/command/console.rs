@@ -156,7 +156,7 @@ fn the_first_error_ends_a_script_with_its_line() {
     let error = String::from_utf8_lossy(&output.stderr);
     assert_eq!(
         error,
-        format!("error: {script}:4: found command \"stap\", expected one that help lists; did you mean \"step\"?\n")
+        format!("error: {script}:4: found command \"stap\", expected one listed by help; did you mean \"step\"?\n")
     );
     assert_eq!(said(&output, folder.path()).matches("> step 3").count(), 1);
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 use std::sync::LazyLock;
 
+use driftworld::design::{DEFAULT_STEPS, DEFAULT_TOLERANCE};
 use serde_json::Value;
 
 use crate::terminal::{driftworld, fail, output, scratch, text};
@@ -115,9 +116,15 @@ fn a_probe_of_each_element_proves_that_nothing_else_differs() {
             }
         }
         let distances: Vec<f64> = rows.iter().map(|row| row[column].parse().expect("a number")).collect();
-        assert!(distances.is_sorted(), "gradual is by growing distance: {distances:?}");
+        assert!(distances.is_sorted(), "outward is by growing distance: {distances:?}");
         let shown: Vec<String> = rows.iter().map(|row| row[0].replace(park("#"), "")).collect();
         assert_eq!(learned(&scenario), shown);
+        for row in rows.iter().filter(|row| row[1] == "made") {
+            assert!(
+                beside.contains(&format!("\n{} sets ", row[0])),
+                "its values are printed: {beside}"
+            );
+        }
     }
 }
 
@@ -176,7 +183,7 @@ fn orders_differ_and_controls_are_matched_in_everything_else() {
         let (scenario, _) = designed(&[park(""), "--probe", "reward", "--order", order, "--seed", "4"]);
         learned(&scenario)
     };
-    let orders = ["gradual", "abrupt", "path", "farthest"].map(design);
+    let orders = ["outward", "abrupt", "path", "farthest"].map(design);
     assert!(orders.iter().all(|order| order[0] == "blue"));
     assert_ne!(orders[0], orders[1]);
     assert_ne!(orders[0], orders[3]);
@@ -480,7 +487,7 @@ fn a_scenario_is_validated_against_the_tasks_it_names() {
     let (code, said) = validate(r#"{ "task": "elsewhere.json", "variant": "blue", "count": 1 }"#);
     assert_eq!(code, Some(0));
     assert!(
-        said.contains("the variants of elsewhere.json are not checked"),
+        said.contains("the variants of elsewhere.json were not checked"),
         "{said}"
     );
 }
@@ -509,6 +516,25 @@ fn what_is_asked_for_wrongly_is_answered_with_what_is_possible() {
     assert!(refused(2, &[park(""), "--form", "expert"]).contains("--output"));
     assert!(refused(2, &[park(""), "--lifetimes", "2"]).contains("--form permuted"));
     assert!(refused(2, &[park(""), "--steps", "3"]).contains("--step-distance"));
+    let both = refused(2, &[park(""), "--order", "path", "--method", "exact"]);
+    assert!(both.contains("--order: found together with --method"), "{both}");
+    let long = refused(2, &[park(""), "--lifetimes", "0", "--form", "permuted"]);
+    assert!(
+        long.contains("--lifetimes: found 0, expected a whole number in 1..=10000"),
+        "{long}"
+    );
     assert!(refused(1, &[park(""), "--blocks", "0"]).contains("expected 1 to 10000"));
     assert!(refused(1, &[park(""), "--step-distance", "2"]).contains("a distance above 0 and at most 1"));
+}
+
+#[test]
+fn help_states_the_defaults_of_the_library() {
+    let help = String::from_utf8(curriculum(&["--help"]).stdout).expect("help is text");
+    for default in [DEFAULT_TOLERANCE.to_string(), DEFAULT_STEPS.to_string()] {
+        assert!(
+            help.contains(&format!("distance [default: {default}]"))
+                || help.contains(&format!("variants [default: {default}]")),
+            "{default}: {help}"
+        );
+    }
 }

@@ -11,7 +11,7 @@ use std::process::Output;
 use driftworld_text::is_unprintable;
 use serde_json::{Value, json};
 
-use crate::lived::write;
+use crate::run_files::write;
 use crate::terminal::{driftworld_in, output, scratch, succeed, text};
 
 /// What a hostile text says, without what no file name can have.
@@ -241,6 +241,7 @@ fn documents(stage: &mut Stage) {
         "--distance",
         "0.5",
     ]);
+    stage.succeed(&["elements", &task, "--worlds", "1"]);
     stage.succeed(&["distance", &format!("{task}#a"), &format!("{task}#b")]);
     stage.succeed(&["sheet", &task, "--size", "32"]);
     stage.succeed(&["order", &task]);

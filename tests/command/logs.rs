@@ -7,7 +7,7 @@ use std::path::Path;
 #[cfg(feature = "parquet")]
 use std::process::Command;
 
-use crate::lived::write;
+use crate::run_files::write;
 use crate::terminal::{driftworld_in, output, scratch};
 
 const HEADER: &str = "block_num\texp_num\tworker_id\tblock_type\tblock_subtype\ttask_name\ttask_params\texp_status\ttimestamp\treward\tdebug\n";
@@ -186,7 +186,12 @@ fn a_log_is_never_written_over() {
         "run/./w/data-log.tsv",
     ] {
         let arguments = ["logs", "aggregate", "run", "-o", name, "--format", "tsv"];
-        assert!(run(base.path(), 1, &arguments).1.contains("part of the log"), "{name}");
+        assert!(
+            run(base.path(), 1, &arguments)
+                .1
+                .contains("the log would be overwritten"),
+            "{name}"
+        );
     }
     assert_eq!(
         fs::read(base.path().join("run/w/0-train/data-log.tsv")).expect("it is there"),
@@ -207,7 +212,7 @@ fn formats_are_known_by_name_and_binary_ones_need_a_file() {
     let contradiction = ["logs", "aggregate", "run", "-o", "table.csv", "--format", "tsv"];
     let (_, error) = run(base.path(), 2, &contradiction);
     assert!(
-        error.contains("found another format than that of \"table.csv\""),
+        error.contains("found a format that differs from the ending of \"table.csv\""),
         "{error}"
     );
     let (_, error) = run(

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Stdio;
 
-use crate::lived::{files, write};
+use crate::run_files::{files, write};
 use crate::terminal::{driftworld, scratch, succeed, text};
 
 /// Many experiences, more than are lived before a mishap.
@@ -53,7 +53,7 @@ fn hit(jobs: &str, log: &Path, scenario: &str, mishap: impl FnOnce(&Path)) -> St
     let error = String::from_utf8_lossy(&ended.stderr).into_owned();
     assert_eq!(ended.status.code(), Some(1), "{error}");
     assert!(
-        !error.contains("panicked") && !error.contains("each of them whole"),
+        !error.contains("panicked") && !error.contains("all complete"),
         "{error}"
     );
     error
@@ -173,7 +173,7 @@ fn with_a_clock_that_stands_still_two_logs_are_equal_to_the_byte() {
     assert_eq!(wrong.status.code(), Some(1));
     let error = String::from_utf8_lossy(&wrong.stderr).into_owned();
     assert!(
-        error.contains("DRIFTWORLD_CLOCK: found \"yesterday\", expected a time in UTC"),
+        error.contains("DRIFTWORLD_CLOCK: found \"yesterday\", expected a UTC time"),
         "{error}"
     );
     assert!(!folder.path().join("wrong").exists(), "nothing was begun");

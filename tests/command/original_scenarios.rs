@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::lived::{files, is_table, num_rows, write};
+use crate::run_files::{files, is_table, num_rows, write};
 use crate::terminal::{driftworld, fail, output, reference, scratch, succeed, text};
 
 #[test]
@@ -60,7 +60,7 @@ fn the_originals_scenario_is_lived_as_it_stands() {
         "{error}"
     );
     assert!(
-        error.contains("map_findobjects_0.json stand in for it without --no-stand-in"),
+        error.contains("map_findobjects_0.json instead without --no-stand-in"),
         "{error}"
     );
     let stand_in = folder.path().join("stand-in");
@@ -68,7 +68,7 @@ fn the_originals_scenario_is_lived_as_it_stands() {
     let output = output(&mut driftworld(&run));
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
-    assert!(said.contains("which lies beside the scenario"), "{said}");
+    assert!(said.contains("beside the scenario"), "{said}");
     assert!(
         said.contains("map_findobjects_1.json: not there; map_findobjects_0.json stood in for it"),
         "{said}"

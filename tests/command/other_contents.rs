@@ -18,7 +18,7 @@ const KINDS: [(&str, &str); 7] = [
 ];
 
 /// Each command with `DOC` in place of the document, and the kinds that it takes.
-const COMMANDS: [(&str, &[&str]); 26] = [
+const COMMANDS: [(&str, &[&str]); 27] = [
     ("run DOC --logs new", &["scenario.json"]),
     ("render DOC", &["task.json", "world.json"]),
     ("render task.json --maps DOC", &["maps.json"]),
@@ -29,6 +29,7 @@ const COMMANDS: [(&str, &[&str]); 26] = [
     ("sample task.json --maps DOC", &["maps.json"]),
     ("tasks show DOC", &["task.json"]),
     ("vary DOC#red --element R --distance 0.1", &["task.json"]),
+    ("elements DOC --worlds 1", &["task.json"]),
     ("sheet DOC", &["task.json"]),
     ("sheet --scenario DOC", &["scenario.json"]),
     ("distance DOC task.json", &["task.json", "world.json"]),

@@ -23,7 +23,7 @@ fn what_a_command_reads_is_not_written_over() {
     ];
     for way in ways {
         let said = fail(1, way);
-        assert!(said.contains("found the file that is read"), "{way:?}: {said}");
+        assert!(said.contains("found the input file"), "{way:?}: {said}");
         assert_eq!(fs::read_to_string(&path).expect("it is there"), TASK, "{way:?}");
     }
     // Another name will do.
@@ -56,7 +56,7 @@ fn files_of_a_log_are_not_written_over() {
         ];
         for way in ways {
             let said = fail(1, way);
-            assert!(said.contains("the log would be lost"), "{way:?}: {said}");
+            assert!(said.contains("the log would be overwritten"), "{way:?}: {said}");
             assert_eq!(fs::read(&file).expect("it is there"), before, "{way:?}");
         }
     }

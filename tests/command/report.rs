@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::lived::write;
+use crate::run_files::write;
 use crate::terminal::{driftworld_in, fail_in, output, read, root, scratch, succeed_in};
 
 /// A lifetime of ours in `log`: three learning blocks of two variants with an evaluation before each.
@@ -90,7 +90,7 @@ fn tasks_without_their_variants_have_no_distances() {
     live(folder.path());
     succeed_in(folder.path(), &["report", "log", "-r", "agnostic"]);
     let page = read(folder.path().join("report.html"));
-    assert!(page.contains("scored by tasks without their variants, and distances are between variants"));
+    assert!(page.contains("scored by whole tasks (variant mode agnostic), and distances are between variants"));
     assert!(!page.contains("0.00\n</text>"), "no distance is made up");
 }
 
@@ -130,7 +130,7 @@ fn a_drift_is_measured_where_it_begins_and_where_it_ends() {
         2,
         "the block after it is {told} from its end"
     );
-    assert!(page.contains("Of a block that drifts"));
+    assert!(page.contains("The beginning of a drifting block"));
 }
 
 #[test]
@@ -194,7 +194,7 @@ fn warnings_of_the_log_are_told_and_stand_on_the_page() {
     let done = output(&mut driftworld_in(folder.path(), &["report", "log"]));
     assert!(String::from_utf8_lossy(&done.stderr).contains("warning: log: "));
     let page = read(folder.path().join("report.html"));
-    assert!(page.contains("⚠ Warning: ") && page.contains("the log does not say which scenario was lived"));
+    assert!(page.contains("⚠ Warning: ") && page.contains("the log does not say which scenario was run"));
 }
 
 #[test]
@@ -233,7 +233,7 @@ fn files_that_a_log_names_are_not_opened() {
     // Not even one that would be the right one.
     succeed_in(path, &["report", "log"]);
     let page = read(path.join("report.html"));
-    assert!(page.contains("name it with --task FILE") && !page.contains("as measured from"));
+    assert!(page.contains("give it with --task FILE") && !page.contains("as measured from"));
     succeed_in(path, &["report", "log", "--task", "mine.json"]);
     assert!(read(path.join("report.html")).contains("as measured from the scenario in the log"));
     // From another folder the file's name says which is meant.

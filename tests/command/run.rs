@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
-use crate::lived::{files, num_rows, write};
+use crate::run_files::{files, num_rows, write};
 use crate::terminal::{driftworld, fail, output, scratch, succeed, text};
 
 /// A lifetime of 3 blocks and 36 experiences, a few milliseconds each.
@@ -140,7 +140,7 @@ fn a_run_told_to_stop_finishes_its_row_and_says_how_to_go_on() {
         assert!(error.contains("interrupted") && error.contains("--resume"), "{error}");
         let rows = num_rows(&log);
         assert!(
-            rows > 0 && error.contains(&format!("holds {rows} of 36 experiences, each of them whole")),
+            rows > 0 && error.contains(&format!("holds {rows} of 36 experiences, all complete")),
             "{error}"
         );
         succeed(&[&arguments[..], &["--resume"]].concat());
@@ -292,7 +292,7 @@ fn a_scenario_converted_away_from_its_worlds_is_warned_about() {
     let said = |to: &str| {
         let to = folder.path().join(to);
         let output = output(&mut driftworld(&["convert", text(&scenario), "-o", text(&to)]));
-        String::from_utf8_lossy(&output.stderr).contains("names the world file \"yard.json\", which is not there")
+        String::from_utf8_lossy(&output.stderr).contains("names the world file \"yard.json\", which is missing")
     };
     assert!(said("elsewhere/scenario.json"));
     assert!(!said("again.json"));
@@ -345,7 +345,7 @@ fn a_full_disk_is_an_error_that_loses_nothing() {
         error.contains("1-train/data-log.tsv: cannot append a line to this file: File too large"),
         "{error}"
     );
-    assert!(error.contains("of 36 experiences, each of them whole"), "{error}");
+    assert!(error.contains("of 36 experiences, all complete"), "{error}");
     let part = fs::read(log.join(second)).expect("it was begun");
     assert_eq!(
         part.last(),

@@ -7,7 +7,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 
-use crate::lived::write;
+use crate::run_files::write;
 use crate::terminal::{driftworld_in, scratch, signals};
 
 fn start(folder: &Path, arguments: &[&str]) -> Child {

@@ -28,6 +28,7 @@ fn command_lines() -> Vec<Vec<&'static str>> {
         "sample SPECIAL#day",
         "sample find_objects#red --maps SPECIAL",
         "vary SPECIAL#day --distance 0.1 --element observation",
+        "elements SPECIAL --worlds 1",
         "convert SPECIAL",
         "convert find_objects#red --maps SPECIAL",
         "render SPECIAL -o out.png",

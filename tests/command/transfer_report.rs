@@ -169,11 +169,11 @@ fn the_report_explains_itself_and_draws_a_picture() {
         "line#v0",
         "all 720 relabellings",
         "not the probability that similarity does not matter",
-        "A correlation is no cause",
+        "Correlation is not causation",
     ] {
         assert!(said.contains(words), "{words}: {said}");
     }
-    assert!(!said.contains("one order"), "{said}");
+    assert!(!said.contains("the same order"), "{said}");
     let picture = std::fs::read(folder.path().join("transfer.png")).expect("it was written");
     assert!(picture.starts_with(b"\x89PNG"));
     if let Some(keep) = std::env::var_os("DRIFTWORLD_KEEP_PICTURES") {
@@ -184,7 +184,7 @@ fn the_report_explains_itself_and_draws_a_picture() {
         .expect("a folder");
     }
     let one = lived(&[&ORDERS[0]], by_distance, true);
-    assert!(reported(one.path(), &[]).contains("learned in one order"));
+    assert!(reported(one.path(), &[]).contains("learned in the same order"));
 }
 
 #[test]

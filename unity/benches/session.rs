@@ -5,7 +5,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use driftworld_spec::{Object, World};
+use driftworld_spec::{Object, World, WorldDraft};
 use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
 use driftworld_unity::protocol::{AgentActionProto, CommandProto, UnityRlInitializationInputProto, UnityRlInputProto};
 use driftworld_unity::{BEHAVIOR, PictureForm, Screenshots, Session, Setup};
@@ -20,10 +20,11 @@ fn ring() -> World {
             [12.0 * angle.cos(), 12.0 * angle.sin()],
         )
     };
-    World {
+    let world = WorldDraft {
         objects: (0..20).map(object).collect(),
-        ..World::default()
-    }
+        ..WorldDraft::default()
+    };
+    world.check().expect("the world is sound")
 }
 
 fn session(pictures: PictureForm) -> Session {
@@ -33,7 +34,7 @@ fn session(pictures: PictureForm) -> Session {
         ..Setup::default()
     };
     let clock = || "2026-01-01T00:00:00Z".to_owned();
-    let mut session = Session::new(setup, Screenshots::new("screenshots"), clock).expect("the world starts");
+    let mut session = Session::new(setup, Screenshots::new("screenshots"), clock);
     session
         .begin(&UnityRlInitializationInputProto {
             communication_version: "1.0.0".to_owned(),

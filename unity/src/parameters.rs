@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use driftworld_spec::{World, nearest};
+use driftworld_spec::{World, WorldDraft, nearest};
 
 use crate::side_channel::Setting;
 
@@ -49,7 +49,7 @@ impl Parameters {
     }
 
     /// Lays the numbers over a world.
-    pub(crate) fn apply(&self, world: &mut World) {
+    pub(crate) fn apply(&self, world: &mut WorldDraft) {
         for (key, number) in &self.0 {
             let agent = &mut world.agent_params;
             match *key {
@@ -117,10 +117,10 @@ mod tests {
             let mut parameters = Parameters::default();
             let value = if key == "max_steps" { 7.0 } else { 3.0 };
             set(&mut parameters, key, value).expect("3 is within all ranges");
-            let mut world = World::default();
+            let mut world = WorldDraft::default();
             parameters.apply(&mut world);
-            assert_ne!(world, World::default(), "{key}");
-            let changed = world.to_json();
+            assert_ne!(world, WorldDraft::default(), "{key}");
+            let changed = world.check().expect("the world is sound").to_json();
             assert!(changed.contains(&format!("\"{key}\":{value}")), "{key}: {changed}");
         }
     }
@@ -129,7 +129,7 @@ mod tests {
     fn numbers_are_what_their_digits_say() {
         let mut parameters = Parameters::default();
         set(&mut parameters, "Time_Step", 0.1).expect("names are known in any case");
-        let mut world = World::default();
+        let mut world = WorldDraft::default();
         parameters.apply(&mut world);
         assert_eq!(world.agent_params.time_step, 0.1);
     }

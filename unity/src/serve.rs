@@ -54,7 +54,7 @@ pub fn run(options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
     };
     // Always with three digits of the second: readers of one fixed form do not take fewer.
     let clock = || format!("{:.3}", jiff::Timestamp::now());
-    let mut session = Session::new(setup, Screenshots::new(&options.screenshots), clock)?;
+    let mut session = Session::new(setup, Screenshots::new(&options.screenshots), clock);
     for remark in session.take_remarks() {
         journal.note(&remark);
     }
@@ -128,7 +128,7 @@ fn read(option: &'static str, path: &Path) -> Result<String, UnityError> {
 
 async fn serve(mut session: Session, options: &Options, journal: &mut Journal) -> Result<(), UnityError> {
     let mut connection = Connection::open(&options.host, options.port, options.wait).await?;
-    let greeting = message(session.greeting());
+    let greeting = message(Session::greeting());
     let first = connection.greet(greeting, options.wait).await?;
     let Some(who) = input(first, journal)? else {
         return Ok(());

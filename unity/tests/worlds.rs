@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use driftworld_env::{
     Action, Catalogue, ColliderKind, Environment, ImportOptions, ImportSize, Library, LibraryModel, Studio,
 };
-use driftworld_spec::{ActionSpace, GameMode, ImageParams, Object, World};
+use driftworld_spec::{ActionSpace, GameMode, ImageParams, Object, WorldDraft};
 use driftworld_unity::protocol::observation_proto::ObservationData;
 use driftworld_unity::protocol::unity_rl_input_proto::ListAgentActionProto;
 use driftworld_unity::protocol::{
@@ -17,15 +17,15 @@ use driftworld_unity::{BEHAVIOR, PictureForm, Screenshots, Session, Setup, Turn}
 use proptest::prelude::*;
 
 /// A session with a client of the first generation, or of the last.
-fn session(world: World, catalogue: Catalogue, is_new: bool) -> Session {
+fn session(world: WorldDraft, catalogue: Catalogue, is_new: bool) -> Session {
     let setup = Setup {
-        world,
+        world: world.check().expect("the world is sound"),
         catalogue,
         pictures: PictureForm::Floats,
         ..Setup::default()
     };
     let clock = || "2026-01-01T00:00:00Z".to_owned();
-    let mut session = Session::new(setup, Screenshots::new("none"), clock).expect("the world can start");
+    let mut session = Session::new(setup, Screenshots::new("none"), clock);
     let said = UnityRlInitializationInputProto {
         communication_version: "1.0.0".to_owned(),
         package_version: if is_new { "1.1.0" } else { "0.16.0" }.to_owned(),
@@ -86,11 +86,11 @@ proptest! {
         rows in proptest::collection::vec(any::<proptest::sample::Index>(), 1..12),
         is_new in any::<bool>(),
     ) {
-        let mut world = World::default();
+        let mut world = WorldDraft::default();
         world.agent_params.observation_size = 4;
         world.agent_params.actions = table.map_or(ActionSpace::DefaultDiscrete, ActionSpace::Discrete);
         let count = world.agent_params.num_actions().expect("there is a table");
-        let mut environment = Environment::new(world.clone()).expect("the world can start");
+        let mut environment = Environment::new(world.clone().check().expect("the world is sound"));
         let mut session = session(world, Catalogue::default(), is_new);
         let first = answer(&mut session, CommandProto::Reset, None);
         let known = &first.rl_initialization_output.expect("the behaviour is told").brain_parameters[0];
@@ -112,7 +112,7 @@ proptest! {
 
 #[test]
 fn rows_that_are_not_there_and_other_lengths_are_refused() {
-    let mut world = World::default();
+    let mut world = WorldDraft::default();
     world.agent_params.actions = ActionSpace::DefaultDiscrete;
     let refused = |action: AgentActionProto| {
         let mut session = session(world.clone(), Catalogue::default(), true);
@@ -143,7 +143,7 @@ fn rows_that_are_not_there_and_other_lengths_are_refused() {
 fn a_world_for_photographs_shows_one_a_step_and_ends_with_the_last() {
     let mut barrel = Object::new("barrel", [3.0, 4.0]);
     barrel.heading = 90.0;
-    let mut world = World {
+    let mut world = WorldDraft {
         game_mode: GameMode::CollectImages,
         image_params: Some(ImageParams {
             zoom: 1.5,
@@ -151,10 +151,11 @@ fn a_world_for_photographs_shows_one_a_step_and_ends_with_the_last() {
             vertical_subdivisions: 2,
         }),
         objects: vec![Object::new("car", [-20.0, 0.0]), barrel],
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.agent_params.observation_size = 12;
-    let mut studio = Studio::new(&world).expect("there are twelve photographs");
+    let mut studio =
+        Studio::new(&world.clone().check().expect("the world is sound")).expect("there are twelve photographs");
     let views = studio.photographs();
     let mut session = session(world, Catalogue::default(), true);
     let mut output = answer(&mut session, CommandProto::Reset, None);
@@ -205,9 +206,9 @@ fn a_world_for_photographs_shows_one_a_step_and_ends_with_the_last() {
 
 #[test]
 fn nothing_to_photograph_is_remarked_and_the_world_runs() {
-    let world = World {
+    let world = WorldDraft {
         game_mode: GameMode::CollectImages,
-        ..World::default()
+        ..WorldDraft::default()
     };
     let mut session = session(world, Catalogue::default(), false);
     let remarks = session.take_remarks();
@@ -234,12 +235,12 @@ fn models_of_a_library_are_drawn_and_what_nobody_knows_is_remarked() {
         .expect("the example is a sound model");
     let mut library = Library::default();
     library.insert(imported.model).expect("there is room");
-    let mut world = World {
+    let mut world = WorldDraft {
         objects: vec![
             Object::new("lighthouse", [0.0, 12.0]),
             Object::new("dragon", [5.0, 9.0]),
         ],
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.agent_params.observation_size = 32;
     let seen = |catalogue: Catalogue| {

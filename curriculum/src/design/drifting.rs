@@ -30,13 +30,13 @@ pub(super) fn lessons(
     // Lengths are counted in parts of which a way has as many as there are blocks, and a block as many as there are ways.
     for block in 0..num_blocks {
         let (start, end) = (block * ways, (block + 1) * ways);
-        let lived = |part: u64| ((part - start) * u64::from(options.learn) + ways / 2) / ways;
+        let learned = |part: u64| ((part - start) * u64::from(options.learn) + ways / 2) / ways;
         let mut regimes = Vec::new();
         let mut here = start;
         while here < end {
             let way = here / num_blocks;
             let stop = end.min((way + 1) * num_blocks);
-            let count = (lived(stop) - lived(here)) as u32;
+            let count = (learned(stop) - learned(here)) as u32;
             let (from, to) = (path[way as usize], path[way as usize + 1]);
             if variants[from].task != variants[to].task {
                 return Err(CurriculumError::DriftBetweenTasks {

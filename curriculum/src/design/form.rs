@@ -98,7 +98,7 @@ pub(super) fn reordered(
         expected: expected.to_owned(),
     };
     if form == Some(ScenarioForm::Permuted) {
-        let expected = "a form whose order is not drawn by chance; its lifetimes are each other's controls";
+        let expected = "a form whose order is not drawn at random; its lifetimes are each other's controls";
         return Err(wrong("permuted", expected));
     }
     let mut sorted = order.to_vec();

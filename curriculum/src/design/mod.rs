@@ -1,4 +1,4 @@
-//! From variants in an order to learning and evaluation blocks. What the order is, is `similarity`'s; living it is in `run.rs`.
+//! From variants in an order to learning and evaluation blocks. What the order is, is `similarity`'s; running it is in `run/`.
 
 mod choice;
 mod drifting;
@@ -8,6 +8,7 @@ mod hypothesis;
 mod picked;
 mod probe;
 mod steps;
+mod walk;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -236,13 +237,13 @@ fn lessons(
     options: &Design,
     control: Option<&[usize]>,
 ) -> Result<(Vec<usize>, Vec<Vec<Regime>>), CurriculumError> {
-    let chance = (options.seed, options.lifetime);
+    let streams = (options.seed, options.lifetime);
     let own = |path: &[usize]| match control {
         Some(order) => form::reordered(options.form, path, order, variants.len()),
         None => Ok(path.to_vec()),
     };
     let Some(drifting) = options.drifting else {
-        let path = form::sequence(options.form, variants.len(), options.blocks, chance)?;
+        let path = form::sequence(options.form, variants.len(), options.blocks, streams)?;
         let mut taken = vec![0; variants.len()];
         let lesson = |variant: &usize| {
             let regime = variants[*variant].regime(options.learn, options.seed * 2, taken[*variant]);
@@ -253,7 +254,7 @@ fn lessons(
         return Ok((path, lessons));
     };
     // The form says which variants the drift leads through; how many blocks it is shared out among is said by `blocks`.
-    let path = form::sequence(options.form, variants.len(), None, chance)?;
+    let path = form::sequence(options.form, variants.len(), None, streams)?;
     if path.len() < 2 {
         return Err(CurriculumError::NoWay);
     }

@@ -7,6 +7,9 @@ use driftworld_spec::{Element, Variant};
 use super::Choice;
 use crate::CurriculumError;
 
+/// A distance that no variant has, and that still tells differences of 1e-9 apart.
+const BEYOND: f64 = 1e6;
+
 /// A variant for a curriculum.
 #[derive(Clone, Debug)]
 pub struct Picked {
@@ -84,9 +87,10 @@ pub(super) fn farthest(
     element: Option<Element>,
 ) -> Result<f64, GeneratorError> {
     let distance = |other: &Variant| apart(measure, anchor, other, element).unwrap_or(0.0);
-    // No distance is above 1, so this finds the farthest.
-    match at_distance(anchor, subject, 2.0, 0.0, distance) {
+    // Nothing is so far, so this finds the farthest, or the farthest of as many as can be looked at.
+    match at_distance(anchor, subject, BEYOND, 0.0, distance) {
         Err(GeneratorError::TooFar { farthest, .. }) => Ok(farthest),
+        Err(GeneratorError::NoneBetween { nearest, .. }) => Ok(nearest),
         Err(other) => Err(other),
         Ok(found) => Ok(found.distance),
     }

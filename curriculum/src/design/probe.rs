@@ -203,7 +203,7 @@ impl Search<'_> {
     fn choices(&self) -> Vec<(String, Value)> {
         let mut choices = Vec::new();
         for (name, parameter) in self.anchor.task().parameters() {
-            if parameter.role != Role::Variant || parameter.affects != [self.element] {
+            if parameter.role != Role::Variant || !parameter.affects_only(self.element) {
                 continue;
             }
             if let Some(Domain::Choices(values)) = parameter.domain() {

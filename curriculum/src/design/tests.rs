@@ -187,7 +187,7 @@ fn a_design_that_cannot_be_says_why() {
     };
     assert_eq!(
         said(1, none),
-        "design: found 0 learning experiences a regime, expected 1 to 10000000"
+        "design: found 0 learning experiences per regime, expected 1 to 10000000"
     );
     let large = Design {
         seed: u64::MAX,

@@ -203,16 +203,17 @@ fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> R
     let value = |name: &str| row.metric(name).unwrap_or(f64::NAN);
     let why = row.task_params().get(columns::SKIPPED).and_then(Value::as_str);
     let params = why.map_or_else(|| planned.params(), |why| columns::skipped_params(planned, why));
-    let told = |block: u64, experience: u64, kind, name: &str, params: &TaskParams, [index, progress]: [f64; 2]| {
-        let params = Value::Object(Map::clone(params));
-        let drift = if progress == 0.0 {
-            String::new()
-        } else {
-            format!(", {progress} of its way")
+    let described =
+        |block: u64, experience: u64, kind, name: &str, params: &TaskParams, [index, progress]: [f64; 2]| {
+            let params = Value::Object(Map::clone(params));
+            let drift = if progress == 0.0 {
+                String::new()
+            } else {
+                format!(", {progress} of its way")
+            };
+            format!("experience {experience} in block {block}-{kind}, {name} {params}, world {index}{drift}")
         };
-        format!("experience {experience} in block {block}-{kind}, {name} {params}, world {index}{drift}")
-    };
-    let expected = told(
+    let expected = described(
         planned.block as u64,
         number,
         block_type(planned.kind),
@@ -220,7 +221,7 @@ fn count_row(plan: &Plan, summary: &mut Summary, number: u64, row: Row<'_>) -> R
         &params,
         [planned.world_index(number), planned.progress(number)],
     );
-    let found = told(
+    let found = described(
         row.block_num(),
         row.exp_num(),
         row.block_type(),

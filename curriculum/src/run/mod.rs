@@ -1,4 +1,4 @@
-//! Living a scenario: experience after experience, each logged. Designing one is in `design.rs`, scoring it is `metrics`'.
+//! Living a scenario: experience after experience, each logged. Designing one is in `design/`, scoring it is `metrics`'.
 //!
 //! A [`Plan`] is a scenario with everything that it names, a [`Journal`] the log that it is lived into, [`run`] lives it.
 
@@ -188,13 +188,13 @@ impl<'a> Worker<'a> {
         };
         let environment = match &mut self.environment {
             Some(environment) => {
-                environment.reset(world).map_err(failed)?;
+                environment.reset(world);
                 environment
             }
-            none => none.insert(Environment::with_catalogue(world, self.catalogue.clone()).map_err(failed)?),
+            none => none.insert(Environment::with_catalogue(world, self.catalogue.clone())),
         };
         let episode = EpisodeContext {
-            seed: planned.chance(number),
+            seed: planned.agent_seed(number),
             label: planned.label(number),
             learn: planned.kind == BlockKind::Learning,
             stop: self.stop,

@@ -63,7 +63,7 @@ pub struct ExperienceSpec<'a> {
     /// How far on its way a drift is, 0..=1; 0 where nothing drifts.
     pub progress: f64,
     /// The seed of the agent's own random numbers.
-    pub chance: u64,
+    pub agent_seed: u64,
     /// The label of its task that the agent gets, where the scenario has labels.
     pub label: Option<&'a Label>,
 }
@@ -172,7 +172,7 @@ impl Plan {
             seed: is_drawn.then_some(planned.seed),
             index: is_drawn.then(|| planned.index_of(number)),
             progress: planned.progress(number),
-            chance: planned.chance(number),
+            agent_seed: planned.agent_seed(number),
             label: planned.label(number),
         })
     }
@@ -251,14 +251,14 @@ impl Plan {
     /// Takes down what a regime's worlds are made from.
     fn fingerprint(&mut self, planned: &Planned) -> Result<(), CurriculumError> {
         let undrawable = self.undrawable;
-        let mut take = |variant: &Variant, is_lived: bool| {
+        let mut take = |variant: &Variant, is_first_drawn: bool| {
             let Entry::Vacant(place) = self.fingerprints.entry(variant.id()) else {
                 return Ok(());
             };
             // The variant says what all worlds are made from, the first world that they are still made in the same way.
             let world = match Sampler::new(variant, planned.seed).world(planned.first_index) {
                 Ok(world) => Some(world.hash()),
-                Err(source) if is_lived && undrawable == Undrawable::Refused => {
+                Err(source) if is_first_drawn && undrawable == Undrawable::Refused => {
                     return Err(planned.wrong(planned.first, source));
                 }
                 Err(_) => None,

@@ -125,7 +125,7 @@ impl Planned {
     pub(super) fn draw(&self, number: u64, sampler: Option<&Sampler>) -> Result<Assignment, GeneratorError> {
         let index = self.index_of(number);
         let between = self.variant_of(number)?;
-        let mut world = match &self.source {
+        let world = match &self.source {
             Source::World { world, .. } => World::clone(world),
             Source::Variant(variant) => match sampler {
                 Some(sampler) => sampler.world(index)?,
@@ -133,18 +133,21 @@ impl Planned {
             },
             Source::Drift { from, .. } => Sampler::new(between.as_ref().unwrap_or(from), self.seed).world(index)?,
         };
-        if let Some(max_steps) = self.max_steps {
-            world.limit_steps(max_steps);
-        }
+        let world = match self.max_steps {
+            Some(max_steps) => world
+                .edit(|world| world.limit_steps(max_steps))
+                .expect("a scenario limits steps to what a world may have"),
+            None => world,
+        };
         Ok(Assignment { world, between })
     }
 
     /// The number that an agent begins an experience with.
     ///
-    /// It is of the task, the seed and the world's number, and not of the variant: whoever acts by chance acts alike in two
+    /// It is of the task, the seed and the world's number, and not of the variant: an agent that acts at random acts alike in two
     /// variants under one seed. Every evaluation of a world has the same, so that an agent that has not changed earns the
     /// same in it; what is learned in the same world again has another, so that a learner does not try the same again.
-    pub(super) fn chance(&self, number: u64) -> u64 {
+    pub(super) fn agent_seed(&self, number: u64) -> u64 {
         let index = self.index_of(number);
         let mut hash = Sha256::new();
         let task = self.id.rsplit_once('#').map_or(self.id.as_str(), |(task, _)| task);

@@ -335,7 +335,7 @@ fn a_log_is_taken_up_only_by_the_run_that_it_was_begun_with() {
     check(
         &scenario,
         "other",
-        "/agent: found \"test\", expected \"other\" as in this run; go on with what",
+        "/agent: found \"test\", expected \"other\" as in this run; continue with what",
     );
     let mut longer = scenario.clone();
     longer.blocks[3].regimes[0].count = 9;

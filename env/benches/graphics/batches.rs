@@ -12,7 +12,7 @@ const PIXELS: usize = (SIZE * SIZE) as usize;
 fn circle() -> (Environment, Vec<Camera>) {
     let text = include_str!("../scenes/arena_20.json");
     let world = World::from_json("arena_20.json", text).expect("the scene is sound");
-    let mut environment = Environment::new(world).expect("the scene is sound");
+    let mut environment = Environment::new(world);
     let mut cameras = Vec::new();
     for _ in 0..240 {
         let curve = Action::Continuous([5.0, 15.0, 0.0]);

@@ -19,3 +19,4 @@ pub use on_rails::OnRailsAgent;
 pub(crate) use rails_policy::RailsPolicy;
 pub use random::RandomAgent;
 pub use scripted::ScriptedAgent;
+pub(crate) use steering::in_space;

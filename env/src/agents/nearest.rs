@@ -180,7 +180,7 @@ impl Route {
 
 #[cfg(test)]
 mod tests {
-    use driftworld_spec::{Object, Wall};
+    use driftworld_spec::{Object, Wall, WorldDraft};
     use proptest::collection::vec;
     use proptest::prelude::*;
 
@@ -307,14 +307,14 @@ mod tests {
             0.2..=2.0f64,
         )
             .prop_map(|(size, walls, objects, width)| {
-                let mut world = World {
+                let mut world = WorldDraft {
                     objects,
-                    ..World::default()
+                    ..WorldDraft::default()
                 };
                 world.environment_params.map_size = size;
                 world.environment_params.walls = walls;
                 world.agent_params.agent_width = width;
-                world
+                world.check().expect("the world is sound")
             })
     }
 

@@ -33,7 +33,7 @@ impl RailsPolicy {
             target: target.map(|target| target.object as u32),
             goal: target.map_or([0.0; 2], |target| target.goal.map(f64::from)),
             avoided: target.map_or_else(Vec::new, |target| target.avoided.clone()),
-            patience: self.steps_on_target,
+            steps_on_target: self.steps_on_target,
             given_up: self.given_up.iter().map(|index| *index as u32).collect(),
         }
     }
@@ -54,7 +54,7 @@ impl RailsPolicy {
         });
         Self {
             target,
-            steps_on_target: progress.patience,
+            steps_on_target: progress.steps_on_target,
             given_up: progress.given_up.iter().map(|index| *index as usize).collect(),
             route,
         }

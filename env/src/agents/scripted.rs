@@ -18,7 +18,7 @@ const INSISTENCE: u32 = 10;
 ///
 /// | line | what it does |
 /// |---|---|
-/// | `step [N] [A B C \| ROW]` | N steps (1) of the action A B C (0 0 0), or of a row of the action table, as in the console |
+/// | `step [N] [A B C \| ROW]` | take N steps (1) with action A B C (0 0 0), or with a row of the action table, as in the console |
 /// | `action [-c N] -a A B C \| ROW` | the same, by options |
 /// | `touch NAME [N]` | walks to the nearest object of this tag or unique name until it touches it, for at most N steps (300) |
 /// | `interact NAME [N]` | walks there and interacts until the object answers |
@@ -34,7 +34,7 @@ const INSISTENCE: u32 = 10;
 /// use driftworld_env::{Agent, Environment, ScriptedAgent};
 /// use driftworld_spec::World;
 /// let mut agent = ScriptedAgent::parse("ahead", "step 3 10 0 0")?;
-/// let mut environment = Environment::new(World::default())?;
+/// let mut environment = Environment::new(World::default());
 /// for _ in 0..5 {
 ///     let action = agent.act(&environment);
 ///     environment.step(action)?;
@@ -208,11 +208,11 @@ fn nearest(environment: &Environment, name: &str) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use driftworld_spec::{ActionSpace, Stimulus, World};
+    use driftworld_spec::{ActionSpace, Stimulus, World, WorldDraft};
 
     /// Coins north and east of the agent, a switch in the west.
     fn world() -> World {
-        let mut world = World::default();
+        let mut world = WorldDraft::default();
         for (tag, at) in [("coin", [0.0, 8.0]), ("coin", [12.0, 0.0]), ("switch", [-6.0, 0.0])] {
             let mut object = Object::new("geometric", at);
             object.tag = Some(tag.to_owned());
@@ -225,13 +225,13 @@ mod tests {
             }
             world.objects.push(object);
         }
-        world
+        world.check().expect("the world is sound")
     }
 
     /// What a script earns in so many steps, and where it leaves the agent.
     fn play(world: World, script: &str, steps: u32) -> (f64, [f32; 2]) {
         let mut agent = ScriptedAgent::parse("script", script).expect("the script is sound");
-        let mut environment = Environment::new(world).expect("the world is sound");
+        let mut environment = Environment::new(world);
         for _ in 0..steps {
             let action = agent.act(&environment);
             environment.step(action).expect("the action fits");
@@ -268,15 +268,14 @@ mod tests {
 
     #[test]
     fn walks_fit_a_world_with_an_action_table() {
-        let mut world = world();
-        world.agent_params.actions = ActionSpace::DefaultDiscrete;
-        assert_eq!(play(world, "touch coin", 120).0, 1.0);
+        let table = world().edit(|world| world.agent_params.actions = ActionSpace::DefaultDiscrete);
+        assert_eq!(play(table.expect("the world is sound"), "touch coin", 120).0, 1.0);
     }
 
     #[test]
     fn an_episode_begins_with_the_first_line() {
         let mut agent = ScriptedAgent::parse("script", "step 2 10 0 0").expect("the script is sound");
-        let environment = Environment::new(World::default()).expect("the world is sound");
+        let environment = Environment::new(World::default());
         for _ in 0..3 {
             agent.act(&environment);
         }

@@ -108,7 +108,7 @@ pub(super) fn avoided(sim: SimRef, goal: Option<usize>) -> Vec<u32> {
 }
 
 /// The action in the world's own space: the row of its table that comes nearest, if it has one.
-pub(super) fn in_space(numbers: [f64; 3], sim: SimRef) -> Action {
+pub(crate) fn in_space(numbers: [f64; 3], sim: SimRef) -> Action {
     let agent = &sim.world.agent_params;
     let velocity = |numbers: [f64; 3]| match agent.action_model {
         ActionModel::ByWaypoint => waypoint(numbers, sim),

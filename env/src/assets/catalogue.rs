@@ -27,8 +27,7 @@ pub const FIRST_LIBRARY_CLASS: u16 = 32;
 /// let catalogue = Catalogue::default();
 /// assert!(catalogue.asset("tree", &Model("7".into())).known);
 /// assert!(!catalogue.asset("dragon", &Model("1".into())).known, "a placeholder");
-/// let environment = Environment::with_catalogue(World::default(), catalogue)?;
-/// # Ok::<(), driftworld_env::EnvError>(())
+/// let environment = Environment::with_catalogue(World::default(), catalogue);
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Catalogue {
@@ -211,13 +210,13 @@ mod tests {
             let objects = classes.iter().enumerate();
             let at =
                 |(place, class): (usize, &&str)| driftworld_spec::Object::new(*class, [3.0 * place as f64 - 3.0, 8.0]);
-            let mut world = driftworld_spec::World {
+            let mut world = driftworld_spec::WorldDraft {
                 objects: objects.map(at).collect(),
-                ..driftworld_spec::World::default()
+                ..driftworld_spec::WorldDraft::default()
             };
             world.agent_params.modalities = vec![driftworld_spec::Modality::Class];
-            let environment = crate::Environment::with_catalogue(world, catalogue.clone());
-            let mut environment = environment.expect("a sound world starts");
+            let world = world.check().expect("the world is sound");
+            let mut environment = crate::Environment::with_catalogue(world, catalogue.clone());
             let mut seen = environment.observe().class.clone();
             seen.sort_unstable();
             seen.dedup();

@@ -8,8 +8,7 @@ const BIRCH: [f32; 3] = [0.86, 0.85, 0.80];
 
 /// Tree number `model` of 49.
 pub(crate) fn tree(model: u32) -> Asset {
-    let chance = |k: u32| hash(model, k);
-    let tall = 0.85 + 0.4 * chance(1);
+    let tall = 0.85 + 0.4 * hash(model, 1);
     match model % 7 {
         1 => conifer(model, 6.0 * tall),
         2 => broadleaf(model, 5.0 * tall),

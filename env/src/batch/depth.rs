@@ -2,15 +2,18 @@
 
 use crate::render::{GRAY_PER_METRE, rounded};
 
-/// What numbers a batch's depth images are made of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// What numbers a batch's depth images are made of, by the names of Python's arrays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString)]
 pub enum DepthForm {
     /// Metres, as drawn.
     #[default]
+    #[strum(serialize = "float32")]
     Metres,
     /// Whole millimetres up to 65,535; what is farther is 65,535. As depth cameras give it.
+    #[strum(serialize = "uint16")]
     Millimetres,
     /// Grey, as L2Explorer shows it: 0 at the camera, 255 at 100 m and beyond.
+    #[strum(serialize = "uint8")]
     Gray,
 }
 

@@ -40,12 +40,12 @@ const THREADS_PER_PROCESSOR: usize = 4;
 /// use std::sync::Arc;
 /// use driftworld_env::{Action, Batch, BatchOptions};
 /// use driftworld_spec::World;
-/// let world = World { max_steps: 3, ..World::default() };
+/// let world = World::default().edit(|world| world.max_steps = 3)?;
 /// let mut batch = Batch::new(4, Arc::new(move |_| Ok(world.clone())), BatchOptions::default())?;
 /// batch.step(&[Action::Continuous([10.0, 0.0, 0.0]); 4])?;
 /// assert_eq!(batch.outputs().images.rgb.len(), 4 * 84 * 84 * 3);
 /// assert_eq!(batch.outputs().truncated, [false; 4]);
-/// # Ok::<(), driftworld_env::EnvError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Batch {
     slots: Vec<Slot>,

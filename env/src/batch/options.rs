@@ -18,7 +18,8 @@ pub const MAX_BATCH_BYTES: u64 = 16 << 30;
 pub type GoOn<'a> = &'a (dyn Fn() -> bool + Sync);
 
 /// When an environment whose episode has ended starts the next one. Corresponds to Gymnasium's `AutoresetMode`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString)]
+#[strum(serialize_all = "snake_case")]
 pub enum Autoreset {
     /// In the next step: its action is ignored, it pays 0, and hands out the first observation.
     #[default]

@@ -47,7 +47,7 @@ impl Slot {
         layout.check(env, &world)?;
         Ok(Self {
             env,
-            environment: Environment::with_catalogue(world, catalogue.clone())?,
+            environment: Environment::with_catalogue(world, catalogue.clone()),
             layout,
             step: Step::default(),
             source,
@@ -165,7 +165,7 @@ impl Slot {
             reason,
         })?;
         self.layout.check(self.env, &world)?;
-        self.environment.reset(world)?;
+        self.environment.reset(world);
         self.current = self.next;
         self.next = self.next.saturating_add(1);
         // A world that was written down after its end has no step left.

@@ -1,7 +1,22 @@
 //! What remarks are about, and how grave they are. Which categories are on, and what is remarked, is in `exchange.rs`.
 
+use strum::VariantArray;
+
 /// What a remark on the Debug channel is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "lowercase", ascii_case_insensitive)]
 pub enum Category {
     /// What the agent meets, and what becomes of it.
     Agent,
@@ -15,27 +30,27 @@ pub enum Category {
 
 impl Category {
     /// All of them, in the original's order.
-    pub const ALL: [Self; 4] = [Self::Agent, Self::Communications, Self::Worldmaker, Self::Academy];
+    pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Its name in messages.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Agent => "agent",
-            Self::Communications => "communications",
-            Self::Worldmaker => "worldmaker",
-            Self::Academy => "academy",
-        }
+        self.into()
+    }
+
+    /// All names.
+    pub fn names() -> Vec<&'static str> {
+        Self::ALL.iter().map(|category| category.name()).collect()
     }
 
     /// The category of this name, in any case.
     pub fn from_name(name: &str) -> Option<Self> {
-        let named = |category: &Self| category.name().eq_ignore_ascii_case(name);
-        Self::ALL.into_iter().find(named)
+        name.parse().ok()
     }
 }
 
 /// How grave a remark is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "lowercase")]
 pub enum Level {
     /// Good to know.
     Log,
@@ -48,10 +63,6 @@ pub enum Level {
 impl Level {
     /// Its name in messages.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Log => "log",
-            Self::Warning => "warning",
-            Self::Error => "error",
-        }
+        self.into()
     }
 }

@@ -21,13 +21,12 @@ use crate::{Environment, Step, Warning};
 /// ```
 /// use driftworld_env::{Channel, Channels, Environment};
 /// use driftworld_spec::World;
-/// let mut environment = Environment::new(World::default())?;
+/// let mut environment = Environment::new(World::default());
 /// let mut channels = Channels::new(environment.world());
 /// let spawn = r#"{ "token": "a", "action": "object_create", "payload": { "class": "tree", "coordinates": [3, 4] } }"#;
 /// let answer = channels.receive(&mut environment, Channel::Reset, spawn, "2026-01-01T00:00:00");
 /// assert_eq!((answer.messages[0].action, answer.messages[0].req_token.as_deref()), ("ok", Some("a")));
 /// assert_eq!(environment.objects().len(), 1);
-/// # Ok::<(), driftworld_env::EnvError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Channels {
@@ -164,13 +163,13 @@ impl Channels {
             messages.extend(self.remark(Category::Agent, Level::Log, said, time));
         }
         if step.ended() {
-            let how = match (step.success, step.terminated) {
+            let ending = match (step.success, step.terminated) {
                 (true, _) => "as a success",
                 (false, true) => "as a failure",
                 (false, false) => "at its last step",
             };
             let (steps, earned) = (environment.num_steps(), environment.episode_return());
-            let said = format!("the episode ended {how} after {steps} steps, return {earned}");
+            let said = format!("the episode ended {ending} after {steps} steps, return {earned}");
             messages.extend(self.remark(Category::Academy, Level::Log, said, time));
         }
         if !self.watched.is_empty() {
@@ -238,10 +237,7 @@ impl Channels {
                 Ok(OK)
             }
             "save_screenshot" => screenshot(environment, message).map(Answer::Picture),
-            "get_debug_categories" => {
-                let names = Category::ALL.map(Category::name);
-                Ok(Answer::Say("debug_categories", Some(json!(names))))
-            }
+            "get_debug_categories" => Ok(Answer::Say("debug_categories", Some(json!(Category::names())))),
             "set_debug_categories" => {
                 for (category, active) in categories(message)? {
                     self.set_active(category, active);
@@ -267,9 +263,7 @@ impl Channels {
         let (world, warnings) = World::from_l2explorer_with("payload", &payload.to_string(), &self.maps)
             .map_err(|error| Refusal::of_document(&error))?;
         let hash = world.hash();
-        environment
-            .reset(world)
-            .map_err(|error| Refusal::new(error.to_string()))?;
+        environment.reset(world);
         self.world = hash;
         // Objects in walls were named where the world was read, with their places.
         let mut own = environment.warnings();

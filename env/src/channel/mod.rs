@@ -11,8 +11,10 @@ pub use exchange::{Channels, Received};
 pub use message::{MAX_MESSAGE_BYTES, Outgoing};
 pub use request::Screenshot;
 
+use strum::VariantArray;
+
 /// One of the three channels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, strum::IntoStaticStr, strum::VariantArray)]
 pub enum Channel {
     /// New worlds, and new objects in the world there is.
     Reset,
@@ -24,15 +26,11 @@ pub enum Channel {
 
 impl Channel {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Reset, Self::State, Self::Debug];
+    pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Its name.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Reset => "Reset",
-            Self::State => "State",
-            Self::Debug => "Debug",
-        }
+        self.into()
     }
 
     /// The identifier by which the original's client knows it.
@@ -56,13 +54,13 @@ impl Channel {
     /// The channel of this name, in any case, or of this identifier.
     pub fn from_name(name: &str) -> Option<Self> {
         let named = |channel: &Self| channel.name().eq_ignore_ascii_case(name) || channel.guid() == name.to_lowercase();
-        Self::ALL.into_iter().find(named)
+        Self::ALL.iter().copied().find(named)
     }
 
     /// The channel on which an action can be asked.
     pub fn for_action(action: &str) -> Option<Self> {
         let takes = |channel: &Self| channel.actions().contains(&action);
-        Self::ALL.into_iter().find(takes)
+        Self::ALL.iter().copied().find(takes)
     }
 }
 
@@ -72,7 +70,7 @@ mod tests {
 
     #[test]
     fn channels_are_known_by_name_identifier_and_action() {
-        for channel in Channel::ALL {
+        for &channel in Channel::ALL {
             assert_eq!(Channel::from_name(&channel.name().to_uppercase()), Some(channel));
             assert_eq!(Channel::from_name(channel.guid()), Some(channel));
             for action in channel.actions() {

@@ -129,8 +129,7 @@ pub(super) fn categories(message: &Message) -> Result<Vec<(Category, bool)>, Ref
                 "payload: expected entries such as {\"category\": \"agent\", \"active\": true}",
             ));
         };
-        let names = Category::ALL.map(Category::name);
-        let category = Category::from_name(name).ok_or_else(|| unknown("category", name, &names))?;
+        let category = Category::from_name(name).ok_or_else(|| unknown("category", name, &Category::names()))?;
         Ok((category, *active))
     };
     list.iter().map(one).collect()

@@ -36,7 +36,8 @@ pub struct CpuRenderer {
 }
 
 /// An instruction set that this processor has.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, strum::IntoStaticStr)]
+#[strum(serialize_all = "lowercase")]
 enum Set {
     Portable(Portable),
     #[cfg(target_arch = "x86_64")]
@@ -306,13 +307,7 @@ impl Set {
     }
 
     fn name(self) -> &'static str {
-        match self {
-            Self::Portable(_) => "portable",
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2(_) => "avx2",
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512(_) => "avx512",
-        }
+        self.into()
     }
 }
 

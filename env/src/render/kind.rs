@@ -1,12 +1,23 @@
 //! [`RendererKind`]: the choice between renderers, and its names. The renderers themselves are made in `renderer.rs`.
 
-use std::fmt;
-use std::str::FromStr;
+use strum::VariantArray;
 
 use crate::EnvError;
 
 /// What draws pictures.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    strum::Display,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "lowercase", parse_err_ty = EnvError, parse_err_fn = unknown)]
 pub enum RendererKind {
     /// The processor: everywhere, and the same pixels on every machine.
     #[default]
@@ -20,31 +31,16 @@ pub enum RendererKind {
 
 impl RendererKind {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Cpu, Self::Gpu, Self::Auto];
+    pub const ALL: &[Self] = Self::VARIANTS;
 
     /// Its name: `cpu`, `gpu` or `auto`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Cpu => "cpu",
-            Self::Gpu => "gpu",
-            Self::Auto => "auto",
-        }
+        self.into()
     }
 }
 
-impl fmt::Display for RendererKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for RendererKind {
-    type Err = EnvError;
-
-    fn from_str(text: &str) -> Result<Self, EnvError> {
-        let found = Self::ALL.into_iter().find(|kind| kind.name() == text);
-        found.ok_or_else(|| EnvError::NoSuchRenderer { found: text.to_owned() })
-    }
+fn unknown(word: &str) -> EnvError {
+    EnvError::NoSuchRenderer { found: word.to_owned() }
 }
 
 #[cfg(test)]
@@ -53,7 +49,7 @@ mod tests {
 
     #[test]
     fn names_lead_back_to_their_kind() {
-        for kind in RendererKind::ALL {
+        for &kind in RendererKind::ALL {
             assert_eq!(kind.to_string().parse(), Ok(kind));
         }
         assert!("GPU".parse::<RendererKind>().is_err());

@@ -87,6 +87,10 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`Renderer::draw_batch`].
+    #[cfg_attr(
+        not(feature = "gpu"),
+        expect(clippy::unnecessary_wraps, reason = "as where there is the feature")
+    )]
     pub fn render(&mut self, scene: &Scene, camera: &Camera, frame: &mut Frame) -> Result<(), EnvError> {
         match &mut self.0 {
             Inner::Cpu(renderer) => {

@@ -37,7 +37,7 @@ pub struct AdapterReport {
 #[cfg(not(feature = "gpu"))]
 /// Why a build without the feature `gpu` has no adapter, and what to do.
 pub(super) const NO_FEATURE: &str =
-    "this build has no graphics renderer; build it with `cargo build --release --features gpu`";
+    "this build has no GPU renderer; build it with `cargo build --release --features gpu`";
 
 impl RendererReport {
     /// Tries everything with a small picture.

@@ -67,15 +67,16 @@ pub(super) fn level<'a>(item: &'a Item, visible: Visible, view: &View) -> &'a [M
 mod tests {
     use super::*;
     use crate::camera::Camera;
-    use driftworld_spec::{Object, World};
+    use driftworld_spec::{Object, WorldDraft};
 
     #[test]
     fn what_is_ahead_comes_near_to_far_and_what_is_behind_not_at_all() {
         let objects = [[0.0, 30.0], [0.0, -10.0], [0.0, 10.0]].map(|place| Object::new("cube", place));
-        let scene = Scene::from_world(&World {
+        let world = WorldDraft {
             objects: objects.to_vec(),
-            ..World::default()
-        });
+            ..WorldDraft::default()
+        };
+        let scene = Scene::from_world(&world.check().expect("the world is sound"));
         let view = View::new(&Camera::first_person([0.0, 0.0], 0.0, 1.0, 60.0), 84, 84);
         let mut found = Vec::new();
         find(&scene, &view, true, &mut found);

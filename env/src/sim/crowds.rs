@@ -1,6 +1,6 @@
 //! The law of crowds, tested: what a time step looks at grows no faster than the number of bodies, wherever they stand.
 
-use driftworld_spec::{MotionModel, Object, Pushable, Respawn, Stimulus, World};
+use driftworld_spec::{MotionModel, Object, Pushable, Respawn, Stimulus, WorldDraft};
 use proptest::prelude::*;
 
 use super::action::Action;
@@ -59,16 +59,16 @@ fn body(kind: Kind, class: &str, at: [f64; 2]) -> Object {
 }
 
 /// Bodies within so many metres of a place in front of the agent, in the order of the golden angle.
-fn crowd(kinds: &[Kind], class: &str, count: usize, spread: f64, time_step: f64) -> World {
+fn crowd(kinds: &[Kind], class: &str, count: usize, spread: f64, time_step: f64) -> WorldDraft {
     let at = |k: usize| {
         let out = spread * (k as f64 / count as f64).sqrt();
         let angle = 2.399_963 * k as f64;
         [out * libm::sin(angle), 1.2 + out * libm::cos(angle)]
     };
-    let mut world = World {
+    let mut world = WorldDraft {
         objects: (0..count).map(|k| body(kinds[k % kinds.len()], class, at(k))).collect(),
         seed: Some(3),
-        ..World::default()
+        ..WorldDraft::default()
     };
     world.environment_params.map_size = [60.0, 60.0];
     world.agent_params.time_step = time_step;
@@ -76,8 +76,9 @@ fn crowd(kinds: &[Kind], class: &str, count: usize, spread: f64, time_step: f64)
 }
 
 /// The most that one of some steps looked at.
-fn looked(world: World) -> u64 {
-    let mut environment = Environment::new(world).expect("every checked world starts");
+fn looked(world: WorldDraft) -> u64 {
+    let world = world.check().expect("the world is sound");
+    let mut environment = Environment::new(world);
     let mut most = 0;
     for step in 0..4 {
         let before = environment.encounters.looked;

@@ -32,23 +32,27 @@ impl Environment {
         if index >= MAX_OBJECTS {
             return Err(EnvError::TooManyObjects { limit: MAX_OBJECTS });
         }
-        object.check().map_err(|problem| EnvError::BadObject { problem })?;
         if let Some(name) = &object.unique_name
             && let Some(first) = self.find(name)
+            && object.check().is_ok()
         {
             let name = name.clone();
             return Err(EnvError::NameTaken { name, object: first });
         }
         // Without a seed, random numbers depend on where things stood before anything was spawned. Where it was not
         // known, nothing has drawn from it.
-        self.seed.learn(&self.world);
-        self.state.add_object(&object, &self.seed, &mut self.identities);
+        let mut seed = self.seed.clone();
+        seed.learn(&self.world);
+        let refused = |problem| EnvError::BadObject { problem };
+        Arc::make_mut(&mut self.world).push(object).map_err(refused)?;
+        self.seed = seed;
+        let object = &self.world.objects[index];
+        self.state.add_object(object, &self.seed, &mut self.identities);
         self.state.sequence.add(index, object.order);
-        self.views.scene.add(&object);
-        self.views.sync_object(index, &object, &self.state.objects[index]);
+        self.views.scene.add(object);
+        self.views.sync_object(index, object, &self.state.objects[index]);
         self.tags.push(object.tag.as_deref().map(Arc::from));
         self.had_targets |= object.is_target();
-        Arc::make_mut(&mut self.world).objects.push(object);
         Ok(index)
     }
 

@@ -10,9 +10,9 @@ use super::interactions::Stimuli;
 use super::neighbours::heap;
 use super::progress::ResumeState;
 use super::pushed::is_pushed;
+use super::rng::{Identities, Seed};
 use super::sim_ref::SimRef;
 use super::state::{AgentState, ObjectState, SimState};
-use super::streams::{Identities, Seed};
 use super::views::Views;
 use super::walls;
 use super::warning::Warning;
@@ -30,7 +30,7 @@ use crate::scene::Scene;
 /// ```
 /// use driftworld_env::{Action, Environment};
 /// use driftworld_spec::World;
-/// let mut environment = Environment::new(World::default())?;
+/// let mut environment = Environment::new(World::default());
 /// let step = environment.step(Action::Continuous([10.0, 0.0, 0.0]))?;
 /// assert_eq!(environment.agent().position, [0.0, 1.0], "10 m/s for 0.1 s along +y");
 /// assert_eq!(step.reward, 0.0);
@@ -56,33 +56,29 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// A world of built-in assets at its start.
-    ///
-    /// # Errors
-    /// None today: a checked world can always start.
-    pub fn new(world: World) -> Result<Self, EnvError> {
+    /// A world of built-in assets at its start: every checked world can start.
+    pub fn new(world: World) -> Self {
         Self::with_catalogue(world, Catalogue::default())
     }
 
     /// A world at its start, its assets from a catalogue; the worlds that follow it take theirs from there too.
     ///
-    /// # Errors
-    /// As [`Environment::new`]: what the catalogue does not know is drawn as a placeholder, with a warning.
+    /// What the catalogue does not know is drawn as a placeholder, with a warning.
     #[expect(
         clippy::needless_pass_by_value,
         reason = "a catalogue is cheap to clone, and the environment keeps it"
     )]
-    pub fn with_catalogue(world: World, catalogue: Catalogue) -> Result<Self, EnvError> {
+    pub fn with_catalogue(world: World, catalogue: Catalogue) -> Self {
         let frame = Frame::new(0, 0);
-        Ok(Self::build(Arc::new(world), &catalogue, Renderer::default(), frame))
+        Self::build(Arc::new(world), &catalogue, Renderer::default(), frame)
     }
 
     /// A world at its start, drawn by a renderer of this kind.
     ///
     /// # Errors
-    /// As [`Environment::new`]; [`EnvError::NoGpu`] if a graphics card is asked for and none works.
+    /// [`EnvError::NoGpu`] if a graphics card is asked for and none works.
     pub fn with_renderer(world: World, kind: RendererKind) -> Result<Self, EnvError> {
-        let mut environment = Self::new(world)?;
+        let mut environment = Self::new(world);
         environment.set_renderer(Renderer::new(kind)?);
         Ok(environment)
     }
@@ -98,13 +94,9 @@ impl Environment {
     }
 
     /// Leaves this world for another, or for the same from its start; buffers for pictures are kept.
-    ///
-    /// # Errors
-    /// As [`Environment::new`]; on error this world goes on.
-    pub fn reset(&mut self, world: World) -> Result<(), EnvError> {
+    pub fn reset(&mut self, world: World) {
         let catalogue = self.views.scene.catalogue().clone();
         self.start_with(Arc::new(world), &catalogue);
-        Ok(())
     }
 
     pub(super) fn start_with(&mut self, world: Arc<World>, catalogue: &Catalogue) {

@@ -8,9 +8,9 @@ use super::action::Intent;
 use super::contact::RELEASE;
 use super::encounters::Encounters;
 use super::event::{Event, Step};
+use super::rng::ObjectRng;
 use super::sim_ref::SimRef;
 use super::state::SimState;
-use super::streams::ObjectRng;
 use super::views::Views;
 
 /// Lists that each time step uses again.

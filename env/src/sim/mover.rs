@@ -2,7 +2,7 @@
 
 use driftworld_spec::{MotionModel, Object};
 
-use super::streams::{Purpose, Seed, Stream};
+use super::rng::{Purpose, Seed, Stream};
 
 /// Distance at which a waypoint counts as reached, in metres.
 const REACHED: f32 = 0.3;

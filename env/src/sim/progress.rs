@@ -5,9 +5,9 @@ use std::sync::Arc;
 use driftworld_spec::{AgentParams, Object, ObjectProgress, Origin, Progress, RailsProgress, World};
 
 use super::mover::Mover;
+use super::rng::Seed;
 use super::sim_ref::SimRef;
 use super::state::{SimState, wrapped};
-use super::streams::Seed;
 use super::views::Views;
 
 /// What a world that was written down says of its course, when the world itself has been taken back to its start.
@@ -20,7 +20,7 @@ pub(super) struct ResumeState {
 
 /// A world as it is now, as a document: see [`Environment::state`](super::Environment::state).
 pub(super) fn to_world(sim: SimRef, seed: &Seed, rails: Option<RailsProgress>) -> World {
-    let mut world = sim.world.clone();
+    let mut world = sim.world.clone().into_draft();
     let agent = sim.agent();
     let start = &world.agent_params;
     let now = agent_now(sim);
@@ -48,11 +48,13 @@ pub(super) fn to_world(sim: SimRef, seed: &Seed, rails: Option<RailsProgress>) -
         ended: state.ended,
         velocity: agent.velocity.map(f64::from),
         origin,
-        chance: None,
+        former_draws: None,
         rails,
         objects,
     });
     world
+        .check_in_range()
+        .expect("steps keep the rules that the world started with")
 }
 
 /// The agent of the world, where it is now: to the bit where it started if it is there.
@@ -122,7 +124,7 @@ fn note_object(sim: SimRef, index: usize, object: &mut Object) -> ObjectProgress
         pulls: rng.map_or(0, |rng| rng.pulls),
         returns: rng.map_or(0, |rng| rng.returns),
         tries: rng.map_or(0, |rng| rng.tries),
-        chance: None,
+        former_draws: None,
         velocity: pushed
             .filter(|body| body.velocity != [0.0; 2])
             .map(|body| body.velocity.map(f64::from)),
@@ -133,9 +135,9 @@ fn note_object(sim: SimRef, index: usize, object: &mut Object) -> ObjectProgress
 impl ResumeState {
     /// Takes a world's progress out of it, and the world back to its start.
     pub(super) fn out_of(world: &mut Arc<World>) -> Self {
-        let world = Arc::make_mut(world);
-        let progress = world.progress.take().unwrap_or_default();
-        let agent = &mut world.agent_params;
+        let mut draft = Arc::unwrap_or_clone(std::mem::take(world)).into_draft();
+        let progress = draft.progress.take().unwrap_or_default();
+        let agent = &mut draft.agent_params;
         let place = (
             agent.coordinates.map(|metres| metres as f32),
             wrapped(agent.heading as f32),
@@ -143,9 +145,9 @@ impl ResumeState {
         if let Some(origin) = &progress.origin {
             (agent.coordinates, agent.heading) = (origin.coordinates, origin.heading);
         }
-        let mut objects = Vec::with_capacity(world.objects.len());
+        let mut objects = Vec::with_capacity(draft.objects.len());
         let own = progress.objects.iter().map(Some).chain(std::iter::repeat(None));
-        for (object, own) in world.objects.iter_mut().zip(own) {
+        for (object, own) in draft.objects.iter_mut().zip(own) {
             objects.push((
                 object.coordinates.map(|metres| metres as f32),
                 object.heading as f32,
@@ -156,6 +158,10 @@ impl ResumeState {
                 object.reward = origin.reward;
             }
         }
+        let start = draft
+            .check_in_range()
+            .expect("origins are in the ranges of what they stand for");
+        *world = Arc::new(start);
         Self {
             progress,
             agent: place,
@@ -167,6 +173,7 @@ impl ResumeState {
     pub(super) fn has_begun(&self) -> bool {
         let only_seed = Progress {
             seed: self.progress.seed.clone(),
+            objects: vec![ObjectProgress::default(); self.progress.objects.len()],
             ..Progress::default()
         };
         self.progress != only_seed

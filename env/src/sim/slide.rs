@@ -7,7 +7,8 @@
 //! width or the time step.
 
 use super::budget::Budget;
-use super::footprint::{Footprint, Gap, Point};
+use super::footprint::{Footprint, Point};
+use super::gap::Gap;
 
 /// Distance that a body keeps from what it slides along, in metres.
 pub(super) const SKIN: f64 = 0.01;

@@ -8,9 +8,8 @@ use driftworld_spec::{AgentParams, Object, World};
 
 use super::environment::Environment;
 use super::progress::{agent_now, object_now, to_world};
+use super::rng::Seed;
 use super::state::SimState;
-use super::streams::Seed;
-use crate::EnvError;
 use crate::agents::RailsPolicy;
 use crate::assets::Catalogue;
 
@@ -44,10 +43,10 @@ impl Environment {
     /// ```
     /// use driftworld_env::{Action, Environment};
     /// use driftworld_spec::{AgentParams, Object, World};
-    /// let mut environment = Environment::new(World::default())?;
+    /// let mut environment = Environment::new(World::default());
     /// let start = environment.snapshot();
     /// environment.step(Action::Continuous([10.0, 90.0, 0.0]))?;
-    /// environment.restore(&start)?;
+    /// environment.restore(&start);
     /// assert_eq!((environment.num_steps(), environment.agent().position), (0, [0.0, 0.0]));
     /// # Ok::<(), driftworld_env::EnvError>(())
     /// ```
@@ -62,10 +61,7 @@ impl Environment {
     }
 
     /// Goes back to a moment of this environment or of another one; what follows is the same to the last bit.
-    ///
-    /// # Errors
-    /// None today: every moment can be gone back to.
-    pub fn restore(&mut self, moment: &Snapshot) -> Result<(), EnvError> {
+    pub fn restore(&mut self, moment: &Snapshot) {
         if !Arc::ptr_eq(&self.world, &moment.world) {
             self.start_with(Arc::clone(&moment.world), &moment.catalogue);
         }
@@ -73,7 +69,6 @@ impl Environment {
         self.state.clone_from(&moment.state);
         self.rails.clone_from(&moment.rails);
         self.views.sync_objects(&self.world, &self.state);
-        Ok(())
     }
 
     /// The world as it is now, as a document: objects where they stand with the rewards that are left, and in
@@ -85,11 +80,11 @@ impl Environment {
     /// ```
     /// use driftworld_env::{Action, Environment};
     /// use driftworld_spec::World;
-    /// let mut environment = Environment::new(World::default())?;
+    /// let mut environment = Environment::new(World::default());
     /// environment.step(Action::Continuous([10.0, 90.0, 0.0]))?;
     /// let written = environment.state().to_json();
     /// let read = World::from_json("state", &written).expect("a state is a sound world");
-    /// assert_eq!(Environment::new(read)?.agent(), environment.agent());
+    /// assert_eq!(Environment::new(read).agent(), environment.agent());
     /// # Ok::<(), driftworld_env::EnvError>(())
     /// ```
     pub fn state(&self) -> World {

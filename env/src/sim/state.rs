@@ -5,8 +5,8 @@ use driftworld_spec::{LastEvent, Object, World};
 
 use super::mover::Mover;
 use super::pushed::Pushed;
+use super::rng::{Identities, ObjectRng, Seed};
 use super::sequence::Sequence;
-use super::streams::{Identities, ObjectRng, Seed};
 
 /// Where the agent is and how it moves.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]

@@ -31,7 +31,13 @@ impl Environment {
     /// Those of [`Environment::step`]; `step` is as it was then.
     pub fn step_into(&mut self, action: Action, step: &mut Step) -> Result<(), EnvError> {
         let numbers = self.numbers(action)?;
-        let mut intent = self.intent(numbers);
+        let intent = self.intent(numbers);
+        self.step_by(intent, step);
+        Ok(())
+    }
+
+    /// One step by a command of the body, whatever action it comes from.
+    pub(crate) fn step_by(&mut self, mut intent: Intent, step: &mut Step) {
         step.clear();
         let potential_before = potential(&self.world, &self.state);
         step.reward = self.world.rules.step_reward;
@@ -67,7 +73,6 @@ impl Environment {
             destroyed: event.destroyed,
         });
         state.ended = step.ended();
-        Ok(())
     }
 
     /// Whether the action could be carried out now.
@@ -79,7 +84,7 @@ impl Environment {
     }
 
     /// What the action says, if it can be carried out now.
-    fn numbers(&self, action: Action) -> Result<[f64; 3], EnvError> {
+    pub(super) fn numbers(&self, action: Action) -> Result<[f64; 3], EnvError> {
         if self.state.ended {
             return Err(EnvError::Ended);
         }
@@ -87,7 +92,7 @@ impl Environment {
     }
 
     /// What the agent means to do: in a world on rails, what its policy says in place of the action.
-    fn intent(&mut self, numbers: [f64; 3]) -> Intent {
+    pub(super) fn intent(&mut self, numbers: [f64; 3]) -> Intent {
         let agent = &self.world.agent_params;
         let sim = SimRef {
             world: &self.world,

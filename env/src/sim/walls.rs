@@ -34,10 +34,10 @@ pub(super) fn agent_obstacle(sim: SimRef, position: [f64; 2]) -> Option<Obstacle
 #[cfg(test)]
 mod tests {
     use super::*;
-    use driftworld_spec::Wall;
+    use driftworld_spec::{Wall, WorldDraft};
 
     fn check(position: [f64; 2], expected: Option<Obstacle>) {
-        let mut world = World::default();
+        let mut world = WorldDraft::default();
         world.environment_params.map_size = [20.0, 20.0];
         let polygon = vec![[2.0, 2.0], [6.0, 2.0], [6.0, 6.0], [4.0, 4.0], [2.0, 6.0]];
         world.environment_params.walls = vec![Wall {
@@ -45,6 +45,7 @@ mod tests {
             height: None,
             color: None,
         }];
+        let world = world.check().expect("the world is sound");
         assert_eq!(obstacle(&world, position, 0.5), expected, "{position:?}");
     }
 

@@ -61,7 +61,9 @@ for name, drawn in (("blue", world), ("wide", wide)):
 # Colour, distance, and what things are worth: the modalities of one observation.
 
 # %%
-env = gym.make("driftworld/FindObjects-v0", size=120, depth="float32")
+env = gym.make(
+    "driftworld/FindObjects-v0", size=120, depth="float32", modalities=["rgb", "depth", "segmentation"]
+)
 figure, axes = plt.subplots(3, len(NAMES), figsize=(14, 5.4), layout="constrained")
 for column, name in enumerate(NAMES):
     observation, info = env.reset(seed=3, options={"variant": name})

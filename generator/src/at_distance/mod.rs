@@ -1,12 +1,16 @@
 //! A variant at a wanted distance from another. The distance is handed in; what it measures is `similarity`'s to say.
 
+mod fewest;
 mod scan;
+mod subject;
 
-use driftworld_spec::{Domain, Element, Parameter, ParameterType, Role, Value, Variant, nearest};
+use driftworld_spec::{Domain, Parameter, ParameterType, Value, Variant};
 
 use crate::GeneratorError;
 use crate::interpolation::interpolate;
 use scan::{Scan, Space};
+pub use subject::Subject;
+use subject::{Free, FreeParameters, parameters_of};
 
 /// The most combinations of choices that are tried.
 const MOST_COMBINATIONS: usize = 4096;
@@ -18,15 +22,6 @@ const FEWEST_LOOKS: usize = 1500;
 /// Halvings of a stretch before it is given up.
 const HALVINGS: u32 = 80;
 
-/// What may change on the way to a wanted distance.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Subject {
-    /// The variant parameters that affect this element of the decision process, and no other.
-    Element(Element),
-    /// These variant parameters.
-    Parameters(Vec<String>),
-}
-
 /// A variant that was found, and how far it is.
 #[derive(Clone, Debug)]
 pub struct Found {
@@ -36,18 +31,19 @@ pub struct Found {
     pub distance: f64,
 }
 
-/// Finds a variant whose distance from `from` is `target` within `tolerance`.
+/// Finds a variant whose distance from `from` is `target` within `tolerance`, by as few changed parameters as will do.
 ///
-/// First without changing any choice, then with as few changed choices as will do, the numbers of the subject move together
-/// from where they are towards the ends of their ranges that lie farthest, and the stretch between is halved. Where the task's
-/// requirements cut that way off, all that they leave of the ranges is looked through, in every direction, each number by itself. The same
-/// arguments always find the same variant. `distance` is asked some hundred times, at most 80 for each of 4,096 combinations; where
-/// requirements cut, some ten thousand times. It returns finite numbers, 0 for `from`.
+/// All that the task's requirements leave of the subject's choices and ranges is searched: for each combination of choices the numbers move
+/// together towards the ends of their ranges that lie farthest, and where requirements cut that way off, or a number decides what is
+/// read, each number moves by itself. Of the answers that change as few parameters, the one that changes them least is taken, as a share of
+/// their ranges. A parameter that nothing reads in the answer stays as it is in `from`, unless a requirement forbids that. The
+/// same arguments always find the same variant. `distance` is asked some hundred times; where requirements cut, some ten thousand
+/// times. It returns numbers from 0, which is that of `from`.
 ///
 /// # Errors
 /// [`GeneratorError::NothingToVary`] if the subject has no parameter that could change; [`GeneratorError::TooFar`] with the
-/// farthest variant that was tried if none of them is as far as `target`; [`GeneratorError::NoneBetween`] with the nearest miss if the choices leave a
-/// gap around `target`.
+/// farthest variant that the task allows if that is nearer than `target`; [`GeneratorError::NoneBetween`] with the nearest miss if the
+/// choices leave a gap around `target`, or there was too much to look through.
 ///
 /// # Example
 /// ```
@@ -68,7 +64,7 @@ pub fn at_distance(
     tolerance: f64,
     distance: impl FnMut(&Variant) -> f64,
 ) -> Result<Found, GeneratorError> {
-    let (smooth, listed) = parameters_of(from, subject)?;
+    let free = parameters_of(from, subject)?;
     let mut search = Search {
         from,
         target,
@@ -76,86 +72,35 @@ pub fn at_distance(
         distance,
         nearest: None,
         farthest: None,
+        num_looks: 0,
         num_refused: 0,
+        is_complete: true,
     };
-    let ends = search.farthest_ends(&smooth);
-    // The way is also cut off for every combination if the ends themselves had to be left out.
-    let ends_refused = search.num_refused > 0;
-    let mut cut: Vec<Changes> = Vec::new();
-    for combination in combinations(from, &listed) {
-        let refused = search.num_refused;
-        if search.straight(&combination, &ends) {
-            return search.finish();
-        }
-        if ends_refused || search.num_refused > refused {
-            cut.push(combination);
-        }
+    search.whole(&free);
+    let found = search.nearest.clone();
+    if !search.is_met()
+        && search
+            .farthest
+            .as_ref()
+            .is_none_or(|farthest| farthest.distance < target)
+    {
+        return search.finish();
     }
-    let space = Space::new(from, &smooth);
-    let share = (MOST_LOOKS / cut.len().max(1)).max(FEWEST_LOOKS);
-    for combination in cut.iter().take(MOST_LOOKS / FEWEST_LOOKS) {
-        let scan = Scan {
-            search: &mut search,
-            space: &space,
-            combination,
-            budget: share,
-        };
-        if scan.run() {
-            break;
-        }
+    let met = found.clone().filter(|found| search.meets(found));
+    if let Some(best) = fewest::fewest(&mut search, &free, met) {
+        return Ok(best);
     }
+    search.nearest = found;
     search.finish()
 }
-
-/// A parameter that may change: its name, and how it is declared.
-type Free<'a> = (&'a str, &'a Parameter);
 
 /// Values that differ from those of the variant that was given.
 type Changes = Vec<(String, Value)>;
 
-/// The parameters that move smoothly, and those that are chosen from a list.
-fn parameters_of<'a>(from: &'a Variant, subject: &Subject) -> Result<(Vec<Free<'a>>, Vec<Free<'a>>), GeneratorError> {
-    let declared = from
-        .task()
-        .parameters()
-        .iter()
-        .filter(|(_, parameter)| parameter.role == Role::Variant);
-    if let Subject::Parameters(names) = subject {
-        let known: Vec<&str> = declared.clone().map(|(name, _)| name.as_str()).collect();
-        if let Some(unknown) = names.iter().find(|name| !known.contains(&name.as_str())) {
-            let meant = nearest(unknown, known).map_or_else(String::new, |near| format!(" (did you mean {near:?}?)"));
-            return Err(GeneratorError::NothingToVary {
-                variant: from.id(),
-                asked: format!("variant parameter named {unknown}{meant}"),
-            });
-        }
-    }
-    let belongs = |name: &str, parameter: &Parameter| match subject {
-        Subject::Element(element) => parameter.affects == [*element],
-        Subject::Parameters(names) => names.iter().any(|wanted| wanted == name),
-    };
-    let free: Vec<Free> = declared
-        .map(|(name, parameter)| (name.as_str(), parameter))
-        .filter(|(name, parameter)| belongs(name, parameter))
-        .collect();
-    if free.is_empty() {
-        let asked = match subject {
-            Subject::Element(element) => format!("parameters that affect {} alone", element.letter()),
-            Subject::Parameters(names) => format!("variant parameters named {}", names.join(", ")),
-        };
-        return Err(GeneratorError::NothingToVary {
-            variant: from.id(),
-            asked,
-        });
-    }
-    Ok(free
-        .into_iter()
-        .partition(|(_, parameter)| matches!(parameter.domain(), Some(Domain::Range(_)))))
-}
-
-/// Every combination of choices, those with fewer changes first; bounded.
-fn combinations(from: &Variant, listed: &[Free]) -> Vec<Changes> {
+/// Every combination of choices, those with fewer changes first, and whether that is all of them: they are bounded.
+fn combinations(from: &Variant, listed: &[Free]) -> (Vec<Changes>, bool) {
     let mut all: Vec<Changes> = vec![Vec::new()];
+    let mut are_all = true;
     for (name, parameter) in listed {
         let Some(Domain::Choices(choices)) = parameter.domain() else {
             continue;
@@ -163,6 +108,7 @@ fn combinations(from: &Variant, listed: &[Free]) -> Vec<Changes> {
         let others = choices.into_iter().filter(|choice| from.value(name) != Some(choice));
         let others: Vec<Value> = others.collect();
         let room = MOST_COMBINATIONS.saturating_sub(all.len());
+        are_all &= all.len() * others.len() <= room;
         let more: Vec<Changes> = all
             .iter()
             .flat_map(|before| {
@@ -175,7 +121,7 @@ fn combinations(from: &Variant, listed: &[Free]) -> Vec<Changes> {
         all.extend(more);
     }
     all.sort_by_key(Vec::len);
-    all
+    (all, are_all)
 }
 
 fn with(changes: &Changes, more: &Changes) -> Changes {
@@ -189,24 +135,67 @@ struct Search<'a, D> {
     distance: D,
     nearest: Option<Found>,
     farthest: Option<Found>,
+    num_looks: usize,
     /// How many variants the task did not allow.
     num_refused: u64,
+    /// Whether all there is has been looked through.
+    is_complete: bool,
 }
 
-impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
+impl<'a, D: FnMut(&Variant) -> f64> Search<'a, D> {
+    /// Looks through every combination of choices and all of the ranges, until the target is met.
+    fn whole(&mut self, free: &FreeParameters<'a>) {
+        let (combinations, are_all) = combinations(self.from, &free.listed);
+        self.is_complete = are_all;
+        let mut cut: Vec<Changes> = Vec::new();
+        for combination in combinations {
+            let refused = self.num_refused;
+            if self.straight(&combination, &free.smooth) {
+                return;
+            }
+            if free.is_bent || self.num_refused > refused {
+                cut.push(combination);
+            }
+        }
+        let space = Space::new(self.from, &free.smooth);
+        let budget = (MOST_LOOKS / cut.len().max(1)).max(FEWEST_LOOKS);
+        let most = MOST_LOOKS / FEWEST_LOOKS;
+        for combination in cut.iter().take(most) {
+            if self.scan(&space, combination, budget) {
+                return;
+            }
+        }
+        self.is_complete &= cut.len() <= most;
+    }
+
+    /// Looks through a combination of choices in every direction; true if the target was met.
+    fn scan(&mut self, space: &Space<'a>, combination: &Changes, budget: usize) -> bool {
+        let scan = Scan {
+            search: self,
+            space,
+            combination,
+            budget,
+        };
+        scan.run()
+    }
+
     /// Goes straight from a combination of choices to the ends; true if it meets the target.
-    fn straight(&mut self, combination: &Changes, ends: &Changes) -> bool {
+    fn straight(&mut self, combination: &Changes, smooth: &[Free]) -> bool {
         let Some(base) = self.look(combination.clone()) else {
             return false;
         };
         if self.meets(&base) {
             return true;
         }
-        let Some(end) = self.look(with(combination, ends)) else {
+        let ends = self.farthest_ends(combination, smooth);
+        if ends.is_empty() {
+            return false;
+        }
+        let Some(end) = self.look(with(combination, &ends)) else {
             return false;
         };
         let crosses = (base.distance - self.target) * (end.distance - self.target) <= 0.0;
-        self.meets(&end) || (crosses && self.halve(combination, ends))
+        self.meets(&end) || (crosses && self.halve(combination, &ends))
     }
 
     /// Whether the nearest variant so far is near enough.
@@ -216,6 +205,7 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
 
     /// Measures a variant and remembers it; `None` if the task does not allow it.
     fn look(&mut self, changes: Changes) -> Option<Found> {
+        self.num_looks += 1;
         let name = format!("{}@{}", self.from.name(), (self.target * 1e6).round() / 1e6);
         let Ok(variant) = self.from.with(&name, changes) else {
             self.num_refused += 1;
@@ -241,15 +231,15 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         (found.distance - self.target).abs() <= self.tolerance
     }
 
-    /// The ends of the ranges that lie farthest, taken parameter by parameter.
-    fn farthest_ends(&mut self, smooth: &[Free]) -> Changes {
+    /// The ends of the ranges that lie farthest beside a combination of choices, taken parameter by parameter.
+    fn farthest_ends(&mut self, combination: &Changes, smooth: &[Free]) -> Changes {
         let mut ends = Changes::new();
         for (name, parameter) in smooth {
             let options = ends_of(self.from, name, parameter);
             let mut best: Option<(f64, Value)> = None;
             for value in options {
                 let change = vec![((*name).to_owned(), value.clone())];
-                let Some(found) = self.look(with(&ends, &change)) else {
+                let Some(found) = self.look(with(combination, &with(&ends, &change))) else {
                     continue;
                 };
                 if best.as_ref().is_none_or(|best| found.distance > best.0) {
@@ -290,9 +280,9 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
     }
 
     /// The nearest variant if it meets the target, else what came of the search.
-    fn finish(self) -> Result<Found, GeneratorError> {
+    fn finish(&mut self) -> Result<Found, GeneratorError> {
         let (target, variant) = (self.target, self.from.id());
-        let (Some(nearest), Some(farthest)) = (self.nearest, self.farthest) else {
+        let (Some(nearest), Some(farthest)) = (self.nearest.clone(), self.farthest.clone()) else {
             return Err(GeneratorError::NothingToVary {
                 variant,
                 asked: "variants that the task allows".to_owned(),
@@ -301,7 +291,7 @@ impl<D: FnMut(&Variant) -> f64> Search<'_, D> {
         if (nearest.distance - target).abs() <= self.tolerance {
             return Ok(nearest);
         }
-        if farthest.distance < target {
+        if self.is_complete && farthest.distance < target {
             let values = shown(self.from, &farthest.variant);
             return Err(GeneratorError::TooFar {
                 variant,

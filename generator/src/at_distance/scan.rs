@@ -195,7 +195,9 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
     pub(super) fn run(mut self) -> bool {
         // Whether it was met or was too much is what the search remembers of the nearest variant.
         let _over = self.all();
-        self.search.is_met()
+        let is_met = self.search.is_met();
+        self.search.is_complete &= is_met || self.budget > 0;
+        is_met
     }
 
     fn all(&mut self) -> Result<(), Over> {
@@ -210,6 +212,9 @@ impl<D: FnMut(&Variant) -> f64> Scan<'_, '_, D> {
         }
         // First from what lies around, which is most often enough, then through all of the box.
         self.nearer(&mut seen, 1)?;
+        if self.space.axes.len() == 1 {
+            return Ok(());
+        }
         for along in 0..self.space.axes.len() {
             for anchor in self.space.anchors(along) {
                 self.line(&anchor, along, PARTS, &mut seen)?;

@@ -1,7 +1,7 @@
 //! The objects of a group: how many there are, what each is, where it stands and looks. Free places are found in
 //! `placement.rs`.
 
-use driftworld_spec::{MAX_OBJECTS, Turns, Value, World};
+use driftworld_spec::{MAX_OBJECTS, Turns, Value, WorldDraft};
 
 use super::Sampler;
 use crate::GeneratorError;
@@ -115,7 +115,7 @@ pub(super) struct Draft<'a, 'g> {
     pub(super) index: u64,
     pub(super) values: &'a [Value],
     pub(super) context: &'a mut PlacementContext<'g>,
-    pub(super) world: &'a mut World,
+    pub(super) world: &'a mut WorldDraft,
 }
 
 /// A drawn count; what does not fit is as good as too many.

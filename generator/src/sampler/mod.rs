@@ -5,11 +5,11 @@ mod groups;
 use std::sync::Arc;
 
 use driftworld_spec::maps::MapLibrary;
-use driftworld_spec::{ParameterType, Requirement, Value, Variant, World};
+use driftworld_spec::{ParameterType, Requirement, Value, Variant, World, WorldDraft};
 
 use crate::GeneratorError;
+use crate::clearance::FreeSpace;
 use crate::compiled::{Address, Compiled, Filled};
-use crate::free_space::FreeSpace;
 use crate::placement::{Anchor, PlacementContext};
 use crate::sequence::Sequence;
 use crate::stream::Stream;
@@ -190,7 +190,7 @@ impl Sampler {
 
     /// The world but for its objects, with its free space where that is its own. The agent's start lies in free space: a
     /// start that is drawn is drawn again, together with the parameters, until it is.
-    fn empty_world(&self, index: u64) -> Result<(World, Vec<Value>, Option<FreeSpace>), GeneratorError> {
+    fn empty_world(&self, index: u64) -> Result<(WorldDraft, Vec<Value>, Option<FreeSpace>), GeneratorError> {
         let mut first = 0;
         loop {
             let (values, attempt) = self.draw_values(index, first)?;
@@ -237,8 +237,8 @@ impl Sampler {
     /// World number `index`.
     ///
     /// # Errors
-    /// [`GeneratorError`] if an object or the agent finds no place, a draw falls out of its range, a requirement never holds, or there are
-    /// too many objects.
+    /// [`GeneratorError`] if an object or the agent finds no place, a draw falls out of its range, draws do not go together, a
+    /// requirement never holds, or there are too many objects.
     pub fn world(&self, index: u64) -> Result<World, GeneratorError> {
         let (mut world, values, own_free_space) = self.empty_world(index)?;
         world.seed = Some(self.seeds.seed(index));
@@ -289,7 +289,13 @@ impl Sampler {
             }
             ranges.push(first..world.objects.len());
         }
-        Ok(world)
+        // Loading the task and `fill` hold each value in its range; whether values go together is seen here alone.
+        world.check_in_range().map_err(|source| GeneratorError::Clash {
+            variant: self.variant.id(),
+            seed: self.seed,
+            index,
+            source,
+        })
     }
 
     fn fill<T: Clone>(&self, template: &Filled<T>, at: Address, values: &[Value]) -> Result<T, GeneratorError> {

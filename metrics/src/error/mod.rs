@@ -30,8 +30,8 @@ pub enum MetricsError {
 
     /// A new log was to be created where files are already.
     #[error(
-        "{}: found a directory that is not empty, expected a new or an empty one; \
-         choose another name, or continue the log that is there with LogWriter::resume",
+        "{}: found a directory that is not empty, expected a new or an empty one; choose another name, or continue \
+         its log with LogWriter::resume",
         path.shown()
     )]
     LogExists {
@@ -41,8 +41,8 @@ pub enum MetricsError {
 
     /// Another writer is at work on the log.
     #[error(
-        "{}: found a log that another run is writing, expected one that nobody writes; \
-         wait for that run, or choose another name",
+        "{}: found a log that another run is writing, expected one not in use; wait for that run, or choose another \
+         name",
         path.shown()
     )]
     InUse {
@@ -52,8 +52,9 @@ pub enum MetricsError {
 
     /// The directory of a log went away while it was written.
     #[error(
-        "{}: found {found}, expected the directory that this log has been written to: it was removed, renamed or replaced meanwhile; \
-         with it went {} in {bytes} bytes; put that directory back and continue the log, or begin a new one", path.shown(), counted(*rows)
+        "{}: found {found}, expected the directory of this log: it was removed, renamed or replaced during the run, \
+         and with it {} in {bytes} bytes; put it back and continue the log, or start a new \
+         one", path.shown(), counted(*rows)
     )]
     FolderLost {
         /// The directory.
@@ -68,8 +69,9 @@ pub enum MetricsError {
 
     /// A data file of a log was cut, removed or replaced while the log was written.
     #[error(
-        "{}: found {found}, expected the {} in {bytes} bytes that were written: it was cut, removed or replaced meanwhile; \
-         put it back and continue the log, or begin a new one; a log that only its last rows are missing from can be continued as it is",
+        "{}: found {found}, expected the {} in {bytes} bytes that were written: it was truncated, removed or replaced \
+         during the run; put it back and continue the log, or start a new one; a log that lacks only its last rows \
+         can be continued as it is",
         path.shown(), counted(*rows)
     )]
     FileLost {
@@ -85,8 +87,8 @@ pub enum MetricsError {
 
     /// An info file of a log was written over while the log was written.
     #[error(
-        "{}: found {found} bytes, expected the {expected} bytes that this log was begun with; put the file back, for without it the rows cannot \
-         be read",
+        "{}: found {found} bytes, expected the {expected} bytes that this log was started with; put the file back: \
+         without it, the rows cannot be read",
         path.shown()
     )]
     InfoFileChanged {
@@ -193,7 +195,8 @@ pub enum MetricsError {
 
     /// A data file begins with a row in place of its header.
     #[error(
-        "{}:1: found {found:?}, which has none of the standard columns, expected a header line that begins with block_num",
+        "{}:1: found {found:?}, which has none of the standard columns, expected a header line that begins with \
+         block_num",
         path.shown()
     )]
     NoHeader {
@@ -204,7 +207,8 @@ pub enum MetricsError {
     },
 
     /// A data file's header is one cell, as where something else than tabs stands between columns.
-    #[error("{}:1: found the header {found} without a tab, expected a tab between columns", path.shown(), found = one_line(found))]
+    #[error("{}:1: found the header {found} without a tab, expected a tab between \
+         columns", path.shown(), found = one_line(found))]
     NoTabs {
         /// The data file.
         path: PathBuf,
@@ -224,7 +228,8 @@ pub enum MetricsError {
     },
 
     /// A data file names a column twice.
-    #[error("{}:1: found the column {column} twice, expected every column once", path.shown(), column = one_line(column))]
+    #[error("{}:1: found the column {column} twice, expected every column \
+         once", path.shown(), column = one_line(column))]
     RepeatedColumn {
         /// The data file.
         path: PathBuf,
@@ -235,7 +240,7 @@ pub enum MetricsError {
     /// A log that is to be continued has a data file with other columns than its next record would be written under.
     #[error(
         "{}:1: found the columns {found}, expected {expected} to continue this log; \
-         only logs of format 1.1 written by one writer can be continued, begin a new one", path.shown(),
+         only logs of format 1.1 written by one writer can be continued; start a new one", path.shown(),
         found = one_line(found),
         expected = one_line(expected)
     )]
@@ -266,7 +271,8 @@ pub enum MetricsError {
     },
 
     /// A cell does not hold what its column asks for.
-    #[error("{}:{line}, column {column}: found {found}, expected {expected}", path.shown(), column = one_line(column), found = one_line(found), expected = one_line(expected))]
+    #[error("{}:{line}, column {column}: found {found}, expected \
+         {expected}", path.shown(), column = one_line(column), found = one_line(found), expected = one_line(expected))]
     Cell {
         /// The data file.
         path: PathBuf,
@@ -282,8 +288,8 @@ pub enum MetricsError {
 
     /// The last line of a data file has no line end: its writer was stopped in the middle of a row.
     #[error(
-        "{}:{line}: found a last line without a line end, expected whole rows; its writer was stopped in the middle \
-         of it: delete that line, or continue the log, which does so: `driftworld run … --resume`, LogWriter::resume",
+        "{}:{line}: found a last line without a line end, expected complete rows; its writer was interrupted: delete \
+         that line, or continue the log, which deletes it (`driftworld run … --resume`, LogWriter::resume)",
         path.shown()
     )]
     TornLastLine {
@@ -295,8 +301,8 @@ pub enum MetricsError {
 
     /// Lines of a data file end with a carriage return alone.
     #[error(
-        "{}:{line}: found lines that end with a carriage return alone, expected a line feed at the end of each, alone or behind it; \
-         save the file with such line ends",
+        "{}:{line}: found lines that end in a lone carriage return, expected LF or CRLF; save the file with such line \
+         ends",
         path.shown()
     )]
     CarriageReturns {
@@ -308,8 +314,8 @@ pub enum MetricsError {
 
     /// A quote was opened in a data file and never closed, so that it swallows the rows after it.
     #[error(
-        "{}:{line}: found a quote that opens a cell and is never closed, expected another at the end of the cell; \
-         the rows after it were taken for a part of it",
+        "{}:{line}: found a quote that opens a cell and is never closed, expected another at the end of the cell; the \
+         rows after it were read as part of the cell",
         path.shown()
     )]
     OpenQuote {
@@ -334,7 +340,7 @@ pub enum MetricsError {
     /// Block numbers fall while experience numbers rise.
     #[error(
         "{}:{line}, column block_num: found {found}, expected at least {expected}: \
-         read in order of exp_num, block numbers never fall",
+         in order of exp_num, block numbers never decrease",
         path.shown()
     )]
     BlockOrder {
@@ -350,8 +356,8 @@ pub enum MetricsError {
 
     /// A number falls from one row of a data file to the next.
     #[error(
-        "{}:{line}, column {column}: found {found}, expected at least {expected} as in the row above: \
-         numbers never fall",
+        "{}:{line}, column {column}: found {found}, expected at least {expected} as in the row above: numbers never \
+         decrease",
         path.shown()
     )]
     NumberFalls {
@@ -403,8 +409,8 @@ pub enum MetricsError {
 
     /// An experience goes on after its complete row.
     #[error(
-        "{}:{line}: found another row of experience {exp_num} of {worker} after its complete one, expected the complete row \
-         to be the last: give the next experience a number of its own", path.shown(),
+        "{}:{line}: found another row of experience {exp_num} of {worker} after its complete one, expected the \
+         complete row to be the last: give the next experience a new number", path.shown(),
         worker = one_line(worker)
     )]
     RowAfterComplete {
@@ -419,7 +425,8 @@ pub enum MetricsError {
     },
 
     /// A record that was to be written breaks a rule of the format.
-    #[error("record of experience {exp_num}, {field}: found {found}, expected {expected}", field = one_line(field), found = one_line(found), expected = one_line(expected))]
+    #[error("record of experience {exp_num}, {field}: found {found}, expected \
+         {expected}", field = one_line(field), found = one_line(found), expected = one_line(expected))]
     Record {
         /// Experience number of the record.
         exp_num: u64,
@@ -433,7 +440,7 @@ pub enum MetricsError {
 
     /// A time stamp is not of the form `20200913T122640.000000`.
     #[error(
-        "timestamp: found {found}, expected YYYYMMDDTHHMMSS.ffffff as in 20200913T122640.000000, a day that exists",
+        "timestamp: found {found}, expected YYYYMMDDTHHMMSS.ffffff as in 20200913T122640.000000, on an existing day",
         found = one_line(found)
     )]
     Timestamp {
@@ -454,7 +461,8 @@ pub enum MetricsError {
 
     /// A log has a column under a name that the table of several logs gives to one of its own.
     #[error(
-        "log {run_id}: found a column {column} of its own, expected another name: a table of logs has a column of that name; \
+        "log {run_id}: found a column {column} of its own, expected another name: a table of logs has a column of \
+         that name; \
          rename it in the log's files and in logger_info.json",
         run_id = one_line(run_id),
         column = one_line(column)
@@ -467,7 +475,8 @@ pub enum MetricsError {
     },
 
     /// The performance column is not in the log.
-    #[error("log {run_id}: found no metrics column {column:?}, expected one of {available}", run_id = one_line(run_id), available = one_line(available))]
+    #[error("log {run_id}: found no metrics column {column:?}, expected one of \
+         {available}", run_id = one_line(run_id), available = one_line(available))]
     UnknownColumn {
         /// Name of the log.
         run_id: String,
@@ -478,7 +487,8 @@ pub enum MetricsError {
     },
 
     /// After incomplete rows and rows without a number are dropped, none is left.
-    #[error("log {run_id}: found no complete row with a number in column {column:?}, expected at least one", run_id = one_line(run_id))]
+    #[error("log {run_id}: found no complete row with a number in column {column:?}, expected at least \
+         one", run_id = one_line(run_id))]
     NoUsableRows {
         /// Name of the log.
         run_id: String,
@@ -487,7 +497,8 @@ pub enum MetricsError {
     },
 
     /// A single-task expert's log must train exactly one task.
-    #[error("single-task expert log {run_id}: found {found}, expected exactly one trained task", run_id = one_line(run_id), found = one_line(found))]
+    #[error("single-task expert log {run_id}: found {found}, expected exactly one trained \
+         task", run_id = one_line(run_id), found = one_line(found))]
     NotSingleTask {
         /// Name of the log.
         run_id: String,
@@ -510,8 +521,8 @@ pub enum MetricsError {
 
     /// A data folder holds experts in a form that is never read.
     #[error(
-        "{}: found a pickle of l2metrics, expected folders of logs: reading a pickle runs the programs in it; \
-         store the logs it was made from again, and take it out of this folder",
+        "{}: found a pickle of l2metrics, expected folders of logs: reading a pickle can run code; store the original \
+         logs instead, and remove the pickle from this folder",
         path.shown()
     )]
     StePickle {
@@ -520,7 +531,8 @@ pub enum MetricsError {
     },
 
     /// More regimes than a lifetime may have.
-    #[error("log {run_id}: found more than {limit} regimes, expected at most that; do tasks alternate row by row?", run_id = one_line(run_id))]
+    #[error("log {run_id}: found more than {limit} regimes, expected at most that; do tasks alternate row by \
+         row?", run_id = one_line(run_id))]
     TooManyRegimes {
         /// Name of the log.
         run_id: String,

@@ -18,6 +18,10 @@ pub const MAX_REGIMES: usize = 10_000;
 /// QUIRK: task parameters do not split regimes. A block that changes only a task's parameters is one regime, and
 /// stands in tables with the parameters of its first row. Under the published definitions they do split.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(
+    clippy::struct_field_names,
+    reason = "`regime_num` is the name of the column in tables"
+)]
 pub struct Regime {
     /// Position among the regimes of the lifetime, from 0.
     pub regime_num: usize,

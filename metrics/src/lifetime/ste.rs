@@ -163,7 +163,7 @@ pub(super) fn gather(
         tracing::warn!(
             run_id = expert.log.run_id,
             task = expert.task_name,
-            "expert log left aside: the lifetime has no such task"
+            "expert log ignored: the lifetime has no such task"
         );
     }
     Ok(runs)

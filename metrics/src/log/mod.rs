@@ -28,6 +28,7 @@ mod rows;
 mod scenario_info;
 mod shared_column;
 mod spaced_json;
+mod ste_folder;
 mod ste_store;
 mod table;
 mod text_column;

@@ -1,6 +1,4 @@
-//! Takes up a log whose run was interrupted.
-//!
-//! Not here: writing, see `writer`.
+//! Reopens a log whose run was interrupted. Writing is in `writer`; where the run goes on, `curriculum`'s journal says.
 
 use std::collections::BTreeMap;
 use std::fs::{self, OpenOptions};

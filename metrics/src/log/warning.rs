@@ -123,8 +123,8 @@ impl fmt::Display for LogWarning {
                 let path = path.shown();
                 write!(
                     f,
-                    "{path}:{line}, column timestamp: found {found}, expected not earlier than {before} in the row above; \
-                     it counts all the same"
+                    "{path}:{line}, column timestamp: found {found}, expected at least {before} as in the row above; \
+                     kept"
                 )
             }
             Self::OtherFolder { path, line, expected } => {
@@ -132,15 +132,15 @@ impl fmt::Display for LogWarning {
                 let path = path.shown();
                 write!(
                     f,
-                    "{path}:{line}: found a row of another folder, expected it in {expected}; read all the same"
+                    "{path}:{line}: found a row of another folder, expected it in {expected}; kept"
                 )
             }
             Self::Unfinished { path, line, exp_num } => {
                 let path = path.shown();
                 write!(
                     f,
-                    "{path}:{line}: found experience {exp_num} without a complete row, the last of its worker; left out until \
-                     it has one"
+                    "{path}:{line}: found experience {exp_num} without a complete row, the last of its worker; \
+                     ignored until it has one"
                 )
             }
             Self::Missing {
@@ -153,7 +153,8 @@ impl fmt::Display for LogWarning {
                 let path = path.shown();
                 write!(
                     f,
-                    "{path}:{line}: found experience {after} after {before}, expected {}; numbers without a row: {missing}",
+                    "{path}:{line}: found experience {after} after {before}, expected {}; numbers without a row: \
+                     {missing}",
                     before + 1
                 )
             }
@@ -161,14 +162,14 @@ impl fmt::Display for LogWarning {
                 let column = one_line(column);
                 write!(
                     f,
-                    "column {column}: found no number in any row, expected some; it cannot be scored"
+                    "column {column}: found no number in any row, expected at least one; it cannot be scored"
                 )
             }
             Self::TaskName { found } => {
                 let found = shown(found);
                 write!(
                     f,
-                    "task_name: found {found}, expected TASK_VARIANT, letters and digits on both sides; used as it is"
+                    "task_name: found {found}, expected TASK_VARIANT, with letters and digits on both sides; used as is"
                 )
             }
         }

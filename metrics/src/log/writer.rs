@@ -15,7 +15,7 @@ use crate::log::BlockType;
 
 /// Writes records to a log directory, each flushed to the operating system as soon as it is written.
 ///
-/// The rules of the format are kept record by record: block and experience numbers never fall, every record has the
+/// The rules of the format are kept record by record: block and experience numbers never decrease, every record has the
 /// same metrics, a worker completes an experience once. Opens one file at a time, and asks the disk to have it when it
 /// turns to the next: a machine that loses its power loses rows of the last block at most. Two writers on one directory
 /// would spoil it, so that the second is refused where the system can tell.
@@ -208,7 +208,7 @@ impl Progress {
     fn check(&self, record: &Record) -> Result<(), MetricsError> {
         let order = |field: &str, found: u64, last: u64| {
             if found < last {
-                let expected = format!("at least {last}, the number before it: numbers never fall");
+                let expected = format!("at least {last}, the number before it: numbers never decrease");
                 return Err(bad_record(record, field, found.to_string(), expected));
             }
             Ok(())
@@ -217,7 +217,7 @@ impl Progress {
         order("exp_num", record.exp_num, self.last_exp_num)?;
         if record.exp_num == self.last_exp_num && self.completed_by.contains(&record.worker_id) {
             let found = format!("another row by {}", record.worker_id);
-            let expected = "no row after the complete one: give the next experience a number of its own".to_owned();
+            let expected = "no row after the complete one: give the next experience a new number".to_owned();
             return Err(bad_record(record, "exp_num", found, expected));
         }
         Ok(())

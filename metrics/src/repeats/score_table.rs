@@ -137,7 +137,7 @@ impl ScoreTable {
     pub fn caution(&self, resampling: Resampling) -> Option<String> {
         if !self.varies(resampling) {
             let what = match resampling {
-                Resampling::Strata => "each task was scored in one run only",
+                Resampling::Strata => "each task was scored in only one run",
                 Resampling::Runs => "there is one run only",
             };
             return Some(format!("no interval: {what}; repeat the lifetime with other seeds"));
@@ -154,7 +154,7 @@ impl ScoreTable {
             String::new()
         };
         Some(format!(
-            "the interval is too narrow: one run only scored {named}{rest}, so how much it varies is not known"
+            "the interval is too narrow: only one run scored {named}{rest}, so its variance is unknown"
         ))
     }
 
@@ -259,12 +259,12 @@ mod tests {
             assert_eq!(table(runs).unwrap().caution(resampling).as_deref(), expected);
         };
         let one: Runs = &[("1", &[("a", 1.0), ("b", 2.0)])];
-        let each = "no interval: each task was scored in one run only; repeat the lifetime with other seeds";
+        let each = "no interval: each task was scored in only one run; repeat the lifetime with other seeds";
         check(one, Resampling::Strata, Some(each));
         let only = "no interval: there is one run only; repeat the lifetime with other seeds";
         check(one, Resampling::Runs, Some(only));
         let ragged: Runs = &[("1", &[("a", 1.0), ("b", 2.0)]), ("2", &[("a", 2.0)])];
-        let narrow = "the interval is too narrow: one run only scored b, so how much it varies is not known";
+        let narrow = "the interval is too narrow: only one run scored b, so its variance is unknown";
         check(ragged, Resampling::Strata, Some(narrow));
         check(ragged, Resampling::Runs, None);
         let full: Runs = &[("1", &[("a", 1.0)]), ("2", &[("a", 2.0)])];

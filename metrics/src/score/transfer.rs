@@ -81,8 +81,8 @@ pub(super) fn caution(assessment: &Assessment<'_>) -> Option<String> {
         .fold(f64::INFINITY, f64::min);
     (least < 0.0).then(|| {
         format!(
-            "transfer compares performances of which some are negative (down to {least:.4}): a contrast may then lie outside -1 to 1, \
-             and a ratio above 1 may be a loss; scale performances (-n task) to read them"
+            "some performances are negative (down to {least:.4}): contrasts may lie outside -1 to 1, and a ratio \
+             above 1 may be a loss; normalise performance (-n task) to interpret transfer"
         )
     })
 }

@@ -20,6 +20,7 @@ from driftworld.errors import (
     SpecError,
     TaskError,
 )
+from driftworld.experiments import elements
 from driftworld.lifetimes import Agent, Summary, Transition
 from driftworld.logs import Log, LogWriter, read_log, validate_log
 from driftworld.scores import Metrics, metrics, report
@@ -56,6 +57,7 @@ __all__ = [
     "built_in_tasks",
     "distance",
     "distance_matrix",
+    "elements",
     "metrics",
     "order",
     "read_log",

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import Literal, TypeAlias
 
 # -- environments ------------------------------------------------------------------------------------------------------
+ImageKind: TypeAlias = Literal["rgb", "depth", "segmentation", "class", "instance"]
 Modality: TypeAlias = Literal["rgb", "depth", "segmentation", "class", "instance", "state"]
 DepthForm: TypeAlias = Literal["uint8", "uint16", "float32"]
 ActionsName: TypeAlias = Literal["normalized", "continuous", "discrete"]
@@ -32,13 +33,15 @@ OrderMethod: TypeAlias = Literal[
     "random",
     "bottleneck",
     "target-step",
+    "gradual",
+    "outward",
     "given",
 ]
 
 # -- curricula ---------------------------------------------------------------------------------------------------------
 Form: TypeAlias = Literal["condensed", "dispersed", "permuted", "alternating", "custom"]
 Evaluate: TypeAlias = Literal["every", "ends"]
-DesignOrder: TypeAlias = Literal["gradual", "abrupt", "path", "farthest", "named"]
+DesignOrder: TypeAlias = Literal["gradual", "outward", "abrupt", "path", "farthest", "named"]
 Probe: TypeAlias = Literal["state", "action", "transition", "reward", "observation"]
 TaskLabel: TypeAlias = Literal["none", "info", "observation"]
 BlockKind: TypeAlias = Literal["learning", "evaluation"]

@@ -98,6 +98,10 @@ def design_curriculum(
     tasks: Sequence[str], options: dict[str, Any]
 ) -> tuple[list[tuple[str, str]], list[tuple[str, str]]]: ...
 
+# -- elements.rs -------------------------------------------------------------------------------------------------------
+
+def elements(task: TaskSpec, options: dict[str, Any]) -> dict[str, Any]: ...
+
 # -- distances.rs ------------------------------------------------------------------------------------------------------
 
 def distance(
@@ -107,6 +111,7 @@ def distance(
     worlds: int | None,
     seed: int,
     index: int,
+    by: str | None = None,
 ) -> dict[str, Any]: ...
 def order_methods() -> list[str]: ...
 
@@ -115,7 +120,9 @@ class Matrix:
     """Every distance among some items."""
 
     @staticmethod
-    def measure(labels: Sequence[str], variants: Sequence[Variant], weights: dict[str, float] | None) -> Matrix: ...
+    def measure(
+        labels: Sequence[str], variants: Sequence[Variant], weights: dict[str, float] | None, by: str | None = None
+    ) -> Matrix: ...
     @staticmethod
     def from_values(labels: Sequence[str], values: NDArray[np.float64]) -> Matrix: ...
     @staticmethod
@@ -352,10 +359,10 @@ class Variant:
     def at_distance(
         self, distance: float, subject: str | Sequence[str], *, tolerance: float = 1e-3, name: str = "found"
     ) -> tuple[Variant, float]:
-        """A variant at a wanted distance, in 0..=1, from this one, and its distance.
+        """A variant at a wanted distance from this one, by as few changed parameters as will do, and its distance.
 
         Args:
-            distance: The wanted one.
+            distance: The wanted one: 0 or more, where 1 is one parameter moved over its whole range.
             subject: What may change: an element of the decision process (``"reward"`` or ``"R"``; the distance is the one in
                 it), or a list of parameters (the distance is the whole one).
             tolerance: How far off it may be.

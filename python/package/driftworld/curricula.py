@@ -20,7 +20,7 @@ import gymnasium
 
 from driftworld import _native
 from driftworld._files import write_whole
-from driftworld._literals import BlockKind, DesignOrder, Evaluate, Form, OrderMethod, Phase, Probe, TaskLabel
+from driftworld._literals import BlockKind, DesignOrder, Evaluate, Form, ImageKind, OrderMethod, Phase, Probe, TaskLabel
 from driftworld.lifetimes import Agent, Lifetime, Summary, environment
 from driftworld.specs import variants
 
@@ -191,6 +191,7 @@ class Curriculum(Sequence[Block]):
         target_step: float | None = None,
         order: DesignOrder | None = None,
         probe: Probe | None = None,
+        modalities: Sequence[ImageKind] | None = None,
         variants: int | None = None,
         step_distance: float | None = None,
         tolerance: float | None = None,
@@ -220,9 +221,10 @@ class Curriculum(Sequence[Block]):
             start: The variant that comes first; if not given, the one that is named first.
             end: The variant that comes last.
             target_step: The step that the method ``target-step`` wants.
-            order: From ``start`` on: ``"gradual"``, ``"abrupt"``, ``"path"``, ``"farthest"``, or as they are ``"named"``.
+            order: From ``start`` on: ``"gradual"``, ``"outward"``, ``"abrupt"``, ``"path"``, ``"farthest"``, or as they are ``"named"``.
             probe: Take variants that differ from the start in this element alone: ``"state"``, ``"action"``, ``"transition"``,
                 ``"reward"`` or ``"observation"``.
+            modalities: Which images the learner has that the probe is for; those that the task's worlds ask for if not given.
             variants: How many the probe takes.
             step_distance: Make a sequence of variants, each so far from the one before.
             tolerance: How far off each step may be.

@@ -11,7 +11,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -30,6 +30,12 @@ if TYPE_CHECKING:
 ELEMENTS = {"S": "state", "A": "action", "T": "transition", "R": "reward", "O": "observation"}
 
 Weights = Mapping[str, float]
+#: What variants are compared by.
+Measure = Literal["parameters", "worlds", "rewards"]
+#: The methods that look for the best path from a first one; ``None`` stands for the method that fits the number of items.
+SEEKING = frozenset(
+    [None, "nearest", "exact", "two-opt", "contrast", "farthest-first", "bottleneck", "target-step", "gradual", "outward"]
+)
 Named = str | Variant | TaskSpec
 
 
@@ -51,7 +57,7 @@ class Distance(float):
     def __new__(
         cls, total: float, elements: Mapping[str, float | None], parts: Iterable[dict[str, Any]], compared: str
     ) -> Self:
-        """A distance of all elements together, in 0..=1, and what it is made of."""
+        """A distance of all elements together, at least 0, and what it is made of."""
         distance = super().__new__(cls, total)
         distance.elements, distance.parts, distance.compared = dict(elements), list(parts), compared
         return distance
@@ -100,6 +106,7 @@ def distance(
     worlds: int | None = None,
     seed: int = 0,
     index: int = 0,
+    by: Measure | None = None,
 ) -> Distance:
     """How far apart two variants, or two worlds, are.
 
@@ -113,6 +120,8 @@ def distance(
         worlds: Compare so many worlds of each, 1 to 100,000, even where both are variants of one task; 16 where they are not.
         seed: The seed of worlds that are drawn.
         index: The number of the first of them.
+        by: ``"parameters"`` (two variants of one task), ``"worlds"`` or ``"rewards"``; by default parameters where that has a
+            meaning and no worlds are asked for, else worlds.
 
     Raises:
         SpecError: If a document is wrong.
@@ -121,7 +130,7 @@ def distance(
         SimilarityError: For a weight that is none.
     """
     laid = None if weights is None else dict(weights)
-    found = _native.distance(_side(a), _side(b), laid, worlds, seed, index)
+    found = _native.distance(_side(a), _side(b), laid, worlds, seed, index, by)
     letters = {name: letter for letter, name in ELEMENTS.items()}
     return Distance(
         total=found["total"],
@@ -336,7 +345,7 @@ def _matrix_again(text: str) -> DistanceMatrix:
 
 def _ending(path: Path) -> str:
     if path.suffix not in (".csv", ".json", ".npy"):
-        raise ValueError(f"path: found {str(path)!r}, expected a name that ends with .csv, .json or .npy")
+        raise ValueError(f"path: found {str(path)!r}, expected a name that ends in .csv, .json or .npy")
     return path.suffix
 
 
@@ -353,6 +362,7 @@ class Order(Sequence[str]):
         largest_step: The largest of them.
         mean_step: Their mean.
         anchor_correlation: How steadily the order leads away from its first item, a rank correlation in −1..=1, or ``None``.
+        share_of_shorter_random_orders: The share of 1,000 random orders, drawn from ``seed``, that are shorter.
     """
 
     method: str
@@ -363,6 +373,7 @@ class Order(Sequence[str]):
     largest_step: float
     mean_step: float
     anchor_correlation: float | None
+    share_of_shorter_random_orders: float
 
     @property
     def labels(self) -> list[str]:
@@ -380,14 +391,18 @@ class Order(Sequence[str]):
         return len(self.order)
 
 
-def distance_matrix(items: Named | Iterable[Named], weights: Weights | None = None) -> DistanceMatrix:
+def distance_matrix(
+    items: Named | Iterable[Named], weights: Weights | None = None, *, by: Measure | None = None
+) -> DistanceMatrix:
     """Every distance among variants, measured in parallel.
 
-    Variants of one task are compared parameter by parameter, those of several tasks by 16 worlds of each, drawn under seed 0.
+    The distance of two depends on them and on ``by`` alone, and on nothing else in the list.
 
     Args:
         items: Names, variants and task specs; a task stands for all its variants, and each variant is taken once.
         weights: As for :func:`distance`.
+        by: ``"parameters"`` (the default, for variants of one task), ``"worlds"`` or ``"rewards"``: of 16 worlds of each, drawn
+            under seed 0.
 
     Raises:
         SpecError, TaskError, GeneratorError, SimilarityError: As :func:`distance`; SimilarityError also for more than 20,000.
@@ -395,7 +410,7 @@ def distance_matrix(items: Named | Iterable[Named], weights: Weights | None = No
     """
     found = _variants(items)
     laid = None if weights is None else dict(weights)
-    return DistanceMatrix._of(_native.Matrix.measure([label for label, _ in found], [item for _, item in found], laid))
+    return DistanceMatrix._of(_native.Matrix.measure([label for label, _ in found], [item for _, item in found], laid, by))
 
 
 def _variants(items: Named | Iterable[Named]) -> list[tuple[str, Variant]]:
@@ -413,19 +428,22 @@ def order(
     seed: int = 0,
     target_step: float | None = None,
     weights: Weights | None = None,
+    by: Measure | None = None,
 ) -> Order:
     """Variants in an order by their distances.
 
     Args:
         items: A matrix, or what :func:`distance_matrix` takes.
         method: ``nearest``, ``exact`` (up to 15), ``two-opt``, ``spectral``, ``tree``, ``leaf``, ``contrast``, ``typical-last``,
-            ``farthest-first``, ``random``, ``bottleneck``, ``target-step`` or ``given``; exact where possible if none is given, else
-            two-opt.
-        start: The label that comes first; whichever is best if none is given.
+            ``farthest-first``, ``random``, ``bottleneck``, ``target-step``, ``gradual``, ``outward`` or ``given``; exact where possible if
+            none is given, else two-opt.
+        start: The label that comes first; if none is given, the variant that is named first, for methods that look for a path
+            from a first one, and whichever is best of a matrix or a task named whole.
         end: The label that comes last.
         seed: What ``random`` draws from.
         target_step: The step that ``target-step`` wants.
         weights: As for :func:`distance`.
+        by: As for :func:`distance_matrix`.
 
     Raises:
         SimilarityError: If there is no such method, or it cannot have such ends or items.
@@ -434,7 +452,13 @@ def order(
     if isinstance(items, DistanceMatrix):
         if weights is not None:
             raise ValueError("weights: found some beside a matrix, expected none: its distances are measured already")
+        if by is not None:
+            raise ValueError("by: found some beside a matrix, expected none: its distances are measured already")
         matrix = items
     else:
-        matrix = distance_matrix(items, weights)
+        named = [items] if isinstance(items, (str, os.PathLike, Variant, TaskSpec)) else list(items)
+        matrix = distance_matrix(named, weights, by=by)
+        first = variants(*named[:1])
+        if start is None and len(first) == 1 < len(matrix) and method in SEEKING and end != first[0][0]:
+            start = first[0][0]
     return matrix.order(method, start=start, end=end, seed=seed, target_step=target_step)

@@ -22,7 +22,7 @@ use plotters::prelude::*;
 
 pub(crate) use palette::dark_rules;
 pub(crate) use paper::load_font;
-pub(crate) use strip::{strip, told};
+pub(crate) use strip::{strip, thinned_count};
 
 use crate::ReportError;
 use crate::words::shown;

@@ -77,7 +77,7 @@ pub(super) fn draw<DB: DrawingBackend>(scene: &Scene, area: &Area<DB>, paper: &P
     Ok(())
 }
 
-/// A stretch's performances after smoothing and clamping, back in the unit of the log.
+/// A stretch's performances after smoothing and clamping, back in the log's unit.
 fn smoothed(lifetime: &Lifetime, stretch: &Stretch) -> Vec<f64> {
     let range = lifetime
         .normalization_data_range()

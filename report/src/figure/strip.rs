@@ -20,7 +20,7 @@ fn drawn(marks: usize) -> impl Iterator<Item = usize> {
 }
 
 /// How many marks are drawn, where not all are.
-pub(crate) fn told(marks: usize) -> Option<String> {
+pub(crate) fn thinned_count(marks: usize) -> Option<String> {
     (marks > MOST_MARKS).then(|| format!("{MOST_MARKS} of {marks}"))
 }
 
@@ -81,8 +81,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn marks_are_thinned_out_evenly_and_that_is_told() {
-        let check = |marks: usize, told_as: Option<&str>| {
+    fn marks_are_thinned_out_evenly_and_counted() {
+        let check = |marks: usize, expected: Option<&str>| {
             let places: Vec<usize> = drawn(marks).collect();
             assert_eq!(places.len(), marks.min(MOST_MARKS));
             assert_eq!(places.first().copied(), (marks > 0).then_some(0));
@@ -93,7 +93,7 @@ mod tests {
                 most.zip(least).is_none_or(|(most, least)| most - least <= 1),
                 "{steps:?}"
             );
-            assert_eq!(told(marks).as_deref(), told_as);
+            assert_eq!(thinned_count(marks).as_deref(), expected);
         };
         check(0, None);
         check(1, None);

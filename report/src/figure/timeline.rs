@@ -204,7 +204,7 @@ fn draw_distances<DB: DrawingBackend>(
         stem_from = at + d(1);
         let share = distance.map_or(0.0, |distance| if largest > 0.0 { distance / largest } else { 0.0 });
         let top = base - (f64::from(tallest) * share).round() as i32;
-        let told = distance.map_or("?".to_owned(), |distance| format!("{distance:.2}"));
+        let label = distance.map_or("?".to_owned(), |distance| format!("{distance:.2}"));
         if distance.is_some() {
             area.draw(&PathElement::new(
                 [(at, base), (at, top)],
@@ -212,10 +212,10 @@ fn draw_distances<DB: DrawingBackend>(
             ))?;
             area.draw(&Circle::new((at, top), d(3), INK.light.filled()))?;
         }
-        let half = d(text_width(&told, 11)) / 2;
+        let half = d(text_width(&label, 11)) / 2;
         if at - half >= free_from {
             let style = Paper::words(11, INK.light, HPos::Center, VPos::Bottom);
-            area.draw_text(&told, &style, (at, top - d(5)))?;
+            area.draw_text(&label, &style, (at, top - d(5)))?;
             free_from = at + half + d(2);
         }
     }

@@ -91,15 +91,16 @@ impl Chapter {
             "as logged, joined"
         };
         let asleep = if sleeps(lifetime) {
-            " This lifetime sleeps: its evaluations awake are drawn, and left out of maintenance, transfer and performance in evaluations."
+            " This lifetime has sleep phases: evaluations while awake are drawn, but do not count for maintenance, \
+             transfer and evaluation performance."
         } else {
             ""
         };
         let preprocessing = match (options.smoothed, lifetime.normalization_data_range().is_some()) {
             (true, true) => "after smoothing, scaled to 1…101",
-            (true, false) => "after smoothing, in the unit of the log",
+            (true, false) => "after smoothing, in the log's unit",
             (false, true) => "scaled to 1…101",
-            (false, false) => "in the unit of the log",
+            (false, false) => "in the log's unit",
         };
         let body = html! {
             (facts::facts(lifetime, metrics))
@@ -108,14 +109,19 @@ impl Chapter {
             (table)
             (figure(Figure::Timeline, "Curriculum", &blocks)?)
             (figure(Figure::Learning, "Learning curves", &format!(
-                "Performance {preprocessing}. Grey: evaluations, with learning switched off. Marks: each task's mean in an evaluation{lines}."
+                "Performance {preprocessing}. Grey: evaluations, with learning switched off. Marks: each task's mean \
+                 in an evaluation{lines}."
             ))?)
             (figure(Figure::Evaluation, "Evaluations", &format!(
-                "Mean of each evaluation with its 95 % interval by Student's t over the evaluation's experiences; no bar where all were equal or there was one only. The tint says when the task was learnt.{asleep}"))?)
+                "Mean of each evaluation with its 95 % interval by Student's t over the evaluation's experiences; no \
+                 bar where all were equal or there was one only. The tint says when the task was learnt.{asleep}"))?)
             (figure(Figure::Experts, "Against the single-task expert",
-                "The learning blocks of each task end to end, borders between them as upright lines, against agents that learnt nothing but this task. Where a curve is above the expert's, this agent performs better after as much learning of the task.")?)
+                "The learning blocks of each task end to end, with vertical lines between them, against agents that \
+                 learnt only this task. Where a curve is above the expert's, this agent performs better after the \
+                 same amount of learning.")?)
             (figure(Figure::Raw, "Raw values",
-                &format!("As logged: points where there is room, the area they fill where there is none. Lines: learning {lines_are}."))?)
+                &format!("As logged: points where there is room, the area they fill where there is none. Lines: \
+                     learning {lines_are}."))?)
             h3 { "Tasks" }
             (task_table::table(lifetime, metrics))
             (pair_table::tables(metrics))
@@ -148,7 +154,7 @@ fn asleep_blocks(lifetime: &Lifetime) -> String {
         )
     };
     format!(
-        " Blocks asleep are drawn as those awake: {} of learning, {} of evaluation.",
+        " Sleep blocks are drawn like the others: {} of learning, {} of evaluation.",
         asleep(BlockType::Train),
         asleep(BlockType::Test)
     )
@@ -157,9 +163,7 @@ fn asleep_blocks(lifetime: &Lifetime) -> String {
 /// Why a figure is not there.
 fn absent(figure: Figure) -> &'static str {
     match figure {
-        Figure::Experts => {
-            "No single-task expert of a task that was learnt is given, so there is nothing to compare with."
-        }
+        Figure::Experts => "No single-task expert was given for any task learnt, so there is nothing to compare with.",
         Figure::Evaluation => "The log has no evaluations.",
         _ => "The log has no learning.",
     }

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 
 use super::{described, number, verdict};
 use crate::ReportError;
-use crate::figure::{strip, told};
+use crate::figure::{strip, thinned_count};
 use crate::words::shown;
 
 pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Markup, ReportError> {
@@ -32,7 +32,7 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
                     (judged(name, value, &marks, row.good, scaled))
                     span.from { (verdict::good_from(name, row.good)) }
                 }
-                td.marks { @if !marks.is_empty() { (described(&drawing, None, &format!("{} of each task", verdict::title(name)))) @if let Some(told) = told(marks.len()) { span.from { (told) } } } }
+                td.marks { @if !marks.is_empty() { (described(&drawing, None, &format!("{} of each task", verdict::title(name)))) @if let Some(count) = thinned_count(marks.len()) { span.from { (count) } } } }
             }
         });
     }
@@ -51,18 +51,18 @@ pub(super) fn table(lifetime: &Lifetime, metrics: &LifetimeMetrics) -> Result<Ma
             }
         }
         p.note {
-            strong { "One lifetime cannot tell effect from chance; several can, by intervals over all of them. " }
+            strong { "One lifetime cannot distinguish an effect from noise. Several can, by confidence intervals. " }
             (verdict::rule(scaled))
         }
-        @for note in &metrics.notes { p.note { strong { "Mind: " } (shown(note)) "." } }
+        @for note in &metrics.notes { p.note { strong { "Note: " } (shown(note)) "." } }
         @if scaled {
             p.note {
-                "Tasks are scaled to 1…101, by default by this lifetime’s own worst and best. Lifetimes scaled so cannot be compared: a random agent may stand "
-                "above an expert. The means above, as they were logged, can."
+                "Tasks are scaled to 1…101, by default by this lifetime’s own worst and best. Such values cannot be compared between lifetimes: a random agent may score "
+                "above an expert. Compare the logged means above."
             }
         }
         p.note {
-            "Each task: coloured marks, for transfer one per pair in the colour of the task that was learnt; upright stroke: the lifetime's value; dashes: no effect."
+            "Coloured marks: each task, for transfer each pair in the colour of the task learnt. Vertical line: the lifetime's value. Dashes: no effect."
             @if !absent.is_empty() { " Not computed: " (absent.join("; ")) "." }
         }
     })

@@ -92,7 +92,7 @@ impl Report {
                         (warnings(&self.warnings))
                         (overall::section(&self.overall, &self.comparisons, &self.intervals))
                         @for (index, chapter) in self.chapters.iter().enumerate() { (self.life(index + 1, chapter)) }
-                        (how(&self.options))
+                        (options_table(&self.options))
                     }
                     footer {
                         "Made by driftworld " (env!("CARGO_PKG_VERSION")) ". Definitions: New et al. 2022, "
@@ -161,21 +161,22 @@ fn described(svg: &str, class: Option<&str>, alt: &str) -> Markup {
 }
 
 /// The options, and what is worth knowing of the calculation.
-fn how(options: &Value) -> Markup {
+fn options_table(options: &Value) -> Markup {
     let rows = options.as_object().into_iter().flatten();
     let does = |name: &str| options.get(name).is_none_or(|method| method != "none");
     let prepared = match (does("smoothing_method"), does("normalization_method")) {
         (true, true) => "Learning is smoothed, performances are scaled to 1…101, and each",
-        (true, false) => "Learning is smoothed, performances stay in the unit of the log, and each",
+        (true, false) => "Learning is smoothed, performances stay in the log's unit, and each",
         (false, true) => "Performances are scaled to 1…101, and each",
-        (false, false) => "Performances are judged as they were logged: each",
+        (false, false) => "Performances are used as logged: each",
     };
     html! {
         section.part id="how" aria-labelledby="how-name" {
             h2 id="how-name" { "How it was computed" }
             p {
-                "Complete rows with a number in the scored column form " i { "regimes" } ", one task learnt or evaluated without a break. "
-                (prepared) " metric is computed per task and then brought together over tasks. "
+                "Complete rows with a number in the scored column form " i { "regimes" } ", one task learnt or \
+                 evaluated without a break. "
+                (prepared) " metric is computed per task and then aggregated over tasks. "
                 "A value that cannot be computed is left out, never guessed."
             }
             div.card {

@@ -38,8 +38,8 @@ fn values(rows: &[RepeatedMetric], percent: &str) -> Markup {
     html! {
         @if !rows.is_empty() {
             p.note {
-                "Interquartile mean: the mean of the middle half of all values, task by task and lifetime by lifetime. In brackets, its "
-                (percent) " bootstrap interval: what other repeats of the same experiment may well have shown."
+                "Interquartile mean: the mean of the middle half of the values of all tasks and lifetimes. In brackets: its "
+                (percent) " bootstrap confidence interval."
             }
             div.scroll role="region" aria-label="Metrics over all lifetimes" tabindex="0" {
                 table.stacked {
@@ -57,8 +57,8 @@ fn values(rows: &[RepeatedMetric], percent: &str) -> Markup {
             }
             @if rows.iter().any(|row| row.iqm.t_interval.is_some()) {
                 p.note {
-                    "t: the interval by Student’s t over lifetimes, by which values are judged here. Below ten lifetimes the bootstrap’s holds the true "
-                    "value less often than it says; Student’s takes what varies from lifetime to lifetime as normal."
+                    "t: Student’s t interval over lifetimes, which decides here. Below ten lifetimes, bootstrap intervals contain the true "
+                    "value less often than they claim. Student’s assumes normally distributed lifetimes."
                 }
             }
             @for (caution, names) in cautions(rows) {
@@ -118,8 +118,8 @@ fn improvement(comparison: &Comparison, percent: &str, confidence: f64) -> Marku
         h3 { (title) }
         p.note {
             "Probability of improvement: how likely a lifetime of " bdi { (shown(&comparison.agent)) } " has the better value; 0.5 means that "
-            "neither is better. In brackets, its " (percent) " bootstrap interval, and by Student’s t where there are few lifetimes. p: how often two "
-            "equal agents differ as much, by sharing out all lifetimes among the two; they are called different where it is at most "
+            "neither is better. In brackets: its " (percent) " bootstrap interval, and Student’s t interval for few lifetimes. p: how often two "
+            "equal agents would differ at least as much, by permuting lifetimes between them. Agents differ where p is at most "
             (number_plain(1.0 - confidence)) "."
         }
         div.scroll role="region" aria-label=(title) tabindex="0" {
@@ -161,7 +161,7 @@ fn better(improvement: &Improvement, alpha: f64) -> Option<Verdict> {
         p if p <= alpha && improvement.probability.value > 0.5 => ("good", "▲", "better"),
         p if p <= alpha => ("bad", "▼", "worse"),
         _ if improvement.least_p_value? > alpha => ("even", "●", "too few lifetimes"),
-        _ => ("even", "●", "not told apart"),
+        _ => ("even", "●", "no clear difference"),
     };
     Some(Verdict { class, sign, word })
 }

@@ -69,9 +69,9 @@ pub(super) fn rule(scaled: bool) -> String {
         String::new()
     };
     format!(
-        "Words like “helps” are used where at least {FEWEST} tasks, or pairs of tasks, have a value, and the lifetime's differs from the \
-         one without effect by {LEAST_OF_RATIOS} for ratios and contrasts{points}, {LEAST_OF_EXPERIENCES} experience for recovery; \
-         “mixed”: fewer than three in four of the tasks or pairs agree."
+        "Words like “helps” need at least {FEWEST} tasks, or pairs of tasks, with a value, and a lifetime's value that differs \
+         from no effect by {LEAST_OF_RATIOS} for ratios and contrasts{points}, {LEAST_OF_EXPERIENCES} experience for recovery. \
+         “mixed” means that fewer than three in four tasks or pairs agree."
     )
 }
 
@@ -143,9 +143,9 @@ pub(super) fn of_interval(name: &str, interval: Interval, direction: Direction) 
     let neutral = neutral(direction)?;
     if interval.contains(neutral) {
         return Some(even(if is_against_expert(name) {
-            "not told from equal"
+            "no clear difference"
         } else {
-            "not told from no effect"
+            "no clear effect"
         }));
     }
     side(name, interval.low, direction)
@@ -268,7 +268,7 @@ mod tests {
             let found = of_interval("ste_rel_perf", Interval { low, high }, Direction::HigherThan(1.0));
             assert_eq!(found.expect("there is a neutral value").word, expected);
         };
-        check(0.9, 1.3, "not told from equal");
+        check(0.9, 1.3, "no clear difference");
         check(1.01, 1.02, "beats the expert");
         check(1.1, 1.3, "beats the expert");
         check(0.7, 0.9, "below the expert");

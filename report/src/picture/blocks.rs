@@ -177,11 +177,11 @@ fn stretches(scenario: &Scenario) -> (Vec<String>, Vec<Stretch>) {
         row_of(id(regime));
     }
     let mut stretches = Vec::new();
-    let mut lived = 0.0;
+    let mut position = 0.0;
     for block in &scenario.blocks {
         for regime in &block.regimes {
-            let from = lived;
-            lived += f64::from(regime.count);
+            let from = position;
+            position += f64::from(regime.count);
             let drift = regime.drift.as_ref().map(|drift| {
                 let end = format!("{}#{}", regime.task, drift.variant_name());
                 (row_of(end), [drift.from, drift.until])
@@ -190,7 +190,7 @@ fn stretches(scenario: &Scenario) -> (Vec<String>, Vec<Stretch>) {
                 row: row_of(id(regime)),
                 drift,
                 from,
-                to: lived,
+                to: position,
                 kind: block.kind,
                 phase: block.phase,
             });

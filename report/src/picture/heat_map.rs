@@ -28,10 +28,10 @@ pub fn heat_map(title: &str, labels: &[String], value: impl Fn(usize, usize) -> 
                 shade(share).filled(),
             ))?;
             if cell >= 36 {
-                let ink = if share > 0.55 { WHITE } else { INK };
+                let color = if share > 0.55 { WHITE } else { INK };
                 let style = ("sans-serif", 16)
                     .into_font()
-                    .color(&ink)
+                    .color(&color)
                     .pos(Pos::new(HPos::Center, VPos::Center));
                 area.draw_text(&format!("{number:.2}"), &style, (x + cell / 2, y + cell / 2))?;
             }

@@ -47,7 +47,7 @@ const LABEL_PX: u32 = 14;
 const DOT: RGBColor = RGBColor(22, 72, 130);
 const RIM: RGBColor = RGBColor(205, 209, 214);
 
-/// Panels side by side, each with its points. Names that find no free place are left out, and their number is told.
+/// Panels side by side, each with its points. Names that find no free place are left out, and their number is written.
 ///
 /// # Errors
 /// [`ReportError::Drawing`].
@@ -150,8 +150,8 @@ impl Panel {
         let line = [x0, y(self.neutral) - 2, x1, y(self.neutral) + 2];
         let unnamed = self.name(area, &dots, line, [x0, y0, x1, y1])?;
         if unnamed > 0 {
-            let told = format!("{unnamed} of {} without room for a name", dots.len());
-            write(area, &told, (x1, y0 - 20), 14, FAINT, HPos::Right)?;
+            let label = format!("{unnamed} of {} without room for a name", dots.len());
+            write(area, &label, (x1, y0 - 20), 14, FAINT, HPos::Right)?;
         }
         Ok(())
     }

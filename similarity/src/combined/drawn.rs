@@ -1,5 +1,5 @@
-//! [`DrawnMeasure`]: how two distributions of a parameter are compared, and what the number is divided by. Values are in `value.rs`, the
-//! measures in `distribution/`.
+//! [`DrawnMeasure`]: how two distributions of a parameter are compared, and what the number is divided by. Values are in
+//! `value.rs`, the measures in `distribution/`.
 
 use std::collections::BTreeSet;
 
@@ -8,18 +8,23 @@ use driftworld_spec::{Distribution, MeasureName, Parameter, ParameterType};
 use crate::ColorMeasure;
 use crate::combined::value::share;
 use crate::distribution::{
-    Measured, Method, circular_wasserstein_1, color_wasserstein_1, color_wasserstein_2, draws_headings, extent,
-    hellinger, jensen_shannon, planar_wasserstein_2, total_variation, wasserstein_1, wasserstein_2,
+    Measured, Method, circular_wasserstein_1, color_wasserstein_1, color_wasserstein_2, draws_headings, hellinger,
+    jensen_shannon, placement_wasserstein_1, placement_wasserstein_2, shares_wasserstein_1, total_variation,
+    wasserstein_1, wasserstein_2,
 };
 use crate::scalar::choice_mismatch;
+
+/// Of so many distributions all pairs are compared to find the widest.
+const ALL_PAIRS: usize = 24;
 
 /// How two distributions of one parameter are compared.
 #[derive(Clone, Debug)]
 pub(super) struct DrawnMeasure {
     measure: Option<MeasureName>,
     headings: bool,
-    /// Width of the numbers, or diagonal of the points, that all declared variants together draw.
-    width: Option<f64>,
+    /// The widest distance of two distributions that the task's declared values can make of the parameter.
+    widest: f64,
+    can_differ: bool,
     /// Whether points are drawn by different families, or colours from lists and densities, between which there are only samples.
     mixed: bool,
     /// By which measure the ways of colours are counted, where colours are compared by how far they are apart.
@@ -30,32 +35,48 @@ pub(super) struct DrawnMeasure {
 pub(super) type Found = (&'static str, Option<Method>, f64, f64);
 
 impl DrawnMeasure {
-    /// What the parameter asks for, or what its type has; `all` are its distributions in the declared variants.
-    pub(super) fn of(parameter: &Parameter, all: impl Iterator<Item = Distribution>) -> Self {
-        let mut corners: Option<[[f64; 2]; 2]> = None;
-        let mut families = BTreeSet::new();
-        let mut headings = parameter.kind == ParameterType::Heading;
+    /// What the parameter asks for, or what its type has; `all` are the distributions that it can have at the ends of what
+    /// the task declares.
+    pub(super) fn of(parameter: &Parameter, all: &[Distribution]) -> Self {
         let measure = parameter.compare.as_ref().and_then(|compare| compare.measure);
-        let mut kinds = [false; 2];
-        for distribution in all {
-            kinds[usize::from(distribution.draws_colors())] = true;
-            headings |= draws_headings(&distribution);
-            families.insert(distribution.planar_moments().map(|_| distribution.name()));
-            if let Some([low, high]) = bounds(&distribution) {
-                let [least, most] = corners.unwrap_or([low, high]);
-                let join = |axis: usize| [least[axis].min(low[axis]), most[axis].max(high[axis])];
-                let [x, y] = [0, 1].map(join);
-                corners = Some([[x[0], y[0]], [x[1], y[1]]]);
-            }
-        }
+        let kinds = [false, true].map(|colors| all.iter().any(|own| own.draws_colors() == colors));
+        let families = all.iter().filter_map(|own| own.planar_moments().map(|_| own.name()));
+        let families: BTreeSet<&str> = families.collect();
         let has_ways = kinds[1] || (parameter.kind == ParameterType::Color && asks_for_ways(measure));
         let colors = has_ways && measure != Some(MeasureName::SameOrNot);
-        Self {
+        let mut made = Self {
             measure,
             colors: colors.then(|| ways_of(measure)),
-            headings,
-            width: corners.map(|[low, high]| libm::hypot(high[0] - low[0], high[1] - low[1])),
-            mixed: families.iter().flatten().count() > 1 || (colors && kinds == [true; 2]),
+            headings: parameter.kind == ParameterType::Heading || all.iter().any(draws_headings),
+            widest: 1.0,
+            can_differ: all.len() > 1,
+            mixed: families.len() > 1 || (colors && kinds == [true; 2]),
+        };
+        made.widest = made.widest_of(all);
+        made
+    }
+
+    /// The widest distance among distributions: of all pairs, or, where they are many, from the first to the farthest from
+    /// it and on to the farthest from that, which is half of the widest at least. 1 where all are alike.
+    fn widest_of(&self, all: &[Distribution]) -> f64 {
+        let raw = |a: &Distribution, b: &Distribution| self.raw(a, b).2;
+        let widest = if all.len() <= ALL_PAIRS {
+            let pairs = all
+                .iter()
+                .enumerate()
+                .flat_map(|(index, a)| all[..index].iter().map(move |b| (a, b)));
+            pairs.map(|(a, b)| raw(a, b)).fold(0.0, f64::max)
+        } else {
+            let farthest = |from: &Distribution| {
+                let far = all.iter().map(|other| (other, raw(from, other)));
+                far.fold((&all[0], 0.0), |best, next| if next.1 > best.1 { next } else { best })
+            };
+            farthest(farthest(&all[0]).0).1
+        };
+        if widest > 0.0 && widest.is_finite() {
+            widest
+        } else {
+            1.0
         }
     }
 
@@ -64,43 +85,49 @@ impl DrawnMeasure {
         !self.mixed && self.colors.is_none_or(|colors| colors.properties().is_metric())
     }
 
+    /// Whether what the task declares can make more than one distribution of the parameter.
+    pub(super) fn can_differ(&self) -> bool {
+        self.can_differ
+    }
+
     /// How far two distributions are apart.
     pub(super) fn between(&self, a: &Distribution, b: &Distribution) -> Found {
-        let over_width = |measured: Measured| share(measured.value, self.width.unwrap_or(0.0));
-        let as_it_is = |measured: Measured| measured.value;
-        let half_turn = |measured: Measured| measured.value / 180.0;
-        let found = |name, measured: Option<Measured>, normalise: &dyn Fn(Measured) -> f64| -> Option<Found> {
-            let measured = measured?;
-            Some((name, Some(measured.method), measured.value, normalise(measured)))
-        };
-        let same_or_not = || {
-            let raw = choice_mismatch(a, b);
-            ("same or not", None, raw, raw)
-        };
+        let (name, method, raw) = self.raw(a, b);
+        let normalised = if method.is_none() { raw } else { share(raw, self.widest) };
+        (name, method, raw, normalised)
+    }
+
+    /// The measure's name, how its number was found, and the number; "same or not" has no method.
+    fn raw(&self, a: &Distribution, b: &Distribution) -> (&'static str, Option<Method>, f64) {
+        let same_or_not = || ("same or not", None, choice_mismatch(a, b));
+        if self.measure == Some(MeasureName::SameOrNot) {
+            return same_or_not();
+        }
         if let Some(colors) = self.colors {
             return between_colors(a, b, colors, self.measure).unwrap_or_else(same_or_not);
         }
+        let found = |name, measured: Option<Measured>| measured.map(|found| (name, Some(found.method), found.value));
         let asked = match self.measure {
-            Some(MeasureName::Wasserstein2) => found("wasserstein-2 / width", wasserstein_2(a, b), &over_width),
-            Some(MeasureName::TotalVariation) => found("total variation", total_variation(a, b), &as_it_is),
-            Some(MeasureName::Hellinger) => found("hellinger", hellinger(a, b), &as_it_is),
-            Some(MeasureName::JensenShannon) => found("jensen-shannon", jensen_shannon(a, b), &as_it_is),
-            Some(MeasureName::SameOrNot) => Some(same_or_not()),
+            Some(MeasureName::Wasserstein1) => found("planar wasserstein-1 / widest", placement_wasserstein_1(a, b)),
+            Some(MeasureName::Wasserstein2) => found("planar wasserstein-2 / widest", placement_wasserstein_2(a, b))
+                .or_else(|| found("wasserstein-2 / widest", wasserstein_2(a, b))),
+            Some(MeasureName::TotalVariation) => found("total variation / widest", total_variation(a, b)),
+            Some(MeasureName::Hellinger) => found("hellinger / widest", hellinger(a, b)),
+            Some(MeasureName::JensenShannon) => found("jensen-shannon / widest", jensen_shannon(a, b)),
             _ => None,
         };
         if let Some(asked) = asked {
             return asked;
         }
-        if self.headings {
-            let round = circular_wasserstein_1(a, b);
-            if let Some(found) = found("circular wasserstein-1 / 180 degrees", round, &half_turn) {
-                return found;
-            }
+        if self.headings
+            && let Some(round) = found("circular wasserstein-1 / widest", circular_wasserstein_1(a, b))
+        {
+            return round;
         }
-        found("wasserstein-1 / width", wasserstein_1(a, b), &over_width)
-            .or_else(|| found("planar wasserstein-2 / width", planar_wasserstein_2(a, b), &over_width))
-            .or_else(|| found("total variation", total_variation(a, b), &as_it_is))
-            .or_else(|| found("total variation of mean shares", shares(a, b), &as_it_is))
+        found("planar wasserstein-2 / widest", placement_wasserstein_2(a, b))
+            .or_else(|| found("wasserstein-1 / widest", wasserstein_1(a, b)))
+            .or_else(|| found("total variation / widest", total_variation(a, b)))
+            .or_else(|| found("wasserstein-1 of shares / widest", shares_wasserstein_1(a, b)))
             .unwrap_or_else(same_or_not)
     }
 }
@@ -124,43 +151,23 @@ fn ways_of(measure: Option<MeasureName>) -> ColorMeasure {
     }
 }
 
-/// Wasserstein-1 of colours, or Wasserstein-2 where that is asked for, over the largest distance of two colours.
-fn between_colors(a: &Distribution, b: &Distribution, by: ColorMeasure, asked: Option<MeasureName>) -> Option<Found> {
+/// Wasserstein-1 of colours, or Wasserstein-2 where that is asked for.
+fn between_colors(
+    a: &Distribution,
+    b: &Distribution,
+    by: ColorMeasure,
+    asked: Option<MeasureName>,
+) -> Option<(&'static str, Option<Method>, f64)> {
     let (name, measured) = if asked == Some(MeasureName::Wasserstein2) {
-        ("wasserstein-2 of oklab", color_wasserstein_2(a, b, by)?)
+        ("wasserstein-2 of oklab / widest", color_wasserstein_2(a, b, by)?)
     } else {
         let name = match by {
-            ColorMeasure::Srgb => "wasserstein-1 of srgb / largest",
-            ColorMeasure::Cie76 => "wasserstein-1 of cie76 / largest",
-            ColorMeasure::Ciede2000 => "wasserstein-1 of ciede2000 / largest",
-            ColorMeasure::Oklab | ColorMeasure::Hyab => "wasserstein-1 of oklab",
+            ColorMeasure::Srgb => "wasserstein-1 of srgb / widest",
+            ColorMeasure::Cie76 => "wasserstein-1 of cie76 / widest",
+            ColorMeasure::Ciede2000 => "wasserstein-1 of ciede2000 / widest",
+            ColorMeasure::Oklab | ColorMeasure::Hyab => "wasserstein-1 of oklab / widest",
         };
         (name, color_wasserstein_1(a, b, by)?)
     };
-    Some((
-        name,
-        Some(measured.method),
-        measured.value,
-        measured.value / by.diameter(),
-    ))
-}
-
-/// The corners between which nearly all of a distribution's numbers or points lie; numbers have the second coordinate 0.
-fn bounds(distribution: &Distribution) -> Option<[[f64; 2]; 2]> {
-    if let Some([low, high]) = extent(distribution) {
-        return Some([[low, 0.0], [high, 0.0]]);
-    }
-    let moments = distribution.planar_moments()?;
-    let reach = [0, 1].map(|axis| 3.0 * moments.covariance[axis][axis].max(0.0).sqrt());
-    let corner = |sign: f64| [0, 1].map(|axis| moments.mean[axis] + sign * reach[axis]);
-    Some([corner(-1.0), corner(1.0)])
-}
-
-/// Half of the sum of the differences of the mean shares.
-fn shares(a: &Distribution, b: &Distribution) -> Option<Measured> {
-    let (a, b) = (a.mean_shares()?, b.mean_shares()?);
-    (a.len() == b.len()).then(|| Measured {
-        value: a.iter().zip(&b).map(|(a, b)| (a - b).abs()).sum::<f64>() / 2.0,
-        method: Method::Closed,
-    })
+    Some((name, Some(measured.method), measured.value))
 }

@@ -1,11 +1,15 @@
 //! Distances of whole variants and whole worlds, made of many parts. The measures that the parts are made of are in their own folders.
 
-mod distance;
 mod drawn;
+mod leaves;
+mod matching;
 mod parts;
+mod read;
 mod sketch;
 mod value;
 pub(crate) mod variant;
+mod weighted_distance;
 pub(crate) mod world;
 
-pub use distance::{Distance, MAX_WEIGHT, Part, Weights};
+pub use weighted_distance::{Distance, MAX_WEIGHT, Part, Weights};
+pub(crate) use world::match_objects;

@@ -1,129 +1,113 @@
-//! [`Sketches`]: worlds reduced to the numbers that comparing them needs, made once and compared often. The parts of a
-//! distance are in `world.rs`.
+//! [`Sketch`]: a world reduced to what comparing it needs, made once and compared often. The parts of a distance are in
+//! `parts.rs`.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use driftworld_spec::{Comparison, Object, SameTexts, World};
-use serde::Serialize;
+use driftworld_spec::{Comparison, LeafTexts, Object, World};
 
 use crate::Oklab;
+use crate::combined::leaves::{LeafReader, Leaves};
+use crate::combined::read::as_read;
 
-/// Worlds reduced alike: what is the same has the same number in each.
+/// Reduces worlds alike: only sketches of one sketcher can be compared.
 #[derive(Debug, Default)]
 pub(super) struct Sketcher {
-    numbers: BTreeMap<Vec<u8>, u32>,
-    same: SameTexts,
-    key: Vec<u8>,
+    texts: LeafTexts,
+    reader: LeafReader,
 }
 
 /// A world as it is compared.
 #[derive(Clone, Debug)]
 pub(super) struct Sketch {
-    /// Objects by class, those of one class in the order of the world.
+    /// Objects by class, those of one class in an order that is theirs alone, whatever the order of the document.
     pub(super) objects: Vec<ObjectFeatures>,
-    /// For each class its number, and where its objects end in `objects`; by number.
-    pub(super) classes: Vec<(u32, usize)>,
-    /// Cells in which something stands, in rising order.
-    pub(super) cells: Vec<(i32, i32)>,
+    /// For each class its name in small letters, and where its objects end in `objects`; by name.
+    pub(super) classes: Vec<(String, usize)>,
     pub(super) start: [f64; 2],
+    /// In degrees, as all headings here in `0..360`.
     pub(super) heading: f64,
-    pub(super) action_model: u32,
-    pub(super) action_space: u32,
+    pub(super) action_model: Arc<Leaves>,
+    pub(super) action_space: Arc<Leaves>,
     pub(super) linear_speed: f64,
     pub(super) angular_speed: f64,
     pub(super) time_step: f64,
     pub(super) agent_width: f64,
-    pub(super) walls: u32,
-    pub(super) area: f64,
+    pub(super) map: u8,
+    pub(super) walls: Arc<Leaves>,
+    pub(super) arena: [f64; 2],
     /// What time pays, in a second.
     pub(super) step_reward: f64,
-    pub(super) rules: u32,
-    /// The limit of steps, by how long it lets an episode last.
-    pub(super) limit: u32,
+    pub(super) rules: Arc<Leaves>,
+    /// How many seconds an episode may last; `None` for one without a limit.
+    pub(super) limit: Option<f64>,
     pub(super) light: f64,
     /// Wall, sky, ground, sunlight.
     pub(super) surroundings: [Oklab; 4],
-    pub(super) camera: u32,
+    /// Columns and rows.
+    pub(super) picture: [f64; 2],
+    pub(super) camera: Arc<Leaves>,
 }
 
 /// An object as it is compared.
 #[derive(Clone, Debug)]
 pub(super) struct ObjectFeatures {
+    /// Its place in the list of the document, which is not compared.
+    pub(super) index: usize,
     pub(super) place: [f64; 2],
-    /// In degrees.
     pub(super) heading: f64,
-    pub(super) motion: u32,
-    pub(super) body: u32,
+    pub(super) scale: f64,
     pub(super) reward: f64,
-    pub(super) paid_for: u32,
     pub(super) odds: f64,
     pub(super) color: Option<Oklab>,
-    pub(super) look: u32,
+    pub(super) motion: Arc<Leaves>,
+    pub(super) body: Arc<Leaves>,
+    pub(super) paid_for: Arc<Leaves>,
+    pub(super) model: Arc<Leaves>,
 }
 
 impl Sketcher {
-    /// The number of what a comparison finds the same or not in the world or object that was read last: that of equal
-    /// fields and of equal `more`, which are not in the table as they are compared.
-    fn number(&mut self, comparison: Comparison, more: impl Serialize) -> u32 {
-        self.key.clear();
-        self.key.push(comparison as u8);
-        self.key.extend_from_slice(self.same.of(comparison));
-        serde_json::to_writer(&mut self.key, &more).expect("parts of documents serialise, and memory takes them");
-        if let Some(number) = self.numbers.get(&self.key) {
-            return *number;
-        }
-        let next = u32::try_from(self.numbers.len()).unwrap_or(u32::MAX);
-        self.numbers.insert(self.key.clone(), next);
-        next
-    }
-
-    /// The sketch of a world, with cells of `cell` metres.
-    pub(super) fn sketch(&mut self, world: &World, cell: f64) -> Sketch {
-        let mut by_class: BTreeMap<u32, Vec<ObjectFeatures>> = BTreeMap::new();
-        for object in &world.objects {
-            self.same.read_object(object);
-            let class = self.number(Comparison::NumbersOfObjects, object.class.to_lowercase());
-            let features = self.features(object);
-            by_class.entry(class).or_default().push(features);
+    /// The sketch of a world.
+    pub(super) fn sketch(&mut self, world: &World) -> Sketch {
+        let mut by_class: BTreeMap<String, Vec<ObjectFeatures>> = BTreeMap::new();
+        for (index, object) in world.objects.iter().enumerate() {
+            let features = self.features(index, &as_read(object));
+            by_class.entry(object.class.to_lowercase()).or_default().push(features);
         }
         let mut objects = Vec::with_capacity(world.objects.len());
         let mut classes = Vec::with_capacity(by_class.len());
-        for (class, group) in by_class {
+        for (class, mut group) in by_class {
+            group.sort_by(ObjectFeatures::order);
             objects.extend(group);
             classes.push((class, objects.len()));
         }
-        let index = |metres: f64| (metres / cell).floor() as i32;
-        let mut cells: Vec<(i32, i32)> = objects
-            .iter()
-            .map(|object| (index(object.place[0]), index(object.place[1])))
-            .collect();
-        cells.sort_unstable();
-        cells.dedup();
         let (agent, around, rules) = (&world.agent_params, &world.environment_params, &world.rules);
-        let [width, depth] = around.arena_size();
         let step_seconds = agent.time_step * f64::from(agent.frame_skip);
         let limits = [world.max_seconds, f64::from(world.max_steps) * step_seconds];
-        let least = limits.into_iter().filter(|seconds| *seconds > 0.0).reduce(f64::min);
-        // To the microsecond: 100 steps of 0.3 s are 300 of 0.1 s.
-        let limit = least.map(|seconds| (seconds * 1e6).round() as u64);
-        self.same.read_world(world);
+        self.texts.read_world(world);
         Sketch {
             objects,
             classes,
-            cells,
             start: agent.coordinates,
-            heading: agent.heading,
-            action_model: self.number(Comparison::ModelOfActions, ()),
-            action_space: self.number(Comparison::SpaceOfActions, ()),
+            heading: agent.heading.rem_euclid(360.0),
+            action_model: self.leaves(Comparison::ModelOfActions),
+            action_space: self.leaves(Comparison::SpaceOfActions),
             linear_speed: agent.max_linear_speed,
             angular_speed: agent.max_angular_speed,
             time_step: step_seconds,
             agent_width: agent.agent_width,
-            walls: self.number(Comparison::MapAndWalls, around.predefined_map),
-            area: width * depth,
+            map: around.predefined_map,
+            walls: self.leaves(Comparison::MapAndWalls),
+            arena: around.arena_size(),
             step_reward: rules.step_reward / step_seconds + rules.reward_per_second,
-            rules: self.number(Comparison::ShapingAndEndings, ()),
-            limit: self.number(Comparison::Limit, limit),
+            rules: self.leaves(Comparison::ShapingAndEndings),
+            // To the microsecond: 100 steps of 0.3 s are 300 of 0.1 s.
+            limit: limits
+                .into_iter()
+                .filter(|seconds| *seconds > 0.0)
+                .reduce(f64::min)
+                .map(|seconds| (seconds * 1e6).round() / 1e6),
             light: around.light_intensity,
             surroundings: [
                 around.bounding_wall_color,
@@ -132,28 +116,56 @@ impl Sketcher {
                 around.light_color,
             ]
             .map(Oklab::from),
-            camera: self.number(Comparison::CameraAndWeather, agent.picture_size()),
+            picture: agent.picture_size().map(f64::from),
+            camera: self.leaves(Comparison::CameraAndWeather),
         }
     }
 
-    /// An object that was read last.
-    fn features(&mut self, object: &Object) -> ObjectFeatures {
+    fn features(&mut self, index: usize, object: &Object) -> ObjectFeatures {
+        self.texts.read_object(object);
         ObjectFeatures {
+            index,
             place: object.coordinates,
-            heading: object.heading,
-            motion: self.number(Comparison::Motion, ()),
-            body: self.number(Comparison::Bodies, ()),
+            heading: object.heading.rem_euclid(360.0),
+            scale: object.scale,
             reward: object.reward,
-            paid_for: self.number(Comparison::PaidFor, ()),
             odds: object.reward_probability,
             color: object.color.map(Oklab::from),
-            look: self.number(Comparison::ModelsOfObjects, ()),
+            motion: self.leaves(Comparison::Motion),
+            body: self.leaves(Comparison::Bodies),
+            paid_for: self.leaves(Comparison::PaidFor),
+            model: self.leaves(Comparison::ModelsOfObjects),
         }
+    }
+
+    /// The leaves of a comparison in the world or object that was read last.
+    fn leaves(&mut self, comparison: Comparison) -> Arc<Leaves> {
+        self.reader.read(self.texts.of(comparison))
+    }
+}
+
+impl ObjectFeatures {
+    /// An order of objects that are not alike, so that which of several equally cheap matches is taken hangs on the objects
+    /// alone.
+    pub(super) fn order(&self, other: &Self) -> Ordering {
+        let color = |object: &Self| object.color.map_or([-1.0; 3], |color| color.0);
+        let numbers = |object: &Self| {
+            let ([x, y], [l, a, b]) = (object.place, color(object));
+            [x, y, object.heading, object.scale, object.reward, object.odds, l, a, b]
+        };
+        let (mine, theirs) = (numbers(self), numbers(other));
+        let by_number = mine.iter().zip(&theirs).map(|(a, b)| a.total_cmp(b));
+        let texts = |object: &Self| [&object.motion, &object.body, &object.paid_for, &object.model].map(Arc::clone);
+        by_number.fold(Ordering::Equal, Ordering::then).then_with(|| {
+            let (mine, theirs) = (texts(self), texts(other));
+            let by_text = mine.iter().zip(&theirs).map(|(a, b)| a.text.cmp(&b.text));
+            by_text.fold(Ordering::Equal, Ordering::then)
+        })
     }
 }
 
 impl Sketch {
-    /// For each class that either has, where its objects are in each: `(class, range in a, range in b)`, by class.
+    /// For each class that either has, its objects in each, by class.
     pub(super) fn classes_of_both<'a>(
         &'a self,
         other: &'a Self,
@@ -163,17 +175,17 @@ impl Sketch {
             let (mine, theirs) = (self.classes.get(i), other.classes.get(j));
             let class = match (mine, theirs) {
                 (None, None) => return None,
-                (Some(mine), None) => mine.0,
-                (None, Some(theirs)) => theirs.0,
-                (Some(mine), Some(theirs)) => mine.0.min(theirs.0),
+                (Some(mine), None) => &mine.0,
+                (None, Some(theirs)) => &theirs.0,
+                (Some(mine), Some(theirs)) => (&mine.0).min(&theirs.0),
             };
             let take = |sketch: &'a Self, at: &mut usize| -> &'a [ObjectFeatures] {
-                let Some(&(_, end)) = sketch.classes.get(*at).filter(|entry| entry.0 == class) else {
+                let Some((_, end)) = sketch.classes.get(*at).filter(|entry| &entry.0 == class) else {
                     return &[];
                 };
                 let start = at.checked_sub(1).map_or(0, |before| sketch.classes[before].1);
                 *at += 1;
-                &sketch.objects[start..end]
+                &sketch.objects[start..*end]
             };
             Some((take(self, &mut i), take(other, &mut j)))
         })
@@ -185,17 +197,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn classes_meet_by_name_and_keep_their_order() {
-        let world = |classes: &[(&str, f64)]| World {
-            objects: classes
-                .iter()
-                .map(|(class, x)| Object::new(*class, [*x, 0.0]))
-                .collect(),
-            ..World::default()
+    fn classes_meet_by_name_and_their_objects_stand_in_an_order_of_their_own() {
+        let world = |classes: &[(&str, f64)]| {
+            let objects = classes.iter().map(|(class, x)| Object::new(*class, [*x, 0.0]));
+            World::default().edit(|world| world.objects.extend(objects)).unwrap()
         };
         let mut sketcher = Sketcher::default();
-        let a = sketcher.sketch(&world(&[("tree", 1.0), ("Rock", 2.0), ("tree", 3.0)]), 2.0);
-        let b = sketcher.sketch(&world(&[("pot", 4.0), ("rock", 5.0)]), 2.0);
+        let a = sketcher.sketch(&world(&[("tree", 3.0), ("Rock", 2.0), ("tree", 1.0)]));
+        let b = sketcher.sketch(&world(&[("pot", 4.0), ("rock", 5.0)]));
         let xs = |group: &[ObjectFeatures]| group.iter().map(|object| object.place[0]).collect::<Vec<_>>();
         let mut met: Vec<(Vec<f64>, Vec<f64>)> = a.classes_of_both(&b).map(|(a, b)| (xs(a), xs(b))).collect();
         met.sort_by(|a, b| a.partial_cmp(b).unwrap());

@@ -12,10 +12,14 @@ pub(super) enum ValueMeasure {
     Difference { measure: &'static str, width: f64 },
     /// |ln a − ln b| over that of the range.
     LogRatio { width: f64 },
-    /// Turn over half a circle.
-    Turn,
-    /// A distance of colours over the largest there is.
-    Color { measure: &'static str, of: ColorMeasure },
+    /// Turn over the widest that the range or the choices allow, half a circle at most.
+    Turn { widest: f64 },
+    /// A distance of colours over that of the widest pair of choices.
+    Color {
+        measure: &'static str,
+        of: ColorMeasure,
+        widest: f64,
+    },
     /// A table of costs, by the words for the choices, over the largest of them.
     Costs(CostTable),
     /// 0 or 1.
@@ -32,15 +36,15 @@ impl ValueMeasure {
             // Loading the task checked the table.
             return table.map_or(Self::SameOrNot, Self::Costs);
         }
-        let color = |measure, of| Self::Color { measure, of };
+        let color = |measure, of| color(parameter, measure, of);
         match compare.and_then(|compare| compare.measure) {
             Some(MeasureName::SameOrNot) => Self::SameOrNot,
             Some(MeasureName::LogRatio) => Self::LogRatio {
                 width: range(parameter, libm::log),
             },
-            Some(MeasureName::Srgb) => color("srgb / largest", ColorMeasure::Srgb),
-            Some(MeasureName::Cie76) => color("cie76 / largest", ColorMeasure::Cie76),
-            Some(MeasureName::Ciede2000) => color("ciede2000 / largest", ColorMeasure::Ciede2000),
+            Some(MeasureName::Srgb) => color("srgb / widest choice", ColorMeasure::Srgb),
+            Some(MeasureName::Cie76) => color("cie76 / widest choice", ColorMeasure::Cie76),
+            Some(MeasureName::Ciede2000) => color("ciede2000 / widest choice", ColorMeasure::Ciede2000),
             _ => Self::of_type(parameter),
         }
     }
@@ -51,6 +55,10 @@ impl ValueMeasure {
                 measure: "difference / range",
                 width: range(parameter, |x| x),
             },
+            ParameterType::Vector if parameter.choices.is_some() => Self::Difference {
+                measure: "euclidean / widest choice",
+                width: widest_choice(parameter),
+            },
             ParameterType::Vector => Self::Difference {
                 measure: "euclidean / range",
                 width: range(parameter, |x| x) * (parameter.vector_length().unwrap_or(1) as f64).sqrt(),
@@ -59,11 +67,10 @@ impl ValueMeasure {
                 measure: "euclidean / widest choice",
                 width: widest_choice(parameter),
             },
-            ParameterType::Heading => Self::Turn,
-            ParameterType::Color => Self::Color {
-                measure: "oklab",
-                of: ColorMeasure::Oklab,
+            ParameterType::Heading => Self::Turn {
+                widest: widest_turn(parameter),
             },
+            ParameterType::Color => color(parameter, "oklab / widest choice", ColorMeasure::Oklab),
             ParameterType::Boolean | ParameterType::String | ParameterType::Distribution => Self::SameOrNot,
         }
     }
@@ -73,7 +80,7 @@ impl ValueMeasure {
         match self {
             Self::Difference { measure, .. } | Self::Color { measure, .. } => measure,
             Self::LogRatio { .. } => "log ratio / range",
-            Self::Turn => "turn / 180 degrees",
+            Self::Turn { .. } => "turn / widest",
             Self::Costs(_) => "cost / largest",
             Self::SameOrNot => "same or not",
         }
@@ -103,12 +110,15 @@ impl ValueMeasure {
                 let raw = (libm::log(a) - libm::log(b)).abs();
                 (raw, share(raw, *width))
             }),
-            Self::Turn => a.as_number().zip(b.as_number()).map_or_else(same_or_not, |(a, b)| {
+            Self::Turn { widest } => a.as_number().zip(b.as_number()).map_or_else(same_or_not, |(a, b)| {
                 let raw = circular_difference(a, b);
-                (raw, raw / 180.0)
+                (raw, share(raw, *widest))
             }),
-            Self::Color { of, .. } => match (a, b) {
-                (Value::Color(a), Value::Color(b)) => (of.between(*a, *b), of.normalised(*a, *b)),
+            Self::Color { of, widest, .. } => match (a, b) {
+                (Value::Color(a), Value::Color(b)) => {
+                    let raw = of.between(*a, *b);
+                    (raw, share(raw, *widest))
+                }
                 _ => same_or_not(),
             },
             // What lies between the choices, as on the way of a drift, is the same or not.
@@ -152,20 +162,43 @@ fn range(parameter: &Parameter, scale: impl Fn(f64) -> f64) -> f64 {
     }
 }
 
-fn widest_choice(parameter: &Parameter) -> f64 {
+/// The widest pair of choices; `apart` is how far two are. 1 where there are none, or only one.
+fn widest_pair<T>(parameter: &Parameter, read: impl Fn(&Value) -> Option<T>, apart: impl Fn(&T, &T) -> f64) -> f64 {
     let Some(Domain::Choices(choices)) = parameter.domain() else {
-        return 0.0;
+        return 1.0;
     };
-    let points: Vec<[f64; 2]> = choices
+    let choices: Vec<T> = choices.iter().filter_map(read).collect();
+    let pairs = choices
         .iter()
-        .filter_map(|choice| {
-            let Value::Point(point) = choice else { return None };
-            Some(*point)
-        })
-        .collect();
-    let from = |a: &[f64; 2]| {
-        let apart = points.iter().map(|b| libm::hypot(a[0] - b[0], a[1] - b[1]));
-        apart.fold(0.0, f64::max)
+        .enumerate()
+        .flat_map(|(index, a)| choices[..index].iter().map(move |b| (a, b)));
+    match pairs.map(|(a, b)| apart(a, b)).fold(0.0, f64::max) {
+        0.0 => 1.0,
+        widest => widest,
+    }
+}
+
+fn widest_choice(parameter: &Parameter) -> f64 {
+    widest_pair(parameter, numbers, |a, b| {
+        a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+    })
+}
+
+fn widest_turn(parameter: &Parameter) -> f64 {
+    match parameter.domain() {
+        Some(Domain::Range([low, high])) => (high - low).min(180.0),
+        _ => widest_pair(parameter, Value::as_number, |a, b| circular_difference(*a, *b)),
+    }
+}
+
+fn color(parameter: &Parameter, measure: &'static str, of: ColorMeasure) -> ValueMeasure {
+    let read = |value: &Value| match value {
+        Value::Color(color) => Some(*color),
+        _ => None,
     };
-    points.iter().map(from).fold(0.0, f64::max)
+    ValueMeasure::Color {
+        measure,
+        of,
+        widest: widest_pair(parameter, read, |a, b| of.between(*a, *b)),
+    }
 }

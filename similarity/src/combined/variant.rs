@@ -2,26 +2,29 @@
 
 use std::sync::Arc;
 
-use driftworld_spec::{Element, ParameterType, Role, TaskSpec, Variant};
+use driftworld_spec::{DEFAULT_VARIANT, Distribution, Domain, Element, ParameterType, Role, TaskSpec, Value, Variant};
 
-use crate::combined::distance::{Distance, Part, Weights};
 use crate::combined::drawn::DrawnMeasure;
 use crate::combined::value::ValueMeasure;
+use crate::combined::weighted_distance::{Distance, Part, Weights};
 use crate::{MetricProperties, SimilarityError};
 
-/// How far apart two variants of one task are.
+/// How far apart two variants of one task are: the sum over its parameters, where 1 is one parameter moved over its whole
+/// declared range.
 ///
-/// Every parameter counts for each element that it affects, at the weight and by the measure that the task gives it under
-/// `compare`, or else at weight 1 and by what its type has: numbers by difference over the declared range, headings by the
-/// turn, colours in Oklab, points over the widest pair of choices, vectors by Euclidean length over the range, anything else
-/// as the same or not. Randomized ones are compared by distribution: Wasserstein-1 over the width of all declared variants
-/// together, round the circle for headings, Wasserstein-2 over the diagonal for points, Wasserstein-1 in Oklab for colours out of a
-/// continuum, total variation for words and for colours out of lists. What is alike in both
-/// contributes exactly 0, so variants that differ in what they pay are 0 apart in all elements but the reward. Fixed
-/// parameters cannot differ and are left out.
+/// Every parameter counts by the measure and at the weight that the task gives it under `compare`, or else at weight 1 and by
+/// what its type has: numbers by difference over the declared range, headings by the turn, colours in Oklab, points and
+/// vectors by Euclidean length, each over the widest pair of choices, anything else as the same or not. Randomized ones are
+/// compared by distribution, over the widest pair of distributions that the declared ranges and choices allow: Wasserstein-1
+/// of numbers, round the circle for headings, in Oklab for colours out of a continuum, share by share for shares, Wasserstein-2 for
+/// points, total variation for words and for colours out of lists. Parameters that only such distributions read count by what they make
+/// of them, and not once more by themselves. A parameter that nothing reads in a variant (`read_if`) stands at its default.
+/// Fixed parameters cannot differ and are left out.
 ///
-/// What a number is divided by depends on the task alone, so the whole is a metric if each measure in it is one:
-/// [`VariantMeasure::properties`] says so. To compare many variants, make a [`VariantMeasure`] once.
+/// What is alike in both contributes exactly 0, so variants that differ in what they pay are 0 apart in all elements but the
+/// reward, and a parameter more that is the same in both changes no number. What a number is divided by depends on what the task
+/// declares alone and on no other variant. [`VariantMeasure::properties`] says whether the whole is a metric. To compare
+/// many variants, make a [`VariantMeasure`] once.
 ///
 /// # Errors
 /// As [`VariantMeasure::between`].
@@ -41,6 +44,7 @@ pub fn variant_distance(a: &Variant, b: &Variant, weights: &Weights) -> Result<D
 /// let measure = VariantMeasure::new(&task, Weights::of_task(&task));
 /// let distance = measure.between(&task.variant("day")?, &task.variant("dusk")?)?;
 /// assert_eq!((distance.element(Element::O), measure.properties()), (Some(0.25), MetricProperties::Metric));
+/// assert_eq!(measure.diameter(), 1.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -56,7 +60,15 @@ struct Compared {
     name: String,
     affects: Vec<Element>,
     weight: f64,
+    /// Whether two variants of the task can differ in it.
+    can_differ: bool,
     by: By,
+}
+
+/// The coarse elements that a parameter counts for: once where it lists a fine one beside its coarse one.
+fn counts_for(affects: &[Element]) -> Vec<Element> {
+    let is_said = |element: &&Element| **element == element.coarse() || !affects.contains(&element.coarse());
+    affects.iter().filter(is_said).map(|element| element.coarse()).collect()
 }
 
 #[derive(Clone, Debug)]
@@ -68,7 +80,6 @@ enum By {
 impl VariantMeasure {
     /// Compares variants of this task, its elements at these weights.
     pub fn new(task: &Arc<TaskSpec>, weights: Weights) -> Self {
-        let variants = task.all_variants();
         let parameters = task.parameters().iter().filter_map(|(name, parameter)| {
             let by = match parameter.role {
                 Role::Fixed => return None,
@@ -76,18 +87,20 @@ impl VariantMeasure {
                     By::Value(ValueMeasure::of(parameter))
                 }
                 Role::Variant | Role::Randomized => {
-                    let default = task.variant(driftworld_spec::DEFAULT_VARIANT).ok();
-                    let all = variants.iter().chain(&default);
-                    By::Drawn(DrawnMeasure::of(
-                        parameter,
-                        all.filter_map(|variant| variant.distribution(name)),
-                    ))
+                    By::Drawn(DrawnMeasure::of(parameter, &declared_distributions(task, name)))
                 }
             };
+            if parameter.role == Role::Variant && task.readers(name).are_draws_alone() {
+                return None;
+            }
             Some(Compared {
                 name: name.clone(),
-                affects: parameter.affects.clone(),
+                affects: counts_for(&parameter.affects),
                 weight: parameter.compare.as_ref().map_or(1.0, |compare| compare.weight),
+                can_differ: match &by {
+                    By::Value(_) => true,
+                    By::Drawn(measure) => measure.can_differ(),
+                },
                 by,
             })
         });
@@ -114,13 +127,12 @@ impl VariantMeasure {
         for compared in &self.parameters {
             let name = &compared.name;
             let found = match &compared.by {
-                By::Value(measure) => a.value(name).zip(b.value(name)).map(|(a, b)| {
-                    let (raw, normalised) = measure.between(a, b);
+                By::Value(measure) => a.value_as_read(name).zip(b.value_as_read(name)).map(|(a, b)| {
+                    let (raw, normalised) = measure.between(&a, &b);
                     (measure.name(), None, raw, normalised)
                 }),
-                By::Drawn(measure) => a
-                    .distribution(name)
-                    .zip(b.distribution(name))
+                By::Drawn(measure) => distribution_as_read(a, name)
+                    .zip(distribution_as_read(b, name))
                     .map(|(a, b)| measure.between(&a, &b)),
             };
             let Some((measure, method, raw, normalised)) = found else {
@@ -136,7 +148,7 @@ impl VariantMeasure {
                 measure,
                 method,
                 raw,
-                normalised: normalised.clamp(0.0, 1.0),
+                normalised,
                 weight: compared.weight,
                 share: 0.0,
             }));
@@ -149,242 +161,115 @@ impl VariantMeasure {
         self.task.is_same_as(variant.task())
     }
 
-    /// Whether the whole distance is a metric, up to variants that have all values alike: it is unless a measure that counts
-    /// is none.
+    /// How far two variants of the task can be apart at most, as far as each parameter goes: the sum over parameters of what
+    /// the whole declared range counts. 0 for a task without parameters that count.
+    pub fn diameter(&self) -> f64 {
+        let counts = |compared: &Compared| {
+            let weights = compared.affects.iter().map(|element| self.weights.of(*element));
+            compared.weight * weights.fold(0.0, f64::max)
+        };
+        self.parameters
+            .iter()
+            .filter(|compared| compared.can_differ)
+            .map(counts)
+            .sum()
+    }
+
+    /// Which laws the whole keeps: a metric if all measures that count are, a pseudometric if in addition a parameter that
+    /// can differ counts nothing.
     pub fn properties(&self) -> MetricProperties {
+        let counts = |compared: &&Compared| {
+            let is_seen = compared.affects.iter().any(|element| self.weights.of(*element) > 0.0);
+            compared.weight > 0.0 && is_seen
+        };
         let metric = |compared: &Compared| match &compared.by {
             By::Value(measure) => measure.is_metric(),
             By::Drawn(measure) => measure.is_metric(),
         };
-        if self
+        if !self.parameters.iter().filter(counts).all(metric) {
+            MetricProperties::Distance
+        } else if self
             .parameters
             .iter()
-            .filter(|compared| compared.weight > 0.0)
-            .all(metric)
+            .filter(|compared| compared.can_differ)
+            .all(|compared| counts(&compared))
         {
             MetricProperties::Metric
         } else {
-            MetricProperties::Distance
+            MetricProperties::Pseudometric
         }
+    }
+}
+
+/// The most variants that are looked at for what the declared values can make of a distribution.
+const MOST_ENDS: usize = 256;
+
+/// The distributions that a parameter can have at the ends of the ranges and at the choices of all parameters that it is drawn
+/// by, together; where that is too many, at those of each parameter alone, the others at their defaults.
+fn declared_distributions(task: &Arc<TaskSpec>, name: &str) -> Vec<Distribution> {
+    let base = task
+        .variant(DEFAULT_VARIANT)
+        .ok()
+        .or_else(|| task.all_variants().into_iter().next());
+    let Some(base) = base else { return Vec::new() };
+    let ends: Vec<(&String, Vec<Value>)> = task
+        .parameters()
+        .iter()
+        .filter(|(other, _)| *other == name || task.readers(other).draws.iter().any(|drawn| drawn == name))
+        .filter_map(|(other, parameter)| {
+            let ends = match parameter.domain()? {
+                Domain::Range(ends) => ends
+                    .iter()
+                    .filter_map(|end| Value::Number(*end).cast(parameter.kind))
+                    .collect(),
+                Domain::Choices(choices) => choices,
+            };
+            Some((other, ends))
+        })
+        .collect();
+    let all = ends
+        .iter()
+        .try_fold(1_usize, |count, (_, values)| count.checked_mul(values.len()));
+    let mut changes: Vec<Vec<(String, Value)>> = Vec::new();
+    if all.is_some_and(|all| all <= MOST_ENDS) {
+        changes.push(Vec::new());
+        for (other, values) in &ends {
+            let extended = changes.iter().flat_map(|change| {
+                let with = |value: &Value| {
+                    change
+                        .iter()
+                        .cloned()
+                        .chain([((*other).clone(), value.clone())])
+                        .collect()
+                };
+                values.iter().map(with)
+            });
+            changes = extended.collect();
+        }
+    } else {
+        let alone = ends
+            .iter()
+            .flat_map(|(other, values)| values.iter().map(|value| vec![((*other).clone(), value.clone())]));
+        changes.extend(alone.take(MOST_ENDS));
+    }
+    // Some may break a requirement: no variant has those.
+    let possible = changes.into_iter().filter_map(|change| base.with("end", change).ok());
+    let mut found: Vec<Distribution> = Vec::new();
+    for variant in possible.chain([base.clone()]) {
+        if let Some(distribution) = variant.distribution(name).filter(|new| !found.contains(new)) {
+            found.push(distribution);
+        }
+    }
+    found
+}
+
+/// The distribution of a parameter as far as it matters: that of its default where nothing reads it.
+fn distribution_as_read(variant: &Variant, name: &str) -> Option<Distribution> {
+    match variant.value_as_read(name).as_deref() {
+        Some(Value::Distribution(distribution)) => Some(variant.settle(distribution)),
+        _ => variant.distribution(name),
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::ColorMeasure;
-    use driftworld_spec::{Element, TaskSpec};
-
-    fn distance(a: &str, b: &str) -> Distance {
-        let text = r#"{ "name": "t", "parameters": {
-            "color": { "role": "variant", "type": "color", "affects": ["O"], "choices": ["black", "white"], "default": "black" },
-            "reward": { "role": "variant", "type": "number", "affects": ["R"], "range": [-100, 100], "default": 100 },
-            "model": { "role": "variant", "type": "string", "affects": ["S", "O"], "choices": ["1", "2"], "default": "1" },
-            "wide": { "role": "variant", "type": "number", "affects": ["S"], "range": [1, 11], "default": 1 },
-            "heading": { "role": "randomized", "type": "number", "affects": ["S"],
-                         "distribution": { "uniform": { "low": 0, "high": { "param": "wide" } } } } },
-          "variants": { "a": {}, "pay": { "reward": -100 }, "look": { "color": "white" }, "model": { "model": "2" },
-                        "wide": { "wide": 11 } } }"#;
-        let task = TaskSpec::from_json("t.json", text).unwrap();
-        variant_distance(
-            &task.variant(a).unwrap(),
-            &task.variant(b).unwrap(),
-            &Weights::default(),
-        )
-        .unwrap()
-    }
-
-    #[test]
-    fn variants_that_differ_in_one_element_are_0_apart_in_the_others() {
-        let pay = distance("a", "pay");
-        assert_eq!(pay.elements, [Some(0.0), None, None, Some(1.0), Some(0.0)]);
-        assert_eq!(pay.total, 1.0 / 3.0);
-        assert_eq!(distance("a", "look").element(Element::R), Some(0.0));
-        assert!(distance("a", "look").element(Element::O).unwrap() > 0.49);
-    }
-
-    #[test]
-    fn a_parameter_counts_for_each_element_that_it_affects() {
-        let model = distance("a", "model");
-        assert_eq!(model.element(Element::S), Some(1.0 / 3.0));
-        assert_eq!(model.element(Element::O), Some(1.0 / 2.0));
-    }
-
-    #[test]
-    fn a_wider_distribution_is_farther_by_its_wasserstein_distance() {
-        let wide = distance("a", "wide");
-        let heading = wide.parts.iter().find(|part| part.name == "heading").unwrap();
-        assert!(
-            (heading.raw - 5.0).abs() < 1e-9,
-            "uniform 0..1 to uniform 0..11 is 5 apart"
-        );
-        assert!((heading.normalised - 5.0 / 11.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn a_variant_is_0_from_itself_and_as_far_there_as_back() {
-        for name in ["a", "pay", "look", "model", "wide"] {
-            assert_eq!(distance(name, name).total, 0.0);
-            assert_eq!(distance(name, "a").total, distance("a", name).total);
-        }
-    }
-
-    #[test]
-    fn weights_shift_the_whole_to_an_element() {
-        let weights = Weights::default().with(Element::R, 0.0).unwrap();
-        assert!(Weights::default().with(Element::R, f64::NAN).is_err());
-        let task = TaskSpec::from_json("t.json", r#"{ "name": "t", "parameters": {
-            "r": { "role": "variant", "type": "number", "affects": ["R"], "range": [0, 1], "default": 0 },
-            "o": { "role": "variant", "type": "boolean", "affects": ["O"], "choices": [true, false], "default": true } },
-            "variants": { "a": {}, "b": { "r": 1 } } }"#).unwrap();
-        let distance = variant_distance(&task.variant("a").unwrap(), &task.variant("b").unwrap(), &weights).unwrap();
-        assert_eq!((distance.total, distance.element(Element::R)), (0.0, Some(1.0)));
-    }
-
-    /// The distance of two variants in the parameter `p`, as the task declares it.
-    fn check(parameter: &str, other: &str, measure: &str, expected: f64) {
-        let text = format!(
-            r#"{{ "name": "t", "parameters": {{ "p": {{ "affects": ["O"], {parameter} }} }}, "variants": {{ "a": {{}}, "b": {{ "p": {other} }} }} }}"#
-        );
-        let task = TaskSpec::from_json("t.json", &text).unwrap();
-        let (a, b) = (task.variant("a").unwrap(), task.variant("b").unwrap());
-        let distance = variant_distance(&a, &b, &Weights::of_task(&task)).unwrap();
-        let part = &distance.parts[0];
-        assert_eq!(part.measure, measure);
-        assert!(
-            (part.normalised - expected).abs() < 1e-6,
-            "{measure}: {}",
-            part.normalised
-        );
-    }
-
-    #[test]
-    fn a_task_says_by_which_measure_a_parameter_is_compared() {
-        let number = r#""role": "variant", "type": "number", "range": [1, 100], "default": 1"#;
-        check(number, "10", "difference / range", 9.0 / 99.0);
-        check(
-            &format!(r#"{number}, "compare": {{ "measure": "log_ratio" }}"#),
-            "10",
-            "log ratio / range",
-            0.5,
-        );
-        check(
-            &format!(r#"{number}, "compare": {{ "measure": "same_or_not" }}"#),
-            "10",
-            "same or not",
-            1.0,
-        );
-        let word = r#""role": "variant", "type": "string", "choices": ["a", "b", "c"], "default": "a""#;
-        check(word, r#""b""#, "same or not", 1.0);
-        check(
-            &format!(r#"{word}, "compare": {{ "costs": [[0, 1, 4], [1, 0, 4], [4, 4, 0]] }}"#),
-            r#""b""#,
-            "cost / largest",
-            0.25,
-        );
-        let heading = r#""role": "variant", "type": "heading", "range": [0, 360], "default": 350"#;
-        check(heading, "10", "turn / 180 degrees", 20.0 / 180.0);
-        let point = r#""role": "variant", "type": "point", "choices": [[0, 0], [3, 4], [0, 10]], "default": [0, 0]"#;
-        check(point, "[3, 4]", "euclidean / widest choice", 0.5);
-        let vector = r#""role": "variant", "type": "vector", "range": [0, 1], "default": [0, 0, 0, 0]"#;
-        check(vector, "[1, 1, 0, 0]", "euclidean / range", 0.5_f64.sqrt());
-        let color = r#""role": "variant", "type": "color", "choices": ["black", "white"], "default": "black""#;
-        check(color, r#""white""#, "oklab", 1.0);
-        for (name, measure) in [("srgb", "srgb / largest"), ("cie76", "cie76 / largest")] {
-            let compare = format!(r#"{color}, "compare": {{ "measure": "{name}" }}"#);
-            let expected = if name == "srgb" {
-                1.0
-            } else {
-                100.0 / ColorMeasure::Cie76.diameter()
-            };
-            check(&compare, r#""white""#, measure, expected);
-        }
-        let drawn = |more: &str| {
-            format!(
-                r#""role": "variant", "type": "distribution", "choices": [{{ "uniform": {{ "low": 0, "high": 1 }} }}, {{ "uniform": {{ "low": 1, "high": 3 }} }}],
-                   "default": {{ "uniform": {{ "low": 0, "high": 1 }} }}{more}"#
-            )
-        };
-        let other = r#"{ "uniform": { "low": 1, "high": 3 } }"#;
-        check(&drawn(""), other, "wasserstein-1 / width", 0.5);
-        check(
-            &drawn(r#", "compare": { "measure": "total_variation" }"#),
-            other,
-            "total variation",
-            1.0,
-        );
-    }
-
-    #[test]
-    fn drawn_colours_are_as_far_as_the_work_that_turns_one_into_the_other() {
-        let around = |color: &str| format!(r#"{{ "color_normal": {{ "mean": "{color}", "std": 0 }} }}"#);
-        let drawn = |more: &str| {
-            let (black, white) = (around("black"), around("white"));
-            format!(
-                r#""role": "variant", "type": "distribution", "choices": [{black}, {white}], "default": {black}{more}"#
-            )
-        };
-        let asked = |name: &str| drawn(&format!(r#", "compare": {{ "measure": "{name}" }}"#));
-        let white = around("white");
-        check(&drawn(""), &white, "wasserstein-1 of oklab", 1.0);
-        check(&asked("oklab"), &white, "wasserstein-1 of oklab", 1.0);
-        check(&asked("wasserstein_1"), &white, "wasserstein-1 of oklab", 1.0);
-        check(&asked("wasserstein_2"), &white, "wasserstein-2 of oklab", 1.0);
-        check(&asked("srgb"), &white, "wasserstein-1 of srgb / largest", 1.0);
-        let expected = 100.0 / ColorMeasure::Cie76.diameter();
-        check(&asked("cie76"), &white, "wasserstein-1 of cie76 / largest", expected);
-        check(&asked("same_or_not"), &white, "same or not", 1.0);
-    }
-
-    #[test]
-    fn weights_of_parameters_and_of_elements_come_from_the_task() {
-        let task = TaskSpec::from_json("t.json", r#"{ "name": "t", "element_weights": { "R": 3 }, "parameters": {
-            "r": { "role": "variant", "type": "number", "affects": ["R"], "range": [0, 1], "default": 0 },
-            "o": { "role": "variant", "type": "boolean", "affects": ["O"], "choices": [true, false], "default": true, "compare": { "weight": 0 } },
-            "p": { "role": "variant", "type": "boolean", "affects": ["O"], "choices": [true, false], "default": true } },
-            "variants": { "a": {}, "b": { "r": 1, "o": false } } }"#).unwrap();
-        let (a, b) = (task.variant("a").unwrap(), task.variant("b").unwrap());
-        let distance = variant_distance(&a, &b, &Weights::of_task(&task)).unwrap();
-        assert_eq!(distance.elements, [None, None, None, Some(1.0), Some(0.0)]);
-        assert_eq!(distance.total, 0.75);
-    }
-
-    #[test]
-    fn a_measure_that_is_no_metric_makes_the_whole_none() {
-        let properties = |compare: &str| {
-            let text = format!(
-                r#"{{ "name": "t", "parameters": {{ "p": {{ "role": "variant", "affects": ["O"], {compare} }} }} }}"#
-            );
-            let task = TaskSpec::from_json("t.json", &text).unwrap();
-            VariantMeasure::new(&task, Weights::default()).properties()
-        };
-        let color = r#""type": "color", "choices": ["red", "blue"], "default": "red""#;
-        assert_eq!(properties(color), MetricProperties::Metric);
-        assert_eq!(
-            properties(&format!(r#"{color}, "compare": {{ "measure": "ciede2000" }}"#)),
-            MetricProperties::Distance
-        );
-        let word = r#""type": "string", "choices": ["a", "b", "c"], "default": "a""#;
-        let costs = |c: f64| format!(r#"{word}, "compare": {{ "costs": [[0, 1, {c}], [1, 0, 1], [{c}, 1, 0]] }}"#);
-        assert_eq!(properties(&costs(2.0)), MetricProperties::Metric);
-        assert_eq!(properties(&costs(2.5)), MetricProperties::Distance);
-    }
-
-    #[test]
-    fn variants_of_another_task_are_refused_even_under_the_same_name() {
-        let task = |range: &str| {
-            TaskSpec::from_json(
-                "t.json",
-                &format!(
-                    r#"{{ "name": "t", "parameters": {{
-                "p": {{ "role": "variant", "type": "number", "affects": ["O"], "range": {range}, "default": 0 }} }} }}"#
-                ),
-            )
-            .unwrap()
-        };
-        let variant = |range: &str| task(range).variant("default").unwrap();
-        let weights = Weights::default();
-        assert!(variant_distance(&variant("[0, 1]"), &variant("[0, 1]"), &weights).is_ok());
-        assert!(variant_distance(&variant("[0, 1]"), &variant("[0, 2]"), &weights).is_err());
-    }
-}
+mod tests;

@@ -153,8 +153,8 @@ mod tests {
         let color = || prop::array::uniform3(0.0..=1.0_f64).prop_map(driftworld_spec::Channels);
         let spread = || prop::array::uniform3(0.0..0.5_f64).prop_map(driftworld_spec::ChannelSpread::Each);
         let chance = || {
-            use driftworld_spec::ChannelChance::{Apart, Together};
-            prop::sample::select(vec![Apart, Together])
+            use driftworld_spec::ChannelChance::{Apart, Shared};
+            prop::sample::select(vec![Apart, Shared])
         };
         prop_oneof![
             (color(), color(), chance()).prop_map(|(from, to, channels)| Distribution::ColorUniform {

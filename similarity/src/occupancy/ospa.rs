@@ -243,9 +243,13 @@ mod tests {
 
     #[test]
     fn a_rock_is_no_tree_unless_classes_are_merged() {
-        let world = |class| World {
-            objects: vec![Object::new(class, [1.0, 1.0])],
-            ..World::default()
+        let tree = Object::new("tree", [1.0, 1.0]);
+        let world = |class: &str| {
+            let object = Object {
+                class: class.to_owned(),
+                ..tree.clone()
+            };
+            World::default().edit(|world| world.objects.push(object)).unwrap()
         };
         let ospa = Ospa::new(5.0, 2.0).unwrap();
         let between = |classes| ospa.between_worlds(&world("Tree"), &world("rock"), classes).unwrap();

@@ -56,12 +56,12 @@ pub enum Classes {
 /// ```
 /// use driftworld_similarity::{Classes, Raster, grid_jaccard_distance};
 /// use driftworld_spec::{Object, World};
-/// let world = |x| World { objects: vec![Object::new("tree", [x, 1.0])], ..World::default() };
-/// let (a, b) = (world(3.0), world(4.0));
+/// let world = |x| World::default().edit(|world| world.objects.push(Object::new("tree", [x, 1.0])));
+/// let (a, b) = (world(3.0)?, world(4.0)?);
 /// let raster = Raster::of_worlds([&a, &b], 2.0, Classes::Separate)?;
 /// assert_eq!((raster.shape().columns(), raster.shape().rows()), (50, 50));
 /// assert_eq!(grid_jaccard_distance(&raster.taken(&a)?, &raster.taken(&b)?)?, 1.0);
-/// # Ok::<(), driftworld_similarity::SimilarityError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Raster {
@@ -279,10 +279,7 @@ mod tests {
 
     fn world(places: &[(&str, f64, f64)]) -> World {
         let objects = places.iter().map(|&(class, x, y)| Object::new(class, [x, y]));
-        World {
-            objects: objects.collect(),
-            ..World::default()
-        }
+        World::default().edit(|world| world.objects.extend(objects)).unwrap()
     }
 
     #[track_caller]
@@ -330,8 +327,10 @@ mod tests {
 
     #[test]
     fn a_raster_of_worlds_holds_the_largest_arena() {
-        let (small, mut large) = (world(&[("tree", 0.0, 0.0)]), world(&[]));
-        large.environment_params.map_size = [120.0, 10.0];
+        let small = world(&[("tree", 0.0, 0.0)]);
+        let large = World::default()
+            .edit(|world| world.environment_params.map_size = [120.0, 10.0])
+            .unwrap();
         let raster = Raster::of_worlds([&small, &large], 7.0, Classes::Separate).unwrap();
         let shape = raster.shape();
         assert_eq!((shape.columns(), shape.rows(), shape.planes()), (18, 15, 1));

@@ -5,15 +5,18 @@ mod bottleneck;
 mod contrast;
 mod exact;
 mod farthest_first;
+mod gradual;
 mod items;
 mod leaf;
 mod linkage;
 mod local_search;
-mod method;
+mod methods;
 mod nearest;
 mod options;
 mod ordering;
+mod outward;
 mod random;
+mod random_orders;
 mod spectral;
 mod target_step;
 mod tour;
@@ -23,9 +26,10 @@ mod typical_last;
 
 pub use exact::MAX_EXACT;
 pub use leaf::MAX_LEAVES;
-pub use method::Method;
+pub use methods::Method;
 pub use options::OrderOptions;
 pub use ordering::Ordering;
+pub use random_orders::{NUM_RANDOM_ORDERS, share_of_shorter_orders};
 
 use crate::{DistanceMatrix, SimilarityError};
 use items::Items;
@@ -64,6 +68,8 @@ pub fn order(matrix: &DistanceMatrix, method: Method, options: &OrderOptions) ->
         Method::Random => random::order(&items, options.seed),
         Method::Bottleneck => bottleneck::order(&items),
         Method::TargetStep => target_step::order(&items, options.target_step)?,
+        Method::Gradual => gradual::order(&items),
+        Method::Outward => outward::order(&items),
         Method::Given => items.with_ends_outside(items.as_given()),
     };
     Ok(Ordering::given(matrix, items.indices(&ranks)))

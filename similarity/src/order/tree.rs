@@ -39,7 +39,7 @@ pub(super) fn largest_branch(items: &Items) -> f64 {
 
 fn require_metric(items: &Items) -> Result<(), SimilarityError> {
     let matrix = items.matrix;
-    if matrix.properties().is_metric() {
+    if matrix.properties().keeps_triangles() {
         return Ok(());
     }
     if matrix.len() > MAX_CHECKED {

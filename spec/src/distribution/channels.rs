@@ -144,12 +144,13 @@ pub enum ChannelChance {
     #[default]
     Apart,
     /// All three have the same: they stray up and down together, as the shades of one colour do.
-    Together,
+    #[serde(rename = "together")]
+    Shared,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-pub(super) fn is_apart(chance: &ChannelChance) -> bool {
-    *chance == ChannelChance::Apart
+pub(super) fn is_apart(sampling: &ChannelChance) -> bool {
+    *sampling == ChannelChance::Apart
 }
 
 #[cfg(test)]

@@ -1,43 +1,9 @@
-//! The distributions that draw colours: which colour chance decides, their means and covariances. Those of numbers are in `moments.rs`.
+//! The distributions that draw colours: which colour chance decides. Their means and covariances are in
+//! `color_moments.rs`.
 
 use super::{ChannelChance, Distribution};
 use crate::Color;
 use crate::value::{ParameterType, Value};
-
-/// Mean and covariance of a distribution of colours.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ColorMoments {
-    /// The mean of red, green and blue.
-    pub mean: [f64; 3],
-    /// The covariance matrix of red, green and blue.
-    pub covariance: [[f64; 3]; 3],
-}
-
-impl ColorMoments {
-    /// Of channels whose means, and means of products of two, are known.
-    fn of(mean: [f64; 3], product: impl Fn(usize, usize) -> f64) -> Self {
-        let entry = |i: usize, j: usize| product(i, j) - mean[i] * mean[j];
-        Self {
-            mean,
-            covariance: [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))),
-        }
-    }
-
-    /// Of a mixture of parts, each with its weight.
-    fn mixed(parts: &[(Self, f64)]) -> Self {
-        let total: f64 = parts.iter().map(|part| part.1).sum();
-        let average =
-            |of: &dyn Fn(&Self) -> f64| parts.iter().map(|(part, weight)| weight * of(part)).sum::<f64>() / total;
-        let mean = [0, 1, 2].map(|k| average(&|part| part.mean[k]));
-        let entry = |i: usize, j: usize| {
-            average(&|part| part.covariance[i][j] + (part.mean[i] - mean[i]) * (part.mean[j] - mean[j]))
-        };
-        Self {
-            mean,
-            covariance: [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))),
-        }
-    }
-}
 
 impl<N> Distribution<N> {
     /// Whether it, or a part of it, draws colours out of a continuum: `color_uniform`, `color_normal`, `color_perturb` or
@@ -60,7 +26,7 @@ impl Distribution<f64> {
     /// Each channel rises with its number, so that variants under one seed share their chance; of `color_hsv` the numbers are
     /// those of hue, saturation and value. The same bits on every platform. `None` for choices and mixtures, which draw first
     /// what they take, and for distributions of anything else.
-    pub fn color_at(&self, chance: [f64; 3]) -> Option<Color> {
+    pub fn color_at(&self, units: [f64; 3]) -> Option<Color> {
         let (inside, limits) = match self {
             Self::Constant { value } => match value.cast(ParameterType::Color)? {
                 Value::Color(color) => return Some(color),
@@ -71,17 +37,17 @@ impl Distribution<f64> {
                     // From the lesser to the greater end, whichever is named first.
                     ChannelChance::Apart => [0, 1, 2].map(|k| {
                         let (low, high) = (from.0[k].min(to.0[k]), from.0[k].max(to.0[k]));
-                        low + (high - low) * chance[k]
+                        low + (high - low) * units[k]
                     }),
-                    ChannelChance::Together => [0, 1, 2].map(|k| from.0[k] + (to.0[k] - from.0[k]) * chance[0]),
+                    ChannelChance::Shared => [0, 1, 2].map(|k| from.0[k] + (to.0[k] - from.0[k]) * units[0]),
                 };
                 (colour, [[0.0; 3], [1.0; 3]])
             }
             Self::ColorNormal { .. } => {
                 let laws = self.color_channels()?;
                 let mut colour = [0.0; 3];
-                for ((channel, law), chance) in colour.iter_mut().zip(&laws).zip(chance) {
-                    *channel = law.quantile(chance)?;
+                for ((channel, law), unit) in colour.iter_mut().zip(&laws).zip(units) {
+                    *channel = law.quantile(unit)?;
                 }
                 (colour, [[0.0; 3], [1.0; 3]])
             }
@@ -93,18 +59,18 @@ impl Distribution<f64> {
                 channels,
             } => {
                 let noise = noise.to_array();
-                let own = |k: usize| if *channels == ChannelChance::Together { 0 } else { k };
-                let colour = [0, 1, 2].map(|k| value.0[k] + noise[k] * (2.0 * chance[own(k)] - 1.0));
+                let own = |k: usize| if *channels == ChannelChance::Shared { 0 } else { k };
+                let colour = [0, 1, 2].map(|k| value.0[k] + noise[k] * (2.0 * units[own(k)] - 1.0));
                 let end = |end: Option<&super::Channels>, else_: f64| end.map_or([else_; 3], |end| end.0);
                 (colour, [end(low.as_ref(), 0.0), end(high.as_ref(), 1.0)])
             }
             Self::ColorHsv { .. } => {
                 let [hue, saturation, value] = self.hsv_ends()?;
-                let along = |[low, high]: [f64; 2], chance: f64| low + (high - low) * chance;
+                let along = |[low, high]: [f64; 2], unit: f64| low + (high - low) * unit;
                 let (hue, saturation, value) = (
-                    along(hue, chance[0]),
-                    along(saturation, chance[1]),
-                    along(value, chance[2]),
+                    along(hue, units[0]),
+                    along(saturation, units[1]),
+                    along(value, units[2]),
                 );
                 let colour = [0, 1, 2].map(|k| value - value * saturation * dip(k, hue));
                 (colour, [[0.0; 3], [1.0; 3]])
@@ -191,77 +157,6 @@ impl Distribution<f64> {
         }
     }
 
-    /// Mean and covariance of red, green and blue, exact but for rounding; `None` if it draws anything but colours.
-    pub fn color_moments(&self) -> Option<ColorMoments> {
-        if self.has_independent_channels() {
-            let laws = self.color_channels()?;
-            let mut moments = ColorMoments {
-                mean: [0.0; 3],
-                covariance: [[0.0; 3]; 3],
-            };
-            for (k, law) in laws.iter().enumerate() {
-                moments.mean[k] = law.mean()?;
-                moments.covariance[k][k] = law.variance()?;
-            }
-            return Some(moments);
-        }
-        let weigh = |parts: Vec<ColorMoments>, weights: Option<&Vec<f64>>| {
-            let weight = |k: usize| weights.map_or(1.0, |weights| weights[k]);
-            let parts = parts.into_iter().enumerate().map(|(k, part)| (part, weight(k)));
-            ColorMoments::mixed(&parts.collect::<Vec<_>>())
-        };
-        match self {
-            Self::Choice { values, weights } => {
-                let point = |value: &Value| {
-                    Some(ColorMoments {
-                        mean: color_of(value)?.0,
-                        covariance: [[0.0; 3]; 3],
-                    })
-                };
-                let parts = values.iter().map(point).collect::<Option<Vec<_>>>()?;
-                Some(weigh(parts, weights.as_ref()))
-            }
-            Self::Mixture { parts, weights } => {
-                let parts = parts.iter().map(Self::color_moments).collect::<Option<Vec<_>>>()?;
-                Some(weigh(parts, weights.as_ref()))
-            }
-            Self::ColorHsv { .. } => self.hsv_moments(),
-            // One number of chance moves all channels, each along straight lines between its knots.
-            _ => {
-                let knots = self.knots()?;
-                let at = |u: f64| self.color_at([u; 3]).map_or([0.0; 3], |color| color.0);
-                let mean = [0, 1, 2].map(|k| integral(&knots, |u| at(u)[k]));
-                Some(ColorMoments::of(mean, |i, j| integral(&knots, |u| at(u)[i] * at(u)[j])))
-            }
-        }
-    }
-
-    /// The numbers of chance in `0..=1` between which channels that stray together go straight.
-    fn knots(&self) -> Option<Vec<f64>> {
-        let mut knots = vec![0.0, 1.0];
-        match self {
-            Self::ColorUniform { .. } => {}
-            Self::ColorPerturb {
-                value,
-                noise,
-                low,
-                high,
-                ..
-            } => {
-                let noise = noise.to_array();
-                for k in (0..3).filter(|k| noise[*k] > 0.0) {
-                    let low = low.as_ref().map_or(0.0, |low| low.0[k]);
-                    let high = high.as_ref().map_or(1.0, |high| high.0[k]);
-                    knots.extend([low, high].map(|limit| 0.5 * ((limit - value.0[k]) / noise[k] + 1.0)));
-                }
-            }
-            _ => return None,
-        }
-        knots.retain(|knot| (0.0..=1.0).contains(knot));
-        knots.sort_by(f64::total_cmp);
-        Some(knots)
-    }
-
     /// The least and greatest hue in degrees, saturation and value of a `color_hsv`.
     pub(super) fn hsv_ends(&self) -> Option<[[f64; 2]; 3]> {
         let Self::ColorHsv { hue, saturation, value } = self else {
@@ -272,32 +167,6 @@ impl Distribution<f64> {
             saturation.unwrap_or([0.0, 1.0]),
             value.unwrap_or([0.0, 1.0]),
         ])
-    }
-
-    /// A channel is `v − v s d` for a dip `d` that the hue decides; hue, saturation and value do not depend on each other.
-    fn hsv_moments(&self) -> Option<ColorMoments> {
-        let [hue, saturation, value] = self.hsv_ends()?;
-        let mean_of = |[low, high]: [f64; 2]| f64::midpoint(low, high);
-        let square_of = |[low, high]: [f64; 2]| (low * low + low * high + high * high) / 3.0;
-        // The dips go straight between multiples of 60 degrees.
-        let mut knots = vec![hue[0], hue[1]];
-        let (first, last) = ((hue[0] / 60.0).ceil() as i32, (hue[1] / 60.0).floor() as i32);
-        knots.extend((first..=last).map(|sixth| 60.0 * f64::from(sixth)));
-        knots.sort_by(f64::total_cmp);
-        let width = hue[1] - hue[0];
-        let over_hues = |of: &dyn Fn(f64) -> f64| {
-            if width > 0.0 {
-                integral(&knots, of) / width
-            } else {
-                of(hue[0])
-            }
-        };
-        let dips = [0, 1, 2].map(|k| over_hues(&|hue| dip(k, hue)));
-        let mean = dips.map(|dip| mean_of(value) * (1.0 - mean_of(saturation) * dip));
-        Some(ColorMoments::of(mean, |i, j| {
-            let both = over_hues(&|hue| dip(i, hue) * dip(j, hue));
-            square_of(value) * (1.0 - mean_of(saturation) * (dips[i] + dips[j]) + square_of(saturation) * both)
-        }))
     }
 
     /// Corners of a box in sRGB that holds all colours that a continuous law draws; `None` for any other distribution.
@@ -330,7 +199,7 @@ impl Distribution<f64> {
 }
 
 /// The colour that a value is, or names.
-fn color_of(value: &Value) -> Option<Color> {
+pub(super) fn color_of(value: &Value) -> Option<Color> {
     match value.cast(ParameterType::Color)? {
         Value::Color(color) => Some(color),
         _ => None,
@@ -339,15 +208,9 @@ fn color_of(value: &Value) -> Option<Color> {
 
 /// How far a hue in degrees takes a channel (0 red, 1 green, 2 blue) down from the value: 0 not at all, 1 as far as the
 /// saturation goes.
-fn dip(channel: usize, hue: f64) -> f64 {
+pub(super) fn dip(channel: usize, hue: f64) -> f64 {
     let turned = (5.0 - 2.0 * channel as f64 + hue / 60.0).rem_euclid(6.0);
     turned.min(4.0 - turned).clamp(0.0, 1.0)
-}
-
-/// The integral over pieces between knots of a function that is a polynomial of degree 3 or less on each: Simpson's rule.
-fn integral(knots: &[f64], of: impl Fn(f64) -> f64) -> f64 {
-    let piece = |low: f64, high: f64| (high - low) / 6.0 * (of(low) + 4.0 * of(f64::midpoint(low, high)) + of(high));
-    knots.windows(2).map(|ends| piece(ends[0], ends[1])).sum()
 }
 
 #[cfg(test)]
@@ -359,17 +222,17 @@ mod tests {
     }
 
     #[track_caller]
-    fn check(text: &str, chance: [f64; 3], expected: [f64; 3]) {
-        let found = law(text).color_at(chance).expect("it draws colours").0;
+    fn check(text: &str, units: [f64; 3], expected: [f64; 3]) {
+        let found = law(text).color_at(units).expect("it draws colours").0;
         let near = found
             .iter()
             .zip(expected)
             .all(|(found, expected)| (found - expected).abs() < 1e-12);
-        assert!(near, "{text} at {chance:?}: {found:?}, expected {expected:?}");
+        assert!(near, "{text} at {units:?}: {found:?}, expected {expected:?}");
     }
 
     #[test]
-    fn chance_decides_a_colour() {
+    fn units_decide_a_colour() {
         let between = r#"{"color_uniform": {"from": "red", "to": [0, 0, 0.5]}}"#;
         check(between, [0.25, 0.5, 0.5], [0.25, 0.0, 0.25]);
         let line = r#"{"color_uniform": {"from": "red", "to": [0, 0, 0.5], "channels": "together"}}"#;
@@ -407,44 +270,6 @@ mod tests {
         );
     }
 
-    /// The moments are those of a fine grid of chance.
-    #[test]
-    fn moments_are_those_of_what_is_drawn() {
-        for text in [
-            r#"{"color_uniform": {"from": "red", "to": [0.2, 0.4, 0.5]}}"#,
-            r#"{"color_uniform": {"from": "red", "to": [0.2, 0.4, 0.5], "channels": "together"}}"#,
-            r#"{"color_normal": {"mean": [0.5, 0.05, 1], "std": [0.1, 0.3, 0]}}"#,
-            r#"{"color_perturb": {"value": [0.1, 0.5, 0.9], "noise": [0.3, 0, 0.2], "high": [1, 1, 0.95]}}"#,
-            r#"{"color_perturb": {"value": [0.1, 0.5, 0.9], "noise": [0.3, 0.1, 0.2], "channels": "together"}}"#,
-            r#"{"color_hsv": {"hue": [-50, 200], "saturation": [0.2, 0.9], "value": [0.5, 0.8]}}"#,
-            r#"{"color_hsv": {}}"#,
-        ] {
-            let law = law(text);
-            assert_eq!(law.fault(), None, "{text}");
-            let moments = law.color_moments().expect("it draws colours");
-            let steps = 60;
-            let chance = |k: u32| (f64::from(k) + 0.5) / f64::from(steps);
-            let mut colors = Vec::new();
-            for a in 0..steps {
-                for b in 0..steps {
-                    let each = (0..steps).map(|c| law.color_at([chance(a), chance(b), chance(c)]));
-                    colors.extend(each.map(|color| color.expect("it draws colours").0));
-                }
-            }
-            let mean = |of: &dyn Fn(&[f64; 3]) -> f64| colors.iter().map(of).sum::<f64>() / colors.len() as f64;
-            for i in 0..3 {
-                assert!((mean(&|c| c[i]) - moments.mean[i]).abs() < 1e-3, "{text}: {moments:?}");
-                for j in 0..3 {
-                    let found = mean(&|c| (c[i] - moments.mean[i]) * (c[j] - moments.mean[j]));
-                    assert!(
-                        (found - moments.covariance[i][j]).abs() < 1e-3,
-                        "{text}: {i} {j} {found} {moments:?}"
-                    );
-                }
-            }
-        }
-    }
-
     /// Three trees of a map that the original's generator made: its template adds one uniform noise to all channels and cuts
     /// off what leaves 0..1.
     #[test]
@@ -463,28 +288,12 @@ mod tests {
                 0.528_286_179_236_649_6,
             ],
         ] {
-            let chance = f64::midpoint((tree[1] - 0.5) / 0.25, 1.0);
-            let found = template.color_at([chance, 0.5, 0.5]).expect("it draws colours").0;
+            let unit = f64::midpoint((tree[1] - 0.5) / 0.25, 1.0);
+            let found = template.color_at([unit, 0.5, 0.5]).expect("it draws colours").0;
             assert!(
                 (0..3).all(|k| (found[k] - tree[k]).abs() < 1e-12),
                 "{found:?}, expected {tree:?}"
             );
         }
-    }
-
-    #[test]
-    fn a_mixture_lies_between_its_parts() {
-        let text = r#"{"mixture": {"parts": [{"constant": {"value": "red"}}, {"color_normal": {"mean": "blue", "std": 0}},
-            {"choice": {"values": ["lime", "lime"]}}], "weights": [1, 1, 2]}}"#;
-        let law = law(text);
-        let moments = law.color_moments().expect("it draws colours");
-        assert_eq!(moments.mean, [0.25, 0.5, 0.25]);
-        assert_eq!(moments.covariance[0], [0.1875, -0.125, -0.0625]);
-        let channels = law.color_channels().expect("no part is of hues");
-        assert_eq!(
-            channels.map(|channel| channel.mean()),
-            [Some(0.25), Some(0.5), Some(0.25)]
-        );
-        assert!(law.draws_colors() && law.yields(ParameterType::Color) && !law.yields(ParameterType::Vector));
     }
 }

@@ -2,6 +2,7 @@
 
 mod channels;
 mod color;
+mod color_moments;
 mod cumulative;
 mod discrete;
 mod display;
@@ -11,6 +12,7 @@ mod moments;
 mod planar;
 mod quantile;
 mod reference;
+mod schema;
 mod special;
 mod support;
 mod turn;
@@ -18,11 +20,10 @@ mod von_mises;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 
 pub use channels::{Channel, ChannelChance, ChannelSpread, Channels};
-pub use color::ColorMoments;
-pub use planar::PlanarMoments;
+pub use color_moments::ColorMoments;
+pub use planar::{Order, PlanarMoments, Spread};
 pub use reference::{Number, ParamRef};
 pub use turn::Turns;
 
@@ -48,7 +49,7 @@ use crate::value::Value;
     deny_unknown_fields,
     bound(serialize = "N: Channel + Serialize", deserialize = "N: Channel + Deserialize<'de>")
 )]
-#[schemars(rename = "Distribution", transform = gaussian_needs_one_spread)]
+#[schemars(rename = "Distribution", transform = schema::gaussian_needs_one_spread)]
 #[schemars(extend("examples" = [
     { "uniform": { "low": 0, "high": 360 } },
     { "truncated_normal": { "mean": 2.3, "std": 0.5, "low": 0, "high": 4 } },
@@ -69,7 +70,7 @@ pub enum Distribution<N = f64> {
         values: Vec<Value>,
         /// Weight of each value, at least 0, not all 0; all alike if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(length(min = 1, max = 10_000), transform = none_negative)]
+        #[schemars(length(min = 1, max = 10_000), transform = schema::none_negative)]
         weights: Option<Vec<N>>,
     },
     /// Every number in `low..high` alike.
@@ -199,7 +200,7 @@ pub enum Distribution<N = f64> {
     /// Shares that sum to 1: a vector with one entry per shape.
     Dirichlet {
         /// Shape of each share, above 0; equal shapes above 1 pull towards equal shares, below 1 towards one taking all.
-        #[schemars(length(min = 2, max = 100), transform = shapes)]
+        #[schemars(length(min = 2, max = 100), transform = schema::shapes)]
         alpha: Vec<N>,
     },
     /// Every point of a rectangle alike.
@@ -234,7 +235,7 @@ pub enum Distribution<N = f64> {
         mean: [N; 2],
         /// Standard deviation in metres, at least 0: one number for both axes, or one for each.
         #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(transform = none_negative)]
+        #[schemars(transform = schema::none_negative)]
         std: Option<Spread<N>>,
         /// Correlation of x and y beside `std`, −1..1; 0 if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -250,7 +251,7 @@ pub enum Distribution<N = f64> {
         #[schemars(length(min = 1, max = 100_000))]
         values: Vec<[N; 2]>,
         /// Whether the points are taken in turn, round and round, or drawn.
-        #[serde(default, skip_serializing_if = "is_default")]
+        #[serde(default, skip_serializing_if = "planar::is_default")]
         order: Order,
     },
     /// The centres of the cells of a grid, taken in turn from the south-west, row by row, or drawn.
@@ -270,7 +271,7 @@ pub enum Distribution<N = f64> {
         #[schemars(extend("minimum" = 0, "maximum" = 1))]
         jitter: Option<N>,
         /// Whether the cells are taken in turn, round and round, or drawn.
-        #[serde(default, skip_serializing_if = "is_default")]
+        #[serde(default, skip_serializing_if = "planar::is_default")]
         order: Order,
     },
     /// Every point of a rectangle alike, but for keeping its distance from the group's own points: Poisson-disc sampling.
@@ -298,7 +299,7 @@ pub enum Distribution<N = f64> {
         /// The colour in the middle: the mean before truncation.
         mean: Channels<N>,
         /// Standard deviation of the channels before truncation, 0..10: one number for all, or one for each.
-        #[schemars(transform = small_spread)]
+        #[schemars(transform = schema::small_spread)]
         std: ChannelSpread<N>,
     },
     /// A colour with uniform noise, each channel cut off at limits, as the original's templates have it.
@@ -306,7 +307,7 @@ pub enum Distribution<N = f64> {
         /// The colour in the middle.
         value: Channels<N>,
         /// Greatest deviation of the channels to either side, 0..10: one number for all, or one for each.
-        #[schemars(transform = small_spread)]
+        #[schemars(transform = schema::small_spread)]
         noise: ChannelSpread<N>,
         /// Limits below, at which smaller channels are cut off; black if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
@@ -325,11 +326,11 @@ pub enum Distribution<N = f64> {
         hue: Option<[N; 2]>,
         /// Saturation from 0 (grey) to 1 (full); all if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(transform = up_to_1)]
+        #[schemars(transform = schema::up_to_1)]
         saturation: Option<[N; 2]>,
         /// Value from 0 (black) to 1 (bright); all if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(transform = up_to_1)]
+        #[schemars(transform = schema::up_to_1)]
         value: Option<[N; 2]>,
     },
     /// One of several distributions, by weight, and then a draw from that.
@@ -339,90 +340,9 @@ pub enum Distribution<N = f64> {
         parts: Vec<Distribution<N>>,
         /// Weight of each part, at least 0, not all 0; all alike if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
-        #[schemars(length(min = 1, max = 100), transform = none_negative)]
+        #[schemars(length(min = 1, max = 100), transform = schema::none_negative)]
         weights: Option<Vec<N>>,
     },
-}
-
-/// The standard deviation of a normal distribution of the plane.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "a number, or [x, y]")]
-#[schemars(rename = "Spread")]
-pub enum Spread<N = f64> {
-    /// The same along both axes.
-    Round(N),
-    /// Along x and along y.
-    Axes([N; 2]),
-}
-
-/// How a list of places is gone through.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Order {
-    /// The first object takes the first place, and so on, round and round; one whose place is not free takes the next free one.
-    #[default]
-    Turn,
-    /// Each object takes one at random.
-    Random,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
-fn is_default(order: &Order) -> bool {
-    *order == Order::default()
-}
-
-/// A literal number is at least 0, alone or in a list; one that a parameter gives is checked when a variant settles it.
-fn none_negative(schema: &mut schemars::Schema) {
-    if schema.get("items").is_none() {
-        schema.insert("minimum".to_owned(), json!(0));
-    }
-    limit_items(schema, &json!({ "minimum": 0 }));
-}
-
-fn shapes(schema: &mut schemars::Schema) {
-    limit_items(schema, &json!({ "minimum": 0.001, "maximum": 1_000_000 }));
-}
-
-/// A literal spread of channels is in 0..10, alone or in a list.
-fn small_spread(schema: &mut schemars::Schema) {
-    let limits = json!({ "minimum": 0, "maximum": 10 });
-    for (key, limit) in limits.as_object().into_iter().flatten() {
-        schema.insert(key.clone(), limit.clone());
-    }
-    limit_items(schema, &limits);
-}
-
-fn up_to_1(schema: &mut schemars::Schema) {
-    limit_items(schema, &json!({ "minimum": 0, "maximum": 1 }));
-}
-
-/// Adds limits to the items of a list, beside what they are.
-fn limit_items(schema: &mut schemars::Schema, limits: &serde_json::Value) {
-    let mut items = schema.remove("items").unwrap_or_else(|| json!({}));
-    if let (Some(items), Some(limits)) = (items.as_object_mut(), limits.as_object()) {
-        items.extend(limits.clone());
-    }
-    schema.insert("items".to_owned(), items);
-}
-
-fn gaussian_needs_one_spread(schema: &mut schemars::Schema) {
-    let forms = schema
-        .get_mut("oneOf")
-        .and_then(serde_json::Value::as_array_mut)
-        .into_iter()
-        .flatten();
-    for form in forms {
-        if let Some(gaussian) = form
-            .pointer_mut("/properties/gaussian")
-            .and_then(serde_json::Value::as_object_mut)
-        {
-            let one_of = json!([
-                { "required": ["std"], "properties": { "covariance": false } },
-                { "required": ["covariance"], "properties": { "std": false, "correlation": false } }
-            ]);
-            gaussian.insert("oneOf".to_owned(), one_of);
-        }
-    }
 }
 
 impl<N> Distribution<N> {

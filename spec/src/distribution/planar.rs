@@ -1,10 +1,40 @@
-//! Of the distributions that draw points: the point that two numbers decide, mean and covariance. Those of numbers are in
+//! Of the distributions that draw points: their spread and order, the point that two numbers decide, mean and covariance. Those of numbers are in
 //! `quantile.rs` and `moments.rs`.
 
 use std::f64::consts::TAU;
 
-use super::{Distribution, Spread};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Distribution;
 use crate::value::Value;
+
+/// The standard deviation of a normal distribution of the plane.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "a number, or [x, y]")]
+#[schemars(rename = "Spread")]
+pub enum Spread<N = f64> {
+    /// The same along both axes.
+    Round(N),
+    /// Along x and along y.
+    Axes([N; 2]),
+}
+
+/// How a list of places is gone through.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Order {
+    /// The first object takes the first place, and so on, round and round; one whose place is not free takes the next free one.
+    #[default]
+    Turn,
+    /// Each object takes one at random.
+    Random,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands the field by reference")]
+pub(super) fn is_default(order: &Order) -> bool {
+    *order == Order::default()
+}
 
 /// Mean and covariance of a distribution of the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

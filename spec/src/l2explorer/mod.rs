@@ -1,7 +1,8 @@
 //! The dialect of L2Explorer's reset files: its keys, and what is said where it and a [`World`](crate::World) differ.
-//! Reading it is in `read.rs`, with the leniency for single values in `lenient.rs` and what is assumed in place of entries that
-//! say nothing in `mend.rs`; writing it is in `write.rs`.
-//! Its scenario files, which name such reset files, are in `scenario.rs`.
+//! Reading it is in `read.rs`, its objects in `read_objects.rs`, with the leniency for single values in `lenient.rs` and what is assumed in place of entries that
+//! say nothing in `mend.rs`; writing it is in `write.rs`, and in
+//! `write_objects.rs`.
+//! Its scenario files, which name such reset files, are read in `read_scenario.rs` and written in `write_scenario.rs`.
 //!
 //! The dialect is the smaller language: every file of it becomes a world, but a world may hold more than a file can.
 //! Both directions hand back a [`Warning`](crate::Warning) for whatever did not pass as it stood. A number of a
@@ -10,15 +11,20 @@
 mod lenient;
 mod mend;
 mod read;
-mod scenario;
+mod read_objects;
+mod read_scenario;
 mod write;
+mod write_objects;
+mod write_scenario;
 
 use std::sync::LazyLock;
 
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
-use crate::world::{AgentParams, EnvironmentParams, Fields, ImageParams, MotionModel, Object, Rules, World};
+use crate::world::{
+    AgentParams, EnvironmentParams, Fields, ImageParams, MotionModel, Object, Rules, World, WorldDraft,
+};
 use mend::Entry;
 
 /// What the table of fields says of one part of a reset file.
@@ -80,7 +86,7 @@ static PARTS: LazyLock<Parts> = LazyLock::new(|| {
     let of = |name: &str| &world["$defs"][name];
     let old_of_objects = &["collectible", "reward_on", "interaction_distance"];
     Parts {
-        world: Part::of(&World::default(), world, &[]),
+        world: Part::of(&WorldDraft::default(), world, &[]),
         environment: Part::of(&EnvironmentParams::default(), of("EnvironmentParams"), &[]),
         agent: Part::of(&AgentParams::default(), of("AgentParams"), &["pickup_range"]),
         image: Part::of(&ImageParams::default(), of("ImageParams"), &[]),

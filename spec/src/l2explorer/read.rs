@@ -3,18 +3,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use serde_json::{Map, Value as Json, json};
+use serde_json::{Map, Value as Json};
 
-use super::lenient::{drop_decimal_point, stimulus, word};
+use super::lenient::{drop_decimal_point, word};
 use super::mend::Entry;
-use super::{ASSUMED_SPEED, PARTS, Part, black_is_chosen};
+use super::{PARTS, Part};
 use crate::describe::{describe, escape};
 use crate::document::Document;
 use crate::error::{Listed, Problem, SpecError};
 use crate::limits::{MAX_VALUES, MAX_WORLD_VALUES};
 use crate::maps::MapLibrary;
 use crate::warning::{Remarks, Warning};
-use crate::world::{MAX_OBJECTS, Object, World};
+use crate::world::{Object, World, WorldDraft};
 
 impl World {
     /// Reads a reset file of the original: words in any case, numbers as strings, colours in 0..255, old keys.
@@ -34,7 +34,7 @@ impl World {
         Self::from_l2explorer_with(name, text, &MapLibrary::default())
     }
 
-    /// The same, with the layouts of a library in place of the built-in ones: as [`MapLibrary::apply`] would write them, before
+    /// The same, with the layouts of a library in place of the built-in ones: as [`World::with_maps`] writes them, before
     /// it is seen which objects stand inside walls.
     ///
     /// # Errors
@@ -56,9 +56,9 @@ impl World {
         let Listed { problems, more } = World::schema().problems(&document.value);
         let problems = problems.into_iter().map(original).collect();
         document.fail_on(Listed { problems, more })?;
-        let mut world: Self = document.deserialize()?;
-        document.fail_on(world.problems().into_iter().map(original).collect::<Vec<_>>())?;
-        maps.apply(&mut world);
+        let draft: WorldDraft = document.deserialize()?;
+        document.fail_on(draft.problems().into_iter().map(original).collect::<Vec<_>>())?;
+        let world = draft.check_in_range()?.with_maps(maps);
         for (object, index) in world.objects.iter().zip(&kept) {
             if let Some(text) = world.out_of_reach(object) {
                 reader.warn(format!("/objects/{index}/coordinates"), text);
@@ -125,9 +125,9 @@ fn as_spelled(pointer: String, spelled: &BTreeMap<String, String>) -> String {
 pub(super) struct Reader {
     warnings: Remarks,
     /// For each object of the world, its index in the file.
-    kept: Vec<usize>,
+    pub(super) kept: Vec<usize>,
     /// Places of entries under our names, whose keys the file spells otherwise: the places in the file.
-    spelled: BTreeMap<String, String>,
+    pub(super) spelled: BTreeMap<String, String>,
 }
 
 impl Reader {
@@ -181,7 +181,7 @@ impl Reader {
     }
 
     /// The entries with their keys as we write them; keys that are not known are left out with a warning.
-    fn keys(&mut self, pointer: &str, map: Map<String, Json>, known: &Part) -> Map<String, Json> {
+    pub(super) fn keys(&mut self, pointer: &str, map: Map<String, Json>, known: &Part) -> Map<String, Json> {
         let plain = |key: &str| key.replace('_', "").to_lowercase();
         let mut renamed = Map::new();
         let mut seen = BTreeSet::new();
@@ -212,7 +212,7 @@ impl Reader {
     }
 
     /// Values of the original's keys in any of the forms that they may have.
-    fn entries(&mut self, at: &str, map: &mut Map<String, Json>, part: &Part) {
+    pub(super) fn entries(&mut self, at: &str, map: &mut Map<String, Json>, part: &Part) {
         for (key, entry) in &part.entries {
             match entry {
                 Entry::Number(..) | Entry::Pair(..) => self.number(at, map, key),
@@ -256,169 +256,14 @@ impl Reader {
         self.mend(at, &mut agent, &PARTS.agent.entries, &PARTS.agent.defaults);
         agent
     }
-
-    fn objects(&mut self, objects: Vec<Json>) -> Vec<Json> {
-        // So many are refused by the schema; before, each is made whole.
-        if objects.len() > MAX_OBJECTS {
-            return objects;
-        }
-        let mut read = Vec::new();
-        let mut names = BTreeSet::new();
-        for (index, json) in objects.into_iter().enumerate() {
-            let at = format!("/objects/{index}");
-            let Json::Object(map) = json else {
-                self.warn(
-                    at,
-                    format!(
-                        "found {}, expected an object with a class; it is skipped",
-                        describe(&json)
-                    ),
-                );
-                continue;
-            };
-            let class = map.iter().find(|(key, _)| key.eq_ignore_ascii_case("class"));
-            let is_class = |class: &Json| class.as_str().is_some_and(|class| !class.is_empty());
-            if !class.is_some_and(|(_, class)| is_class(class)) {
-                self.warn(at, "an object without a class is skipped");
-                continue;
-            }
-            let mut object = self.object(&at, map);
-            if let Some(Json::String(name)) = object.get("unique_name")
-                && !names.insert(name.clone())
-            {
-                let text = format!("the name {name:?} is another object's already; it is left out");
-                self.warn(format!("{at}/unique_name"), text);
-                object.shift_remove("unique_name");
-            }
-            read.push(Json::Object(object));
-            self.kept.push(index);
-        }
-        read
-    }
-
-    fn object(&mut self, at: &str, map: Map<String, Json>) -> Map<String, Json> {
-        let mut object = self.keys(at, map, &PARTS.object);
-        self.entries(at, &mut object, &PARTS.object);
-        word(&mut object, "class");
-        if object
-            .get("motion_model")
-            .is_some_and(|model| model == "random_waypoints")
-        {
-            object.insert("motion_model".into(), json!("random_waypoint"));
-        }
-        for key in ["heading", "scale", "interaction_distance"] {
-            self.number(at, &mut object, key);
-        }
-        for key in ["reward_stimulus", "reward_once_stimulus", "destroy_stimulus"] {
-            self.stimuli(at, &mut object, key);
-        }
-        self.heading(at, &mut object);
-        self.old_reward(at, &mut object);
-        if !object.contains_key("coordinates") {
-            self.warn(at, "an object without coordinates is put at (0, 0)");
-            self.spelled.insert(format!("{at}/coordinates"), at.to_owned());
-            object.insert("coordinates".into(), json!([0.0, 0.0]));
-        }
-        self.mend(at, &mut object, &PARTS.object.entries, &PARTS.object.defaults);
-        object.entry("coordinates").or_insert_with(|| json!([0.0, 0.0]));
-        self.own_speed(at, &mut object);
-        let class = object.get("class").and_then(Json::as_str).unwrap_or_default();
-        let channels = object.get("color").and_then(Json::as_array);
-        let is_black = channels.is_some_and(|channels| channels.iter().all(|channel| channel.as_f64() == Some(0.0)));
-        if is_black && !black_is_chosen(class) {
-            object.shift_remove("color");
-        }
-        object
-    }
-
-    /// What moves by itself does so at some speed, which the original's files do not say.
-    fn own_speed(&mut self, at: &str, object: &mut Map<String, Json>) {
-        if object.get("speed").is_some_and(Json::is_null) {
-            object.shift_remove("speed");
-        }
-        let model = object.get("motion_model").and_then(Json::as_str);
-        let Some(model) = model.filter(|model| *model != "stationary" && !object.contains_key("speed")) else {
-            return;
-        };
-        let text =
-            format!("{model} comes without a speed; {ASSUMED_SPEED} m/s is assumed, our key \"speed\" sets another");
-        self.warn(format!("{at}/motion_model"), text);
-        object.insert("speed".into(), json!(ASSUMED_SPEED));
-    }
-
-    /// The keys of early files: `collectible`, `reward_on`, `interaction_distance`.
-    fn old_reward(&mut self, at: &str, object: &mut Map<String, Json>) {
-        let distance = [("interaction_distance", Entry::Number(0.0, 1000.0))];
-        self.mend(at, object, &distance, &Map::new());
-        if let Some(range) = object.shift_remove("interaction_distance")
-            && !object.contains_key("range_stimulus_distance")
-        {
-            let early = format!("{at}/interaction_distance");
-            self.spelled.insert(format!("{at}/range_stimulus_distance"), early);
-            object.insert("range_stimulus_distance".into(), range);
-        }
-        let collectible = object.shift_remove("collectible");
-        let Some(reward_on) = object.shift_remove("reward_on") else {
-            if let Some(collectible) = collectible {
-                self.warn(
-                    format!("{at}/collectible"),
-                    format!("collectible {} without reward_on is left out", describe(&collectible)),
-                );
-            }
-            return;
-        };
-        let words = match &reward_on {
-            Json::Array(words) => words.as_slice(),
-            word => std::slice::from_ref(word),
-        };
-        let mut list: Vec<&str> = Vec::new();
-        let mut is_understood = true;
-        for word in words {
-            match word.as_str().map(|word| (stimulus(word), word.to_lowercase())) {
-                Some((Some(name), _)) if !list.contains(&name) => list.push(name),
-                Some((Some(_), _)) => {}
-                Some((None, word)) if word == "none" => {}
-                _ => is_understood = false,
-            }
-        }
-        let mut text = format!("reward_on {} is read as reward_stimulus {list:?}", describe(&reward_on));
-        if !is_understood {
-            text.push_str("; expected pickup, in_range, contact or none");
-        }
-        if object.contains_key("reward_stimulus") {
-            text = format!(
-                "reward_on {} is left out, for there is a reward_stimulus",
-                describe(&reward_on)
-            );
-        }
-        self.warn(format!("{at}/reward_on"), text);
-        object.entry("reward_stimulus").or_insert_with(|| json!(list));
-        let is_collectible = match &collectible {
-            Some(Json::Bool(is_collectible)) => *is_collectible,
-            Some(other) => {
-                let is_meant = matches!(other.as_str(), Some(word) if word.eq_ignore_ascii_case("true"))
-                    || other.as_f64().is_some_and(|number| number != 0.0);
-                let text = format!(
-                    "found {}, expected true or false; {is_meant} is assumed",
-                    describe(other)
-                );
-                self.warn(format!("{at}/collectible"), text);
-                is_meant
-            }
-            None => false,
-        };
-        if is_collectible {
-            object.entry("destroy_stimulus").or_insert_with(|| json!(list));
-        }
-    }
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::{ActionModel, ActionSpace, Color, EndCondition, GameMode, Modality, MotionModel, Stimulus};
 
-    fn read(text: &str) -> (World, Vec<String>) {
+    pub(in crate::l2explorer) fn read(text: &str) -> (World, Vec<String>) {
         let (world, warnings) = World::from_l2explorer("map.json", text).unwrap();
         (world, warnings.iter().map(ToString::to_string).collect())
     }
@@ -451,24 +296,6 @@ mod tests {
     }
 
     #[test]
-    fn early_reward_keys_become_stimuli() {
-        let (world, warnings) = read(
-            r#"{ "objects": [{ "model": 1 }, { "class": "Bag", "coordinates": [1, 1], "color": [0, 0, 0], "reward": "5",
-  "collectible": true, "reward_on": "In_Range", "interaction_distance": 2 }] }"#,
-        );
-        let bag = &world.objects[0];
-        assert_eq!((bag.class.as_str(), bag.color, bag.reward), ("bag", None, 5.0));
-        assert_eq!(bag.reward_stimulus, [Stimulus::AgentInRange]);
-        assert_eq!(bag.destroy_stimulus, [Stimulus::AgentInRange]);
-        assert_eq!(bag.range_stimulus_distance, 2.0);
-        assert_eq!(warnings.len(), 3, "{warnings:?}");
-        assert!(
-            warnings[0].contains("/objects/0): an object without a class is skipped"),
-            "{warnings:?}"
-        );
-    }
-
-    #[test]
     fn words_of_every_kind_are_read_in_any_case_and_whole_numbers_with_a_point() {
         let (world, warnings) = read(
             r#"{ "game_mode": "Collect_Images", "max_steps": 300.0, "environment_params": { "map_size": ["50", 60.5] },
@@ -485,7 +312,7 @@ mod tests {
             (&agent.modalities[..], &agent.actions),
             (&[Modality::Rgb][..], &ActionSpace::Continuous)
         );
-        assert_eq!(world.image_params.map(|image| image.yaw_subdivisions), Some(4));
+        assert_eq!(world.image_params.as_ref().map(|image| image.yaw_subdivisions), Some(4));
         assert_eq!(world.rules.success, [EndCondition::AllCollected]);
         let tree = &world.objects[0];
         assert_eq!((tree.class.as_str(), tree.model.0.as_str()), ("tree", "2"));
@@ -565,23 +392,5 @@ mod tests {
             (MotionModel::Prey, 2.0)
         );
         assert_eq!(world.objects[2].destroy_stimulus, [Stimulus::AgentCollide]);
-    }
-
-    #[test]
-    fn objects_inside_walls_and_regions_are_named_with_the_wall() {
-        let (world, warnings) = read(
-            r#"{ "environment_params": { "predefined_map": 2, "walls": [{ "polygon": [[0, 0], [9, 0], [9, 9]] }] },
-  "objects": [{}, { "class": "tree", "coordinates": [-70, 60] }, { "class": "bag", "coordinates": [8, 1] },
-    { "class": "pot", "coordinates": [0, 1] }, { "class": "car", "coordinates": [0, 101] }] }"#,
-        );
-        assert_eq!(world.objects.len(), 4);
-        assert_eq!(
-            warnings[1..],
-            [
-                "map.json:2:53 (/objects/1/coordinates): the tree stands at (-70.0, 60.0), inside region 1 of 12 of map 2 (village); it is kept, out of reach",
-                "map.json:2:99 (/objects/2/coordinates): the bag stands at (8.0, 1.0), inside the wall /environment_params/walls/0; it is kept, out of reach",
-                "map.json:3:81 (/objects/4/coordinates): the car stands at (0.0, 101.0), outside the 200 × 200 m arena; it is kept, out of reach",
-            ]
-        );
     }
 }

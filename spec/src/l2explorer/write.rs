@@ -5,15 +5,13 @@ use indexmap::IndexMap;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
-use super::{ASSUMED_SPEED, PARTS, Part, black_is_chosen, map_of, moves};
+use super::{PARTS, Part, map_of};
 use crate::describe::describe;
 use crate::warning::Warning;
-use crate::world::{MotionModel, Object, World};
+use crate::world::{World, WorldDraft};
 
 /// How the text of a warning ends where the original has no key for a value.
-const LEFT_OUT: &str = "left out, L2Explorer has no such key";
-
-const BLACK: [f64; 3] = [0.0, 0.0, 0.0];
+pub(super) const LEFT_OUT: &str = "left out, L2Explorer has no such key";
 
 impl World {
     /// The world as a reset file of the original: indented JSON with a final newline, and a warning for each kind of loss.
@@ -25,16 +23,17 @@ impl World {
     ///
     /// # Example
     /// ```
-    /// use driftworld_spec::{Object, World};
+    /// use driftworld_spec::{Object, WorldDraft};
     /// let mut tree = Object::new("tree", [3.0, 4.0]);
     /// tree.heading = 90.0;
-    /// let world = World { objects: vec![tree], ..World::default() };
+    /// let world = WorldDraft { objects: vec![tree], ..WorldDraft::default() }.check()?;
     /// let (text, warnings) = world.to_l2explorer();
     /// assert!(text.contains("\"class\": \"tree\""));
     /// assert_eq!(
     ///     warnings[0].to_string(),
     ///     "world (/objects/0/heading): heading of this object: left out, L2Explorer has no such key"
     /// );
+    /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
     pub fn to_l2explorer(&self) -> (String, Vec<Warning>) {
         let mut writer = Writer::default();
@@ -61,7 +60,7 @@ struct LossCount {
 }
 
 #[derive(Default)]
-struct Writer {
+pub(super) struct Writer {
     warnings: Vec<Warning>,
     /// In the order in which the kinds of loss were met first.
     losses: IndexMap<Loss, LossCount>,
@@ -101,10 +100,10 @@ impl Writer {
             return world.max_steps;
         }
         // The time step is the original's own there, since it cannot be said; what it was is lost with a warning of its own.
-        let mut timed = World {
+        let mut timed = WorldDraft {
             max_steps: world.max_steps,
             max_seconds: world.max_seconds,
-            ..World::default()
+            ..WorldDraft::default()
         };
         timed.max_steps = timed.step_limit().unwrap_or(0).min(1_000_000_000);
         let (seconds, steps) = (describe(&json!(world.max_seconds)), timed.max_steps);
@@ -126,73 +125,7 @@ impl Writer {
         original.map(|(key, value)| (key.to_owned(), value.clone())).collect()
     }
 
-    fn objects(&mut self, objects: &[Object]) -> Json {
-        let written = objects.iter().enumerate().map(|(index, object)| {
-            let full = map_of(object);
-            for (key, _) in changed(&PARTS.object, &full) {
-                if key != "speed" || !moves(object.motion_model) {
-                    self.lose(index, key, key, LEFT_OUT);
-                }
-            }
-            if moves(object.motion_model) && object.speed != ASSUMED_SPEED {
-                // Speed 0 is not written, the motion model is.
-                let becomes = "left out, L2Explorer has no such key; it reads back as 2 m/s";
-                self.lose(index, "motion_model", "speed", becomes);
-            }
-            let known = objects_keys().filter_map(|key| {
-                let value = match key {
-                    "class" => Some(self.class(index, &object.class)),
-                    "color" => self.color(index, object),
-                    "motion_model" => Some(self.motion_model(index, object.motion_model)),
-                    key => full.get(key).cloned(),
-                };
-                Some((key.to_owned(), value?))
-            });
-            known.collect()
-        });
-        Json::Array(written.collect())
-    }
-
-    /// The class in lower case, as reading makes it.
-    fn class(&mut self, index: usize, class: &str) -> Json {
-        let lower = class.to_ascii_lowercase();
-        if lower != class {
-            let becomes = "written in lower case, L2Explorer does not tell cases apart";
-            self.lose(index, "class", "class", becomes);
-        }
-        json!(lower)
-    }
-
-    /// The colour, where "the asset's own" is black unless black is a choice; then it is no colour at all.
-    fn color(&mut self, index: usize, object: &Object) -> Option<Json> {
-        let chosen = black_is_chosen(&object.class.to_ascii_lowercase());
-        match object.color {
-            None if chosen => {
-                let becomes = "left open, L2Explorer's default is black";
-                self.lose(index, "color", "missing color", becomes);
-                None
-            }
-            None => Some(json!(BLACK)),
-            Some(color) => {
-                if color.0 == BLACK && !chosen {
-                    let becomes = "reads back as the asset's own colours, [0.01, 0.01, 0.01] would stay";
-                    self.lose(index, "color", "color black", becomes);
-                }
-                Some(json!(color))
-            }
-        }
-    }
-
-    fn motion_model(&mut self, index: usize, model: MotionModel) -> Json {
-        if model != MotionModel::Patrol {
-            return json!(model);
-        }
-        let becomes = "becomes stationary, L2Explorer has no such motion model";
-        self.lose(index, "motion_model", "motion_model patrol", becomes);
-        json!(MotionModel::Stationary)
-    }
-
-    fn lose(&mut self, index: usize, key: &str, what: &'static str, becomes: &'static str) {
+    pub(super) fn lose(&mut self, index: usize, key: &str, what: &'static str, becomes: &'static str) {
         let lost = self.losses.entry(Loss { what, becomes }).or_insert_with(|| LossCount {
             count: 0,
             first: format!("/objects/{index}/{key}"),
@@ -214,20 +147,12 @@ impl Writer {
 }
 
 /// Our own keys whose value is not the default; a key that the default does not write has a value only where it differs.
-fn changed<'a>(part: &'a Part, full: &'a Map<String, Json>) -> impl Iterator<Item = (&'static str, &'a Json)> {
+pub(super) fn changed<'a>(
+    part: &'a Part,
+    full: &'a Map<String, Json>,
+) -> impl Iterator<Item = (&'static str, &'a Json)> {
     let ours = part.ours.iter().filter_map(|key| Some((*key, full.get(*key)?)));
     ours.filter(|(key, value)| part.defaults.get(*key) != Some(*value))
-}
-
-/// The original's keys of an object in the order in which its files have them: the motion model in front of the reward.
-fn objects_keys() -> impl Iterator<Item = &'static str> {
-    let others = PARTS
-        .object
-        .original
-        .iter()
-        .copied()
-        .filter(|key| *key != "motion_model");
-    others.flat_map(|key| (key == "reward").then_some("motion_model").into_iter().chain([key]))
 }
 
 fn warning(pointer: String, text: String) -> Warning {
@@ -241,19 +166,20 @@ fn warning(pointer: String, text: String) -> Warning {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
-    use crate::{ActionModel, ActionSpace, Color, EndCondition, Modality, Respawn, Stimulus, Wall};
+    use crate::{ActionModel, ActionSpace, Color, EndCondition, Modality, Object, Stimulus, Wall};
 
-    fn check(world: &World, expected: &[&str]) {
+    pub(in crate::l2explorer) fn check(world: &WorldDraft, expected: &[&str]) {
+        let world = world.clone().check().unwrap();
         let warnings: Vec<String> = world.to_l2explorer().1.iter().map(ToString::to_string).collect();
         assert_eq!(warnings, expected);
     }
 
-    fn with_objects(objects: Vec<Object>) -> World {
-        World {
+    pub(in crate::l2explorer) fn with_objects(objects: Vec<Object>) -> WorldDraft {
+        WorldDraft {
             objects,
-            ..World::default()
+            ..WorldDraft::default()
         }
     }
 
@@ -267,7 +193,7 @@ mod tests {
         let mut world = with_objects(vec![bag]);
         world.agent_params.action_model = ActionModel::OnRails;
         check(&world, &[]);
-        let (text, _) = world.to_l2explorer();
+        let (text, _) = world.check().unwrap().to_l2explorer();
         assert!(
             text.ends_with("}\n") && text.contains("\n  \"max_steps\": 0,\n"),
             "{text}"
@@ -311,7 +237,7 @@ mod tests {
 
     #[test]
     fn what_only_our_arena_agent_and_rules_have_is_left_out_with_a_warning_each() {
-        let mut world = World::default();
+        let mut world = WorldDraft::default();
         let environment = &mut world.environment_params;
         environment.wall_height = 6.0;
         environment.walls = vec![Wall {
@@ -349,81 +275,5 @@ mod tests {
                 "world (/rules/success): success ([\"all_collected\"]): left out, L2Explorer has no such key",
             ],
         );
-    }
-
-    #[test]
-    fn objects_that_lose_the_same_thing_share_one_warning() {
-        let plain = Object::new("tree", [0.0, 0.0]);
-        let mut turned = plain.clone();
-        turned.heading = 45.0;
-        turned.tag = Some("trees".into());
-        let mut guard = Object::new("barrel", [1.0, 1.0]);
-        guard.heading = 90.0;
-        guard.scale = 2.0;
-        guard.solid = false;
-        guard.reward_probability = 0.5;
-        guard.motion_model = MotionModel::Patrol;
-        guard.speed = 1.0;
-        guard.waypoints = vec![[1.0, 1.0], [2.0, 2.0]];
-        guard.order = Some(1);
-        guard.respawn = Some(Respawn {
-            delay: 1.0,
-            radius: 0.0,
-        });
-        check(
-            &with_objects(vec![plain, turned.clone(), guard, turned]),
-            &[
-                "world (/objects/1/heading): heading of 3 objects, this one first: left out, L2Explorer has no such key",
-                "world (/objects/1/tag): tag of 2 objects, this one first: left out, L2Explorer has no such key",
-                "world (/objects/2/scale): scale of this object: left out, L2Explorer has no such key",
-                "world (/objects/2/solid): solid of this object: left out, L2Explorer has no such key",
-                "world (/objects/2/reward_probability): reward_probability of this object: left out, L2Explorer has no such key",
-                "world (/objects/2/speed): speed of this object: left out, L2Explorer has no such key",
-                "world (/objects/2/waypoints): waypoints of this object: left out, L2Explorer has no such key",
-                "world (/objects/2/order): order of this object: left out, L2Explorer has no such key",
-                "world (/objects/2/respawn): respawn of this object: left out, L2Explorer has no such key",
-                "world (/objects/2/motion_model): motion_model patrol of this object: becomes stationary, L2Explorer has no such motion model",
-            ],
-        );
-    }
-
-    #[test]
-    fn colours_and_classes_that_the_original_cannot_tell_apart_are_warned_about() {
-        let black = Some(Color(BLACK));
-        let object = |class: &str, color| {
-            let mut object = Object::new(class, [0.0, 0.0]);
-            object.color = color;
-            object
-        };
-        let world = with_objects(vec![
-            object("tree", None),
-            object("cube", black),
-            object("cube", None),
-            object("Tree", black),
-            object("icosphere", None),
-        ]);
-        check(
-            &world,
-            &[
-                "world (/objects/2/color): missing color of 2 objects, this one first: left open, L2Explorer's default is black",
-                "world (/objects/3/class): class of this object: written in lower case, L2Explorer does not tell cases apart",
-                "world (/objects/3/color): color black of this object: reads back as the asset's own colours, [0.01, 0.01, 0.01] would stay",
-            ],
-        );
-        let (back, warnings) = World::from_l2explorer("written.json", &world.to_l2explorer().0).unwrap();
-        let read: Vec<_> = back
-            .objects
-            .iter()
-            .map(|object| (object.class.as_str(), object.color))
-            .collect();
-        let expected = [
-            ("tree", None),
-            ("cube", black),
-            ("cube", None),
-            ("tree", None),
-            ("icosphere", None),
-        ];
-        assert_eq!(read, expected);
-        assert_eq!(warnings, []);
     }
 }

@@ -12,7 +12,7 @@ use crate::document::Document;
 use crate::error::{Problem, SpecError};
 use crate::limits::MAX_VALUES;
 use crate::schema::document::DocumentSchema;
-use crate::world::{Region, World};
+use crate::world::{Region, WorldDraft};
 
 /// A maps file as its document has it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -101,9 +101,8 @@ impl MapLibrary {
     /// use driftworld_spec::{World, maps::MapLibrary};
     /// let text = r#"{ "maps": [{ "id": 2, "name": "yard", "excluded_regions": [[[0, 0], [9, 0], [9, 9]]] }] }"#;
     /// let library = MapLibrary::from_json("maps.json", text)?;
-    /// let mut world = World::from_json("w", r#"{ "environment_params": { "predefined_map": 2 } }"#)?;
-    /// library.apply(&mut world);
-    /// assert_eq!(world.environment_params.regions().len(), 1);
+    /// let world = World::from_json("w", r#"{ "environment_params": { "predefined_map": 2 } }"#)?;
+    /// assert_eq!(world.with_maps(&library).environment_params.regions().len(), 1);
     /// # Ok::<(), driftworld_spec::SpecError>(())
     /// ```
     pub fn from_json(name: &str, text: &str) -> Result<Self, SpecError> {
@@ -127,7 +126,7 @@ impl MapLibrary {
     }
 
     /// Writes the layout of the world's predefined map into the world, if there is one: the world then needs no library.
-    pub fn apply(&self, world: &mut World) {
+    pub fn apply(&self, world: &mut WorldDraft) {
         let environment = &mut world.environment_params;
         if let Some(map) = self.maps.get(&environment.predefined_map) {
             environment.map_regions = Some(map.excluded_regions.clone());

@@ -2,6 +2,7 @@
 
 mod check;
 mod drift;
+mod proof;
 mod regime;
 
 use std::sync::{Arc, LazyLock};
@@ -11,6 +12,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use drift::{DriftSchedule, DriftSwitch, RegimeDrift};
+pub use proof::{ProvenVariant, ScenarioProof};
 pub use regime::Regime;
 
 use crate::document::Document;
@@ -58,6 +60,9 @@ pub struct Scenario {
     /// Whether the learner is told which task it is in; by default it is not.
     #[serde(default, skip_serializing_if = "TaskLabel::is_none")]
     pub task_label: TaskLabel,
+    /// That its variants differ in one element only, as an experiment saw it; of scenarios that probe an element.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub proof: Option<ScenarioProof>,
     /// The blocks, in the order in which they are lived.
     #[schemars(length(min = 1, max = 100_000))]
     pub blocks: Vec<Block>,
@@ -214,6 +219,7 @@ impl Scenario {
             complexity: None,
             difficulty: None,
             task_label: TaskLabel::default(),
+            proof: None,
             blocks,
         }
     }

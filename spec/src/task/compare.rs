@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::parameter::{Domain, Parameter, Role};
 use super::template::Source;
+use crate::distribution::{Distribution, Number};
 use crate::error::Problem;
 use crate::value::{ParameterType, Value};
 
@@ -31,7 +32,7 @@ pub struct Compare {
     pub costs: Option<Vec<Vec<f64>>>,
 }
 
-fn one() -> f64 {
+pub(super) fn one() -> f64 {
     1.0
 }
 
@@ -86,12 +87,53 @@ impl MeasureName {
         self.into()
     }
 
-    /// What measures there are for colours out of a continuum, which have no probabilities to compare; `None` if this is one.
-    pub(super) fn misfit_of_drawn_colors(self) -> Option<&'static str> {
-        matches!(self, Self::TotalVariation | Self::Hellinger | Self::JensenShannon).then_some(
-            "wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000 or same_or_not, since colours out of a continuum are \
-             compared by how far they are apart",
-        )
+    /// What measures there are for what a distribution draws; `None` if this is one. `kind` is the parameter's type.
+    pub(super) fn misfit_of_draws<N>(
+        self,
+        distribution: &Distribution<N>,
+        kind: ParameterType,
+    ) -> Option<&'static str> {
+        use MeasureName::{
+            Cie76, Ciede2000, Hellinger, JensenShannon, Oklab, SameOrNot, Srgb, TotalVariation, Wasserstein1,
+            Wasserstein2,
+        };
+        let is_color = matches!(self, Srgb | Cie76 | Ciede2000 | Oklab);
+        let overlaps = matches!(self, TotalVariation | Hellinger | JensenShannon);
+        let moves = matches!(self, Wasserstein1 | Wasserstein2);
+        let (fits, those) = match Draws::of(distribution, kind) {
+            _ if self == SameOrNot => return None,
+            Draws::Colors => (
+                is_color || moves,
+                "wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000 or same_or_not, since colours out of a continuum are \
+                 compared by how far they are apart",
+            ),
+            Draws::ListedColors => (
+                is_color || moves || overlaps,
+                "a measure of distributions or of colours",
+            ),
+            Draws::Points => (
+                moves,
+                "wasserstein_1, wasserstein_2 or same_or_not, since points are compared by how far they are apart",
+            ),
+            Draws::Shares => (
+                self == Wasserstein1,
+                "wasserstein_1 or same_or_not, since shares are compared by how much of them moves",
+            ),
+            Draws::Headings => (
+                self == Wasserstein1 || overlaps,
+                "wasserstein_1, total_variation, hellinger, jensen_shannon or same_or_not, since headings are compared round \
+                 the circle",
+            ),
+            Draws::Texts => (
+                overlaps,
+                "total_variation, hellinger, jensen_shannon or same_or_not, since words are no distance apart",
+            ),
+            Draws::Numbers => (
+                moves || overlaps,
+                "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon or same_or_not",
+            ),
+        };
+        (!fits).then_some(those)
     }
 
     /// What parameters must be for this measure; `None` if this one is.
@@ -102,15 +144,18 @@ impl MeasureName {
         };
         let by_distribution = parameter.role == Role::Randomized || parameter.kind == ParameterType::Distribution;
         let numeric = matches!(parameter.kind, ParameterType::Number | ParameterType::Integer);
+        if by_distribution {
+            let mut misfits = distributions(parameter).map(|own| self.misfit_of_draws(own, parameter.kind));
+            if let Some(misfit) = misfits.find_map(|misfit| misfit) {
+                return Some(misfit);
+            }
+        }
         let wanted = match self {
             SameOrNot => return None,
             Difference if numeric && !by_distribution => return None,
             LogRatio if numeric && !by_distribution && always_positive(parameter) => return None,
-            Srgb | Cie76 | Ciede2000 | Oklab if parameter.kind == ParameterType::Color || gives_colors(parameter) => {
+            Srgb | Cie76 | Ciede2000 | Oklab if parameter.kind == ParameterType::Color || by_distribution => {
                 return None;
-            }
-            TotalVariation | Hellinger | JensenShannon if gives_colors(parameter) => {
-                return self.misfit_of_drawn_colors();
             }
             Wasserstein1 | Wasserstein2 | TotalVariation | Hellinger | JensenShannon if by_distribution => return None,
             Difference => "a variant parameter of type number or integer for it",
@@ -126,21 +171,49 @@ impl MeasureName {
     }
 }
 
-/// Whether colours out of a continuum are drawn: by the parameter's own distribution, or by one that it may be.
-fn gives_colors(parameter: &Parameter) -> bool {
+/// The distributions that a parameter may be drawn from, as far as it declares them: its own, or those that it may be.
+/// Where another parameter is its distribution, the measure is checked against that one's.
+fn distributions(parameter: &Parameter) -> impl Iterator<Item = &Distribution<Number>> {
     let own = match &parameter.distribution {
-        Some(Source::Distribution(distribution)) => distribution.draws_colors(),
-        // Then the measure stands where that parameter is declared.
-        Some(Source::Param(_)) | None => false,
+        Some(Source::Distribution(distribution)) => Some(&**distribution),
+        Some(Source::Param(_)) | None => None,
     };
-    let values = parameter
-        .value
-        .iter()
-        .chain(&parameter.default)
-        .chain(parameter.choices.iter().flatten());
-    own || values
-        .into_iter()
-        .any(|value| matches!(value, Value::Distribution(distribution) if distribution.draws_colors()))
+    let values = parameter.value.iter().chain(&parameter.default);
+    let values = values.chain(parameter.choices.iter().flatten());
+    own.into_iter().chain(values.filter_map(|value| match value {
+        Value::Distribution(distribution) => Some(&**distribution),
+        _ => None,
+    }))
+}
+
+/// What a distribution draws, as far as measures care.
+enum Draws {
+    Numbers,
+    Headings,
+    Points,
+    Shares,
+    Texts,
+    ListedColors,
+    Colors,
+}
+
+impl Draws {
+    fn of<N>(distribution: &Distribution<N>, kind: ParameterType) -> Self {
+        let is_word = |value: &Value| value.as_number().is_none();
+        match distribution {
+            _ if distribution.draws_colors() => Self::Colors,
+            _ if distribution.is_planar() => Self::Points,
+            Distribution::Dirichlet { .. } => Self::Shares,
+            _ if kind == ParameterType::Heading => Self::Headings,
+            Distribution::Mixture { parts, .. } => parts.first().map_or(Self::Numbers, |part| Self::of(part, kind)),
+            Distribution::Choice { .. } | Distribution::Constant { .. } if kind == ParameterType::Color => {
+                Self::ListedColors
+            }
+            Distribution::Choice { values, .. } if values.iter().any(is_word) => Self::Texts,
+            Distribution::Constant { value } if is_word(value) => Self::Texts,
+            _ => Self::Numbers,
+        }
+    }
 }
 
 fn always_positive(parameter: &Parameter) -> bool {
@@ -220,187 +293,5 @@ fn cost_problem(costs: &[Vec<f64>], parameter: &Parameter, pointer: &str) -> Opt
     None
 }
 
-/// What each element of the decision process weighs in a task's distances; 1 where nothing is said.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("examples" = [{ "R": 2, "O": 0.5 }]))]
-pub struct ElementWeights {
-    /// The states.
-    #[serde(rename = "S", default = "one")]
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub state: f64,
-    /// The actions.
-    #[serde(rename = "A", default = "one")]
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub action: f64,
-    /// The transitions.
-    #[serde(rename = "T", default = "one")]
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub transition: f64,
-    /// The rewards.
-    #[serde(rename = "R", default = "one")]
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub reward: f64,
-    /// The observations.
-    #[serde(rename = "O", default = "one")]
-    #[schemars(range(min = 0.0, max = 1e6))]
-    pub observation: f64,
-}
-
-impl Default for ElementWeights {
-    fn default() -> Self {
-        Self {
-            state: 1.0,
-            action: 1.0,
-            transition: 1.0,
-            reward: 1.0,
-            observation: 1.0,
-        }
-    }
-}
-
-impl ElementWeights {
-    /// In the order of [`Element::ALL`](crate::Element::ALL).
-    pub fn to_array(self) -> [f64; 5] {
-        [self.state, self.action, self.transition, self.reward, self.observation]
-    }
-
-    pub(crate) fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
 #[cfg(test)]
-mod tests {
-    use crate::TaskSpec;
-
-    fn check(compare: &str, parameter: &str, expected: &str) {
-        let text = format!(
-            r#"{{ "name": "t", "parameters": {{ "p": {{ "affects": ["O"], "compare": {compare}, {parameter} }} }} }}"#
-        );
-        let said = TaskSpec::from_json("t.json", &text).map_or_else(|error| error.to_string(), |_| String::new());
-        let said = said.split_once(" (").map_or("", |(_, said)| said);
-        assert_eq!(said, expected);
-    }
-
-    const NUMBER: &str = r#""role": "variant", "type": "number", "range": [0, 1], "default": 0"#;
-    const WORDS: &str = r#""role": "variant", "type": "string", "choices": ["a", "b", "c"], "default": "a""#;
-
-    #[test]
-    fn a_measure_fits_the_parameter_that_it_compares() {
-        check(r#"{ "measure": "difference", "weight": 3 }"#, NUMBER, "");
-        check(r#"{ "measure": "same_or_not" }"#, WORDS, "");
-        check(
-            r#"{ "measure": "log_ratio" }"#,
-            NUMBER,
-            "/parameters/p/compare/measure): found log_ratio, expected a variant parameter of type number or integer whose values are all above 0 for it",
-        );
-        check(
-            r#"{ "measure": "ciede2000" }"#,
-            WORDS,
-            "/parameters/p/compare/measure): found ciede2000, expected a parameter of type color, or one whose distributions draw colours, for it",
-        );
-        check(
-            r#"{ "measure": "hellinger" }"#,
-            NUMBER,
-            "/parameters/p/compare/measure): found hellinger, expected a randomized parameter, or one of type distribution for it",
-        );
-        let drawn = r#""role": "randomized", "type": "number", "distribution": { "uniform": { "low": 0, "high": 1 } }"#;
-        check(r#"{ "measure": "hellinger" }"#, drawn, "");
-    }
-
-    #[test]
-    fn drawn_colours_are_compared_by_how_far_they_are_apart() {
-        let drawn = r#""role": "randomized", "type": "color", "distribution": { "color_normal": { "mean": "red", "std": 0.1 } }"#;
-        let law = r#""role": "variant", "type": "distribution", "choices": [{ "color_hsv": {} }], "default": { "color_hsv": {} }"#;
-        for parameter in [drawn, law] {
-            for fits in [
-                "srgb",
-                "cie76",
-                "ciede2000",
-                "oklab",
-                "wasserstein_1",
-                "wasserstein_2",
-                "same_or_not",
-            ] {
-                check(&format!(r#"{{ "measure": "{fits}" }}"#), parameter, "");
-            }
-            for odd in ["total_variation", "hellinger", "jensen_shannon"] {
-                let said = format!(
-                    "/parameters/p/compare/measure): found {odd}, expected wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000 or \
-                     same_or_not, since colours out of a continuum are compared by how far they are apart"
-                );
-                check(&format!(r#"{{ "measure": "{odd}" }}"#), parameter, &said);
-            }
-        }
-        let words =
-            r#""role": "randomized", "type": "color", "distribution": { "choice": { "values": ["red", "blue"] } }"#;
-        check(r#"{ "measure": "total_variation" }"#, words, "");
-    }
-
-    #[test]
-    fn a_measure_looks_at_the_distributions_that_another_parameter_may_be() {
-        let text = r#"{ "name": "t", "parameters": {
-            "law": { "role": "variant", "type": "distribution", "affects": ["O"], "choices": [{ "color_hsv": {} }], "default": { "color_hsv": {} } },
-            "p": { "role": "randomized", "type": "color", "affects": ["O"], "distribution": { "param": "law" },
-                   "compare": { "measure": "hellinger" } } } }"#;
-        let said = TaskSpec::from_json("t.json", text).map_or_else(|error| error.to_string(), |_| String::new());
-        assert!(
-            said.contains("(/parameters/p/compare/measure): found hellinger, expected wasserstein_1"),
-            "{said}"
-        );
-    }
-
-    #[test]
-    fn costs_are_distances_among_the_choices() {
-        check(r#"{ "costs": [[0, 1, 2], [1, 0, 1.5], [2, 1.5, 0]] }"#, WORDS, "");
-        let wrong = |costs: &str, at: &str, said: &str| {
-            check(
-                &format!(r#"{{ "costs": {costs} }}"#),
-                WORDS,
-                &format!("/parameters/p/compare/costs{at}): {said}"),
-            );
-        };
-        wrong("[[0, 1], [1, 0]]", "", "found 2 rows, expected 3, one for each choice");
-        wrong(
-            "[[0, 1, 1], [1, 0], [1, 1, 0]]",
-            "/1",
-            "found 2 numbers, expected 3, one for each choice",
-        );
-        wrong(
-            "[[0, 1, 1], [2, 0, 1], [1, 1, 0]]",
-            "/1/0",
-            "found 2, expected 1, as at /0/1: as far there as back",
-        );
-        wrong(
-            "[[0, 1, 1], [1, 3, 1], [1, 1, 0]]",
-            "/1/1",
-            "found 3, expected 0: a choice is no distance from itself",
-        );
-        wrong(
-            "[[0, -1, 1], [-1, 0, 1], [1, 1, 0]]",
-            "/0/1",
-            "found -1, expected a number of at least 0",
-        );
-        wrong(
-            "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]",
-            "",
-            "found costs that are all 0, expected some that are not, or a weight of 0",
-        );
-        check(
-            r#"{ "costs": [[0]] }"#,
-            NUMBER,
-            "/parameters/p/compare/costs): found costs of a parameter without choices, expected a variant parameter with choices",
-        );
-        check(
-            r#"{ "costs": [[0, 1], [1, 0]] }"#,
-            r#""role": "variant", "type": "string", "choices": ["a", "a"], "default": "a""#,
-            "/parameters/p/compare/costs): found costs of choices of which one stands twice, expected each choice once",
-        );
-        check(
-            r#"{ "measure": "same_or_not", "costs": [[0, 1, 1], [1, 0, 1], [1, 1, 0]] }"#,
-            WORDS,
-            "/parameters/p/compare/costs): found costs beside a measure, expected one of the two",
-        );
-    }
-}
+mod tests;

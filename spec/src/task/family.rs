@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::TaskDocument;
 use super::parameter::{Parameter, Role};
-use super::variant::VariantSpec;
+use super::variant_spec::VariantSpec;
 use crate::describe::escape;
 use crate::error::Problem;
 use crate::names;

@@ -2,116 +2,44 @@
 
 mod check;
 mod compare;
+mod document;
+mod element_weights;
 mod expression;
 mod family;
 mod group;
 mod parameter;
+mod read;
 mod require;
 mod template;
 mod variant;
+mod variant_spec;
 
-use std::sync::{Arc, LazyLock};
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
 
-use driftworld_text::{IDENTIFIER_PATTERN, NAME_PATTERN};
 use indexmap::IndexMap;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
-pub use compare::{Compare, ElementWeights, MeasureName};
+pub use compare::{Compare, MeasureName};
+pub(crate) use document::TaskDocument;
+pub use element_weights::ElementWeights;
 pub use family::{Spacing, Sweep};
 pub use group::{Facing, Group, KeepOut};
 pub use parameter::{Domain, Parameter, Role};
+pub use read::Readers;
 pub use require::Requirement;
 pub use template::{Hole, Source, Template};
-pub use variant::{DEFAULT_VARIANT, Resolved, Variant, VariantSpec};
+pub use variant::{DEFAULT_VARIANT, Resolved, Variant};
+pub use variant_spec::VariantSpec;
 
 use crate::classes::Classes;
 use crate::distribution::Number;
 use crate::document::Document;
 use crate::error::{Listed, Problem, SpecError};
 use crate::limits::MAX_VALUES;
-use crate::schema::document::DocumentSchema;
 use crate::value::Value;
 use crate::version;
-use crate::world::{Object, World};
-
-/// A task spec as its document has it, before anything but the schema has been checked.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(extend("examples" = [
-    { "version": 2, "name": "light_and_dark",
-        "parameters": { "light": { "role": "variant", "type": "number", "affects": ["O"], "range": [0.2, 4], "default": 2.3 } },
-        "world": { "max_steps": 100, "environment_params": { "light_intensity": { "param": "light" } } },
-        "variants": { "day": {}, "dusk": { "light": 0.3 } } },
-]))]
-pub(crate) struct TaskDocument {
-    /// Where the JSON Schema of this document is, for editors.
-    #[serde(rename = "$schema", default, skip_serializing_if = "Option::is_none")]
-    pub(crate) schema: Option<String>,
-    /// The version of this form of document: 2. Older ones are read, newer ones refused; without it, it is taken to be 1.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(range(min = 1, max = 2))]
-    pub(crate) version: Option<u32>,
-    /// The task's name: lower-case letters, digits and underscores.
-    #[schemars(length(max = 100), regex(pattern = IDENTIFIER_PATTERN))]
-    pub(crate) name: String,
-    /// What the task is, in a sentence or two.
-    #[serde(default)]
-    pub(crate) description: String,
-    /// The parameters by name.
-    #[serde(default)]
-    #[schemars(schema_with = "parameters_schema")]
-    pub(crate) parameters: IndexMap<String, Parameter>,
-    /// The world, but for its groups. Any leaf may be a value, a parameter, or a distribution.
-    #[serde(default)]
-    #[schemars(schema_with = "template::world_schema")]
-    pub(crate) world: Json,
-    /// Groups of objects, placed one after the other.
-    #[serde(default)]
-    #[schemars(length(max = 1000))]
-    pub(crate) groups: Vec<Group>,
-    /// Conditions over parameters that every variant and every world must meet, such as `"min_size < max_size"`: comparisons,
-    /// arithmetic, min, max, abs, and, or, not; colours by `==`, `!=` and `distance(a, b)` in Oklab, 0 to 1. A world that breaks one is drawn again, a bounded number of times.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schemars(length(max = 100), inner(length(min = 1, max = 500)))]
-    pub(crate) require: Vec<String>,
-    /// What each element of the decision process weighs when variants are compared; 1 where nothing is said.
-    #[serde(default, skip_serializing_if = "ElementWeights::is_default")]
-    pub(crate) element_weights: ElementWeights,
-    /// Named variants: each sets some of the variant parameters, over another variant's values or the defaults. One with a
-    /// grid or a sweep is a family of variants.
-    #[serde(default)]
-    #[schemars(schema_with = "variants_schema")]
-    pub(crate) variants: IndexMap<String, VariantSpec>,
-}
-
-impl TaskDocument {
-    /// The schema of a task spec.
-    pub(crate) fn schema() -> &'static DocumentSchema {
-        static SCHEMA: LazyLock<DocumentSchema> =
-            LazyLock::new(|| DocumentSchema::of::<TaskDocument>("task", "Driftworld task spec"));
-        &SCHEMA
-    }
-}
-
-fn parameters_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-    let mut schema = generator.subschema_for::<IndexMap<String, Parameter>>();
-    schema.insert(
-        "propertyNames".to_owned(),
-        serde_json::json!({ "pattern": IDENTIFIER_PATTERN, "maxLength": 100 }),
-    );
-    schema
-}
-
-fn variants_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-    let mut schema = generator.subschema_for::<IndexMap<String, VariantSpec>>();
-    schema.insert(
-        "propertyNames".to_owned(),
-        serde_json::json!({ "pattern": NAME_PATTERN, "minLength": 1, "maxLength": 100 }),
-    );
-    schema
-}
+use crate::world::{Object, WorldDraft};
 
 /// A task: what its worlds have in common, and exactly what varies between them.
 ///
@@ -135,10 +63,14 @@ fn variants_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schem
 pub struct TaskSpec {
     document: TaskDocument,
     variants: family::Variants,
-    world: Template<World>,
+    world: Template<WorldDraft>,
     fixtures: Vec<Template<Object>>,
     groups: Vec<PlacedGroup>,
     requirements: Vec<Requirement>,
+    /// The conditions under which parameters are read, by their names.
+    read_conditions: IndexMap<String, Requirement>,
+    /// Who reads each parameter, once that is asked.
+    readers: OnceLock<BTreeMap<String, Readers>>,
 }
 
 /// A group of a checked task: its declaration, and its count and object as templates.
@@ -239,7 +171,7 @@ impl TaskSpec {
     }
 
     /// The world's template; its objects are [`TaskSpec::fixtures`].
-    pub fn world(&self) -> &Template<World> {
+    pub fn world(&self) -> &Template<WorldDraft> {
         &self.world
     }
 
@@ -321,7 +253,7 @@ impl TaskSpec {
                 known: known.into_iter().map(str::to_owned).collect(),
             });
         }
-        let values = variant::values_of(&self.document.parameters, &self.variants, name)
+        let values = variant_spec::values_of(&self.document.parameters, &self.variants, name)
             .expect("loading the task checked every chain of extends");
         // Declared variants were checked on loading; the defaults, which nobody may ever ask for, were not.
         let problems = if self.variants.contains_key(name) {

@@ -39,9 +39,10 @@ pub struct Parameter {
     /// Its type.
     #[serde(rename = "type")]
     pub kind: ParameterType,
-    /// Which elements of the decision process it touches: state `S`, action `A`, transition `T`, reward `R`, observation `O`.
+    /// Which elements of the decision process it touches: state `S`, action `A`, transition `T`, reward `R`, observation
+    /// `O`; the law of the initial state alone `p`, the emission alone `phi`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    #[schemars(length(max = 5))]
+    #[schemars(length(max = 7))]
     pub affects: Vec<Element>,
     /// Its unit, such as `m` or `deg`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -69,6 +70,11 @@ pub struct Parameter {
     /// Randomized only: how it is drawn; a distribution, or a parameter that is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub distribution: Option<Source>,
+    /// Variant only: the condition under which anything reads it, as `"trigger == 'AgentInRange'"`, of fixed and variant
+    /// parameters. In variants that do not meet it the parameter counts as if it stood at its default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(length(min = 1, max = 500))]
+    pub read_if: Option<String>,
     /// Not for fixed ones: by which measure two variants are compared in it, and how much that counts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub compare: Option<Compare>,
@@ -102,7 +108,15 @@ fn require_what_the_role_needs(schema: &mut schemars::Schema) {
         role(
             "fixed",
             json!({ "required": ["value"] }),
-            &["choices", "range", "default", "switch_at", "distribution", "compare"],
+            &[
+                "choices",
+                "range",
+                "default",
+                "switch_at",
+                "read_if",
+                "distribution",
+                "compare",
+            ],
         ),
         role(
             "variant",
@@ -115,7 +129,7 @@ fn require_what_the_role_needs(schema: &mut schemars::Schema) {
         role(
             "randomized",
             json!({ "required": ["affects", "distribution"] }),
-            &["value", "choices", "range", "default", "switch_at"],
+            &["value", "choices", "range", "default", "switch_at", "read_if"],
         ),
         kind(&["number", "heading"], number.clone(), true),
         kind(&["integer"], json!({ "type": "integer" }), true),
@@ -138,6 +152,11 @@ fn require_what_the_role_needs(schema: &mut schemars::Schema) {
 }
 
 impl Parameter {
+    /// Whether it touches this element, or its fine one, and no other.
+    pub fn affects_only(&self, element: Element) -> bool {
+        !self.affects.is_empty() && self.affects.iter().all(|touched| element.covers(*touched))
+    }
+
     /// The values it may have, if it is a variant parameter.
     pub fn domain(&self) -> Option<Domain> {
         let choices = || {

@@ -10,7 +10,7 @@ use crate::distribution::{Distribution, Number, ParamRef};
 use crate::schema::document::of_type;
 use crate::schema::part;
 use crate::value::{ParameterType, Value};
-use crate::world::{FieldPlace, Object, Place, Setter, World, places_of};
+use crate::world::{FieldPlace, Object, Place, Setter, World, WorldDraft, places_of};
 
 /// Where a value comes from: a parameter, or a draw.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -116,9 +116,9 @@ fn walk(json: &Json, pointer: &mut String, found: &mut Vec<Opening>) {
     }
 }
 
-impl Template<World> {
+impl Template<WorldDraft> {
     /// The hole of a world's template at a pointer, if a world can vary there.
-    pub(crate) fn hole(opening: &Opening) -> Option<Hole<World>> {
+    pub(crate) fn hole(opening: &Opening) -> Option<Hole<WorldDraft>> {
         hole(opening, World::schema().json())
     }
 }
@@ -174,7 +174,7 @@ static SCHEMAS: LazyLock<TemplateSchemas> = LazyLock::new(|| {
         &world_schema,
         &json!({ "type": "object", "properties": world_schema["properties"] }),
     );
-    open(&mut world, &places_of::<World>());
+    open(&mut world, &places_of::<WorldDraft>());
     world["additionalProperties"] = json!(false);
     world["properties"]["objects"]["items"] = object.clone();
     world["description"] =

@@ -1,23 +1,17 @@
 //! One variant of a task: every fixed and variant parameter has its value. Drawing the randomized ones is the generator's job.
 
-use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::sync::Arc;
 
-use driftworld_text::IDENTIFIER_PATTERN;
 use indexmap::IndexMap;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::TaskSpec;
-use super::family::{Sweep, Variants};
 use super::parameter::{Parameter, Role};
 use super::require::Requirement;
 use super::template::Source;
-use crate::describe::escape;
 use crate::distribution::{Distribution, Number, ParamRef};
-use crate::error::{MAX_PROBLEMS, Problem, SpecError, first_of, nearest};
+use crate::error::{Problem, SpecError, first_of};
 use crate::value::Value;
 
 /// The name of the variant in which every parameter has its default, unless the task declares one of this name.
@@ -199,59 +193,6 @@ fn accepted(parameters: &IndexMap<String, Parameter>, name: &str, value: &Value)
         .map_err(|expected| Problem::new("spec/value", format!("/{name}"), value.to_string(), expected))
 }
 
-/// A variant, or a family of them, as a document declares it.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[schemars(transform = values_of_parameters)]
-#[schemars(extend("examples" = [
-    { "extends": "day", "description": "Red cubes at dusk.", "light": 0.6 },
-    { "grid": { "target_color": ["red", "green"], "light": [0.6, 2.3] } },
-    { "sweep": { "light": { "from": 0.2, "to": 4, "steps": 5 } } },
-]))]
-pub struct VariantSpec {
-    /// The variant whose values it starts from; the defaults if absent.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(length(min = 1, max = 200))]
-    pub extends: Option<String>,
-    /// What it is, in a sentence.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub description: Option<String>,
-    /// Makes it a family: for each parameter the values that it takes; one variant for every combination, named after the
-    /// family and its values, as `look-red-0.5`.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    #[schemars(length(min = 1, max = 20), inner(length(min = 1, max = 1000)))]
-    pub grid: IndexMap<String, Vec<Value>>,
-    /// Makes it a family: for each parameter evenly spaced values; combined with those of the grid and of each other.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    #[schemars(length(min = 1, max = 20))]
-    pub sweep: IndexMap<String, Sweep>,
-    /// Values of variant parameters.
-    #[serde(flatten)]
-    pub values: IndexMap<String, Value>,
-}
-
-/// The keys that a variant has beside its parameters' names.
-pub(crate) const RESERVED: [&str; 4] = ["extends", "description", "grid", "sweep"];
-
-fn values_of_parameters(schema: &mut schemars::Schema) {
-    schema.insert(
-        "propertyNames".to_owned(),
-        serde_json::json!({ "pattern": IDENTIFIER_PATTERN, "maxLength": 100 }),
-    );
-    for key in ["grid", "sweep"] {
-        if let Some(map) = schema
-            .pointer_mut(&format!("/properties/{key}"))
-            .and_then(serde_json::Value::as_object_mut)
-        {
-            map.insert("minProperties".to_owned(), serde_json::json!(1));
-            map.insert("maxProperties".to_owned(), serde_json::json!(20));
-            if key == "grid" {
-                map["additionalProperties"]["minItems"] = serde_json::json!(1);
-                map["additionalProperties"]["maxItems"] = serde_json::json!(1000);
-            }
-        }
-    }
-}
-
 /// A reference that does not name a number of this variant.
 #[derive(Debug)]
 pub(crate) struct UnresolvedParams;
@@ -286,156 +227,4 @@ pub(crate) fn broken<'a>(
         .iter()
         .find(|requirement| requirement.holds(value_of) == Some(false))?;
     Some((broken, broken.describe(value_of)))
-}
-
-/// The most variants that extend each other in a row.
-pub(crate) const MAX_EXTENDED: usize = 100;
-
-/// The values of a variant: its own over those that it extends over the defaults.
-///
-/// `Err` where the chain of `extends` breaks or bites its own tail; wrong values are [`problems`]' to find.
-pub(crate) fn values_of(
-    parameters: &IndexMap<String, Parameter>,
-    variants: &Variants,
-    name: &str,
-) -> Result<IndexMap<String, Value>, Problem> {
-    let mut chain = Vec::new();
-    let mut seen = BTreeSet::new();
-    let mut next = variants.get(name).map(|variant| (name, variant));
-    while let Some((name, variant)) = next {
-        if !seen.insert(name) {
-            return Err(cycle(chain[0], name, variants));
-        }
-        chain.push(name);
-        if chain.len() > MAX_EXTENDED {
-            return Err(Problem::new(
-                "spec/length",
-                format!("/variants/{}/extends", escape(&variants[chain[0]].origin)),
-                format!("a chain of more than {MAX_EXTENDED} variants that extend each other"),
-                format!("at most {MAX_EXTENDED}"),
-            )
-            .advise("extend a variant further up"));
-        }
-        next = match &variant.extends {
-            None => None,
-            Some(parent) if parent == DEFAULT_VARIANT && !variants.contains_key(parent) => None,
-            Some(parent) => Some((
-                parent,
-                variants
-                    .get(parent)
-                    .ok_or_else(|| unknown_parent(&variant.origin, parent, variants))?,
-            )),
-        };
-    }
-    let mut values = IndexMap::new();
-    for (parameter, declared) in parameters
-        .iter()
-        .filter(|(_, declared)| declared.role != Role::Randomized)
-    {
-        let own = chain.iter().find_map(|name| variants[*name].values.get(parameter));
-        let value = own.or(declared.default.as_ref()).or(declared.value.as_ref());
-        if let Some(typed) = value.and_then(|value| value.cast(declared.kind)) {
-            values.insert(parameter.clone(), typed);
-        }
-    }
-    Ok(values)
-}
-
-fn cycle(start: &str, again: &str, variants: &Variants) -> Problem {
-    let mut path = vec![again];
-    let mut name = variants[again].extends.as_deref();
-    while let Some(next) = name.filter(|next| *next != again) {
-        path.push(next);
-        name = variants[next].extends.as_deref();
-    }
-    path.push(again);
-    Problem::new(
-        "spec/extends-cycle",
-        format!("/variants/{}/extends", escape(&variants[start].origin)),
-        format!("a cycle: {}", path.join(" extends ")),
-        "a chain of extends that ends",
-    )
-}
-
-fn unknown_parent(origin: &str, parent: &str, variants: &Variants) -> Problem {
-    let known: Vec<&str> = variants.keys().map(String::as_str).chain([DEFAULT_VARIANT]).collect();
-    let shown = first_of(&known);
-    Problem::new(
-        "spec/unknown-variant",
-        format!("/variants/{}/extends", escape(origin)),
-        format!("{parent:?}"),
-        format!("one of {shown}"),
-    )
-    .suggest(parent, known)
-}
-
-/// Everything wrong with what the variants say, but for values of parameters of which nothing is known.
-pub(crate) fn problems(
-    parameters: &IndexMap<String, Parameter>,
-    document: &IndexMap<String, VariantSpec>,
-    variants: &Variants,
-    is_unsound: impl Fn(&str) -> bool,
-) -> Vec<Problem> {
-    let mut problems: Vec<Problem> = variants
-        .keys()
-        .filter_map(|name| values_of(parameters, variants, name).err())
-        .take(MAX_PROBLEMS + 1)
-        .collect();
-    problems.dedup();
-    let check = |pointer: &str, parameter: &str, value: &Value| {
-        let known = !is_unsound(parameter);
-        known
-            .then(|| problem_of(parameters, pointer, parameter, value))
-            .flatten()
-    };
-    for (name, variant) in document {
-        for (parameter, value) in &variant.values {
-            if problems.len() > MAX_PROBLEMS {
-                return problems;
-            }
-            problems.extend(check(
-                &format!("/variants/{}/{}", escape(name), escape(parameter)),
-                parameter,
-                value,
-            ));
-        }
-        problems.extend(super::family::problems(parameters, name, variant, check));
-    }
-    problems
-}
-
-fn problem_of(parameters: &IndexMap<String, Parameter>, pointer: &str, name: &str, value: &Value) -> Option<Problem> {
-    let Some(parameter) = parameters.get(name) else {
-        let known: Vec<&String> = parameters
-            .iter()
-            .filter(|(_, p)| p.role == Role::Variant)
-            .map(|(name, _)| name)
-            .collect();
-        let expected = format!("a variant parameter, one of {}", first_of(&known));
-        let found = format!("the unknown parameter {name:?}");
-        let near = nearest(name, &known).or_else(|| nearest(name, RESERVED));
-        let problem = Problem::new("spec/unknown-key", pointer, found, expected);
-        return Some(match near {
-            Some(near) => problem.advise(format!("did you mean {near:?}?")),
-            None => problem,
-        });
-    };
-    if parameter.role != Role::Variant {
-        let role = if parameter.role == Role::Fixed {
-            "fixed"
-        } else {
-            "randomized"
-        };
-        let found = format!("a value for the {role} parameter {name:?}");
-        let problem = Problem::new("spec/role", pointer, found, "values for variant parameters only");
-        return Some(problem.advise(format!("give {name:?} the role variant, or leave it out here")));
-    }
-    let expected = parameter.accept(value).err()?;
-    let word = if let Value::Text(word) = value {
-        word.as_str()
-    } else {
-        ""
-    };
-    let choices: Vec<String> = parameter.choices.iter().flatten().map(ToString::to_string).collect();
-    Some(Problem::new("spec/value", pointer, value.to_string(), expected).suggest(word, choices))
 }

@@ -17,10 +17,10 @@ fields! {
     ]))]
     pub struct AgentParams {
         /// What the numbers of an action mean.
-        pub action_model: ActionModel = ActionModel::ByVelocity => Field::original(Same(ModelOfActions)),
+        pub action_model: ActionModel = ActionModel::ByVelocity => Field::original(Leaves(ModelOfActions)),
         /// Height of the camera above the ground in metres.
         #[schemars(range(min = 0.1, max = 10.0))]
-        pub agent_height: f64 = 1.0 => Field::original(Same(CameraAndWeather)).unit("m"),
+        pub agent_height: f64 = 1.0 => Field::original(Leaves(CameraAndWeather)).unit("m"),
         /// Width (diameter) of the agent's collider in metres.
         #[schemars(range(min = 0.05, max = 10.0))]
         pub agent_width: f64 = 1.0 => Field::original(Measured(&[Width])).unit("m"),
@@ -40,7 +40,7 @@ fields! {
         /// Points per pixel along each side that colours are the mean of: 1 is fast, 2 and more are smooth.
         #[serde(skip_serializing_if = "is_one")]
         #[schemars(range(min = 1, max = 4))]
-        pub supersampling: u32 = 1 => Field::ours(Same(CameraAndWeather)),
+        pub supersampling: u32 = 1 => Field::ours(Leaves(CameraAndWeather)),
         /// Start position in metres.
         #[schemars(inner(range(min = -300.0, max = 300.0)))]
         pub coordinates: [f64; 2] = [0.0, 0.0] => Field::original(Measured(&[Start])).unit("m"),
@@ -56,21 +56,22 @@ fields! {
         pub frame_skip: u32 = 1 => Field::ours(Measured(&[TimeStep, StepReward, Limit])),
         /// Vertical field of view in degrees.
         #[schemars(range(min = 1.0, max = 170.0))]
-        pub field_of_view: f64 = 60.0 => Field::ours(Same(CameraAndWeather)).unit("degrees"),
-        /// Which images an observation holds.
+        pub field_of_view: f64 = 60.0 => Field::ours(Leaves(CameraAndWeather)).unit("degrees"),
+        /// Which images an observation holds. Segmentation by reward category shows what is worth what, so it is none of them
+        /// unless it is asked for.
         #[schemars(length(max = 5))]
-        pub modalities: Vec<Modality> = vec![Modality::Rgb, Modality::Depth, Modality::Segmentation]
-            => Field::ours(Same(CameraAndWeather)),
+        pub modalities: Vec<Modality> = vec![Modality::Rgb, Modality::Depth]
+            => Field::ours(Leaves(CameraAndWeather)),
         /// What the state vector holds, in this order.
         #[serde(skip_serializing_if = "is_classic")]
         #[schemars(length(max = 20))]
-        pub state_features: Vec<StateFeature> = StateFeature::CLASSIC.to_vec() => Field::ours(Same(CameraAndWeather)),
+        pub state_features: Vec<StateFeature> = StateFeature::CLASSIC.to_vec() => Field::ours(Leaves(CameraAndWeather)),
         /// How actions are given.
-        pub actions: ActionSpace = ActionSpace::Continuous => Field::ours(Same(SpaceOfActions)),
+        pub actions: ActionSpace = ActionSpace::Continuous => Field::ours(Leaves(SpaceOfActions)),
         /// Whether the agent can interact: without, the third number of an action by velocity is ignored, and the default table of
         /// actions has no row for it.
         #[serde(skip_serializing_if = "is_true")]
-        pub interact: bool = true => Field::ours(Same(SpaceOfActions)),
+        pub interact: bool = true => Field::ours(Leaves(SpaceOfActions)),
     }
 }
 

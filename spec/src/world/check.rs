@@ -1,14 +1,16 @@
-//! Worlds and objects that were built in code, checked by the rules of documents; one object read without a world.
-//! Reading worlds is in `mod.rs`.
+//! What makes a [`World`] of a [`WorldDraft`]: checks of values by the rules of documents. Objects are checked and read without a
+//! world, too. Reading worlds is in `mod.rs`.
 
 use std::sync::LazyLock;
 
 use serde::Serialize;
 
-use super::{Object, World};
+use super::progress;
+use super::{ActionModel, ActionSpace, MAX_OBJECTS, MAX_POINTS, Object, World, WorldDraft};
 use crate::document::Document;
 use crate::error::{Problem, SpecError};
 use crate::limits::MAX_VALUES;
+use crate::maps::MapLibrary;
 use crate::schema::document::DocumentSchema;
 
 impl Object {
@@ -48,28 +50,104 @@ impl Object {
     }
 }
 
-impl World {
-    /// Checks a world that was built or changed in code by the rules that documents obey.
+impl WorldDraft {
+    /// The world of these fields, if it obeys the rules that documents obey.
     ///
     /// # Errors
     /// [`SpecError::Document`] under the name `world`, with every problem.
     ///
     /// # Example
     /// ```
-    /// use driftworld_spec::World;
-    /// let mut world = World::default();
-    /// world.environment_params.sun_direction = [0.0; 3];
-    /// let error = world.check().expect_err("the sun shines from somewhere");
+    /// use driftworld_spec::WorldDraft;
+    /// let mut draft = WorldDraft::default();
+    /// draft.environment_params.sun_direction = [0.0; 3];
+    /// let error = draft.check().expect_err("the sun shines from somewhere");
     /// assert_eq!(error.problems()[0].pointer, "/environment_params/sun_direction");
     /// ```
-    pub fn check(&self) -> Result<(), SpecError> {
-        check("world", self, Self::schema(), self.problems())
+    pub fn check(self) -> Result<World, SpecError> {
+        check("world", &self, World::schema(), self.problems())?;
+        Ok(World(self))
+    }
+
+    /// As [`WorldDraft::check`] of fields whose values are each known to be in range: only what no field can say by itself is
+    /// checked.
+    ///
+    /// # Errors
+    /// As [`WorldDraft::check`].
+    ///
+    /// # Panics
+    /// With debug assertions, where a value is out of its range.
+    pub fn check_in_range(self) -> Result<World, SpecError> {
+        let problems = self.problems();
+        if !problems.is_empty() {
+            return Err(SpecError::of_document("world", problems));
+        }
+        if cfg!(debug_assertions) {
+            check("world", &self, World::schema(), problems).expect("each value is in range, as the caller knows");
+        }
+        Ok(World(self))
+    }
+
+    /// What the schema cannot say: checks that look at several values at once.
+    pub(crate) fn problems(&self) -> Vec<Problem> {
+        let mut problems = Vec::new();
+        if self.environment_params.sun_direction == [0.0; 3] {
+            problems.push(Problem::new(
+                "spec/zero-direction",
+                "/environment_params/sun_direction",
+                "[0, 0, 0]",
+                "a direction, such as [0.4, -0.3, 0.8]",
+            ));
+        }
+        if self.environment_params.predefined_map == 0 && self.environment_params.map_size.contains(&0.0) {
+            problems.push(
+                Problem::new(
+                    "spec/empty-arena",
+                    "/environment_params/map_size",
+                    "a side of 0 m",
+                    "sides above 0 m",
+                )
+                .advise("or choose a predefined_map from 1 to 4"),
+            );
+        }
+        let [width, height] = self.agent_params.picture_size();
+        let points = u64::from(width) * u64::from(height) * u64::from(self.agent_params.supersampling).pow(2);
+        if points > MAX_POINTS {
+            problems.push(
+                Problem::new(
+                    "spec/too-many-points",
+                    "/agent_params/supersampling",
+                    format!("{points} points for {width} × {height} pixels"),
+                    format!("at most {MAX_POINTS} points"),
+                )
+                .advise("use smaller observations or less supersampling"),
+            );
+        }
+        let agent = &self.agent_params;
+        if (agent.action_model, &agent.actions) == (ActionModel::ByWaypoint, &ActionSpace::DefaultDiscrete) {
+            problems.push(Problem::new(
+                "spec/no-default-actions",
+                "/agent_params/actions",
+                "default_discrete under bywaypoint, whose rows are places",
+                "a table, such as {\"discrete\": [[3, 4, 0], [-3, 4, 0]]}",
+            ));
+        }
+        problems.extend(progress::problems(self));
+        problems.extend(duplicate_names(&self.objects));
+        problems
+    }
+}
+
+impl World {
+    /// Its fields, to be changed.
+    pub fn into_draft(self) -> WorldDraft {
+        self.0
     }
 
     /// The world after a change, if it obeys the rules of documents then.
     ///
     /// # Errors
-    /// As [`World::check`].
+    /// As [`WorldDraft::check`].
     ///
     /// # Example
     /// ```
@@ -78,10 +156,58 @@ impl World {
     /// assert!(world.clone().edit(|world| world.max_steps = 50).is_ok());
     /// assert!(world.edit(|world| world.agent_params.time_step = 0.0).is_err());
     /// ```
-    pub fn edit(mut self, change: impl FnOnce(&mut Self)) -> Result<Self, SpecError> {
-        change(&mut self);
-        self.check().map(|()| self)
+    pub fn edit(self, change: impl FnOnce(&mut WorldDraft)) -> Result<Self, SpecError> {
+        let mut draft = self.into_draft();
+        change(&mut draft);
+        draft.check()
     }
+
+    /// The world with the layout of its predefined map from a library, if there is one: it then needs no library.
+    #[must_use]
+    pub fn with_maps(mut self, maps: &MapLibrary) -> Self {
+        // Layouts obey the rules of a world's own regions, on which no other rule depends.
+        maps.apply(&mut self.0);
+        self
+    }
+
+    /// Puts an object behind the others, if the world may hold it.
+    ///
+    /// # Errors
+    /// [`SpecError::Document`] under the name `object`: with every problem of the object, and where its `unique_name` is
+    /// taken or the world holds [`MAX_OBJECTS`] already. The world is as before then.
+    pub fn push(&mut self, object: Object) -> Result<(), SpecError> {
+        let mut more = Vec::new();
+        if self.objects.len() >= MAX_OBJECTS {
+            let expected = format!("a world of at most {MAX_OBJECTS}");
+            more.push(Problem::new("spec/value", "", "one more object", expected));
+        }
+        let name = object.unique_name.as_ref();
+        if let Some(first) = name.and_then(|_| self.objects.iter().position(|other| other.unique_name.as_ref() == name))
+        {
+            more.push(name_taken(
+                "/unique_name".to_owned(),
+                name.map_or("", String::as_str),
+                first,
+            ));
+        }
+        check("object", &object, Object::schema(), more)?;
+        self.0.objects.push(object);
+        Ok(())
+    }
+}
+
+fn duplicate_names(objects: &[Object]) -> impl Iterator<Item = Problem> {
+    let mut seen = std::collections::BTreeMap::new();
+    objects.iter().enumerate().filter_map(move |(index, object)| {
+        let name = object.unique_name.as_ref()?;
+        let first = *seen.entry(name).or_insert(index);
+        (first != index).then(|| name_taken(format!("/objects/{index}/unique_name"), name, first))
+    })
+}
+
+fn name_taken(pointer: String, name: &str, first: usize) -> Problem {
+    let found = format!("{name:?}, which object {first} has too");
+    Problem::new("spec/duplicate-name", pointer, found, "a name of its own")
 }
 
 /// Checks a value by its schema; `more` is what is wrong with it besides.

@@ -30,25 +30,25 @@ fields! {
         /// polygons in metres, corners in order, the last joins the first.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(length(max = 1000))]
-        pub map_regions: Option<Vec<Region>> = None => Field::ours(Same(MapAndWalls)).unit("m"),
+        pub map_regions: Option<Vec<Region>> = None => Field::ours(Leaves(MapAndWalls)).unit("m"),
         /// Side lengths of the arena along x and y in metres, centred on the origin; ignored when a map is chosen.
         #[schemars(inner(range(min = 0.0, max = 300.0)))]
         pub map_size: [f64; 2] = [100.0, 100.0] => Field::original(Measured(&[ArenaSize])).unit("m"),
         /// Height of the walls in metres.
         #[schemars(range(min = 0.0, max = 50.0))]
-        pub wall_height: f64 = 4.0 => Field::ours(Same(CameraAndWeather)).unit("m"),
+        pub wall_height: f64 = 4.0 => Field::ours(Leaves(CameraAndWeather)).unit("m"),
         /// Regions that cannot be entered, beside those of the map.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 1000))]
-        pub walls: Vec<Wall> = Vec::new() => Field::ours(Same(MapAndWalls)),
+        pub walls: Vec<Wall> = Vec::new() => Field::ours(Leaves(MapAndWalls)),
         /// Direction towards the sun (x east, y north, z up); any length but 0.
         #[schemars(inner(range(min = -1e6, max = 1e6)))]
-        pub sun_direction: [f64; 3] = [0.45, -0.35, 0.82] => Field::ours(Same(CameraAndWeather)),
+        pub sun_direction: [f64; 3] = [0.45, -0.35, 0.82] => Field::ours(Leaves(CameraAndWeather)),
         /// Colour of the sunlight.
         pub light_color: Color = Color([1.0, 0.97, 0.9]) => Field::ours(Measured(&[ColorsOfSurroundings])),
         /// Share of the light that reaches every side of everything, 0..1.
         #[schemars(range(min = 0.0, max = 1.0))]
-        pub ambient_light: f64 = 0.35 => Field::ours(Same(CameraAndWeather)),
+        pub ambient_light: f64 = 0.35 => Field::ours(Leaves(CameraAndWeather)),
         /// Colour of the sky at the zenith; it pales towards the horizon.
         pub sky_color: Color = Color([0.36, 0.62, 0.9]) => Field::ours(Measured(&[ColorsOfSurroundings])),
         /// Colour of the ground.
@@ -56,7 +56,7 @@ fields! {
         /// Distance in metres at which half of what is seen is fog, in the colour of the horizon; no fog if absent.
         #[serde(skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.1, max = 10_000.0))]
-        pub fog_distance: Option<f64> = None => Field::ours(Same(CameraAndWeather)).unit("m"),
+        pub fog_distance: Option<f64> = None => Field::ours(Leaves(CameraAndWeather)).unit("m"),
     }
 }
 

@@ -24,13 +24,13 @@ fields! {
     pub struct Object {
         /// Kind of asset: `geometric`, `tree`, `barrel`, …; a class that is not known draws a placeholder.
         #[schemars(length(min = 1, max = 100))]
-        pub class: String => Field::original(Measured(&[NumbersOfObjects, PlacesOfObjects])),
+        pub class: String => Field::original(Measured(&[Unmatched, Rewards, UnmatchedLooks])),
         /// Which asset of the class, counted from "1".
         #[serde(default)]
-        pub model: Model => Field::original(Same(ModelsOfObjects)),
+        pub model: Model => Field::original(Leaves(ModelsOfObjects)),
         /// Position on the ground in metres.
         #[schemars(inner(range(min = -300.0, max = 300.0)))]
-        pub coordinates: [f64; 2] => Field::original(Measured(&[PlacesOfObjects, CellsTaken])).unit("m"),
+        pub coordinates: [f64; 2] => Field::original(Measured(&[PlacesOfObjects])).unit("m"),
         /// Where the object faces, in degrees: 0 is +y, growing clockwise.
         #[serde(default)]
         #[schemars(range(min = 0.0, max = 360.0))]
@@ -38,73 +38,73 @@ fields! {
         /// Factor on the asset's natural size.
         #[serde(default = "one")]
         #[schemars(range(min = 0.01, max = 100.0))]
-        pub scale: f64 => Field::ours(Same(ModelsOfObjects)),
+        pub scale: f64 => Field::ours(Measured(&[SizesOfObjects])),
         /// Main colour; the asset's own colours if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub color: Option<Color> => Field::original(Measured(&[ColorsOfObjects])),
         /// Whether the agent is stopped by it.
         #[serde(default = "yes")]
-        pub solid: bool => Field::ours(Same(Bodies)),
+        pub solid: bool => Field::ours(Leaves(Bodies)),
         /// Makes it a body that the agent pushes along the ground; absent for one that stands fast. Only solid objects that do not
         /// move by themselves are pushed.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        pub pushable: Option<Pushable> => Field::ours(Same(Bodies)),
+        pub pushable: Option<Pushable> => Field::ours(Leaves(Bodies)),
         /// What one triggering is worth.
         #[serde(default)]
         #[schemars(range(min = -1e9, max = 1e9))]
         pub reward: f64 => Field::original(Measured(&[Rewards])),
-        /// Chance that a triggering pays at all (a bandit arm), 0..1.
+        /// Probability that triggering pays at all (a bandit arm), 0..1.
         #[serde(default = "one", skip_serializing_if = "is_one")]
         #[schemars(range(min = 0.0, max = 1.0))]
         pub reward_probability: f64 => Field::ours(Measured(&[RewardProbabilities])),
         /// Stimuli of which each triggering pays `reward`.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 3))]
-        pub reward_stimulus: Vec<Stimulus> => Field::original(Same(PaidFor)),
+        pub reward_stimulus: Vec<Stimulus> => Field::original(Leaves(PaidFor)),
         /// Stimuli that pay `reward` once, after which the object's reward is 0.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 3))]
-        pub reward_once_stimulus: Vec<Stimulus> => Field::original(Same(PaidFor)),
+        pub reward_once_stimulus: Vec<Stimulus> => Field::original(Leaves(PaidFor)),
         /// Stimuli that destroy the object.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 3))]
-        pub destroy_stimulus: Vec<Stimulus> => Field::original(Same(Bodies)),
+        pub destroy_stimulus: Vec<Stimulus> => Field::original(Leaves(Bodies)),
         /// Distance from centre to centre in metres below which `AgentInRange` holds.
         #[serde(default, skip_serializing_if = "is_default")]
         #[schemars(range(min = 0.0, max = 1000.0))]
-        pub range_stimulus_distance: f64 => Field::original(Same(PaidFor)).unit("m"),
+        pub range_stimulus_distance: f64 => Field::original(Leaves(PaidFor)).unit("m"),
         /// How the object moves by itself.
         #[serde(default)]
-        pub motion_model: MotionModel => Field::original(Same(Motion)),
+        pub motion_model: MotionModel => Field::original(Leaves(Motion)),
         /// Speed of the object's own motion in metres per second.
         #[serde(default, skip_serializing_if = "is_default")]
         #[schemars(range(min = 0.0, max = 100.0))]
-        pub speed: f64 => Field::ours(Same(Motion)).unit("m/s"),
+        pub speed: f64 => Field::ours(Leaves(Motion)).unit("m/s"),
         /// Largest turn of the object's own motion in degrees per second; at once if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.0, max = 3600.0))]
-        pub turn_rate: Option<f64> => Field::ours(Same(Motion)).unit("degrees/s"),
+        pub turn_rate: Option<f64> => Field::ours(Leaves(Motion)).unit("degrees/s"),
         /// How far a predator or prey sees the agent in metres, from centre to centre; everywhere if absent.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0.0, max = 1000.0))]
-        pub sight_range: Option<f64> => Field::ours(Same(Motion)).unit("m"),
+        pub sight_range: Option<f64> => Field::ours(Leaves(Motion)).unit("m"),
         /// Points in metres that the object walks along, in order, then back to the first.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 1000), inner(inner(range(min = -1e4, max = 1e4))))]
-        pub waypoints: Vec<[f64; 2]> => Field::ours(Same(Motion)).unit("m"),
+        pub waypoints: Vec<[f64; 2]> => Field::ours(Leaves(Motion)).unit("m"),
         /// Place in a scavenger sequence, from 1: it pays only when all lower places have been collected.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 1, max = 100_000))]
-        pub order: Option<u32> => Field::ours(Same(PaidFor)),
+        pub order: Option<u32> => Field::ours(Leaves(PaidFor)),
         /// How the object comes back after it was destroyed.
         #[serde(default, skip_serializing_if = "Option::is_none")]
-        pub respawn: Option<Respawn> => Field::ours(Same(Bodies)),
-        /// Which part of the world's chance is its own, whatever else stands in the world and in which order. Sampled objects
+        pub respawn: Option<Respawn> => Field::ours(Leaves(Bodies)),
+        /// The seed of its own random numbers, whatever else is in the world and in which order. Sampled objects
         /// have one of their group's name and their number in it; without it the place where it starts decides. Objects
-        /// that share one are told apart by their order.
+        /// that share one are distinguished by their order.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(range(min = 0, max = MAX_SEED))]
-        pub seed: Option<u64> => Field::ours(Not("two worlds that differ in chance alone are two runs of one world")),
+        pub seed: Option<u64> => Field::ours(Not("two worlds that differ in their seeds alone are two runs of one world")),
         /// A free word that rules and logs refer to; the name of the group for sampled objects.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         #[schemars(length(min = 1, max = 100))]
@@ -209,6 +209,7 @@ impl JsonSchema for Model {
 
 /// What sets an object off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[expect(clippy::enum_variant_names, reason = "the words of L2Explorer's documents")]
 pub enum Stimulus {
     /// The agent's body meets the object's; again when it comes back from at least a quarter of a metre away.
     AgentCollide,

@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::World;
+use super::WorldDraft;
 use super::defaults::{is_default, is_true};
 use super::fields::Place;
 use crate::error::Problem;
@@ -19,8 +19,8 @@ use crate::error::Problem;
     { "steps": 2, "ticks": 2, "episode_return": 1, "unshaped_return": 1, "velocity": [0, 1], "objects": [{ "collected": true }] },
 ]))]
 pub struct Progress {
-    /// In a world without a `seed`, what its chance grows from: the hash of where things stood at the start, 64 hexadecimal
-    /// letters. Absent if nothing depends on chance.
+    /// In a world without a `seed`, what its random numbers follow from: the hash of where things stood at the start, 64 hexadecimal
+    /// letters. Absent if nothing is random.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
     pub seed: Option<String>,
@@ -52,10 +52,10 @@ pub struct Progress {
     /// Where the agent set out; absent if it is there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub origin: Option<Origin>,
-    /// What documents of Driftworld before objects had chance of their own say. It is read, and means nothing.
-    #[serde(skip_serializing)]
+    /// Written by versions of Driftworld before objects had random streams of their own. Accepted and ignored.
+    #[serde(rename = "chance", skip_serializing)]
     #[schemars(range(min = 0, max = MOST))]
-    pub chance: Option<u64>,
+    pub former_draws: Option<u64>,
     /// What an agent on rails is about to do.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rails: Option<RailsProgress>,
@@ -159,10 +159,10 @@ pub struct ObjectProgress {
     #[serde(skip_serializing_if = "is_default")]
     #[schemars(range(min = 0, max = MOST_DRAWN))]
     pub tries: u64,
-    /// As `chance` of the whole: it is read, and means nothing.
-    #[serde(skip_serializing)]
+    /// As `chance` of the whole: accepted and ignored.
+    #[serde(rename = "chance", skip_serializing)]
     #[schemars(range(min = 0, max = MOST))]
-    pub chance: Option<u64>,
+    pub former_draws: Option<u64>,
     /// Velocity of what was pushed, in metres per second.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(inner(inner(range(min = -1e6, max = 1e6))))]
@@ -188,7 +188,7 @@ impl Default for ObjectProgress {
             pulls: 0,
             returns: 0,
             tries: 0,
-            chance: None,
+            former_draws: None,
             velocity: None,
             spin: 0.0,
         }
@@ -211,15 +211,16 @@ pub struct RailsProgress {
     #[schemars(length(max = 100_000), inner(range(min = 0, max = 99_999)))]
     pub avoided: Vec<u32>,
     /// Steps on this target.
+    #[serde(rename = "patience")]
     #[schemars(range(min = 0, max = 4_294_967_295_u32))]
-    pub patience: u32,
+    pub steps_on_target: u32,
     /// Indices of the targets that were left for later.
     #[schemars(length(max = 100_000), inner(range(min = 0, max = 99_999)))]
     pub given_up: Vec<u32>,
 }
 
 /// What of a world's progress does not fit the world.
-pub(super) fn problems(world: &World) -> Vec<Problem> {
+pub(super) fn problems(world: &WorldDraft) -> Vec<Problem> {
     let Some(progress) = &world.progress else {
         return Vec::new();
     };

@@ -26,18 +26,18 @@ fields! {
         /// Paid, in place of its reward, for setting off an object before its turn in a sequence; at most 0 makes it a penalty.
         #[serde(skip_serializing_if = "is_default")]
         #[schemars(range(min = -1e9, max = 1e9))]
-        pub order_penalty: f64 = 0.0 => Field::ours(Same(ShapingAndEndings)),
+        pub order_penalty: f64 = 0.0 => Field::ours(Leaves(ShapingAndEndings)),
         /// A soft reward for coming closer.
         #[serde(skip_serializing_if = "Option::is_none")]
-        pub shaping: Option<Shaping> = None => Field::ours(Same(ShapingAndEndings)),
+        pub shaping: Option<Shaping> = None => Field::ours(Leaves(ShapingAndEndings)),
         /// Any of these ends the episode as a success.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 100))]
-        pub success: Vec<EndCondition> = Vec::new() => Field::ours(Same(ShapingAndEndings)),
+        pub success: Vec<EndCondition> = Vec::new() => Field::ours(Leaves(ShapingAndEndings)),
         /// Any of these ends the episode as a failure.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         #[schemars(length(max = 100))]
-        pub failure: Vec<EndCondition> = Vec::new() => Field::ours(Same(ShapingAndEndings)),
+        pub failure: Vec<EndCondition> = Vec::new() => Field::ours(Leaves(ShapingAndEndings)),
     }
 }
 

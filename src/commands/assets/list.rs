@@ -10,11 +10,11 @@ use clap::Args;
 use super::super::{Failure, output};
 use crate::table::table;
 
-/// List the built-in classes, or the models of libraries.
+/// List the built-in classes, or the models in libraries.
 #[derive(Args)]
 #[command(after_help = "Examples:\n  driftworld assets list\n  driftworld assets list town.assets")]
 pub(crate) struct List {
-    /// Libraries; without any, the built-in classes are listed.
+    /// Libraries to list [default: the built-in classes].
     #[arg(value_name = "LIBRARY")]
     libraries: Vec<PathBuf>,
 }

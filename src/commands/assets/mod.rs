@@ -13,7 +13,7 @@ use clap::{Args, Subcommand};
 
 use super::Failure;
 
-/// Turn glTF models into libraries that worlds can use, and look at what there is.
+/// Pack glTF models into asset libraries, and inspect them.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld assets pack lamp.glb kiosk.glb -o town.assets
@@ -27,11 +27,11 @@ pub(crate) struct Assets {
 
 #[derive(Subcommand)]
 enum What {
-    /// Pack glTF files into a library, with levels of detail and bodies to bump into.
+    /// Pack glTF files into a library, with levels of detail and colliders.
     Pack(pack::Pack),
-    /// List the built-in classes, or the models of libraries.
+    /// List the built-in classes, or the models in libraries.
     List(list::List),
-    /// Draw the models of a class, or one model from four sides, level by level.
+    /// Draw the models of a class, or one model from four sides at each level of detail.
     Show(show::Show),
 }
 

@@ -16,35 +16,35 @@ use super::super::output;
 #[cfg(feature = "gltf")]
 use super::{gltf, list};
 
-/// Pack glTF files into a library, with levels of detail and bodies to bump into.
+/// Pack glTF files into a library, with levels of detail and colliders.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld assets pack lamp.glb -o town.assets --height 4 --collider cylinder
   driftworld assets pack oak.glb beech.glb -o trees.assets --class tree
   driftworld assets pack bin.gltf -o town.assets --add --main paint")]
 pub(crate) struct Pack {
-    /// The glTF files: .glb, or .gltf with what lies beside it.
+    /// The glTF files: .glb, or .gltf with the files it refers to.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// The library to write.
+    /// Library to write.
     #[arg(short, long, value_name = "LIBRARY")]
     output: PathBuf,
-    /// Keep the models that the library holds already.
+    /// Add to an existing library instead of replacing it.
     #[arg(long)]
     add: bool,
-    /// The class of all of them; without it each has its file's name as its class.
+    /// Class of all models [default: each file's name].
     #[arg(long, value_name = "NAME")]
     class: Option<String>,
-    /// Make each so many metres high.
+    /// Scale each model to this height, in metres.
     #[arg(long, value_name = "METRES", conflicts_with = "scale", allow_negative_numbers = true)]
     height: Option<f32>,
-    /// Metres for each unit of the files.
+    /// Metres per unit of the files.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
     scale: f32,
-    /// What the agent bumps into.
+    /// Shape of the collider.
     #[arg(long, value_enum, default_value_t = Body::Auto)]
     collider: Body,
-    /// The material whose colour gives way to an object's color; without it the one named main, if any.
+    /// Material that takes an object's colour [default: the one named main, if any].
     #[arg(long, value_name = "MATERIAL")]
     main: Option<String>,
 }
@@ -52,17 +52,17 @@ pub(crate) struct Pack {
 /// The bodies that models can get.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Body {
-    /// A ball for what is round, else the smaller one of box and cylinder.
+    /// A ball if the model is round, else the smaller of box and cylinder.
     Auto,
-    /// A box around what is lower than 2 m.
+    /// A box around the part below 2 m.
     Box,
     /// A ball as high as the model.
     Ball,
-    /// A cylinder around what is lower than 2 m.
+    /// A cylinder around the part below 2 m.
     Cylinder,
-    /// A cylinder with round ends.
+    /// A capsule: a cylinder with round ends.
     Capsule,
-    /// About the least convex shape around all of it.
+    /// Approximately the convex hull of the model.
     Hull,
 }
 

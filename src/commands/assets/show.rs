@@ -6,29 +6,29 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::env::{Asset, Camera, CpuRenderer, Frame, Library, LibraryModel, Scene, classes};
-use crate::spec::{Model, Object, World};
+use crate::spec::{Model, Object, WorldDraft};
 use clap::Args;
 
 use super::super::{Failure, output};
 use super::LibraryChoice;
 use crate::report::picture::{Picture, SheetRow, sheet};
 
-/// Draw the models of a class, or one model from four sides, level by level.
+/// Draw the models of a class, or one model from four sides at each level of detail.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld assets show tree -o trees.png
   driftworld assets show lamp 1 --assets town.assets -o lamp.png")]
 pub(crate) struct Show {
-    /// The class.
+    /// The class to draw.
     class: String,
-    /// One model of it.
+    /// A single model of the class.
     model: Option<String>,
     #[command(flatten)]
     libraries: LibraryChoice,
-    /// Pixels of each picture along its sides.
+    /// Width and height of each picture in pixels.
     #[arg(long, default_value_t = 220, value_parser = clap::value_parser!(u32).range(16..=2048))]
     size: u32,
-    /// The PNG file.
+    /// PNG file to write.
     #[arg(short, long, default_value = "assets.png", value_name = "FILE")]
     output: PathBuf,
 }
@@ -130,12 +130,12 @@ impl Show {
 
     /// A model that fills a picture, turned to a heading in degrees; it is seen from the south.
     fn picture(&self, asset: &Arc<Asset>, heading_deg: f32) -> Picture {
-        let mut world = World {
+        let mut world = WorldDraft {
             objects: vec![Object::new("cube", [0.0, 0.0])],
-            ..World::default()
+            ..WorldDraft::default()
         };
         world.environment_params.wall_height = 0.0;
-        let mut scene = Scene::from_world(&world);
+        let mut scene = Scene::from_world(&world.check().expect("a cube on open ground is sound"));
         let item = &mut scene.items[0];
         item.scale = SHOWN_SIZE / asset.height.max(2.0 * asset.radius);
         item.asset = Arc::clone(asset);

@@ -13,7 +13,9 @@ use crate::checksum::checksum;
 /// The libraries that a command's worlds take their assets from.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct LibraryChoice {
-    /// A library of assets in front of the built-in ones; may be given several times, the last one first.
+    /// An asset library to search before the built-in assets. Repeatable.
+    ///
+    /// The last one given is searched first.
     #[arg(long = "assets", value_name = "LIBRARY")]
     libraries: Vec<PathBuf>,
 }

@@ -6,12 +6,11 @@ mod tables;
 use std::path::{Path, PathBuf};
 
 use crate::curriculum::{Design, Drifting, Evaluate};
-use crate::design::{
-    self, DEFAULT_STEPS, DEFAULT_TOLERANCE, DesignOrder, DesignRequest, Designed, MAX_LIFETIMES, MAX_TRIED,
-};
+use crate::design::{self, DesignOrder, DesignRequest, Designed};
+use crate::modality::Kind;
 use crate::spec::{
-    DriftSchedule, DriftSwitch, Element, Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm, TaskLabel,
-    sound_name,
+    DriftSchedule, DriftSwitch, Element, Modality, Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm,
+    TaskLabel, sound_name,
 };
 use clap::{Args, ValueEnum};
 use driftworld_text::ShownPath;
@@ -23,14 +22,14 @@ pub(crate) use tables::{blocks, choices};
 
 /// Design learning and evaluation blocks from variants and their distances.
 ///
-/// By default the variants named are learned one after the other, from the one that is named first, in the order that --method finds; of
-/// one task named whole, whichever variant is best comes first. --order named keeps the order in which they are named. --probe takes, and
-/// where the task declares too few makes, variants that differ in one element of the decision process only, and prints the proof; of several
-/// variants named, each must be such a one. --step-distance makes a sequence of even steps; --form arranges the blocks as lifelong learning
-/// knows them.
+/// By default, --method orders the variants, and the first one given comes first. Given a whole task, the best first
+/// variant is chosen. --order named keeps the order given.
 ///
-/// A few worlds of everything are drawn before a scenario is written, and every variant on the way of a drift is looked at: what could not be
-/// run is refused.
+/// --probe selects variants that differ in one element of the decision process only, creates more if too few are
+/// declared, and prints the evidence. --step-distance creates a sequence of equal steps. --form arranges the blocks.
+///
+/// Before a scenario is written, a few worlds of every regime are drawn, and every variant along a drift is checked. A
+/// scenario that could not run is not written.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld curriculum find_objects --start find_objects#blue -o scenario.json
@@ -45,109 +44,128 @@ pub(crate) struct Curriculum {
     tasks: Vec<String>,
     #[command(flatten)]
     ordering: OrderArgs,
-    /// Probe one element: variants that differ from the start in it and in nothing else. state, action, transition, reward or
-    /// observation.
+    /// Vary one element only: state, action, transition, reward or observation.
+    ///
+    /// All variants differ from the start in this element and in nothing else.
     #[arg(long, value_parser = design::element, value_name = "ELEMENT")]
     probe: Option<Element>,
-    /// How many variants the probe takes; all that are declared, and at least 4, if not said.
-    #[arg(long, requires = "probe", conflicts_with = "step_distance", value_name = "N")]
+    /// Images of the learner that the probe is for [default: those of the task's worlds].
+    #[arg(long, requires = "probe", value_enum, value_delimiter = ',', value_name = "KIND,…")]
+    modalities: Option<Vec<Kind>>,
+    /// Number of variants in the probe [default: all declared, and at least 4].
+    #[arg(long, value_name = "N")]
     variants: Option<usize>,
-    /// The order of the variants, from --start on.
-    #[arg(long, value_enum, conflicts_with_all = ["method", "step_distance", "end"])]
+    /// Order of the variants, beginning with --start.
+    #[arg(long, value_enum)]
     order: Option<Order>,
-    /// Make a sequence of variants of which each is this far from the one before: in the probed element, or in all.
-    #[arg(long, value_name = "DISTANCE", conflicts_with_all = ["method", "end"])]
+    /// Create a sequence of variants, each this far from the one before.
+    ///
+    /// The distance is measured in the probed element, or else in all.
+    #[arg(long, value_name = "DISTANCE")]
     step_distance: Option<f64>,
-    /// How far off each step may be.
-    #[arg(long, requires = "step_distance", default_value_t = DEFAULT_TOLERANCE)]
-    tolerance: f64,
-    /// How many steps: one fewer than variants.
-    #[arg(long, requires = "step_distance", default_value_t = DEFAULT_STEPS, value_name = "N")]
-    steps: u32,
-    /// How learning blocks are arranged; the variants one after the other, beginning anew when there are more blocks, if not said.
+    /// How far each step may be from that distance [default: 0.001].
+    #[arg(long)]
+    tolerance: Option<f64>,
+    /// Number of steps, one fewer than variants [default: 4].
+    #[arg(long, value_name = "N")]
+    steps: Option<u32>,
+    /// Arrangement of the learning blocks [default: one variant after the other].
+    ///
+    /// If there are more blocks than variants, the sequence starts over.
     #[arg(long, value_enum)]
     form: Option<Form>,
-    /// How many learning blocks; as many as the form has of itself if not said.
+    /// Number of learning blocks [default: set by the form].
     #[arg(long, value_name = "N")]
     blocks: Option<u32>,
-    /// Write so many lifetimes of the permuted form, each in an order of its own, into the folder --output.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_LIFETIMES))]
+    /// Write this many lifetimes of the permuted form into the folder --output.
+    ///
+    /// Each has an order of its own.
+    #[arg(long, value_name = "N")]
     lifetimes: Option<u64>,
-    /// Learning blocks drift from each variant to the next: linear, cosine, step:N or sawtooth:N. With --blocks the whole way is
-    /// shared out among so many blocks, across their borders.
+    /// Drift from each variant to the next: linear, cosine, step:N or sawtooth:N.
+    ///
+    /// With --blocks, the whole drift is divided among that many blocks.
     #[arg(long, value_parser = design::schedule, value_name = "SCHEDULE")]
     drift: Option<DriftSchedule>,
-    /// Values with nothing in between switch by chance, more likely as the drift goes on, not at a point.
+    /// Switch values that cannot be interpolated at random, not at a fixed point.
+    ///
+    /// The switch becomes more likely as the drift proceeds.
     #[arg(long, requires = "drift")]
     mix: bool,
-    /// The scenario's name.
+    /// Name of the scenario.
     #[arg(long, default_value = "curriculum", value_parser = name)]
     name: String,
-    /// Experiences of each learning block.
+    /// Experiences per learning block.
     #[arg(long, default_value_t = 20, value_name = "N")]
     learn: u32,
-    /// Experiences of the first variant in a block before deployment.
+    /// Experiences of the first variant before deployment.
     #[arg(long, default_value_t = 0, value_name = "N")]
     pre_deployment: u32,
-    /// Experiences of each variant in each evaluation block.
+    /// Experiences per variant in each evaluation block.
     #[arg(long, visible_alias = "evaluate-with", default_value_t = 5, value_name = "N")]
     eval_episodes: u32,
-    /// When the agent is evaluated, frozen, in all variants, seen and to come.
-    #[arg(long, value_enum, default_value_t = When::Every)]
-    evaluate: When,
-    /// Evaluate after so many learning blocks each instead; 0 is before the first.
+    /// When to evaluate the frozen agent, on all variants.
+    #[arg(long, value_enum, default_value_t = EvaluationSchedule::Every)]
+    evaluate: EvaluationSchedule,
+    /// Evaluate after these numbers of learning blocks instead. 0 is before the first.
     #[arg(long, value_delimiter = ',', value_name = "N,…", conflicts_with = "evaluate")]
     evaluate_after: Option<Vec<u32>>,
-    /// Whether the learner is told which task it is in.
+    /// Whether the learner gets a task label.
     #[arg(long, value_enum, default_value_t = Label::None)]
     task_label: Label,
-    /// How complex the scenario is, in l2logger's words, for its logs.
+    /// Complexity of the scenario, as l2logger's logs state it.
     #[arg(long, value_enum)]
     complexity: Option<Complexity>,
-    /// How hard its tasks are, in l2logger's words, for its logs.
+    /// Difficulty of its tasks, as l2logger's logs state it.
     #[arg(long, value_enum)]
     difficulty: Option<Difficulty>,
-    /// What all worlds of the scenario follow from; evaluation and learning never share one.
+    /// Seed of all worlds. Learning and evaluation never share a world.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Draw so many worlds of each regime first, and refuse to write what cannot be drawn; 0 writes it unseen.
-    #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(..=i64::from(MAX_TRIED)))]
+    /// Draw this many worlds of each regime first, and fail if one cannot be drawn.
+    ///
+    /// 0 writes the scenario unchecked.
+    #[arg(long, default_value_t = 5, value_name = "N")]
     worlds: u32,
     #[command(flatten)]
     libraries: LibraryChoice,
-    /// Write the controls into this folder: the same variants, worlds and counts in reversed, random and contrasting order,
-    /// after the same block before deployment.
-    #[arg(long, value_name = "DIR", conflicts_with = "lifetimes")]
+    /// Also write control curricula into this folder.
+    ///
+    /// They have the same variants, worlds and counts in reversed, random and contrasting order, after the same
+    /// pre-deployment block.
+    #[arg(long, value_name = "DIR")]
     controls: Option<PathBuf>,
-    /// Draw the blocks over the experiences into this PNG file.
+    /// Draw the blocks over experiences into this PNG file.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// The scenario file, or - for standard output; a folder where there are several scenarios.
+    /// Scenario file, or - for standard output. A folder if there are several scenarios.
     #[arg(short, long, default_value = "-", value_name = "FILE")]
     output: PathBuf,
 }
 
 /// When the agent is evaluated.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum When {
+enum EvaluationSchedule {
     /// Before the first learning block and after each.
     Every,
-    /// Before the first and after the last.
+    /// Before the first learning block and after the last.
     Ends,
 }
 
 /// The order of the variants.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Order {
-    /// By growing distance from the first: the unlike come last.
+    /// In small steps: the shortest path from the first, with the smallest largest step among equals.
     Gradual,
-    /// The longest path from the first: neighbours as unlike as can be.
+    /// By increasing distance from the first.
+    Outward,
+    /// The longest path from the first: neighbours as different as possible.
     Abrupt,
-    /// The shortest path from the first: neighbours as alike as can be.
+    /// The shortest path from the first: neighbours as similar as possible.
     Path,
-    /// Each time what is farthest from everything met so far.
+    /// Each next variant is the one farthest from all before it.
     Farthest,
-    /// As they are named, whatever their distances.
+    /// In the order given, whatever the distances.
     Named,
 }
 
@@ -156,19 +174,19 @@ enum Order {
 enum Form {
     /// Each variant once, in one long block.
     Condensed,
-    /// Each variant again and again, in several short blocks: 3 if --blocks does not say.
+    /// Each variant repeatedly, in short blocks (3, or as many as --blocks allows).
     Dispersed,
-    /// Each variant once, in an order drawn by chance: another in each of --lifetimes.
+    /// Each variant once, in random order. Each of --lifetimes has another order.
     Permuted,
-    /// Two variants in turn, 3 times each if --blocks does not say.
+    /// Two variants in turn, 3 times each unless --blocks is given.
     Alternating,
-    /// Single-task experts: a scenario for every variant, in which it alone is learned.
+    /// Single-task experts: one scenario per variant, which learns it alone.
     Expert,
-    /// One after the other, and anew when there are more blocks.
+    /// One variant after the other, starting over if there are more blocks.
     Custom,
 }
 
-/// How complex a scenario is, in l2logger's words.
+/// Complexity of a scenario, in l2logger's words.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Complexity {
     #[value(name = "1-low")]
@@ -179,7 +197,7 @@ enum Complexity {
     High,
 }
 
-/// How hard its tasks are, in l2logger's words.
+/// Difficulty of its tasks, in l2logger's words.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Difficulty {
     #[value(name = "1-easy")]
@@ -190,14 +208,14 @@ enum Difficulty {
     Hard,
 }
 
-/// Whether the learner is told which task it is in.
+/// Whether the learner gets a task label.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Label {
-    /// It is not.
+    /// No label.
     None,
-    /// Beside its observations.
+    /// Beside the observation, as info.
     Info,
-    /// As part of its observations.
+    /// As part of the observation.
     Observation,
 }
 
@@ -208,12 +226,13 @@ impl Curriculum {
         let to_stdout = self.output.as_os_str() == "-";
         if request.is_of_several() && to_stdout {
             return Err(Failure::usage(
-                "several scenarios are written: name a folder with --output",
+                "--output: found no folder, expected one for several scenarios",
             ));
         }
         if request.is_of_several() && self.plot.is_some() {
             return Err(Failure::usage(
-                "--plot is of one scenario: leave it out, or --lifetimes and --form expert",
+                "--plot: found with several scenarios, expected one; leave out --plot, or --lifetimes and --form \
+                 expert",
             ));
         }
         let targets = [Some(&self.output), self.plot.as_ref()];
@@ -264,22 +283,26 @@ impl Curriculum {
     }
 
     fn request(&self) -> DesignRequest {
-        let steps = self.step_distance.is_some();
         DesignRequest {
             tasks: self.tasks.clone(),
             ordering: self.ordering.request(),
             order: self.order.map(|order| match order {
                 Order::Gradual => DesignOrder::Gradual,
+                Order::Outward => DesignOrder::Outward,
                 Order::Abrupt => DesignOrder::Abrupt,
                 Order::Path => DesignOrder::Path,
                 Order::Farthest => DesignOrder::Farthest,
                 Order::Named => DesignOrder::Named,
             }),
             probe: self.probe,
+            modalities: self
+                .modalities
+                .clone()
+                .map(|kinds| kinds.into_iter().map(Modality::from).collect()),
             variants: self.variants,
             step_distance: self.step_distance,
-            tolerance: steps.then_some(self.tolerance),
-            steps: steps.then_some(self.steps),
+            tolerance: self.tolerance,
+            steps: self.steps,
             lifetimes: self.lifetimes,
             controls: self.controls.is_some(),
             worlds: self.worlds,
@@ -295,8 +318,8 @@ impl Curriculum {
             evaluate: self.eval_episodes,
             evaluation: match (&self.evaluate_after, self.evaluate) {
                 (Some(places), _) => Evaluate::After(places.clone()),
-                (None, When::Every) => Evaluate::Every,
-                (None, When::Ends) => Evaluate::Ends,
+                (None, EvaluationSchedule::Every) => Evaluate::Every,
+                (None, EvaluationSchedule::Ends) => Evaluate::Ends,
             },
             form: self.form.map(|form| match form {
                 Form::Condensed => ScenarioForm::Condensed,

@@ -30,10 +30,11 @@ fn probe(picked: &[Picked], order: &[usize], element: Element) -> Result<String,
         rows.push(row(one, &anchor.distance(one)?));
     }
     Ok(format!(
-        "distances from {}, probing the {}: 0 is exactly 0, - is where nothing could differ\n{}\n",
+        "distances from {}, probing the {}: 0 means exactly 0, - means that nothing could differ\n{}\n{}",
         anchor.choice.id(),
         element.name(),
-        wide_table(headings(), rows, &[2, 3, 4, 5, 6])
+        wide_table(headings(), rows, &[2, 3, 4, 5, 6]),
+        made_values(order.iter().map(|index| &picked[*index]))
     ))
 }
 
@@ -51,12 +52,28 @@ fn steps(picked: &[Picked], wanted: &Steps) -> Result<String, Failure> {
     headings.push("all together".to_owned());
     let measured = wanted.element.map_or("all together", Element::name);
     Ok(format!(
-        "distances from the variant before, {} ± {} wanted in {}{measured}\n{}\n",
+        "distances from the variant before, {} ± {} wanted in {}{measured}\n{}\n{}",
         wanted.distance,
         wanted.tolerance,
         if wanted.element.is_some() { "the " } else { "" },
-        wide_table(headings, rows, &[2, 3, 4, 5, 6, 7])
+        wide_table(headings, rows, &[2, 3, 4, 5, 6, 7]),
+        made_values(picked)
     ))
+}
+
+/// What each variant that was made sets, in a line; nothing where none was made.
+fn made_values<'a>(picked: impl IntoIterator<Item = &'a Picked>) -> String {
+    let mut lines = String::new();
+    for one in picked.into_iter().filter(|one| one.is_made()) {
+        let values = one
+            .choice
+            .values
+            .iter()
+            .map(|(name, value)| format!("{name} = {value}"));
+        let values: Vec<String> = values.collect();
+        lines = format!("{lines}{} sets {}\n", one.choice.id(), values.join(", "));
+    }
+    if lines.is_empty() { lines } else { format!("\n{lines}") }
 }
 
 fn headings() -> Vec<String> {

@@ -13,15 +13,15 @@ use super::super::{Failure, log_folders, output, overwrite};
 use super::count;
 use crate::table::cells;
 
-/// Write the rows of one log or several as one table.
+/// Write the rows of one or several logs as one table.
 ///
-/// The columns are those of l2logger's aggregate: `block_num`, `regime_num`, `exp_num`, the other standard ones, then the log's own in
-/// alphabetical order; several logs have `run_id` in front: the name of the log's folder, with folders above where that tells logs
-/// apart. A regime is a stretch of rows with one block, subtype and task. Task names are in lower case, as scoring takes them. Rows
-/// that do not complete an experience are left out unless --incomplete is given.
+/// The columns are those of l2logger's aggregate: `block_num`, `regime_num`, `exp_num` and the other standard ones,
+/// then the log's own in alphabetical order. With several logs, `run_id` comes first: the name of the log's folder,
+/// preceded by parent folders if names repeat. A regime is a run of rows with one block, subtype and task. Task names
+/// are in lower case, as for scoring. Rows of incomplete experiences are left out unless --incomplete is given.
 ///
-/// Parquet and Feather hold types: integers, dictionaries for words that repeat, time stamps in microseconds, floats, and null where
-/// a value is missing. Feather is the Arrow file format, which pandas, polars and pyarrow read.
+/// Parquet and Feather keep types: integers, dictionaries for repeated strings, time stamps in microseconds, floats,
+/// and null for missing values. Feather is the Arrow file format, which pandas, polars and pyarrow read.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld logs aggregate demo-out/log -o demo.tsv
@@ -31,33 +31,35 @@ pub(crate) struct Aggregate {
     /// Folders of logs.
     #[arg(required = true, value_name = "DIR")]
     logs: Vec<PathBuf>,
-    /// The file; its ending says the format: .tsv, .csv, .parquet, .feather or .arrow. - for standard output.
+    /// File to write: .tsv, .csv, .parquet, .feather or .arrow, or - for standard output.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// The format, where the ending does not say it.
+    /// Format, if the file name does not tell it.
     #[arg(long, value_enum, value_name = "FORMAT")]
     format: Option<Format>,
-    /// Take every log below the folders, up to four levels; links are not looked into.
+    /// Search the folders for logs, up to four levels deep. Links are not followed.
     #[arg(short = 'R', long)]
     recursive: bool,
-    /// Keep rows that do not complete an experience.
+    /// Keep rows of incomplete experiences.
     #[arg(long)]
     incomplete: bool,
-    /// Write texts as they are into TSV and CSV, also what a spreadsheet would take for a formula; by default an
-    /// apostrophe guards what begins with =, +, -, @, a tab or a line end and is no number.
+    /// Do not escape cells that a spreadsheet would read as formulas.
+    ///
+    /// By default, TSV and CSV cells get an apostrophe if they begin with =, +, -, @, a tab or a line break and are not
+    /// numbers.
     #[arg(long)]
     raw_cells: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Format {
-    /// Text, cells parted by tabs.
+    /// Tab-separated values.
     Tsv,
-    /// Text, cells parted by commas.
+    /// Comma-separated values.
     Csv,
     /// Apache Parquet.
     Parquet,
-    /// Feather's second version, which is the Arrow file format.
+    /// Feather version 2, the Arrow file format.
     Feather,
 }
 
@@ -113,11 +115,13 @@ impl Aggregate {
         let found = self.output.display().to_string();
         match (self.format, by_name) {
             (Some(format), Some(by_name)) if format != by_name => Err(Failure::usage(format!(
-                "--format: found another format than that of {found:?}, expected the same; leave one of them out"
+                "--format: found a format that differs from the ending of {found:?}, expected the same; leave one of \
+                 them out"
             ))),
             (Some(format), _) | (None, Some(format)) => Ok(format),
             (None, None) => Err(Failure::usage(format!(
-                "--output: found {found:?}, expected a name ending in .tsv, .csv, .parquet, .feather or .arrow, or the format as \
+                "--output: found {found:?}, expected a name ending in .tsv, .csv, .parquet, .feather or .arrow, or \
+                 the format as \
                  --format tsv"
             ))),
         }
@@ -135,7 +139,7 @@ impl Aggregate {
     fn print(&self, table: &LogTable, format: Format) -> Result<(), Failure> {
         if matches!(format, Format::Parquet | Format::Feather) {
             return Err(Failure::usage(
-                "--output: Parquet and Feather are no text, expected the name of a file",
+                "--output: found - for Parquet or Feather, which are not text, expected the name of a file",
             ));
         }
         let failed = |error: &dyn std::fmt::Display| Failure::input(format!("standard output: {error}"));

@@ -7,10 +7,10 @@ use clap::{Args, Subcommand};
 
 use super::Failure;
 
-/// Check logs, or bring their rows together as one table.
+/// Check logs, or merge their rows into one table.
 ///
-/// Logs are folders in l2logger's format, as `driftworld run` writes them: `logger_info.json`, `scenario_info.json`, and
-/// WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv. To score them, see `driftworld metrics`.
+/// Logs are folders in l2logger's format, as `driftworld run` writes them: `logger_info.json`, `scenario_info.json`,
+/// and WORKER/BLOCKNUM-BLOCKTYPE/data-log.tsv. To score them, see `driftworld metrics`.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld logs validate demo-out/log

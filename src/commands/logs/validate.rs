@@ -10,12 +10,12 @@ use serde_json::{Value, json};
 use super::super::{Failure, log_folders, output};
 use super::{count, grouped};
 
-/// Name every problem of logs with its file and line.
+/// Report every problem of logs with its file and line.
 ///
-/// Checked is all that scoring needs, and what only the writer of a log could have kept to: numbers that never fall, exactly one
-/// complete row for each experience, the same columns in every file. A log without problems can be read; warnings are about what
-/// is odd. Problems and warnings go to standard error, one line for each log to standard output. Ends with exit code 1 where there
-/// is a problem.
+/// Checks everything that scoring needs, and what only the log's writer could have ensured: numbers that never
+/// decrease, exactly one complete row per experience, the same columns in every file. A log without problems can be
+/// read. Warnings report oddities. Problems and warnings go to standard error, one line per log to standard output. The
+/// exit code is 1 if there is a problem.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld logs validate demo-out/log
@@ -24,7 +24,7 @@ pub(crate) struct Validate {
     /// Folders of logs.
     #[arg(required = true, value_name = "DIR")]
     logs: Vec<PathBuf>,
-    /// Take every log below the folders, up to four levels; links are not looked into.
+    /// Search the folders for logs, up to four levels deep. Links are not followed.
     #[arg(short = 'R', long)]
     recursive: bool,
     /// Print the result as JSON.

@@ -21,10 +21,11 @@ use super::scoring::{Intervals, Scoring};
 
 /// Score the logs of lifetimes.
 ///
-/// One lifetime gives a table of its metrics. Several are taken as repeats by one agent: each metric comes with its interquartile
-/// mean over lifetimes and tasks and a bootstrap interval. With --against, two agents are compared, on one scale.
+/// One lifetime gives a table of its metrics. Several count as repeated runs of one agent: each metric comes with its
+/// interquartile mean over lifetimes and tasks, and a bootstrap confidence interval. --against compares two agents on
+/// one scale.
 ///
-/// Options have the names they have in l2metrics, and the files are the ones it writes.
+/// Options and output files have the same names as in l2metrics.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld metrics demo-out/log
@@ -34,19 +35,21 @@ use super::scoring::{Intervals, Scoring};
   driftworld metrics LOG --ste-data experts")]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 pub(crate) struct Metrics {
-    /// Folders of logs in l2logger's format.
+    /// Folders of l2logger logs.
     #[arg(value_name = "DIR")]
     logs: Vec<PathBuf>,
-    /// The same, as l2metrics has it.
+    /// The same, under l2metrics' name.
     #[arg(short, long = "log-dir", value_name = "DIR", hide = true)]
     log_dir: Vec<PathBuf>,
-    /// Take all logs in the folders, also up to four levels below; links are not looked into.
+    /// Search the folders for logs, up to four levels deep. Links are not followed.
     #[arg(short = 'R', long)]
     recursive: bool,
-    /// Folders of another agent's logs: how probably is a lifetime of the first better?
+    /// Logs of a second agent. Reports how likely the first agent is to be better.
     #[arg(long, value_name = "DIR", num_args = 1..)]
     against: Vec<PathBuf>,
-    /// Keep the logs as experts in the folder --ste-data, in place of those of their tasks (w) or beside them (a), and score nothing.
+    /// Store the logs as experts in --ste-data, and score nothing.
+    ///
+    /// w replaces the experts of their tasks, a adds to them.
     #[arg(short = 's', long, value_name = "w|a", requires = "ste_data")]
     ste_store_mode: Option<SteStoreMode>,
     /// Print the result as JSON.
@@ -56,23 +59,26 @@ pub(crate) struct Metrics {
     scoring: Scoring,
     #[command(flatten)]
     intervals: Intervals,
-    /// Save results: `NAME_metrics.json`, `NAME_regime.tsv`, `NAME_settings.json`; of several lifetimes or with -R `NAME.json`,
-    /// `NAME.tsv`, `NAME_regime.tsv`, `NAME_settings.json`, and `NAME_repeats.json` with intervals and comparisons.
+    /// Save the results.
+    ///
+    /// Of one lifetime: `NAME_metrics.json`, `NAME_regime.tsv`, `NAME_settings.json`. Of several, or with -R:
+    /// `NAME.json`, `NAME.tsv`, `NAME_regime.tsv`, `NAME_settings.json`, and `NAME_repeats.json` with intervals and
+    /// comparisons.
     #[arg(short = 'S', long, help_heading = "Saving")]
     do_save: bool,
     /// Save results in this folder [default: results].
     #[arg(short = 'O', long, value_name = "DIR", help_heading = "Saving")]
     output_dir: Option<PathBuf>,
-    /// Save results under this NAME [default: the log's; of several `ll_metrics`].
+    /// Save results under this name [default: the log's; of several, `ll_metrics`].
     #[arg(short, long, value_name = "NAME", help_heading = "Saving")]
     output: Option<String>,
-    /// Draw figures, too, as PNG and SVG into the folder plots/ below --output-dir.
+    /// Also draw figures as PNG and SVG, into plots/ under --output-dir.
     #[arg(short = 'P', long, help_heading = "Saving")]
     do_plot: bool,
-    /// What l2metrics' users say to keep it from writing, which this command does not do by itself.
+    /// l2metrics' option not to save. Nothing is saved by default.
     #[arg(long, hide = true, conflicts_with_all = ["do_save", "output_dir", "output"])]
     no_save: bool,
-    /// The same of figures.
+    /// l2metrics' option not to plot. Nothing is plotted by default.
     #[arg(long, hide = true, conflicts_with = "do_plot")]
     no_plot: bool,
     #[command(flatten)]

@@ -50,8 +50,9 @@ pub(crate) fn summary(scores: &LifetimeMetrics) -> String {
 }
 
 /// What the metrics are made of, and what they cannot tell.
-const SCALED: &str = "The metrics are computed after each task was scaled to 1..101, by default by this lifetime's own worst and best: they say how it \
-                      went on, not how good it was. Compare agents by the rows above, or with --common-ranges.";
+const SCALED: &str = "Metrics are computed after scaling each task to 1..101, by default between this lifetime's own \
+     worst and best. They show how performance changed, not how good it was. To compare agents, use the rows above, \
+     or --common-ranges.";
 
 /// Columns as they were logged, in the mean over lifetimes: how good agents are, before anything is scaled.
 fn as_logged(agents: &[(&str, &[LifetimeMetrics])]) -> String {
@@ -111,7 +112,7 @@ fn several(scores: &Scores, together: &Comparison) -> String {
     if let Some(own) = own_scale(options) {
         parts.push(own);
     } else if options.data_range.is_some() {
-        parts.push("Performances of all lifetimes are scaled by the same ranges.".to_owned());
+        parts.push("All lifetimes are scaled by the same ranges.".to_owned());
     }
     if !others.is_empty() {
         parts.push(format!(
@@ -120,9 +121,9 @@ fn several(scores: &Scores, together: &Comparison) -> String {
         ));
         parts.push(repeats(&together.repeats_against, &share));
         parts.push(format!(
-            "How probably a lifetime of the first agent is better than one of the other, 0.5 for neither. p: how often two equal agents \
-             differ as much, by sharing out all lifetimes among the two; different where it is at most {}, which calls that share of equal \
-             agents different.",
+            "Probability that a lifetime of the first agent is better than one of the other; 0.5 means neither is. p: \
+             how often two equal agents would differ at least as much, by permuting lifetimes between them. Agents \
+             differ where p is at most {}; that share of equal agents is called different by mistake.",
             number(1.0 - together.intervals.confidence)
         ));
         parts.push(improvements(together, &share));
@@ -132,12 +133,12 @@ fn several(scores: &Scores, together: &Comparison) -> String {
 
 fn improvements(together: &Comparison, share: &str) -> String {
     let alpha = 1.0 - together.intervals.confidence;
-    let told = |improvement: &Improvement| match improvement.p_value {
+    let verdict = |improvement: &Improvement| match improvement.p_value {
         // What 1 - 0.95 rounds to must not make a difference.
         Some(p) if p <= alpha + 1e-12 && improvement.probability.value > 0.5 => "first is better",
         Some(p) if p <= alpha + 1e-12 => "other is better",
         Some(_) if improvement.least_p_value.is_some_and(|least| least > alpha + 1e-12) => "too few lifetimes",
-        Some(_) => "not told apart",
+        Some(_) => "no clear difference",
         None => "",
     };
     let rows = together.improvement.iter().map(|row| {
@@ -146,7 +147,7 @@ fn improvements(together: &Comparison, share: &str) -> String {
             number(row.improvement.probability.value),
             interval(row.improvement.probability.best_interval()),
             row.improvement.p_value.map_or_else(String::new, number),
-            told(&row.improvement).to_owned(),
+            verdict(&row.improvement).to_owned(),
             row.improvement.strata.len().to_string(),
         ]
     });
@@ -162,7 +163,7 @@ fn improvements(together: &Comparison, share: &str) -> String {
     )
 }
 
-/// Each metric over the lifetimes, and what a reader must be told of the intervals.
+/// Each metric over the lifetimes, and what a reader must know about the intervals.
 fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
     let few = metrics.iter().any(|row| row.iqm.t_interval.is_some());
     let rows = metrics.iter().map(|row| {
@@ -200,8 +201,9 @@ fn repeats(metrics: &[RepeatedMetric], share: &str) -> String {
 }
 
 /// What intervals of few lifetimes are worth.
-const FEW: &str = "below ten lifetimes the bootstrap's interval holds the true value less often than it says (82 instead of 95 of 100 times with \
-                   five): go by Student's, (t), which takes what varies from lifetime to lifetime as normal";
+const FEW: &str = "below ten lifetimes, bootstrap intervals contain the true value less often than they claim (82 \
+     instead of 95 times in 100 with five lifetimes); use Student's (t), which assumes that lifetimes are normally \
+     distributed";
 
 fn counted(number: usize, what: &str) -> String {
     if number == 1 {

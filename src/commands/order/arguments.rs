@@ -7,17 +7,19 @@ use clap::Args;
 /// How an order is found; shared with `curriculum`.
 #[derive(Args)]
 pub(crate) struct OrderArgs {
-    /// The method: nearest, exact (up to 15 variants), two-opt, spectral, tree, leaf, contrast, typical-last, farthest-first,
-    /// random, bottleneck, target-step or given; exact where possible if none is given, else two-opt.
+    /// Ordering method [default: exact if there are few enough variants, else two-opt].
+    ///
+    /// One of nearest, exact (up to 15 variants), two-opt, spectral, tree, leaf, contrast, typical-last,
+    /// farthest-first, random, bottleneck, target-step, gradual, outward, given.
     #[arg(long)]
     method: Option<Method>,
-    /// The variant that comes first; whichever is best if none is given.
+    /// First variant [default: the one named first, or whichever is best of one whole task].
     #[arg(long, value_name = "TASK#VARIANT")]
     start: Option<String>,
-    /// The variant that comes last; whichever is best if none is given.
+    /// Last variant [default: whichever is best].
     #[arg(long, value_name = "TASK#VARIANT")]
     end: Option<String>,
-    /// The step that the method target-step wants between neighbours.
+    /// Step between neighbours for the method target-step.
     #[arg(long, value_name = "DISTANCE")]
     target_step: Option<f64>,
 }

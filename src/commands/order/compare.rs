@@ -57,9 +57,9 @@ impl Comparison {
         }
     }
 
-    pub(super) fn json(&self, matrix: &DistanceMatrix) -> Value {
+    pub(super) fn json(&self, matrix: &DistanceMatrix, seed: u64) -> Value {
         let one = |(method, outcome): &(Method, Result<Ordering, String>)| match outcome {
-            Ok(found) => super::json_of(matrix, *method, found),
+            Ok(found) => super::json_of(matrix, *method, found, seed),
             Err(error) => json!({"method": method, "error": error}),
         };
         self.outcomes.iter().map(one).collect()

@@ -5,9 +5,9 @@ mod compare;
 
 use std::path::PathBuf;
 
-use crate::distances::labelled_matrix;
+use crate::distances::{By, labelled_matrix};
 use crate::report::picture::path_map;
-use crate::similarity::{DistanceMatrix, Method, Ordering};
+use crate::similarity::{DistanceMatrix, Method, NUM_RANDOM_ORDERS, Ordering, share_of_shorter_orders};
 use crate::tasks;
 use clap::Args;
 use serde_json::{Value, json};
@@ -19,41 +19,50 @@ use super::weights::WeightArgs;
 use super::{Failure, matrix_file, output, overwrite};
 use crate::table::{cells, table};
 
-/// Put variants into an order by their distances.
+/// Order variants by their distances.
 ///
-/// Variants of one task are compared parameter by parameter, at the weights that the task declares, those of several tasks by
-/// 16 worlds each.
+/// Variants of one task are compared parameter by parameter, with the task's own weights. --by compares them by worlds or
+/// by rewards, as variants of several tasks have to be.
+///
+/// The order starts with the variant named first, unless --start names another. If you name one whole task, it starts with
+/// whichever is best.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld order find_objects
   driftworld order find_objects --start find_objects#blue --end find_objects#dusk --plot path.png
-  driftworld order find_objects get_to_goal#plain --matrix matrix.npy
+  driftworld order find_objects get_to_goal#plain --by worlds --matrix matrix.npy
   driftworld order --from-matrix matrix.npy --compare")]
 pub(crate) struct Order {
     /// Variants, or tasks, which stand for all their variants.
     #[arg(required_unless_present = "from_matrix", value_name = "TASK")]
     tasks: Vec<String>,
-    /// Take the distances from this file (.csv, .json or .npy) instead of measuring variants.
+    /// Read distances from this file (.csv, .json or .npy) instead of measuring.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["tasks", "weight"])]
     from_matrix: Option<PathBuf>,
     #[command(flatten)]
     ordering: OrderArgs,
+    /// What to compare variants by: parameters, worlds or rewards [default: parameters].
+    ///
+    /// Variants of several tasks need worlds or rewards: 16 worlds of each are compared.
+    #[arg(long, value_parser = By::from_name, value_name = "MEASURE", conflicts_with = "from_matrix")]
+    by: Option<By>,
     #[command(flatten)]
     weights: WeightArgs,
-    /// What the method random draws from.
+    /// Seed of the method random, and of the random orders that the length is compared with.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Show every method side by side.
+    /// Compare all methods.
     #[arg(long, conflicts_with_all = ["method", "plot"])]
     compare: bool,
-    /// Write the distance matrix into this file: .csv, .json, or .npy with the labels in a .labels.json beside it.
+    /// Also write the distance matrix: .csv, .json, or .npy with a .labels.json beside it.
     #[arg(long, value_name = "FILE")]
     matrix: Option<PathBuf>,
-    /// Write labels into CSV as they are, also what a spreadsheet would take for a formula; by default an apostrophe
-    /// guards it.
+    /// Do not escape CSV labels that a spreadsheet would read as formulas.
+    ///
+    /// By default they get an apostrophe.
     #[arg(long, requires = "matrix")]
     raw_cells: bool,
-    /// Draw the path over a map of the distances into this PNG file.
+    /// Draw the path on a map of the distances into this PNG file.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
     /// Print the result as JSON.
@@ -70,7 +79,7 @@ impl Order {
             matrix_file::read("from_matrix", path)?
         } else {
             let variants = tasks::variants_of(&self.tasks)?;
-            labelled_matrix(&variants, |declared| self.weights.over(declared))?
+            labelled_matrix(&variants, self.by, |declared| self.weights.over(declared))?
         };
         if let Some(path) = &self.matrix {
             matrix_file::write("matrix", path, &matrix, cells(self.raw_cells))?;
@@ -78,44 +87,62 @@ impl Order {
         if self.compare {
             return self.compare(&matrix);
         }
-        let (method, ordering) = self.ordering.request().order(&matrix, self.seed)?;
+        let (method, ordering) = self.ordering.request().order_from(&matrix, self.seed, &self.firsts())?;
         if let Some(path) = &self.plot {
             output::write_picture(path, &path_map(&matrix, method, &ordering)?)?;
         }
         if self.json {
-            let mut found = json_of(&matrix, method, &ordering);
+            let mut found = json_of(&matrix, method, &ordering, self.seed);
             found["matrix"] = json!(matrix);
+            if self.from_matrix.is_none() {
+                found["by"] = json!(self.by.unwrap_or(By::Parameters));
+            }
             return output::json(&found);
         }
         output::line(path_table(&matrix, &ordering))?;
+        let by = match &self.from_matrix {
+            Some(_) => String::new(),
+            None => format!(" by {}", self.by.unwrap_or(By::Parameters).name()),
+        };
         let steadily = ordering.anchor_correlation.map_or_else(String::new, |rho| {
             format!(", correlation with the distance from the first {rho:.2}")
         });
         output::line(format!(
-            "\n{}: length {:.4}, largest step {:.4}, mean step {:.4}{steadily}",
+            "\n{}{by}: length {:.4}, largest step {:.4}, mean step {:.4}{steadily}",
             method.name(),
             ordering.length,
             ordering.largest_step(),
             ordering.mean_step()
+        ))?;
+        output::line(format!(
+            "shorter than it: {:.1} % of {NUM_RANDOM_ORDERS} random orders",
+            100.0 * share_of_shorter_orders(&matrix, &ordering, self.seed)
         ))
+    }
+
+    /// The variants that may come first where nobody says which: those of the first argument, if there are others.
+    fn firsts(&self) -> Vec<usize> {
+        let first = self.tasks.first().and_then(|first| tasks::variants(first).ok());
+        (0..first.map_or(0, |variants| variants.len())).collect()
     }
 
     fn compare(&self, matrix: &DistanceMatrix) -> Result<(), Failure> {
         let comparison = Comparison::new(matrix, &self.ordering.request().options(matrix, self.seed)?);
         if self.json {
-            return output::json(&comparison.json(matrix));
+            return output::json(&comparison.json(matrix, self.seed));
         }
         output::line(comparison.table())
     }
 }
 
 /// An order as JSON.
-fn json_of(matrix: &DistanceMatrix, method: Method, ordering: &Ordering) -> Value {
+fn json_of(matrix: &DistanceMatrix, method: Method, ordering: &Ordering, seed: u64) -> Value {
     let names: Vec<&String> = ordering.indices.iter().map(|index| &matrix.labels()[*index]).collect();
     json!({
         "method": method, "order": names, "steps": ordering.steps, "length": ordering.length,
         "largest_step": ordering.largest_step(), "mean_step": ordering.mean_step(),
         "anchor_correlation": ordering.anchor_correlation,
+        "share_of_shorter_random_orders": share_of_shorter_orders(matrix, ordering, seed),
     })
 }
 

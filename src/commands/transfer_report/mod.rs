@@ -15,50 +15,50 @@ use super::{Failure, log_folders, matrix_file, output, overwrite};
 use crate::report::picture::scatter;
 use crate::scoring::{Experts, score_logs};
 
-/// Ask whether similar variants transferred more, by logs and distances.
+/// Test whether similar variants transferred more.
 ///
-/// Transfer from A to B is what learning A did to B: B's evaluation after it against the one before. It is forward where B was
-/// still to be learned, backward where it had been. A curriculum ordered by distance rests on the belief that the nearer two
-/// variants are, the more they transfer; this report tests the belief on lifetimes that were lived.
+/// Transfer from A to B is the effect of learning A on B: the evaluation of B after it, compared with the one before.
+/// It is forward if B had not been learned yet, and backward if it had. Ordering a curriculum by distance assumes that
+/// transfer grows as distance shrinks. This report tests that assumption on logged lifetimes.
 ///
-/// Several lifetimes are pooled: of each pair the first transfer of each lifetime counts, and their mean is taken. Use lifetimes
-/// that learned in different orders: where all learned in one order, near variants are also early ones, and the two cannot be
-/// told apart.
+/// Several lifetimes are pooled. For each pair of variants, the first transfer of each lifetime counts, and their mean
+/// is taken. Use lifetimes with different orders: if all learned in one order, near variants are also early ones, and
+/// the two effects are confounded.
 ///
-/// The p-value comes from a Mantel test: variants change labels in the distance matrix, pairs without a transfer stay without,
-/// and p is the share of relabellings that go together at least as well.
+/// The p-value comes from a Mantel test: variants swap labels in the distance matrix, pairs without a transfer stay
+/// without, and p is the share of relabellings with a correlation at least as strong.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld order find_objects --matrix distances.csv
   driftworld transfer-report logs --distances distances.csv -o transfer.png
   driftworld transfer-report logs/run1 logs/run2 --distances distances.csv --json")]
 pub(crate) struct TransferReport {
-    /// Folders of logs in l2logger's format, or folders of such folders.
+    /// Folders of l2logger logs, or folders of such folders.
     #[arg(required = true, value_name = "LOGS")]
     logs: Vec<PathBuf>,
-    /// The distance matrix, as `driftworld order --matrix` writes it: .csv, .json or .npy.
+    /// The distance matrix from `driftworld order --matrix`: .csv, .json or .npy.
     #[arg(long, value_name = "FILE")]
     distances: PathBuf,
-    /// The column that holds the performance.
+    /// The column to score.
     #[arg(long, default_value = "reward", value_name = "COLUMN")]
     perf_measure: String,
-    /// How transfer compares before and after.
+    /// How to compare performance before and after.
     #[arg(long, value_enum, default_value_t = Measure::Contrast, value_name = "MEASURE")]
     transfer_method: Measure,
-    /// How performances are scaled: task, run or none.
+    /// How to normalise performance: task, run or none.
     #[arg(long, default_value = "task", value_name = "METHOD")]
     normalization_method: NormalizationMethod,
-    /// How learning curves are smoothed: flat, hanning, hamming, bartlett, blackman or none.
+    /// The smoothing window: flat, hanning, hamming, bartlett, blackman or none.
     #[arg(long, default_value = "flat", value_name = "METHOD")]
     smoothing_method: SmoothingMethod,
-    /// How many relabellings the test draws; all of them where there are no more.
+    /// Number of relabellings to draw, or all if there are no more.
     #[arg(long, default_value_t = 9_999, value_name = "N",
         value_parser = clap::value_parser!(u64).range(1..=MAX_RELABELLINGS))]
     relabellings: u64,
-    /// What relabellings are drawn from.
+    /// Seed of the relabellings.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Draw transfer against distance into this PNG file.
+    /// Draw transfer over distance into this PNG file.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Print the result as JSON.
@@ -69,9 +69,9 @@ pub(crate) struct TransferReport {
 /// A measure of transfer.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Measure {
-    /// Difference over sum: −1 to 1, 0 where nothing changed.
+    /// Difference over sum: −1 to 1, with 0 for no change.
     Contrast,
-    /// After over before: 1 where nothing changed.
+    /// After over before: 1 for no change.
     Ratio,
 }
 

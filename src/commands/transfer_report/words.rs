@@ -104,14 +104,15 @@ fn tests(report: &TransferReport) -> String {
 /// What the numbers do and do not say.
 fn notes(report: &TransferReport) -> Vec<String> {
     let mut notes = vec![
-        "value: below 0, nearer variants transferred more; 0, distance told nothing. Spearman compares ranks, Pearson the numbers."
+        "value: below 0, nearer variants transferred more; 0, distance predicted nothing. Spearman compares ranks, \
+         Pearson the numbers."
             .to_owned(),
     ];
     if let Some(test) = report.forward.spearman.or(report.backward.spearman) {
         notes.push(format!(
-            "p: the share of {} whose correlation is at least as strong. A small p says that chance labels seldom do as well. It is \
-             not the probability that similarity does not matter, nor does it say how much it matters; a large p says that this \
-             many variants could not show it, not that there is nothing to show.{}",
+            "p: the share of {} whose correlation is at least as strong. A small p means that random labels seldom do \
+             as well. It is not the probability that similarity does not matter, nor a measure of how much it \
+             matters. A large p means that this many variants could not show an effect, not that there is none.{}",
             relabellings(&test),
             if test.exact {
                 format!(
@@ -125,13 +126,14 @@ fn notes(report: &TransferReport) -> Vec<String> {
     }
     if report.learning_orders < 2 {
         notes.push(
-            "All lifetimes learned in one order: whether a variant gained because it was near, or because of when it came, they \
-             cannot tell. Add lifetimes in other orders (reversed, random)."
+            "All lifetimes learned in the same order, so they cannot show whether a variant gained because it was \
+             near or because it came early. Add lifetimes in other orders (reversed, random)."
                 .to_owned(),
         );
     }
     notes.push(
-        "A correlation is no cause: a variant that is easy, or already as good as it can be, has its own transfer whatever is near."
+        "Correlation is not causation: a variant that is easy, or already learned as well as possible, has a transfer \
+         of its own whatever is near."
             .to_owned(),
     );
     for (names, place) in [
@@ -139,7 +141,10 @@ fn notes(report: &TransferReport) -> Vec<String> {
         (&report.not_in_matrix, "distance matrix"),
     ] {
         if !names.is_empty() {
-            notes.push(format!("Not in the {place}, and left out: {}.", names.join(", ")));
+            notes.push(format!(
+                "Left out because they are not in the {place}: {}.",
+                names.join(", ")
+            ));
         }
     }
     notes
@@ -149,7 +154,7 @@ fn relabellings(test: &MantelTest) -> String {
     if test.exact {
         format!("all {} relabellings of the variants", test.relabellings)
     } else {
-        format!("{} relabellings of the variants, drawn by chance,", test.relabellings)
+        format!("{} random relabellings of the variants", test.relabellings)
     }
 }
 
@@ -197,7 +202,7 @@ pub(super) fn panels(report: &TransferReport) -> Vec<Panel> {
 fn summary(direction: &DirectionReport) -> String {
     match &direction.spearman {
         Some(test) => format!(
-            "Spearman {}; chance labels do as well with p = {} (the nearer, the more); {} pairs of {} variants",
+            "Spearman {}; random labels do as well with p = {} (the nearer, the more); {} pairs of {} variants",
             signed(test.correlation),
             share(test.p_less, test),
             test.pairs,

@@ -6,7 +6,6 @@ use std::fmt::Write;
 use driftworld_env::{Channel, Outgoing, Received, Screenshot};
 
 use super::Session;
-use crate::error::UnityError;
 use crate::observation::png;
 use crate::parameters::Parameters;
 use crate::remarks::About;
@@ -112,7 +111,7 @@ impl Session {
     }
 
     /// Does what messages ask for; says whether the world is at the start of another one.
-    pub(super) fn receive(&mut self, messages: &[Told]) -> Result<bool, UnityError> {
+    pub(super) fn receive(&mut self, messages: &[Told]) -> bool {
         let mut is_renewed = false;
         let mut points = 0;
         for (channel, text) in messages {
@@ -129,7 +128,7 @@ impl Session {
                     .make(About::Worlds, &format!("{} channel: {remark}", channel.name()));
             }
             if received.reset {
-                self.renew()?;
+                self.renew();
                 is_renewed = true;
             }
             for message in &received.messages {
@@ -149,19 +148,17 @@ impl Session {
                 self.send(&answer);
             }
         }
-        Ok(is_renewed)
+        is_renewed
     }
 
     /// Takes over the world that a message reset to, with what has been set.
-    fn renew(&mut self) -> Result<(), UnityError> {
-        self.start = self.environment.world().clone();
-        self.maps.apply(&mut self.start);
+    fn renew(&mut self) {
+        self.start = self.environment.world().clone().with_maps(&self.maps);
         if !self.parameters.is_empty() || self.start != *self.environment.world() {
-            self.restart()?;
+            self.restart();
         } else {
             self.open_album();
         }
-        Ok(())
     }
 
     /// Draws and writes a picture; hands back where it is.

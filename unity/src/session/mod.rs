@@ -1,6 +1,7 @@
 //! [`Session`]: what a world answers to what a client says. How messages beside commands are taken is in `messages.rs`; how all
 //! of it travels, in `serve.rs`.
 
+mod action;
 mod album;
 mod messages;
 
@@ -8,9 +9,10 @@ use std::collections::BTreeMap;
 
 use driftworld_env::{Action, Catalogue, Channels, Environment, Event, Step, Warning};
 use driftworld_spec::maps::MapLibrary;
-use driftworld_spec::{AgentParams, GameMode, World};
+use driftworld_spec::{GameMode, World};
 use prost::Message;
 
+use action::action;
 use album::Album;
 
 use crate::behavior::{ACTION_LENGTH, BEHAVIOR, behavior, words};
@@ -19,11 +21,10 @@ use crate::error::UnityError;
 use crate::observation::{PictureForm, observations};
 use crate::outbox::{MAX_OUTGOING_BYTES, Outbox};
 use crate::parameters::Parameters;
-use crate::protocol::unity_rl_input_proto::ListAgentActionProto;
 use crate::protocol::unity_rl_output_proto::ListAgentInfoProto;
 use crate::protocol::{
-    AgentActionProto, AgentInfoProto, CommandProto, UnityOutputProto, UnityRlCapabilitiesProto,
-    UnityRlInitializationInputProto, UnityRlInitializationOutputProto, UnityRlInputProto, UnityRlOutputProto,
+    AgentInfoProto, CommandProto, UnityOutputProto, UnityRlCapabilitiesProto, UnityRlInitializationInputProto,
+    UnityRlInitializationOutputProto, UnityRlInputProto, UnityRlOutputProto,
 };
 use crate::remarks::{About, Remarks};
 use crate::screenshots::Screenshots;
@@ -72,7 +73,7 @@ struct Announced {
 /// ```
 /// use driftworld_unity::protocol::{CommandProto, UnityRlInitializationInputProto, UnityRlInputProto};
 /// use driftworld_unity::{BEHAVIOR, Screenshots, Session, Setup, Turn};
-/// let mut session = Session::new(Setup::default(), Screenshots::new("screenshots"), || "2026-01-01T00:00:00Z".to_owned())?;
+/// let mut session = Session::new(Setup::default(), Screenshots::new("screenshots"), || "2026-01-01T00:00:00Z".to_owned());
 /// session.begin(&UnityRlInitializationInputProto {
 ///     communication_version: "1.0.0".to_owned(),
 ///     package_version: "0.16.0".to_owned(),
@@ -107,14 +108,7 @@ pub struct Session {
 
 impl Session {
     /// A session whose world is at its start. `clock` tells the time in ISO 8601, for messages.
-    ///
-    /// # Errors
-    /// [`UnityError::Env`] for a world that cannot start; none today.
-    pub fn new(
-        setup: Setup,
-        screenshots: Screenshots,
-        clock: impl Fn() -> String + 'static,
-    ) -> Result<Self, UnityError> {
+    pub fn new(setup: Setup, screenshots: Screenshots, clock: impl Fn() -> String + 'static) -> Self {
         let Setup {
             world,
             maps,
@@ -122,10 +116,9 @@ impl Session {
             pictures,
         } = setup;
         // A world that was written down while it ran is taken back to its start: clients begin episodes.
-        let mut start = Environment::new(world)?.world().clone();
-        maps.apply(&mut start);
+        let start = Environment::new(world).world().clone().with_maps(&maps);
         let mut session = Self {
-            environment: Environment::with_catalogue(start.clone(), catalogue)?,
+            environment: Environment::with_catalogue(start.clone(), catalogue),
             album: None,
             channels: Channels::new(&start).with_maps(maps.clone()),
             start,
@@ -147,11 +140,11 @@ impl Session {
             }
         }
         session.open_album();
-        Ok(session)
+        session
     }
 
     /// The first thing said to a client.
-    pub fn greeting(&self) -> UnityOutputProto {
+    pub fn greeting() -> UnityOutputProto {
         UnityOutputProto {
             rl_output: None,
             rl_initialization_output: Some(UnityRlInitializationOutputProto {
@@ -199,9 +192,9 @@ impl Session {
         };
         let messages = self.take_settings(&input.side_channel);
         if command == CommandProto::Reset {
-            self.restart()?;
+            self.restart();
         }
-        let is_renewed = self.receive(&messages)?;
+        let is_renewed = self.receive(&messages);
         let agent_params = &self.environment.world().agent_params;
         let agents = match command {
             CommandProto::Quit => return Ok(Turn::Quit),
@@ -225,7 +218,7 @@ impl Session {
     }
 
     /// Begins the world anew, with what has been set.
-    fn restart(&mut self) -> Result<(), UnityError> {
+    fn restart(&mut self) {
         let mut world = self.start.clone();
         if !self.parameters.is_empty() {
             // Each number alone is sound; together with this world they may not be.
@@ -238,9 +231,8 @@ impl Session {
                 }
             }
         }
-        self.environment.reset(world)?;
+        self.environment.reset(world);
         self.open_album();
-        Ok(())
     }
 
     /// Photographs from the first one on, if the world is for photographs.
@@ -268,7 +260,7 @@ impl Session {
                 return Ok(vec![agent]);
             }
             (agent.done, agent.max_step_reached) = (true, true);
-            self.restart()?;
+            self.restart();
             self.episodes += 1;
             return Ok(vec![agent, self.decision(0.0, 0)?]);
         }
@@ -283,7 +275,7 @@ impl Session {
         }
         agent.done = true;
         agent.max_step_reached = step.truncated;
-        self.restart()?;
+        self.restart();
         self.episodes += 1;
         Ok(vec![agent, self.decision(0.0, 0)?])
     }
@@ -355,60 +347,6 @@ impl Session {
             rl_initialization_output: news,
         }
     }
-}
-
-/// The one agent's action; without any, it does nothing.
-fn action(actions: &BTreeMap<String, ListAgentActionProto>, agent: &AgentParams) -> Result<Action, UnityError> {
-    let mut chosen = Action::Continuous([0.0; ACTION_LENGTH]);
-    for (behavior, ListAgentActionProto { value }) in actions {
-        let ([action], BEHAVIOR) = (value.as_slice(), behavior.as_str()) else {
-            return Err(UnityError::WrongAgent {
-                behavior: behavior.chars().take(60).collect(),
-                found: value.len(),
-            });
-        };
-        chosen = match agent.num_actions() {
-            Some(rows) => Action::Discrete(row(action, rows)?),
-            None => Action::Continuous(numbers(action)?),
-        };
-    }
-    Ok(chosen)
-}
-
-fn numbers(action: &AgentActionProto) -> Result<[f64; ACTION_LENGTH], UnityError> {
-    let found = if action.continuous_actions.is_empty() {
-        &action.vector_actions
-    } else {
-        &action.continuous_actions
-    };
-    if found.len() != ACTION_LENGTH {
-        return Err(UnityError::ActionLength {
-            found: found.len(),
-            expected: ACTION_LENGTH,
-        });
-    }
-    Ok(std::array::from_fn(|place| f64::from(found[place])))
-}
-
-/// The row of a table that is asked for. Old clients say its number as a float.
-fn row(action: &AgentActionProto, rows: usize) -> Result<usize, UnityError> {
-    let found: Vec<f64> = if action.discrete_actions.is_empty() {
-        action.vector_actions.iter().copied().map(f64::from).collect()
-    } else {
-        action.discrete_actions.iter().copied().map(f64::from).collect()
-    };
-    let [number] = found[..] else {
-        let found = found.len().max(action.continuous_actions.len());
-        return Err(UnityError::ActionLength { found, expected: 1 });
-    };
-    let last = rows - 1;
-    if number.fract() != 0.0 || !(0.0..=last as f64).contains(&number) {
-        return Err(UnityError::ActionRow {
-            found: number.to_string(),
-            last,
-        });
-    }
-    Ok(number as usize)
 }
 
 /// The object that a step collected, by its number from 1: the last that paid or was destroyed; 0 for none.

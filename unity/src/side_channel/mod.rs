@@ -39,7 +39,7 @@ impl SideChannel {
             (uuid!("60ccf7d0-4f7e-11ea-b238-784f4387d1f7"), SideChannel::Properties),
             (uuid!("b664a4a9-d86f-5a5f-95cb-e8353a7e8356"), SideChannel::Analytics),
         ];
-        let l2explorer = Channel::ALL.into_iter().find(|channel| id_of(*channel) == id);
+        let l2explorer = Channel::ALL.iter().copied().find(|channel| id_of(*channel) == id);
         let other = || OTHERS.into_iter().find(|(known, _)| *known == id);
         l2explorer
             .map(Self::L2Explorer)
@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn identifiers_travel_with_their_first_groups_reversed() {
-        for channel in Channel::ALL {
+        for &channel in Channel::ALL {
             assert_eq!(
                 SideChannel::from_id(id_of(channel)),
                 Some(SideChannel::L2Explorer(channel))

@@ -130,9 +130,11 @@ fn options_of_unitys_do_no_harm_and_unknown_ones_are_remarked() {
 #[test]
 fn a_world_file_of_either_kind_is_the_world_at_the_start() {
     let folder = folder();
-    let mut ours = World::default();
-    ours.agent_params.observation_size = 16;
-    ours.agent_params.coordinates = [3.0, 4.0];
+    let ours = World::default().edit(|world| {
+        world.agent_params.observation_size = 16;
+        world.agent_params.coordinates = [3.0, 4.0];
+    });
+    let ours = ours.expect("the world is sound");
     fs::write(folder.path().join("ours.json"), ours.to_json()).expect("the folder can be written");
     let theirs = r#"{
         "game_mode": "Learn", "max_steps": "100",
@@ -268,8 +270,8 @@ fn what_others_wrote_does_not_work_the_terminal() {
 #[test]
 fn a_maps_file_takes_the_place_of_the_built_in_layouts() {
     let folder = folder();
-    let mut world = World::default();
-    world.environment_params.predefined_map = 1;
+    let world = World::default().edit(|world| world.environment_params.predefined_map = 1);
+    let world = world.expect("map 1 is built in");
     fs::write(folder.path().join("world.json"), world.to_json()).expect("the folder can be written");
     // A block right before the agent's eyes.
     let maps = r#"{ "maps": [{ "id": 1, "name": "block", "x_limits": [-100, 100], "y_limits": [-100, 100],

@@ -158,8 +158,8 @@ fn actions_that_are_no_numbers_are_refused() {
 fn world(observation_size: u32) -> (tempfile::TempDir, String) {
     let folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
     let file = folder.path().join("world.json");
-    let mut world = World::default();
-    world.agent_params.observation_size = observation_size;
+    let world = World::default().edit(|world| world.agent_params.observation_size = observation_size);
+    let world = world.expect("the size is sound");
     std::fs::write(&file, world.to_json()).expect("the folder can be written");
     let file = file.display().to_string();
     (folder, file)

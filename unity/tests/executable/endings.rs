@@ -37,15 +37,14 @@ fn what_a_session_answers_is_what_recorded_clients_get() {
 
         let twin_folder = tempfile::tempdir().expect("the machine has a folder for temporary files");
         let clock = || "2026-01-01T00:00:00.000Z".to_owned();
-        let twin = Session::new(Setup::default(), Screenshots::new(twin_folder.path()), clock);
-        let mut twin = twin.expect("the default world can start");
+        let mut twin = Session::new(Setup::default(), Screenshots::new(twin_folder.path()), clock);
         let greeting = client.call();
         let well = HeaderProto {
             status: 200,
             message: String::new(),
         };
         assert_eq!(greeting.header, Some(well.clone()), "{release}");
-        assert_eq!(greeting.unity_output, Some(twin.greeting()), "{release}");
+        assert_eq!(greeting.unity_output, Some(Session::greeting()), "{release}");
         let who = input(&said[0].1).rl_initialization_input.expect("it says who it is");
         twin.begin(&who).expect("the client is known");
         assert_eq!(

@@ -290,11 +290,11 @@ mod tests {
     }
 
     fn several(renderer: &mut GpuRenderer) -> Result<Vec<Frame>, EnvError> {
-        let world = driftworld_spec::World {
+        let world = driftworld_spec::WorldDraft {
             objects: vec![driftworld_spec::Object::new("tree", [1.0, 4.0]); 3],
             ..Default::default()
         };
-        let scene = Scene::from_world(&world);
+        let scene = Scene::from_world(&world.check().expect("the world is sound"));
         let mut frames = vec![Frame::new(40, 30); 5];
         let mut pictures: Vec<_> = (0..)
             .zip(&mut frames)

@@ -7,7 +7,7 @@ use super::device::{Clipping, Device};
 use super::{GpuRenderer, adapter};
 use crate::camera::Camera;
 use crate::scene::Scene;
-use driftworld_spec::{Object, World};
+use driftworld_spec::{Object, WorldDraft};
 
 /// Side of the picture that is drawn as a proof, in pixels.
 const SIDE: u32 = 64;
@@ -36,11 +36,11 @@ fn report(adapter: &wgpu::Adapter) -> AdapterReport {
 fn prove(adapter: &wgpu::Adapter) -> Result<(), String> {
     let device = Device::open(adapter, Clipping::IfPossible)?;
     let mut renderer = GpuRenderer::proven(device).map_err(|error| error.to_string())?;
-    let world = World {
+    let world = WorldDraft {
         objects: vec![Object::new("tree", [0.0, 8.0]), Object::new("cube", [2.0, 5.0])],
-        ..World::default()
+        ..WorldDraft::default()
     };
-    let scene = Scene::from_world(&world);
+    let scene = Scene::from_world(&world.check().map_err(|error| error.to_string())?);
     let camera = Camera::first_person([0.0, 0.0], 0.0, 1.0, 60.0);
     let (mut drawn, mut expected) = (Frame::new(SIDE, SIDE), Frame::new(SIDE, SIDE));
     renderer

@@ -30,7 +30,7 @@ impl Avx2 {
 
 lanes_by_intrinsics! {
     Avx2: 8 lanes of __m256, __m256i, __m256;
-    memory: _mm256_loadu_ps, _mm256_storeu_ps, _mm256_loadu_si256, _mm256_storeu_si256;
+    memory: _mm256_loadu_ps, _mm256_storeu_ps, _mm256_loadu_si256, _mm256_storeu_si256, _mm256_set1_epi32;
     calls: {
         splat(value: f32) -> __m256 = _mm256_set1_ps(value);
         root(a: __m256) -> __m256 = _mm256_sqrt_ps(a);
@@ -60,11 +60,6 @@ lanes_by_intrinsics! {
     fn bits(self, mask: __m256) -> u32 {
         // SAFETY: as in the macro.
         unsafe { _mm256_movemask_ps(mask) as u32 }
-    }
-    #[inline(always)]
-    fn splat_word(self, value: u32) -> __m256i {
-        // SAFETY: as in the macro.
-        unsafe { _mm256_set1_epi32(value as i32) }
     }
     #[inline(always)]
     fn select_words(self, mask: __m256, a: __m256i, b: __m256i) -> __m256i {

@@ -30,7 +30,7 @@ impl Avx512 {
 
 lanes_by_intrinsics! {
     Avx512: 16 lanes of __m512, __m512i, __mmask16;
-    memory: _mm512_loadu_ps, _mm512_storeu_ps, _mm512_loadu_si512, _mm512_storeu_si512;
+    memory: _mm512_loadu_ps, _mm512_storeu_ps, _mm512_loadu_si512, _mm512_storeu_si512, _mm512_set1_epi32;
     calls: {
         splat(value: f32) -> __m512 = _mm512_set1_ps(value);
         root(a: __m512) -> __m512 = _mm512_sqrt_ps(a);
@@ -67,11 +67,6 @@ lanes_by_intrinsics! {
     #[inline(always)]
     fn bits(self, mask: __mmask16) -> u32 {
         u32::from(mask)
-    }
-    #[inline(always)]
-    fn splat_word(self, value: u32) -> __m512i {
-        // SAFETY: as in the macro.
-        unsafe { _mm512_set1_epi32(value as i32) }
     }
     #[inline(always)]
     fn has_bit(self, value: __m512i, bit: u32) -> __mmask16 {

@@ -1,12 +1,13 @@
 //! The operations that are one intrinsic in every instruction set of x86-64, written once. What differs between sets
-//! is in their own files.
+//! is in their own files: the names of the intrinsics, which no macro of the language can put together, and what one set
+//! does in one instruction and another in several.
 
 /// Implements [`Lanes`](super::Lanes) by the intrinsics that are named, for a type whose values prove that the
 /// processor has them; what differs between sets is added as it stands.
 macro_rules! lanes_by_intrinsics {
     (
         $set:ident: $count:literal lanes of $float:ident, $word:ident, $mask:ident;
-        memory: $load:ident, $store:ident, $load_words:ident, $store_words:ident;
+        memory: $load:ident, $store:ident, $load_words:ident, $store_words:ident, $splat_word:ident;
         calls: {
             $($name:ident($($operand:ident: $from:ty),*) -> $to:ty = $by:ident$(::<$constant:tt>)?($($given:ident),*);)*
         }
@@ -44,6 +45,11 @@ macro_rules! lanes_by_intrinsics {
                     unsafe { $by$(::<$constant>)?($($given),*) }
                 }
             )*
+            #[inline(always)]
+            fn splat_word(self, value: u32) -> $word {
+                // SAFETY: above.
+                unsafe { $splat_word(value as i32) }
+            }
             #[inline(always)]
             fn load(self, from: &[f32]) -> $float {
                 // SAFETY: above.

@@ -7,11 +7,11 @@ import inspect
 import json
 import math
 import numbers
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Any, get_args
+from typing import Annotated, Any, TypedDict, TypeVar, get_args, get_type_hints
 
 import numpy as np
 
@@ -21,11 +21,52 @@ from driftworld.errors import SpecError
 
 #: What an observation may hold.
 MODALITIES: tuple[Modality, ...] = get_args(Modality)
-DEFAULT_MODALITIES: tuple[Modality, ...] = ("rgb", "depth", "segmentation", "state")
+DEFAULT_MODALITIES: tuple[Modality, ...] = ("rgb", "depth", "state")
 DEPTHS: tuple[DepthForm, ...] = get_args(DepthForm)
 RENDERERS: tuple[RendererName, ...] = get_args(RendererName)
 LABELS: tuple[LabelPlace, ...] = get_args(LabelPlace)
 ACTIONS: dict[str, str] = {"normalized": "normalized", "continuous": "continuous", "discrete": "default_discrete"}
+
+
+class EnvOptions(TypedDict, total=False):
+    """What single and vector environments both take, each option with its type and its default.
+
+    What the options mean is said in :class:`driftworld.DriftworldEnv`.
+    """
+
+    modalities: Annotated[Modality | Sequence[Modality], DEFAULT_MODALITIES]
+    size: Annotated[int | tuple[int, int] | None, None]
+    depth: Annotated[DepthForm, "uint8"]
+    actions: Annotated[ActionsName | Sequence[Sequence[float]] | None, "normalized"]
+    interact: Annotated[bool | None, None]
+    frame_skip: Annotated[int | None, None]
+    max_steps: Annotated[int | None, None]
+    supersampling: Annotated[int | None, None]
+    renderer: Annotated[RendererName, "cpu"]
+    drift: Annotated[Mapping[str, Any] | None, None]
+    task_label: Annotated[LabelPlace, "none"]
+    assets: Annotated[str | PathLike[str] | Iterable[str | PathLike[str]], ()]
+
+
+_DEFAULTS: dict[str, Any] = {
+    name: hint.__metadata__[0] for name, hint in get_type_hints(EnvOptions, include_extras=True).items()
+}
+_Init = TypeVar("_Init", bound=Callable[..., None])
+
+
+def shows_options(init: _Init) -> _Init:
+    """Lets a constructor's ``**options`` be seen by name, with types and defaults, before ``render_mode``: in ``help`` and tools."""
+    signature, hints = inspect.signature(init), get_type_hints(EnvOptions)
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    options = [
+        inspect.Parameter(name, keyword, default=default, annotation=hints[name]) for name, default in _DEFAULTS.items()
+    ]
+    named = [parameter for name, parameter in signature.parameters.items() if name != "options"]
+    place = list(signature.parameters).index("render_mode")
+    shown = signature.replace(parameters=[*named[:place], *options, *named[place:]])
+    init.__signature__ = shown  # type: ignore[attr-defined]
+    init.__annotations__ = {**{name: hint for name, hint in init.__annotations__.items() if name != "options"}, **hints}
+    return init
 
 
 @dataclass(frozen=True)
@@ -51,26 +92,14 @@ class Options:
     overrides: str
 
     @classmethod
-    def read(
-        cls,
-        *,
-        modalities: Modality | Sequence[Modality] = DEFAULT_MODALITIES,
-        size: int | tuple[int, int] | None = None,
-        depth: DepthForm = "uint8",
-        actions: ActionsName | Sequence[Sequence[float]] | None = "normalized",
-        interact: bool | None = None,
-        frame_skip: int | None = None,
-        max_steps: int | None = None,
-        supersampling: int | None = None,
-        renderer: RendererName = "cpu",
-        task_label: LabelPlace = "none",
-        assets: str | PathLike[str] | Iterable[str | PathLike[str]] = (),
-    ) -> Options:
-        """Reads them.
+    def read(cls, given: EnvOptions) -> Options:
+        """Reads them; what is not given has its default.
 
         Raises:
             ValueError: For a value that is not among those that an option knows; it says which there are.
         """
+        options = {**_DEFAULTS, **given}
+        modalities, task_label = options["modalities"], options["task_label"]
         is_dict = not isinstance(modalities, str)
         if not isinstance(modalities, Sequence):
             raise ValueError(f"modalities: found {modalities!r}, expected one of {', '.join(MODALITIES)}, or a list")
@@ -79,8 +108,8 @@ class Options:
             _one_of("modalities", kind, MODALITIES)
         if not kinds or len(set(kinds)) < len(kinds):
             raise ValueError(f"modalities: found {modalities!r}, expected some of {', '.join(MODALITIES)}, each once")
-        _one_of("depth", depth, DEPTHS)
-        _one_of("renderer", renderer, RENDERERS)
+        _one_of("depth", options["depth"], DEPTHS)
+        _one_of("renderer", options["renderer"], RENDERERS)
         _one_of("task_label", task_label, LABELS)
         if task_label == "obs" and not is_dict:
             raise ValueError(
@@ -88,20 +117,18 @@ class Options:
             )
         overrides = {
             "modalities": [kind for kind in kinds if kind != "state"],
-            "size": _size(size),
-            "actions": _actions(actions),
-            "interact": _flag("interact", interact),
-            "frame_skip": whole("frame_skip", frame_skip),
-            "max_steps": whole("max_steps", max_steps),
-            "supersampling": whole("supersampling", supersampling),
+            "size": _size(options["size"]),
+            "actions": _actions(options["actions"]),
+            "interact": _flag("interact", options["interact"]),
+            **{name: whole(name, options[name]) for name in ("frame_skip", "max_steps", "supersampling")},
         }
         return cls(
             modalities=kinds,
             is_dict=is_dict,
-            depth=depth,
-            renderer=renderer,
+            depth=options["depth"],
+            renderer=options["renderer"],
             task_label=task_label,
-            libraries=library_bytes(assets),
+            libraries=library_bytes(options["assets"]),
             overrides=json.dumps({name: value for name, value in overrides.items() if value is not None}),
         )
 

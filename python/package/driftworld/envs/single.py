@@ -5,8 +5,6 @@ from __future__ import annotations
 import copy
 import json
 import numbers
-from collections.abc import Iterable, Mapping, Sequence
-from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import gymnasium
@@ -14,16 +12,16 @@ import numpy as np
 from gymnasium.error import ResetNeeded
 from numpy.typing import NDArray
 
-from driftworld._literals import ActionsName, CameraName, DepthForm, LabelPlace, Modality, RendererName, RenderMode
+from driftworld._literals import CameraName, RenderMode
 from driftworld.envs.conversion import teach_conversions
 from driftworld.envs.members import Members
-from driftworld.envs.options import DEFAULT_MODALITIES, Options, refuse_unknown
+from driftworld.envs.options import EnvOptions, Options, refuse_unknown, shows_options
 from driftworld.envs.origin import MAX_SEED, Home
 from driftworld.envs.picture import Camera
 from driftworld.envs.window import Window
 
 if TYPE_CHECKING:
-    from typing_extensions import Self
+    from typing_extensions import Self, Unpack
 
 
 class DriftworldEnv(gymnasium.Env[Any, Any]):
@@ -67,47 +65,27 @@ class DriftworldEnv(gymnasium.Env[Any, Any]):
         refuse_unknown(cls, options)
         return super().__new__(cls)
 
+    @shows_options
     def __init__(
         self,
         task: Any = None,
         *,
         world: Any = None,
         variant: Any = None,
-        modalities: Modality | Sequence[Modality] = DEFAULT_MODALITIES,
-        size: int | tuple[int, int] | None = None,
-        depth: DepthForm = "uint8",
-        actions: ActionsName | Sequence[Sequence[float]] | None = "normalized",
-        interact: bool | None = None,
-        frame_skip: int | None = None,
-        max_steps: int | None = None,
-        supersampling: int | None = None,
-        renderer: RendererName = "cpu",
-        drift: Mapping[str, Any] | None = None,
-        task_label: LabelPlace = "none",
-        assets: str | PathLike[str] | Iterable[str | PathLike[str]] = (),
         render_mode: RenderMode | None = None,
         render_size: tuple[int, int] = (480, 640),
         camera: CameraName = "agent",
+        **options: Unpack[EnvOptions],
     ) -> None:
+        refuse_unknown(DriftworldEnv, options)
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise ValueError(f"render_mode: found {render_mode!r}, expected None, human or rgb_array")
         self.render_mode = render_mode
         self._camera = Camera(camera, render_size)
-        options = Options.read(
-            modalities=modalities,
-            size=size,
-            depth=depth,
-            actions=actions,
-            interact=interact,
-            frame_skip=frame_skip,
-            max_steps=max_steps,
-            supersampling=supersampling,
-            renderer=renderer,
-            task_label=task_label,
-            assets=assets,
-        )
         home = Home(task, world, variant)
-        self._members = Members(home, home.sources(1, None, drift), options, "disabled", num_threads=1)
+        self._members = Members(
+            home, home.sources(1, None, options.get("drift")), Options.read(options), "disabled", num_threads=1
+        )
         self.observation_space = self._members.observation_space
         self.action_space = self._members.action_space
         fps = 1.0 / self._members.layout["seconds_per_step"]

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from copy import deepcopy
-from os import PathLike
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -15,17 +14,17 @@ from gymnasium.vector import VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from driftworld._literals import ActionsName, AutoresetName, CameraName, DepthForm, LabelPlace, Modality, RendererName
+from driftworld._literals import AutoresetName, CameraName
 from driftworld.envs.autoreset import AutoresetMode, autoreset_mode_of
 from driftworld.envs.conversion import teach_conversions
 from driftworld.envs.members import Members
-from driftworld.envs.options import DEFAULT_MODALITIES, Options, refuse_unknown, whole
+from driftworld.envs.options import EnvOptions, Options, refuse_unknown, shows_options, whole
 from driftworld.envs.origin import Home, seed_in_range
 from driftworld.envs.picture import Camera
 from driftworld.errors import EnvError
 
 if TYPE_CHECKING:
-    from typing_extensions import Self
+    from typing_extensions import Self, Unpack
 
 #: As many as a native batch holds.
 MOST_ENVS = 65_536
@@ -69,6 +68,7 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         refuse_unknown(cls, options)
         return super().__new__(cls)
 
+    @shows_options
     def __init__(
         self,
         task: Any = None,
@@ -77,26 +77,17 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         world: Any = None,
         variant: Any = None,
         variants: Sequence[Any] | None = None,
-        modalities: Modality | Sequence[Modality] = DEFAULT_MODALITIES,
-        size: int | tuple[int, int] | None = None,
-        depth: DepthForm = "uint8",
-        actions: ActionsName | Sequence[Sequence[float]] | None = "normalized",
-        interact: bool | None = None,
-        frame_skip: int | None = None,
-        max_steps: int | None = None,
         max_episode_steps: int | None = None,
-        supersampling: int | None = None,
-        renderer: RendererName = "cpu",
-        drift: Mapping[str, Any] | None = None,
-        task_label: LabelPlace = "none",
-        assets: str | PathLike[str] | Iterable[str | PathLike[str]] = (),
         render_mode: Literal["rgb_array"] | None = None,
         render_size: tuple[int, int] = (480, 640),
         camera: CameraName = "agent",
         autoreset_mode: AutoresetName | AutoresetMode = "next_step",
         copy: bool = True,
         num_threads: int = 0,
+        **options: Unpack[EnvOptions],
     ) -> None:
+        refuse_unknown(DriftworldVectorEnv, options)
+        drift = options.get("drift")
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode: found {render_mode!r}, expected None or rgb_array")
         if isinstance(num_envs, bool) or not isinstance(num_envs, (int, np.integer)) or not 1 <= num_envs <= MOST_ENVS:
@@ -112,24 +103,11 @@ class DriftworldVectorEnv(VectorEnv[Any, Any, Any]):
         if not isinstance(copy, (bool, np.bool_)):
             raise ValueError(f"copy: found {copy!r}, expected True or False")
         mode = autoreset_mode_of(autoreset_mode)
-        options = Options.read(
-            modalities=modalities,
-            size=size,
-            depth=depth,
-            actions=actions,
-            interact=interact,
-            frame_skip=frame_skip,
-            max_steps=max_steps,
-            supersampling=supersampling,
-            renderer=renderer,
-            task_label=task_label,
-            assets=assets,
-        )
         home = Home(task, world, variant)
         self._members = Members(
             home,
             home.sources(num_envs, variants, drift),
-            options,
+            Options.read(options),
             mode.name.lower(),
             whole("num_threads", num_threads) or 0,
             _limit(max_episode_steps),

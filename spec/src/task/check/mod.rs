@@ -1,11 +1,13 @@
 //! From a task's document to a checked task: references, types and ranges that the schema cannot see.
 
+mod drawn;
 mod groups;
 pub(super) mod partial;
 mod sources;
 mod templates;
 
 use std::collections::BTreeSet;
+use std::sync::OnceLock;
 
 use indexmap::IndexMap;
 
@@ -14,6 +16,7 @@ use super::parameter::{Parameter, Role};
 use super::require::Requirement;
 use super::template::Source;
 use super::variant::{self, DEFAULT_VARIANT};
+use super::variant_spec;
 use super::{PlacedGroup, TaskDocument, TaskSpec};
 use crate::classes::Classes;
 use crate::describe::escape;
@@ -45,7 +48,7 @@ pub(super) fn compile(
     problems.extend(found);
     let is_unsound = |name: &str| unsound.parameters.contains(name);
     let reported: BTreeSet<String> = problems.iter().map(|problem| problem.pointer.clone()).collect();
-    let more = variant::problems(&document.parameters, &document.variants, &variants, is_unsound);
+    let more = variant_spec::problems(&document.parameters, &document.variants, &variants, is_unsound);
     problems.extend(more.into_iter().filter(|problem| !reported.contains(&problem.pointer)));
     let of_variants: BTreeSet<&str> = problems
         .iter()
@@ -64,6 +67,7 @@ pub(super) fn compile(
         .map(|index| check.group(index, &document.groups))
         .collect();
     let requirements = check.requirements(&document.require);
+    let read_conditions = check.read_conditions();
     check.variants_meet(&requirements, &variants);
     problems.append(&mut check.problems);
     fail_on(problems)?;
@@ -76,14 +80,18 @@ pub(super) fn compile(
         // It hangs on what was refused before: that is the problem.
         return Err(Vec::new());
     };
-    Ok(TaskSpec {
+    let task = TaskSpec {
         document,
         variants,
         world,
         fixtures,
         groups,
         requirements,
-    })
+        read_conditions,
+        readers: OnceLock::new(),
+    };
+    fail_on(drawn::compared_by_draws(&task))?;
+    Ok(task)
 }
 
 fn fail_on(problems: Vec<Problem>) -> Result<(), Vec<Problem>> {
@@ -108,7 +116,7 @@ fn names(document: &TaskDocument) -> impl Iterator<Item = Problem> {
 fn reserved_names(parameters: &IndexMap<String, Parameter>) -> impl Iterator<Item = Problem> {
     parameters
         .keys()
-        .filter(|name| variant::RESERVED.contains(&name.as_str()))
+        .filter(|name| variant_spec::RESERVED.contains(&name.as_str()))
         .map(|name| {
             let found = format!("a parameter named {name:?}");
             Problem::new(
@@ -124,7 +132,7 @@ fn reserved_names(parameters: &IndexMap<String, Parameter>) -> impl Iterator<Ite
 fn is_built_on(variants: &Variants, name: &str, unsound: &BTreeSet<String>) -> bool {
     let mut next = Some(name);
     // One that bites its own tail, too, is longer than a chain may be.
-    for _ in 0..=variant::MAX_EXTENDED {
+    for _ in 0..=variant_spec::MAX_EXTENDED {
         let Some(name) = next else { return false };
         let declared = variants.get(name);
         if unsound.contains(name) || declared.is_some_and(|declared| unsound.contains(&declared.origin)) {
@@ -152,7 +160,7 @@ impl<'a> Check<'a> {
         let settled = names
             .filter(|name| !is_built_on(variants, name, &unsound.variants))
             .filter_map(|name| {
-                let mut values = variant::values_of(&document.parameters, variants, name).ok()?;
+                let mut values = variant_spec::values_of(&document.parameters, variants, name).ok()?;
                 values.retain(|parameter, _| !unsound.parameters.contains(parameter));
                 Some((name.to_owned(), values))
             })
@@ -241,12 +249,12 @@ impl<'a> Check<'a> {
 
     /// Whether the measure of a parameter drawn from another that is a distribution takes all that this one may be.
     fn compared_by(&mut self, pointer: &str, parameter: &Parameter, source: &Source) {
-        let measure = parameter.compare.as_ref().and_then(|compare| compare.measure);
-        let Some((measure, expected)) = measure.and_then(|measure| Some((measure, measure.misfit_of_drawn_colors()?)))
-        else {
+        let Some(measure) = parameter.compare.as_ref().and_then(|compare| compare.measure) else {
             return;
         };
-        if self.distributions_of(source).iter().any(Distribution::draws_colors) {
+        let all = self.distributions_of(source);
+        let mut misfits = all.iter().map(|own| measure.misfit_of_draws(own, parameter.kind));
+        if let Some(expected) = misfits.find_map(|misfit| misfit) {
             self.report(Problem::new("spec/compare", pointer, measure.name(), expected));
         }
     }
@@ -266,6 +274,39 @@ impl<'a> Check<'a> {
             }
         }
         requirements
+    }
+
+    /// The conditions under which parameters are read that can be read themselves and make sense.
+    fn read_conditions(&mut self) -> IndexMap<String, Requirement> {
+        let mut conditions = IndexMap::new();
+        for (name, parameter) in self.parameters {
+            let Some(text) = &parameter.read_if else { continue };
+            let pointer = format!("/parameters/{}/read_if", escape(name));
+            let condition = match Requirement::parse(text) {
+                Ok(condition) => condition,
+                Err(expected) => {
+                    self.report(Problem::new("spec/requirement", pointer, format!("{text:?}"), expected));
+                    continue;
+                }
+            };
+            let is_drawn = |name: &&String| {
+                self.parameters
+                    .get(*name)
+                    .is_some_and(|other| other.role == Role::Randomized)
+            };
+            if let Some(drawn) = condition.names().iter().find(is_drawn) {
+                let found = format!("the randomized parameter {drawn:?}");
+                self.report(Problem::new(
+                    "spec/role",
+                    pointer,
+                    found,
+                    "a fixed or variant parameter",
+                ));
+            } else if self.requirement(&pointer, &condition) {
+                conditions.insert(name.clone(), condition);
+            }
+        }
+        conditions
     }
 
     /// Whether a requirement speaks of parameters that it can compare, and is true or false for them.

@@ -7,11 +7,11 @@ use super::Check;
 use crate::describe::{describe, pointer_of};
 use crate::error::Problem;
 use crate::value::Value;
-use crate::world::{Object, World};
+use crate::world::{Object, WorldDraft};
 
 impl Check<'_> {
     /// The world's template and those of the objects it holds.
-    pub(super) fn world(&mut self, json: &Json) -> (Option<Template<World>>, Vec<Option<Template<Object>>>) {
+    pub(super) fn world(&mut self, json: &Json) -> (Option<Template<WorldDraft>>, Vec<Option<Template<Object>>>) {
         let mut json = if json.is_null() {
             Json::Object(serde_json::Map::new())
         } else {
@@ -27,7 +27,7 @@ impl Check<'_> {
         let fixtures = fixtures
             .map(|(index, object)| self.object(&format!("/world/objects/{index}"), object))
             .collect();
-        let world = self.template("/world", &json, Template::<World>::hole);
+        let world = self.template("/world", &json, Template::<WorldDraft>::hole);
         if let Some(world) = &world {
             for mut problem in world.base.problems() {
                 problem.pointer.insert_str(0, "/world");

@@ -4,9 +4,9 @@
 use crate::element::Element;
 
 /// Declares the parts: for each what it looks at, the element of the decision process that it counts for, what tables
-/// call it, and its measure with what that is divided by.
+/// call it, and its unit: what counts 1.
 macro_rules! comparisons {
-    ($($(#[$doc:meta])* $part:ident: $element:ident, $name:literal, $measure:literal,)+) => {
+    ($($(#[$doc:meta])* $part:ident: $element:ident, $name:literal, $unit:literal,)+) => {
         /// A part of the distance of two worlds.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Comparison {
@@ -31,10 +31,10 @@ macro_rules! comparisons {
                 }
             }
 
-            /// The measure, and what its number is divided by.
-            pub const fn measure(self) -> &'static str {
+            /// Its unit: what counts 1.
+            pub const fn unit(self) -> &'static str {
                 match self {
-                    $(Self::$part => $measure,)+
+                    $(Self::$part => $unit,)+
                 }
             }
         }
@@ -42,58 +42,60 @@ macro_rules! comparisons {
 }
 
 comparisons! {
-    /// Where objects stand, matched within each class.
-    PlacesOfObjects: S, "places of objects", "ospa / 10 m",
-    /// The cells of 2 m in which something stands.
-    CellsTaken: S, "cells taken", "jaccard",
-    /// How many objects of each class there are.
-    NumbersOfObjects: S, "numbers of objects", "jaccard of counts",
-    /// Where the agent starts.
-    Start: S, "agent's start", "euclidean, 10 m is a half",
+    /// Where objects stand, those that were matched.
+    PlacesOfObjects: S, "places of objects", "10 m",
+    /// Objects that were matched with none.
+    Unmatched: S, "objects without a match", "an object",
     /// Where objects face.
-    HeadingsOfObjects: S, "headings of objects", "turn / 180 degrees",
+    HeadingsOfObjects: S, "headings of objects", "180 degrees",
+    /// Where the agent starts.
+    Start: S, "agent's start", "10 m",
     /// Where the agent looks at the start.
-    Heading: S, "agent's heading", "turn / 180 degrees",
+    Heading: S, "agent's heading", "180 degrees",
     /// What the numbers of an action mean.
-    ModelOfActions: A, "action model", "same or not",
+    ModelOfActions: A, "action model", "another word",
     /// How actions are given.
-    SpaceOfActions: A, "action space", "same or not",
+    SpaceOfActions: A, "action space", "another word",
     /// The agent's largest speed.
-    LargestSpeed: A, "largest speed", "difference / larger",
+    LargestSpeed: A, "largest speed", "the larger one",
     /// The agent's largest turn rate.
-    LargestTurnRate: A, "largest turn rate", "difference / larger",
+    LargestTurnRate: A, "largest turn rate", "the larger one",
     /// How objects move by themselves.
-    Motion: T, "motion of objects", "share that differs",
+    Motion: T, "motion of objects", "the larger one, or another word",
     /// How solid objects are, and what becomes of them.
-    Bodies: T, "bodies of objects", "share that differs",
+    Bodies: T, "bodies of objects", "the larger one, or another word",
     /// Seconds of a step.
-    TimeStep: T, "time step", "difference / larger",
+    TimeStep: T, "time step", "the larger one",
     /// The agent's width.
-    Width: T, "agent's width", "difference / larger",
+    Width: T, "agent's width", "the larger one",
     /// The map and its walls.
-    MapAndWalls: T, "map and walls", "same or not",
-    /// The area of the arena.
-    ArenaSize: T, "size of the arena", "difference / larger",
+    MapAndWalls: T, "map and walls", "the larger one, or another word",
+    /// The sides of the arena.
+    ArenaSize: T, "sides of the arena", "the larger one",
     /// What objects pay.
-    Rewards: R, "rewards of objects", "difference / twice the larger",
+    Rewards: R, "rewards of objects", "100 points",
     /// For what objects pay.
-    PaidFor: R, "what is paid for", "share that differs",
+    PaidFor: R, "what is paid for", "the larger one, or another word",
     /// How probable it is that an object pays.
-    RewardProbabilities: R, "odds of reward", "difference",
+    RewardProbabilities: R, "odds of reward", "from never to always",
     /// What a second pays.
-    StepReward: R, "step reward", "difference / twice the larger",
+    StepReward: R, "step reward", "1 point a second",
     /// Shaping, and what ends an episode.
-    ShapingAndEndings: R, "shaping and endings", "same or not",
+    ShapingAndEndings: R, "shaping and endings", "the larger one, or another word",
     /// How long an episode may last.
-    Limit: R, "limit of steps", "same or not",
+    Limit: R, "limit of steps", "the larger one, or none",
     /// The colours of objects.
-    ColorsOfObjects: O, "colours of objects", "oklab",
-    /// The models and sizes of objects.
-    ModelsOfObjects: O, "models of objects", "share that differs",
+    ColorsOfObjects: O, "colours of objects", "black to white in Oklab",
+    /// The looks of objects that were matched with none.
+    UnmatchedLooks: O, "looks without a match", "an object",
+    /// The models of objects.
+    ModelsOfObjects: O, "models of objects", "another word",
+    /// The sizes of objects.
+    SizesOfObjects: O, "sizes of objects", "the larger one",
     /// How bright the sun is.
-    Light: O, "light", "difference / larger",
+    Light: O, "light", "the larger one",
     /// The colours of walls, sky, ground and sunlight.
-    ColorsOfSurroundings: O, "colours of surroundings", "oklab",
+    ColorsOfSurroundings: O, "colours of surroundings", "black to white in Oklab",
     /// What else decides what the agent sees.
-    CameraAndWeather: O, "camera and weather", "same or not",
+    CameraAndWeather: O, "camera and weather", "the larger one, or another word",
 }

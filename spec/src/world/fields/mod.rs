@@ -1,5 +1,5 @@
-//! The table of fields: [`fields!`] declares a part of a world once, and beside each field stands what else there is to
-//! say of it: its unit, whether the original has it, how it is compared, whether it can be a parameter. The setters of
+//! The table of fields: [`fields!`] declares a part of a world once (in `object.rs`, `agent.rs`, `environment.rs`,
+//! `rules.rs` and `draft.rs`), and beside each field stands what else there is to say of it: its unit, whether the original has it, how it is compared, whether it can be a parameter. The setters of
 //! templates, the keys of the L2Explorer dialect, the comparison of worlds and `docs/reference/` come from it. Types,
 //! ranges and defaults are read from the schema that is made of the same declaration.
 
@@ -31,8 +31,8 @@ pub struct Field {
 /// How two worlds are compared in a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Compared {
-    /// By whether all fields of a comparison are the same.
-    Same(Comparison),
+    /// Number by number and word by word, as the JSON of all fields of a comparison has them.
+    Leaves(Comparison),
     /// By numbers that `similarity` finds for these.
     Measured(&'static [Comparison]),
     /// As the field that it stands in, or each of its own fields by itself.
@@ -45,7 +45,7 @@ impl Compared {
     /// The comparisons that look at the field.
     pub fn comparisons(&self) -> &[Comparison] {
         match self {
-            Self::Same(comparison) => std::slice::from_ref(comparison),
+            Self::Leaves(comparison) => std::slice::from_ref(comparison),
             Self::Measured(comparisons) => comparisons,
             Self::AsPart | Self::Not(_) => &[],
         }

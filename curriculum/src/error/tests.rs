@@ -1,0 +1,160 @@
+//! Every error of curricula with its message and its code.
+
+use super::*;
+use std::collections::BTreeSet;
+use strum::VariantNames;
+
+#[test]
+#[expect(clippy::too_many_lines, reason = "one case for each error")]
+fn every_error_has_its_message() {
+    let errors = [
+        CurriculumError::NoVariants,
+        CurriculumError::BadCount {
+            kind: "learning",
+            found: 0,
+            limit: 10,
+        },
+        CurriculumError::BadSeed { found: 9, limit: 8 },
+        CurriculumError::BadBlocks { found: 9, limit: 8 },
+        CurriculumError::BadForm {
+            form: "alternating",
+            variants: 3,
+            blocks: Some(4),
+            expected: "2 variants".into(),
+        },
+        CurriculumError::NoSuchPlace { found: 4, last: 3 },
+        CurriculumError::NoWay,
+        CurriculumError::DriftBetweenTasks {
+            from: "t#v".into(),
+            to: "u#v".into(),
+        },
+        CurriculumError::SeveralTasks {
+            a: "t#v".into(),
+            b: "u#v".into(),
+        },
+        CurriculumError::SameName {
+            a: "t#v".into(),
+            b: "u#v".into(),
+            name: "c-v".into(),
+        },
+        CurriculumError::BadProbe { found: 1, limit: 9 },
+        CurriculumError::StepsGivenUp {
+            anchor: "t#v".into(),
+            distance: 0.002,
+            tolerance: 0.0001,
+            found: 2,
+            wanted: 3,
+            limit: 9,
+        },
+        CurriculumError::TooFew {
+            anchor: "t#v".into(),
+            element: "reward",
+            found: 1,
+            wanted: 4,
+        },
+        CurriculumError::BadSteps {
+            distance: 2.0,
+            tolerance: 0.1,
+            count: 3,
+            limit: 1000,
+        },
+        CurriculumError::TooFewSteps {
+            anchor: "t#v".into(),
+            distance: 0.25,
+            tolerance: 0.01,
+            found: 2,
+            wanted: 3,
+            farthest: 0.5,
+        },
+        CurriculumError::Similarity(SimilarityError::Empty),
+        CurriculumError::Generator(GeneratorError::DifferentTasks {
+            from: "t#v".into(),
+            to: "u#v".into(),
+        }),
+        CurriculumError::SameLogName {
+            a: "a#b_c".into(),
+            b: "a#bc".into(),
+            name: "a_bc".into(),
+        },
+        CurriculumError::Unknown {
+            block: 1,
+            regime: 0,
+            task: "t".into(),
+            variant: "v".into(),
+            reason: "no such task".into(),
+        },
+        CurriculumError::WorldFile {
+            block: 1,
+            regime: 0,
+            reason: "maps/yard.json: not there".into(),
+        },
+        CurriculumError::NoSuchExperience { found: 9, total: 9 },
+        CurriculumError::OtherRun {
+            path: "logs/run".into(),
+            place: "/agent".into(),
+            found: "\"random\"".into(),
+            expected: "\"onrails\"".into(),
+        },
+        CurriculumError::OtherRow {
+            path: "logs/run".into(),
+            row: 7,
+            found: "experience 9 in block 1-test, t_v {}".into(),
+            expected: "experience 7 in block 0-train, t_v {}".into(),
+        },
+        CurriculumError::NotAlone {
+            a: "t#blue".into(),
+            b: "t#dusk".into(),
+            element: "reward",
+            differs: "reward, observation".into(),
+        },
+        CurriculumError::World {
+            block: 1,
+            regime: 0,
+            experience: 37,
+            variant: "t#v..w".into(),
+            progress: 0.25,
+            source: GeneratorError::TooMany {
+                variant: "t#v".into(),
+                seed: 1,
+                index: 2,
+                found: 9,
+                limit: 8,
+            },
+        },
+        CurriculumError::Episode {
+            block: 1,
+            regime: 0,
+            experience: 5,
+            source: EnvError::Ended,
+        },
+        CurriculumError::NoEvaluations { logs: 2 },
+        CurriculumError::NoCommonNames {
+            found: 0,
+            logs: "t_x, t_y".into(),
+            matrix: "t#a, t#b".into(),
+        },
+        CurriculumError::TooFewTransfers {
+            forward: 1,
+            backward: 0,
+            needed: 3,
+        },
+        CurriculumError::Relabelling {
+            source: SimilarityError::MantelCount {
+                what: "relabellings",
+                found: 0,
+                limit: 9,
+            },
+        },
+        CurriculumError::Log(MetricsError::LogExists {
+            path: "logs/run".into(),
+        }),
+    ];
+    let said: Vec<String> = errors
+        .iter()
+        .map(|error| format!("{}: {error}", error.code()))
+        .collect();
+    insta::assert_snapshot!(said.join("\n"));
+    let covered: BTreeSet<&str> = errors.iter().map(CurriculumError::code).collect();
+    let all: BTreeSet<&str> = CurriculumError::VARIANTS.iter().copied().collect();
+    assert_eq!(covered, all, "every code has a case here");
+}

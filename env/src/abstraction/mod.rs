@@ -1,0 +1,247 @@
+//! A world as a finite, deterministic decision process: cells × headings, with what the simulator does from each. How such processes
+//! are compared is for others.
+
+mod grid;
+#[cfg(test)]
+mod tests;
+mod walker;
+
+use driftworld_spec::World;
+use rayon::prelude::*;
+
+pub use grid::{NUM_HEADINGS, StateGrid};
+
+use crate::EnvError;
+use crate::assets::Catalogue;
+use walker::{Walked, Walker};
+
+/// The most states of a [`WorldAbstraction`].
+pub const MAX_ABSTRACT_STATES: usize = 1 << 20;
+
+/// The longest macro action in seconds.
+pub const MAX_MACRO_SECONDS: f64 = 60.0;
+
+/// How many macro actions there are: ahead, ahead and left, ahead and right, left, right, and interact.
+pub const NUM_MACRO_ACTIONS: usize = 6;
+
+/// How a world is made finite.
+#[derive(Clone, Debug)]
+pub struct Abstraction {
+    /// Side of a cell in metres, above 0; 2 by default.
+    pub cell: f64,
+    /// Seconds of the world's own time that an action is held, above 0 to [`MAX_MACRO_SECONDS`]; 0.5 by default. It is held
+    /// for whole steps of the world, as few as last that long.
+    pub seconds: f64,
+    /// Sides in metres of the area that the cells cover; the world's arena if absent.
+    pub area: Option<[f64; 2]>,
+    /// Where assets come from.
+    pub catalogue: Catalogue,
+}
+
+impl Default for Abstraction {
+    fn default() -> Self {
+        Self {
+            cell: 2.0,
+            seconds: 0.5,
+            area: None,
+            catalogue: Catalogue::default(),
+        }
+    }
+}
+
+/// A world as tables: where each action leads from each state, and what it pays.
+///
+/// A state is a cell and a heading, with everything else as at the start of the world: each object is there, pays what it paid
+/// then, and begins its own motion. So the tables hold what walls, the agent's body and speed, the time step, the hold of actions,
+/// the action model, solid and pushed objects and rewards make of an action. What is taken, pushed or gone by does not last beyond
+/// the action; limits of steps and seconds are no part of it; rules about the return count what the one action earns. Uncertain
+/// rewards pay their mean.
+///
+/// Actions have the order of [`NUM_MACRO_ACTIONS`]; each is done as fast as the agent can, by the nearest row where the world has a table
+/// of actions. Who cannot interact stands still instead.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorldAbstraction {
+    /// Which state is where.
+    pub grid: StateGrid,
+    /// How many states there are, the end among them.
+    pub states: usize,
+    /// How many actions there are: [`NUM_MACRO_ACTIONS`].
+    pub actions: usize,
+    /// `(states · actions,)`, of each state action by action: the state that it leads to. The end, and states where the agent has
+    /// no room, lead to themselves.
+    pub successors: Vec<u32>,
+    /// `(states · actions,)`: what the action pays, in points.
+    pub rewards: Vec<f64>,
+    /// `(states · actions,)`: where the agent stands after the action, before that becomes a state: x and y in metres, heading in
+    /// degrees.
+    pub landings: Vec<[f32; 3]>,
+    /// `(states,)`: whether the agent has room in the middle of the state's cell.
+    pub standable: Vec<bool>,
+    /// The state in which the world starts.
+    pub start: usize,
+}
+
+impl WorldAbstraction {
+    /// For each state whether any actions lead there from the start: `(states,)`.
+    pub fn reached(&self) -> Vec<bool> {
+        let mut reached = vec![false; self.states];
+        let mut open = vec![self.start];
+        reached[self.start] = true;
+        while let Some(state) = open.pop() {
+            for next in &self.successors[state * self.actions..][..self.actions] {
+                let next = *next as usize;
+                if !std::mem::replace(&mut reached[next], true) {
+                    open.push(next);
+                }
+            }
+        }
+        reached
+    }
+}
+
+impl Abstraction {
+    /// A world as tables. States are worked out in parallel; the result does not depend on that.
+    ///
+    /// # Errors
+    /// [`EnvError::BadAbstraction`] for settings out of range, [`EnvError::TooManyStates`] above [`MAX_ABSTRACT_STATES`].
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_env::Abstraction;
+    /// use driftworld_spec::World;
+    /// let found = Abstraction::default().of(&World::default())?;
+    /// let start = found.start * found.actions;
+    /// assert_eq!(found.landings[start][2], 0.0, "ahead, without a turn");
+    /// # Ok::<(), driftworld_env::EnvError>(())
+    /// ```
+    pub fn of(&self, world: &World) -> Result<WorldAbstraction, EnvError> {
+        let grid = self.grid(world)?;
+        let cells = (grid.states() - 1) / NUM_HEADINGS;
+        let walker = || Walker::new(world, self.seconds, &self.catalogue);
+        let mut first = walker()?;
+        let open: Vec<bool> = (0..cells)
+            .map(|cell| {
+                grid.pose(cell * NUM_HEADINGS)
+                    .is_some_and(|(place, _)| first.can_stand(place))
+            })
+            .collect();
+        drop(first);
+        let of_cell = |walker: &mut Result<Walker, EnvError>, cell: usize| {
+            let walker = walker.as_mut().map_err(|error| error.clone())?;
+            of_cell(walker, grid, cell, open[cell])
+        };
+        let walked: Vec<Vec<Walked>> = (0..cells)
+            .into_par_iter()
+            .map_init(walker, of_cell)
+            .collect::<Result<_, _>>()?;
+        Ok(tables(world, grid, &open, &walked))
+    }
+
+    fn grid(&self, world: &World) -> Result<StateGrid, EnvError> {
+        let check = |what: &'static str, found: f64, most: f64| {
+            if found > 0.0 && found <= most {
+                return Ok(());
+            }
+            Err(EnvError::BadAbstraction { what, found, most })
+        };
+        check("cell", self.cell, 1e6)?;
+        check("seconds", self.seconds, MAX_MACRO_SECONDS)?;
+        let area = self.area.unwrap_or_else(|| world.environment_params.arena_size());
+        for side in area {
+            check("area", side, 1e9)?;
+        }
+        let grid = StateGrid::over(area, self.cell);
+        let found = grid.states();
+        if found > MAX_ABSTRACT_STATES {
+            return Err(EnvError::TooManyStates {
+                found,
+                most: MAX_ABSTRACT_STATES,
+            });
+        }
+        Ok(grid)
+    }
+}
+
+/// What the actions come to from the states of a cell: heading by heading, action by action.
+fn of_cell(walker: &mut Walker, grid: StateGrid, cell: usize, is_open: bool) -> Result<Vec<Walked>, EnvError> {
+    let mut walked = Vec::with_capacity(NUM_HEADINGS * NUM_MACRO_ACTIONS);
+    for heading in 0..NUM_HEADINGS {
+        let Some((place, heading_deg)) = grid.pose(cell * NUM_HEADINGS + heading) else {
+            continue;
+        };
+        let stays = Walked {
+            place: place.map(|metres| metres as f32),
+            heading_deg: heading_deg as f32,
+            reward: 0.0,
+            ended: false,
+        };
+        for action in 0..NUM_MACRO_ACTIONS {
+            let done = match walked.last() {
+                _ if !is_open => stays,
+                Some(last) if action > 0 && walker.ignores_actions() => *last,
+                _ => walker.walk(place, heading_deg, action)?,
+            };
+            walked.push(done);
+        }
+    }
+    Ok(walked)
+}
+
+fn tables(world: &World, grid: StateGrid, open: &[bool], walked: &[Vec<Walked>]) -> WorldAbstraction {
+    let (states, actions) = (grid.states(), NUM_MACRO_ACTIONS);
+    let mut found = WorldAbstraction {
+        grid,
+        states,
+        actions,
+        successors: Vec::with_capacity(states * actions),
+        rewards: Vec::with_capacity(states * actions),
+        landings: Vec::with_capacity(states * actions),
+        standable: Vec::with_capacity(states),
+        start: 0,
+    };
+    for (cell, of_cell) in walked.iter().enumerate() {
+        found.standable.extend([open[cell]; NUM_HEADINGS]);
+        for (index, walked) in of_cell.iter().enumerate() {
+            let from = cell * NUM_HEADINGS + index / actions;
+            let place = walked.place.map(f64::from);
+            let next = if walked.ended {
+                grid.end()
+            } else {
+                standing(grid, open, place, f64::from(walked.heading_deg), from)
+            };
+            found.successors.push(next as u32);
+            found.rewards.push(walked.reward);
+            found
+                .landings
+                .push([walked.place[0], walked.place[1], walked.heading_deg]);
+        }
+    }
+    found.successors.extend([grid.end() as u32; NUM_MACRO_ACTIONS]);
+    found.rewards.extend([0.0; NUM_MACRO_ACTIONS]);
+    found.landings.extend([[0.0; 3]; NUM_MACRO_ACTIONS]);
+    found.standable.push(true);
+    let agent = &world.agent_params;
+    let asked = grid.state_at(agent.coordinates, agent.heading);
+    found.start = standing(grid, open, agent.coordinates, agent.heading, asked);
+    found
+}
+
+/// The state of a pose: of its own cell, or of the nearest of the eight around it where its own leaves no room; else `otherwise`.
+fn standing(grid: StateGrid, open: &[bool], place: [f64; 2], heading_deg: f64, otherwise: usize) -> usize {
+    let own = grid.state_at(place, heading_deg);
+    if open[own / NUM_HEADINGS] {
+        return own;
+    }
+    let offsets = [-1.0, 0.0, 1.0];
+    let around = offsets.iter().flat_map(|y| offsets.iter().map(move |x| [*x, *y]));
+    let distance = |state: usize| {
+        grid.pose(state).map_or(f64::INFINITY, |(middle, _)| {
+            (middle[0] - place[0]).powi(2) + (middle[1] - place[1]).powi(2)
+        })
+    };
+    around
+        .map(|[x, y]| grid.state_at([place[0] + x * grid.cell, place[1] + y * grid.cell], heading_deg))
+        .filter(|state| open[state / NUM_HEADINGS])
+        .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+        .unwrap_or(otherwise)
+}

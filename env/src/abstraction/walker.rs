@@ -1,0 +1,103 @@
+//! The real simulator, put into one state after the other and let act from there.
+
+use driftworld_spec::{ActionModel, World};
+
+use super::NUM_MACRO_ACTIONS;
+use crate::EnvError;
+use crate::agents::in_space;
+use crate::assets::Catalogue;
+use crate::sim::{Environment, Snapshot, Step};
+
+/// What one macro action came to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Walked {
+    pub(super) place: [f32; 2],
+    pub(super) heading_deg: f32,
+    pub(super) reward: f64,
+    pub(super) ended: bool,
+}
+
+/// A world that is begun again and again.
+pub(super) struct Walker {
+    environment: Environment,
+    begin: Snapshot,
+    step: Step,
+    /// Steps of the world that a macro action takes.
+    steps: u32,
+}
+
+impl Walker {
+    /// In this world without its limits of time, where uncertain rewards pay their mean.
+    pub(super) fn new(world: &World, seconds: f64, catalogue: &Catalogue) -> Result<Self, EnvError> {
+        let endless = world.clone().edit(|world| {
+            (world.max_steps, world.max_seconds, world.progress) = (0, 0.0, None);
+            for object in &mut world.objects {
+                if object.reward_probability < 1.0 {
+                    object.reward *= object.reward_probability;
+                    object.reward_probability = 1.0;
+                }
+            }
+        });
+        let endless = endless.map_err(|problem| EnvError::BadWorld { problem })?;
+        let agent = &endless.agent_params;
+        let of_step = agent.time_step * f64::from(agent.frame_skip.max(1));
+        let steps = (seconds / of_step - 1e-6).ceil().max(1.0) as u32;
+        let environment = Environment::with_catalogue(endless, catalogue.clone());
+        Ok(Self {
+            begin: environment.snapshot(),
+            environment,
+            step: Step::default(),
+            steps,
+        })
+    }
+
+    /// Whether all actions do the same.
+    pub(super) fn ignores_actions(&self) -> bool {
+        let model = self.environment.world().agent_params.action_model;
+        matches!(model, ActionModel::OnRails | ActionModel::None)
+    }
+
+    /// Whether the agent can stand at a place in metres.
+    pub(super) fn can_stand(&mut self, place: [f64; 2]) -> bool {
+        self.environment.restore(&self.begin);
+        self.environment.teleport(place, 0.0).is_ok()
+    }
+
+    /// What a macro action comes to from a pose, with everything else as it is at the start.
+    pub(super) fn walk(&mut self, place: [f64; 2], heading_deg: f64, action: usize) -> Result<Walked, EnvError> {
+        self.environment.restore(&self.begin);
+        self.environment.teleport(place, heading_deg)?;
+        let (mut reward, mut ended) = (0.0, false);
+        for step in 0..self.steps {
+            let command = in_space(self.command(action, step == 0), self.environment.sim());
+            self.environment.step_into(command, &mut self.step)?;
+            reward += self.step.reward;
+            if self.step.terminated {
+                ended = true;
+                break;
+            }
+        }
+        let agent = self.environment.agent();
+        Ok(Walked {
+            place: agent.position,
+            heading_deg: agent.heading_deg,
+            reward,
+            ended,
+        })
+    }
+
+    /// Speed, turn rate and interaction of a macro action.
+    fn command(&self, action: usize, is_first: bool) -> [f64; 3] {
+        debug_assert!(action < NUM_MACRO_ACTIONS);
+        let agent = &self.environment.world().agent_params;
+        let (speed, turn) = (agent.max_linear_speed, agent.max_angular_speed);
+        match action {
+            0 => [speed, 0.0, 0.0],
+            1 => [speed, -turn, 0.0],
+            2 => [speed, turn, 0.0],
+            3 => [0.0, -turn, 0.0],
+            4 => [0.0, turn, 0.0],
+            _ => [0.0, 0.0, if is_first && agent.interact { 1.0 } else { 0.0 }],
+        }
+    }
+}

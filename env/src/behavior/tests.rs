@@ -1,0 +1,105 @@
+//! Experts at home and abroad.
+
+use driftworld_spec::{Color, EndCondition, Object, Respawn, Stimulus, World, WorldDraft};
+use proptest::prelude::*;
+
+use super::*;
+
+const RED: Color = Color([1.0, 0.0, 0.0]);
+const BLUE: Color = Color([0.0, 0.0, 1.0]);
+
+fn cube(place: [f64; 2], color: Color, reward: f64, tag: &str) -> Object {
+    let mut cube = Object::new("geometric", place);
+    (cube.color, cube.reward, cube.tag) = (Some(color), reward, Some(tag.to_owned()));
+    cube.reward_stimulus = vec![Stimulus::AgentCollide];
+    cube.destroy_stimulus = vec![Stimulus::AgentCollide];
+    cube
+}
+
+/// Two colours of cubes; the first pays.
+fn world(paying: Color, other: Color) -> WorldDraft {
+    let mut world = WorldDraft::default();
+    world.environment_params.map_size = [30.0, 30.0];
+    world.rules.success = vec![EndCondition::AllCollected];
+    world.max_steps = 300;
+    for (index, place) in [[0.0, 9.0], [8.0, 0.0], [-9.0, 3.0], [4.0, -9.0]]
+        .into_iter()
+        .enumerate()
+    {
+        let pays = index % 2 == 0;
+        let (color, reward) = if pays { (paying, 10.0) } else { (other, -5.0) };
+        world
+            .objects
+            .push(cube(place, color, reward, if pays { "good" } else { "bad" }));
+    }
+    world
+}
+
+fn sound(draft: WorldDraft) -> World {
+    draft.check().expect("the world is sound")
+}
+
+#[test]
+fn the_expert_goes_for_the_colour_that_pays_at_home() {
+    let (red, blue) = (sound(world(RED, BLUE)), sound(world(BLUE, RED)));
+    let expertise = Expertise::default();
+    let own = expertise.at_home(&blue).expect("it lives");
+    assert_eq!((own.earned, own.success), (20.0, true));
+    let other = expertise.abroad(&red, &blue).expect("it lives");
+    assert!(other.earned <= -10.0 && !other.success, "{other:?}");
+    // What the first of its number or tag was at home makes no difference.
+    let mut turned = world(RED, BLUE);
+    turned.objects.reverse();
+    assert_eq!(expertise.abroad(&sound(turned), &blue).expect("it lives"), other);
+}
+
+#[test]
+fn what_is_believed_to_be_used_up_is_left_when_it_was_tried() {
+    let home = sound(world(RED, BLUE));
+    let mut idle = world(RED, BLUE);
+    idle.rules.success.clear();
+    for object in &mut idle.objects {
+        (object.reward, object.destroy_stimulus) = (-1.0, Vec::new());
+    }
+    let found = Expertise::default().abroad(&home, &sound(idle)).expect("it lives");
+    assert_eq!(found.earned, -2.0, "each red cube once");
+}
+
+#[test]
+fn a_class_that_home_lacks_is_left_alone() {
+    let mut barrels = world(RED, BLUE);
+    for object in &mut barrels.objects {
+        object.class = "barrel".to_owned();
+    }
+    let (home, barrels) = (sound(world(RED, BLUE)), sound(barrels));
+    let found = Expertise::default().abroad(&home, &barrels).expect("it lives");
+    assert_eq!((found.earned, found.success, found.steps), (0.0, false, 300));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn at_home_abroad_is_at_home(
+        places in prop::collection::vec((-13_i8..=13, -13_i8..=13), 1..8),
+        rewards in prop::collection::vec((-2_i8..=3, 0_u8..4), 8),
+        frame_skip in 1_u32..3,
+    ) {
+        let mut draft = WorldDraft::default();
+        draft.environment_params.map_size = [30.0, 30.0];
+        (draft.max_steps, draft.seed, draft.agent_params.frame_skip) = (120, Some(7), frame_skip);
+        for ((x, y), (reward, kind)) in places.into_iter().zip(rewards) {
+            let mut object = cube([f64::from(x), f64::from(y)], RED, f64::from(reward), "any");
+            match kind {
+                0 => object.reward_probability = 0.5,
+                1 => object.destroy_stimulus.clear(),
+                2 => object.respawn = Some(Respawn { delay: 2.0, radius: 0.0 }),
+                _ => (),
+            }
+            draft.objects.push(object);
+        }
+        let world = sound(draft);
+        let expertise = Expertise::default();
+        prop_assert_eq!(expertise.abroad(&world, &world), expertise.at_home(&world));
+    }
+}

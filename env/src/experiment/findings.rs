@@ -1,0 +1,103 @@
+//! What an experiment found: a witness for each element that differs, and how much was tried.
+
+use driftworld_spec::Element;
+use serde::{Deserialize, Serialize};
+
+use super::policy::Policy;
+use crate::sim::Unlike;
+
+/// The first case in which an element was seen to differ.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Witness {
+    /// The number of the pair of worlds, from 0; absent where it takes all of them to see it.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub world: Option<usize>,
+    /// Who acted; absent where nobody needs to.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub policy: Option<Policy>,
+    /// The step, from 0.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub step: Option<u32>,
+    /// What differs, in words.
+    pub what: String,
+    /// How it is in the first of the two.
+    pub a: String,
+    /// How it is in the second.
+    pub b: String,
+}
+
+impl Witness {
+    pub(super) fn of(world: Option<usize>, policy: Option<Policy>, step: Option<u32>, unlike: Unlike) -> Self {
+        Self {
+            world,
+            policy,
+            step,
+            what: unlike.what,
+            a: unlike.own,
+            b: unlike.other,
+        }
+    }
+}
+
+/// How much was tried.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Proof {
+    /// Pairs of worlds.
+    pub worlds: u64,
+    /// Episodes that were lived through, of all policies and from both sides.
+    pub runs: u64,
+    /// Steps that both worlds took from one state by one command.
+    pub steps: u64,
+    /// States in which both observations were compared.
+    pub observations: u64,
+    /// States of one world that the other does not have, such as places beyond its walls: nothing is compared there.
+    pub without_counterpart: u64,
+}
+
+/// What differs between two tasks, and how much was tried.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Findings {
+    /// The elements that differ, each with its first witness, in the order of [`Element::WITH_FINE`].
+    pub differences: Vec<(Element, Witness)>,
+    /// How much was tried.
+    pub proof: Proof,
+}
+
+impl Findings {
+    /// The elements that differ, in the order of [`Element::WITH_FINE`].
+    pub fn elements(&self) -> Vec<Element> {
+        self.differences.iter().map(|(element, _)| *element).collect()
+    }
+
+    /// The first witness of an element, if it differs.
+    pub fn witness(&self, element: Element) -> Option<&Witness> {
+        let mut found = self.differences.iter();
+        found.find(|(own, _)| *own == element).map(|(_, witness)| witness)
+    }
+
+    pub(super) fn differs(&self, element: Element) -> bool {
+        self.witness(element).is_some()
+    }
+
+    /// Notes that an element differs, unless that is known.
+    pub(super) fn note(&mut self, element: Element, witness: Witness) {
+        if !self.differs(element) {
+            self.differences.push((element, witness));
+            let place = |element: &Element| Element::WITH_FINE.iter().position(|other| other == element);
+            self.differences.sort_by_key(|(element, _)| place(element));
+        }
+    }
+
+    /// Adds what was found in later worlds.
+    pub(super) fn add(&mut self, later: Self) {
+        for (element, witness) in later.differences {
+            self.note(element, witness);
+        }
+        let (own, more) = (&mut self.proof, later.proof);
+        own.worlds += more.worlds;
+        own.runs += more.runs;
+        own.steps += more.steps;
+        own.observations += more.observations;
+        own.without_counterpart += more.without_counterpart;
+    }
+}

@@ -1,0 +1,116 @@
+//! Which elements of the decision process differ between two tasks, found by trying it on pairs of their worlds. Drawing the
+//! worlds, and what tasks claim of themselves, is for others.
+//!
+//! The definitions are those of `docs/decisions/0024-elements-by-experiment.md`.
+
+mod findings;
+mod matching;
+mod policy;
+mod run;
+mod space;
+
+use driftworld_spec::{Element, Modality, World};
+use rayon::prelude::*;
+
+pub use findings::{Findings, Proof, Witness};
+pub use policy::Policy;
+
+use crate::EnvError;
+use crate::assets::Catalogue;
+use matching::Paired;
+use run::Run;
+use space::StateSpace;
+
+/// The most steps of a run.
+pub const MAX_EXPERIMENT_STEPS: u32 = 100_000;
+
+/// How an experiment is made.
+#[derive(Clone, Debug)]
+pub struct Experiment {
+    /// Which images the learner has; those that each world asks for if absent.
+    pub modalities: Option<Vec<Modality>>,
+    /// Steps of a run, 1 to [`MAX_EXPERIMENT_STEPS`]; 100 by default. An agent that stands still takes a fifth of them.
+    pub steps: u32,
+    /// Every so many steps the observations are compared, from the first on; 25 by default, at least 1.
+    pub look_every: u32,
+    /// Height and width of the images that are compared, in pixels, 1 to 4096; 48 by default.
+    pub side: u32,
+    /// What the agent that acts at random draws from.
+    pub seed: u64,
+    /// Where assets come from.
+    pub catalogue: Catalogue,
+}
+
+impl Default for Experiment {
+    fn default() -> Self {
+        Self {
+            modalities: None,
+            steps: 100,
+            look_every: 25,
+            side: 48,
+            seed: 0,
+            catalogue: Catalogue::default(),
+        }
+    }
+}
+
+impl Experiment {
+    /// Tries pairs of worlds: what differs between the first of each pair and the second, with a witness for each element.
+    ///
+    /// Each pair runs twice for each [`Policy`]: once the agent acts in the first world and the second is put into
+    /// the same state before every step, once the other way round. So it makes no difference which of the two is called first.
+    /// Pairs are tried in parallel; what is found depends on them, on this experiment and on nothing else.
+    ///
+    /// # Errors
+    /// [`EnvError::PictureSize`] unless `side` is 1 to 4096.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_env::Experiment;
+    /// use driftworld_spec::{Element, World};
+    /// let dusk = World::default().edit(|world| world.environment_params.light_intensity = 0.2)?;
+    /// let found = Experiment::default().compare(&[(World::default(), dusk)])?;
+    /// assert_eq!(found.elements(), [Element::Phi]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn compare(&self, pairs: &[(World, World)]) -> Result<Findings, EnvError> {
+        let first = StateSpace::of(pairs.iter().map(|(a, _)| a));
+        let second = StateSpace::of(pairs.iter().map(|(_, b)| b));
+        let of_pair = |(number, pair): (usize, &(World, World))| self.of_pair(number, pair, [&first, &second]);
+        let each: Vec<Findings> = pairs.par_iter().enumerate().map(of_pair).collect::<Result<_, _>>()?;
+        let mut found = Findings::default();
+        if let Some(unlike) = first.unlike(&second) {
+            found.note(Element::S, Witness::of(None, None, None, unlike));
+        }
+        for own in each {
+            found.add(own);
+        }
+        Ok(found)
+    }
+
+    fn of_pair(&self, number: usize, (a, b): &(World, World), spaces: [&StateSpace; 2]) -> Result<Findings, EnvError> {
+        let paired = Paired::new(a, b);
+        let mut found = Findings::default();
+        let spaces_of_states = space::ground_unlike(a, b).map(|unlike| (Element::S, unlike));
+        let laws = paired.counts_unlike(spaces).or_else(|| paired.places_unlike());
+        let actions = space::actions_unlike(a, b).map(|unlike| (Element::A, unlike));
+        let observations =
+            space::observations_unlike(a, b, self.modalities.is_some()).map(|unlike| (Element::O, unlike));
+        let laws = laws.map(|unlike| (Element::P, unlike));
+        for (element, unlike) in [spaces_of_states, laws, actions, observations].into_iter().flatten() {
+            found.note(element, Witness::of(Some(number), None, None, unlike));
+        }
+        found.proof.worlds += 1;
+        for leader in [0, 1] {
+            let mut run = Run::new(self, number, &paired, leader)?;
+            for policy in Policy::ALL {
+                run.live(policy, &mut found)?;
+            }
+            run.at_the_limit(&mut found);
+        }
+        Ok(found)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,75 @@
+//! Who acts while two worlds are compared. The agents themselves are in `agents`.
+
+use driftworld_spec::World;
+use serde::{Deserialize, Serialize};
+
+use crate::agents::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent};
+
+/// Who acts in an experiment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
+#[serde(rename_all = "lowercase")]
+#[strum(serialize_all = "lowercase")]
+pub enum Policy {
+    /// Stands still.
+    Still,
+    /// Acts at random, as [`RandomAgent`] does.
+    Random,
+    /// Knows the map and takes what pays, as [`OnRailsAgent`] does.
+    Expert,
+    /// Touches an object of each tag and interacts with one, whatever they pay.
+    Visitor,
+}
+
+impl Policy {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Still, Self::Random, Self::Expert, Self::Visitor];
+
+    /// What tables call it.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+
+    /// The agent, for worlds such as this one.
+    pub(super) fn agent(self, world: &World, seed: u64) -> Box<dyn Agent> {
+        match self {
+            Self::Still => scripted("near nothing 1"),
+            Self::Random => Box::new(RandomAgent::new(seed)),
+            Self::Expert => Box::new(OnRailsAgent::new()),
+            Self::Visitor => scripted(&visits(world, seed % 2 == 1)),
+        }
+    }
+}
+
+fn scripted(script: &str) -> Box<dyn Agent> {
+    match ScriptedAgent::parse("experiment", script) {
+        Ok(agent) => Box::new(agent),
+        // A tag that no script can name: the tour takes its place.
+        Err(_) => Box::new(OnRailsAgent::new()),
+    }
+}
+
+/// A script that touches and interacts with what has a tag of one word: in the world's order, or backwards.
+fn visits(world: &World, is_backwards: bool) -> String {
+    let mut tags: Vec<&str> = world
+        .objects
+        .iter()
+        .filter_map(|object| object.tag.as_deref())
+        .collect();
+    tags.retain(|tag| !tag.is_empty() && !tag.contains(|letter: char| letter.is_whitespace() || letter == '#'));
+    if is_backwards {
+        tags.reverse();
+    }
+    let mut script = String::new();
+    let mut seen: Vec<&str> = Vec::new();
+    for tag in tags {
+        if !seen.contains(&tag) {
+            seen.push(tag);
+            script.extend(["touch ", tag, " 40\ninteract ", tag, " 15\n"]);
+        }
+    }
+    if script.is_empty() {
+        "near nothing 1".to_owned()
+    } else {
+        script + "repeat\n"
+    }
+}

@@ -1,0 +1,160 @@
+//! What can be at all: the spaces of states, actions and observations. What happens in them is in `run.rs`.
+
+use std::collections::BTreeMap;
+
+use driftworld_spec::{ActionModel, AgentParams, World};
+
+use super::matching::count;
+use crate::sim::{Action, Intent, Unlike};
+
+/// What tells objects apart that are there at all: the class, and the tag by which rules call them.
+pub(super) type Kind = (String, Option<String>);
+
+/// The kind of an object.
+pub(super) fn kind(object: &driftworld_spec::Object) -> Kind {
+    (object.class.clone(), object.tag.clone())
+}
+
+/// A kind in words: its tag, or else its class.
+pub(super) fn shown((class, tag): &Kind) -> &str {
+    tag.as_deref().unwrap_or(class)
+}
+
+/// What was seen to be in the worlds of a task: the least and the greatest number of objects of each kind.
+#[derive(Debug, Default)]
+pub(super) struct StateSpace {
+    counts: BTreeMap<Kind, [usize; 2]>,
+}
+
+impl StateSpace {
+    pub(super) fn of<'a>(worlds: impl Iterator<Item = &'a World> + Clone) -> Self {
+        let each: Vec<_> = worlds.map(count).collect();
+        let mut counts: BTreeMap<Kind, [usize; 2]> = BTreeMap::new();
+        for kind in each.iter().flat_map(BTreeMap::keys) {
+            if !counts.contains_key(kind) {
+                let own = || each.iter().map(|counts| counts.get(kind).copied().unwrap_or(0));
+                counts.insert(kind.clone(), [own().min().unwrap_or(0), own().max().unwrap_or(0)]);
+            }
+        }
+        Self { counts }
+    }
+
+    fn range(&self, kind: &Kind) -> [usize; 2] {
+        self.counts.get(kind).copied().unwrap_or([0, 0])
+    }
+
+    /// Whether some number of objects of a kind lies in what was seen of both, and both have such objects.
+    pub(super) fn shares_counts(&self, other: &Self, kind: &Kind) -> bool {
+        let ([low, high], [other_low, other_high]) = (self.range(kind), other.range(kind));
+        (high > 0) == (other_high > 0) && low <= other_high && other_low <= high
+    }
+
+    /// A kind that only one of two has, or of which they never have the same number.
+    pub(super) fn unlike(&self, other: &Self) -> Option<Unlike> {
+        let kinds = self.counts.keys().chain(other.counts.keys());
+        let found = kinds.into_iter().find(|kind| !self.shares_counts(other, kind))?;
+        let [a, b] = [self, other].map(|space| {
+            let [low, high] = space.range(found);
+            if low == high {
+                low.to_string()
+            } else {
+                format!("{low} to {high}")
+            }
+        });
+        let what = format!("the number of objects {} that there are", shown(found));
+        Some(Unlike { what, own: a, other: b })
+    }
+}
+
+/// What differs of the ground on which things can be.
+pub(super) fn ground_unlike(a: &World, b: &World) -> Option<Unlike> {
+    let (own, other) = (&a.environment_params, &b.environment_params);
+    let walls = |world: &World| -> Vec<Vec<[f64; 2]>> {
+        let walls = world.environment_params.walls.iter();
+        walls.map(|wall| wall.polygon.clone()).collect()
+    };
+    Unlike::of(
+        "the size of the arena in metres",
+        &own.arena_size(),
+        &other.arena_size(),
+    )
+    .or_else(|| Unlike::of("the regions that cannot be entered", &own.regions(), &other.regions()))
+    .or_else(|| Unlike::of("the walls", &walls(a), &walls(b)))
+}
+
+/// What differs of the actions that there are, or of the commands that the body gets from them.
+pub(super) fn actions_unlike(a: &World, b: &World) -> Option<Unlike> {
+    let space = |agent: &AgentParams| match agent.num_actions() {
+        Some(rows) => format!("{rows} rows of a table"),
+        None => "three numbers".to_owned(),
+    };
+    let (own, other) = (&a.agent_params, &b.agent_params);
+    let known = |agent: &AgentParams| match agent.action_model {
+        ActionModel::OnRails => "ignored, and the agent tours",
+        ActionModel::None => "ignored",
+        ActionModel::ByVelocity | ActionModel::ByWaypoint => "obeyed",
+    };
+    Unlike::of("the form of an action", &space(own), &space(other))
+        .or_else(|| Unlike::of("what becomes of an action", &known(own), &known(other)))
+        .or_else(|| {
+            let mut tried = tried(own).into_iter();
+            tried.find_map(|action| {
+                Unlike::of(
+                    format!("what the body does by {action:?}"),
+                    &intent_of(a, action),
+                    &intent_of(b, action),
+                )
+            })
+        })
+}
+
+/// Actions that are tried: all rows of a table, or numbers within and beyond what agents can do.
+fn tried(agent: &AgentParams) -> Vec<Action> {
+    /// From a nudge to more than the fastest agent can.
+    const NUMBERS: [f64; 9] = [-4000.0, -70.0, -7.0, -0.4, 0.0, 0.4, 7.0, 70.0, 4000.0];
+    if let Some(rows) = agent.num_actions() {
+        return (0..rows).map(Action::Discrete).collect();
+    }
+    let mut actions = Vec::new();
+    for a in NUMBERS {
+        for b in NUMBERS {
+            for c in [0.0, 0.7, 90.0] {
+                actions.push(Action::Continuous([a, b, c]));
+            }
+        }
+    }
+    actions
+}
+
+/// What an action tells the body to do in a second; `None` if the action is not one of the world's.
+fn intent_of(world: &World, action: Action) -> Option<Intent> {
+    let per_second = AgentParams {
+        time_step: 1.0,
+        ..world.agent_params.clone()
+    };
+    let numbers = action.numbers(world).ok()?;
+    Some(Intent::new(per_second.action_model, numbers, &per_second))
+}
+
+/// What differs of the form of observations.
+pub(super) fn observations_unlike(a: &World, b: &World, is_chosen: bool) -> Option<Unlike> {
+    let (own, other) = (&a.agent_params, &b.agent_params);
+    let modalities = || Unlike::of("the images of an observation", &own.modalities, &other.modalities);
+    (!is_chosen)
+        .then(modalities)
+        .flatten()
+        .or_else(|| {
+            Unlike::of(
+                "the images' width and height",
+                &own.picture_size(),
+                &other.picture_size(),
+            )
+        })
+        .or_else(|| {
+            Unlike::of(
+                "what the state vector holds",
+                &own.state_features,
+                &other.state_features,
+            )
+        })
+}

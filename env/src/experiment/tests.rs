@@ -1,0 +1,252 @@
+//! A world against itself, against worlds with one thing changed, and that it makes no difference who comes first.
+
+use driftworld_spec::{ActionModel, Color, Element, MotionModel, Object, Stimulus, World, WorldDraft};
+use proptest::prelude::*;
+
+use super::*;
+
+/// Cubes that pay when touched, a barrel that costs, a tree and a bench.
+fn world() -> WorldDraft {
+    let mut world = WorldDraft::default();
+    world.environment_params.map_size = [30.0, 30.0];
+    world.rules.reward_per_second = -1.0;
+    world.max_steps = 60;
+    for (tag, class, at, reward) in [
+        ("cubes", "geometric", [0.0, 8.0], 10.0),
+        ("cubes", "geometric", [6.0, -4.0], 10.0),
+        ("barrels", "barrel", [-6.0, 3.0], -5.0),
+        ("trees", "tree", [8.0, 8.0], 0.0),
+    ] {
+        let mut object = Object::new(class, at);
+        object.tag = Some(tag.to_owned());
+        object.reward = reward;
+        if reward != 0.0 {
+            object.reward_once_stimulus = vec![Stimulus::AgentCollide];
+            object.destroy_stimulus = vec![Stimulus::AgentCollide];
+        }
+        world.objects.push(object);
+    }
+    world
+}
+
+fn sound(world: &WorldDraft) -> World {
+    world.clone().check().expect("the world is sound")
+}
+
+fn elements(a: &WorldDraft, b: &WorldDraft) -> Vec<Element> {
+    let found = Experiment::default()
+        .compare(&[(sound(a), sound(b))])
+        .expect("both run");
+    assert_eq!(found.proof.worlds, 1);
+    found.elements()
+}
+
+#[track_caller]
+fn check(expected: &[Element], change: impl Fn(&mut WorldDraft)) {
+    let (own, mut changed) = (world(), world());
+    change(&mut changed);
+    assert_eq!(elements(&own, &changed), expected);
+    assert_eq!(elements(&changed, &own), expected);
+}
+
+#[test]
+fn nothing_differs_between_a_world_and_itself() {
+    let pairs: Vec<_> = (0..3).map(|_| (sound(&world()), sound(&world()))).collect();
+    let found = Experiment::default().compare(&pairs).expect("all run");
+    assert_eq!(found.differences, []);
+    assert_eq!((found.proof.worlds, found.proof.runs), (3, 3 * 8));
+    assert!(
+        found.proof.steps > 1000 && found.proof.observations > 30,
+        "{:?}",
+        found.proof
+    );
+    assert_eq!(found.proof.without_counterpart, 0);
+}
+
+#[test]
+fn what_there_is_belongs_to_the_space_of_states() {
+    check(&[Element::S], |world| {
+        world.objects.push(Object::new("tent", [12.0, 0.0]));
+    });
+    check(&[Element::S], |world| {
+        world.objects.retain(|object| object.class != "tree");
+    });
+}
+
+#[test]
+fn where_it_is_belongs_to_the_initial_state() {
+    check(&[Element::P], |world| world.objects[0].coordinates = [2.0, 9.0]);
+    check(&[Element::P], |world| world.agent_params.heading = 30.0);
+    check(&[Element::P], |world| world.agent_params.coordinates = [1.0, 1.0]);
+}
+
+#[test]
+fn what_actions_mean_belongs_to_the_actions() {
+    check(&[Element::A], |world| world.agent_params.max_linear_speed = 5.0);
+    check(&[Element::A], |world| world.agent_params.max_angular_speed = 45.0);
+    check(&[Element::A], |world| {
+        world.agent_params.action_model = ActionModel::ByWaypoint;
+    });
+    check(&[Element::A], |world| {
+        world.agent_params.actions = driftworld_spec::ActionSpace::DefaultDiscrete;
+    });
+    check(&[Element::A], |world| world.agent_params.interact = false);
+}
+
+#[test]
+fn what_follows_belongs_to_the_transitions() {
+    check(&[Element::T], |world| world.agent_params.frame_skip = 3);
+    check(&[Element::T], |world| world.agent_params.agent_width = 0.3);
+    check(&[Element::T], |world| world.objects[0].destroy_stimulus = vec![]);
+    check(&[Element::T], |world| {
+        world.objects[1].motion_model = MotionModel::Prey;
+        world.objects[1].speed = 2.0;
+    });
+}
+
+#[test]
+fn what_returns_returns_to_where_it_was_at_the_start() {
+    let returning = |at: [f64; 2]| {
+        let mut world = world();
+        world.objects[0].coordinates = at;
+        world.objects[0].respawn = Some(driftworld_spec::Respawn {
+            delay: 0.5,
+            radius: 0.0,
+        });
+        world
+    };
+    assert_eq!(elements(&returning([0.0, 8.0]), &returning([2.0, 9.0])), [Element::P]);
+}
+
+#[test]
+fn a_reward_is_seen_where_every_transition_differs() {
+    check(&[Element::T, Element::R], |world| {
+        world.agent_params.frame_skip = 2;
+        world.objects[0].reward = 3.0;
+    });
+}
+
+#[test]
+fn what_pays_and_what_ends_belongs_to_the_rewards() {
+    check(&[Element::R], |world| world.objects[0].reward = 3.0);
+    check(&[Element::R], |world| world.objects[2].reward = -50.0);
+    check(&[Element::R], |world| world.rules.reward_per_second = -2.0);
+    check(&[Element::R], |world| {
+        world.rules.success = vec![driftworld_spec::EndCondition::AllCollected];
+    });
+    check(&[Element::R], |world| world.max_steps = 50);
+}
+
+#[test]
+fn how_it_looks_belongs_to_the_emission() {
+    check(&[Element::Phi], |world| {
+        world.objects[0].color = Some(Color([1.0, 0.0, 0.0]));
+    });
+    check(&[Element::Phi], |world| world.environment_params.light_intensity = 0.4);
+    check(&[Element::Phi], |world| world.agent_params.field_of_view = 80.0);
+}
+
+#[test]
+fn the_form_of_observations_belongs_to_their_space() {
+    check(&[Element::O], |world| world.agent_params.observation_size = 32);
+    check(&[Element::O], |world| world.agent_params.state_features.truncate(1));
+    check(&[Element::O], |world| {
+        world.agent_params.modalities = vec![Modality::Rgb];
+    });
+}
+
+#[test]
+fn the_sign_of_a_reward_shows_in_the_segmentation_and_nowhere_else() {
+    let (own, mut changed) = (world(), world());
+    for object in changed.objects.iter_mut().filter(|object| object.class == "geometric") {
+        object.reward = -10.0;
+    }
+    for (modalities, expected) in [
+        (
+            vec![Modality::Rgb, Modality::Depth, Modality::Class, Modality::Instance],
+            vec![Element::R],
+        ),
+        (vec![Modality::Segmentation], vec![Element::R, Element::Phi]),
+    ] {
+        let experiment = Experiment {
+            modalities: Some(modalities),
+            ..Experiment::default()
+        };
+        let found = experiment.compare(&[(sound(&own), sound(&changed))]).expect("both run");
+        assert_eq!(found.elements(), expected);
+    }
+}
+
+#[test]
+fn numbers_that_overlap_are_a_law_and_others_a_space() {
+    let with = |trees: usize| {
+        let mut world = world();
+        let tree = |number: usize| Object::new("tent", [12.0, number as f64 * 3.0]);
+        world.objects.extend((0..trees).map(tree));
+        world
+    };
+    let found = |pairs: &[(usize, usize)]| {
+        let pairs: Vec<_> = pairs
+            .iter()
+            .map(|(a, b)| (sound(&with(*a)), sound(&with(*b))))
+            .collect();
+        Experiment::default().compare(&pairs).expect("all run").elements()
+    };
+    assert_eq!(found(&[(1, 2), (3, 3)]), [Element::P]);
+    assert_eq!(found(&[(1, 3), (2, 4)]), [Element::S]);
+    assert_eq!(found(&[(0, 1), (0, 2)]), [Element::S]);
+}
+
+#[test]
+fn a_witness_says_where_and_how_much() {
+    let (own, mut changed) = (world(), world());
+    changed.objects[0].reward = 3.0;
+    let found = Experiment::default()
+        .compare(&[(sound(&own), sound(&changed))])
+        .expect("both run");
+    let witness = found.witness(Element::R).expect("the reward differs");
+    assert_eq!((witness.world, witness.what.as_str()), (Some(0), "the reward"));
+    let [a, b] = [&witness.a, &witness.b].map(|text| text.parse::<f64>().expect("a number"));
+    assert_eq!(a - b, 7.0, "{witness:?}");
+    let back = Experiment::default()
+        .compare(&[(sound(&changed), sound(&own))])
+        .expect("both run");
+    let back = back.witness(Element::R).expect("the reward differs");
+    assert_eq!((&back.a, &back.b), (&witness.b, &witness.a));
+}
+
+/// One of the changes of the tests above.
+fn change(world: &mut WorldDraft, which: u8) {
+    match which {
+        0 => world.objects[0].coordinates = [2.0, 9.0],
+        1 => world.agent_params.max_linear_speed = 4.0,
+        2 => world.agent_params.frame_skip = 2,
+        3 => world.objects[1].reward = 77.0,
+        4 => world.environment_params.light_intensity = 1.0,
+        5 => world.objects.push(Object::new("bench", [-12.0, 0.0])),
+        6 => world.agent_params.action_model = ActionModel::ByWaypoint,
+        7 => world.objects[2].motion_model = MotionModel::Predator,
+        _ => {}
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// Whatever is changed in either: the same elements differ whichever comes first.
+    #[test]
+    fn it_makes_no_difference_which_comes_first(ours in prop::collection::vec(0u8..9, 0..3), theirs in prop::collection::vec(0u8..9, 0..3)) {
+        let (mut a, mut b) = (world(), world());
+        for which in ours {
+            change(&mut a, which);
+        }
+        for which in theirs {
+            change(&mut b, which);
+        }
+        let experiment = Experiment { steps: 40, side: 16, ..Experiment::default() };
+        let there = experiment.compare(&[(sound(&a), sound(&b))]).expect("both run");
+        let back = experiment.compare(&[(sound(&b), sound(&a))]).expect("both run");
+        prop_assert_eq!(there.elements(), back.elements());
+        prop_assert_eq!(there.proof, back.proof);
+    }
+}

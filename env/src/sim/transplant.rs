@@ -1,0 +1,218 @@
+//! Two worlds with the same objects in the same state: putting one where the other is, stepping both by one command, and
+//! saying what of their states differs. What follows from a difference is said by `experiment`.
+
+use driftworld_spec::World;
+
+use super::action::{Action, Intent};
+use super::environment::Environment;
+use super::mover::Mover;
+use super::sequence::Sequence;
+use super::state::SimState;
+use super::walls::agent_obstacle;
+use crate::EnvError;
+use crate::render::Target;
+
+/// What differs, in words, and how it is in each of the two.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Unlike {
+    pub(crate) what: String,
+    pub(crate) own: String,
+    pub(crate) other: String,
+}
+
+/// A text of at most 200 letters: lists of corners have no end.
+fn cut(text: &str) -> String {
+    const MOST: usize = 200;
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+impl Unlike {
+    pub(crate) fn new(what: impl Into<String>, own: impl std::fmt::Debug, other: impl std::fmt::Debug) -> Self {
+        let (own, other) = (cut(&format!("{own:?}")), cut(&format!("{other:?}")));
+        Self {
+            what: what.into(),
+            own,
+            other,
+        }
+    }
+
+    /// `None` if both are the same.
+    pub(crate) fn of<T: PartialEq + std::fmt::Debug>(what: impl Into<String>, own: &T, other: &T) -> Option<Self> {
+        (own != other).then(|| Self::new(what, own, other))
+    }
+}
+
+impl Environment {
+    /// Takes over where the agent and the objects of another environment are, what has become of them, their chance and the
+    /// clock. What objects pay, how bodies are made and what the rules say stays this world's own.
+    ///
+    /// Both worlds have as many objects, each the counterpart of the one of its number.
+    pub(crate) fn take_state_of(&mut self, other: &Self) {
+        let (theirs, seconds) = (&other.state, self.world.agent_params.time_step);
+        let own = &mut self.state;
+        let of_theirs = other.world.agent_params.time_step;
+        let ticks = |theirs: u64| {
+            if seconds == of_theirs {
+                theirs
+            } else {
+                (theirs as f64 * of_theirs / seconds).round() as u64
+            }
+        };
+        own.agent = theirs.agent;
+        (own.steps, own.ticks) = (theirs.steps, ticks(theirs.ticks));
+        (own.earned, own.unshaped) = (theirs.earned, theirs.unshaped);
+        (own.last_reward, own.last_event, own.ended) = (theirs.last_reward, theirs.last_event, theirs.ended);
+        for (index, object) in own.objects.iter_mut().enumerate() {
+            let their = &theirs.objects[index];
+            let is_spent = their.reward == 0.0 && other.world.objects[index].reward != 0.0;
+            let reward = if is_spent {
+                0.0
+            } else {
+                self.world.objects[index].reward
+            };
+            object.clone_from(their);
+            object.reward = reward;
+        }
+        own.contacts.clone_from(&theirs.contacts);
+        own.returning.clear();
+        own.returning
+            .extend(theirs.returning.iter().map(|(index, tick)| (*index, ticks(*tick))));
+        for mover in &mut own.movers {
+            if let Ok(place) = theirs.movers.binary_search_by_key(&mover.object, |mover| mover.object) {
+                mover.clone_from(&theirs.movers[place]);
+            }
+        }
+        for rng in &mut own.rngs {
+            if let Ok(place) = theirs.rngs.binary_search_by_key(&rng.object, |rng| rng.object) {
+                rng.clone_from(&theirs.rngs[place]);
+            }
+        }
+        for pushed in &mut own.pushed {
+            if let Ok(place) = theirs.pushed.binary_search_by_key(&pushed.object, |body| body.object) {
+                *pushed = theirs.pushed[place];
+            }
+        }
+        own.sequence = Sequence::of(&self.world.objects);
+        own.advance_sequence();
+        self.views.sync_objects(&self.world, &self.state);
+    }
+
+    /// Lets an object pay nothing any more.
+    pub(crate) fn take_reward_of(&mut self, object: usize) {
+        self.state.objects[object].reward = 0.0;
+    }
+
+    /// Sets the clock to the last step before a world's limit of steps or seconds; whether there is one.
+    pub(crate) fn wind_to_limit_of(&mut self, limited: &World) -> bool {
+        let Some(limit) = limited.step_limit().filter(|limit| *limit > 0) else {
+            return false;
+        };
+        let agent = &limited.agent_params;
+        let seconds = f64::from(limit - 1) * f64::from(agent.frame_skip.max(1)) * agent.time_step;
+        self.state.steps = limit - 1;
+        self.state.ticks = (seconds / self.world.agent_params.time_step).round() as u64;
+        true
+    }
+
+    /// Whether the agent stands where its body has room.
+    pub(crate) fn agent_has_room(&self) -> bool {
+        agent_obstacle(self.sim(), self.state.agent.position.map(f64::from)).is_none()
+    }
+
+    /// The command that the body gets from an action: in this world, and in one that has this action space and time steps of so
+    /// many seconds.
+    pub(crate) fn commands(&mut self, action: Action, seconds: f64) -> Result<[Intent; 2], EnvError> {
+        let numbers = self.numbers(action)?;
+        let own = self.intent(numbers);
+        let share = (seconds / self.world.agent_params.time_step) as f32;
+        let other = if seconds == self.world.agent_params.time_step {
+            own
+        } else {
+            Intent {
+                turn_deg: own.turn_deg * share,
+                ahead: own.ahead * share,
+                towards: own.towards.map(|(point, reach)| (point, reach * share)),
+                interact: own.interact,
+            }
+        };
+        Ok([own, other])
+    }
+
+    /// What of the states of two worlds with the same objects differs first. What objects pay is no part of it.
+    pub(crate) fn state_unlike(&self, other: &Self) -> Option<Unlike> {
+        let (own, their) = (&self.state, &other.state);
+        Unlike::of(
+            "the agent's position in metres",
+            &own.agent.position,
+            &their.agent.position,
+        )
+        .or_else(|| {
+            Unlike::of(
+                "the agent's heading in degrees",
+                &own.agent.heading_deg,
+                &their.agent.heading_deg,
+            )
+        })
+        .or_else(|| {
+            Unlike::of(
+                "the agent's velocity in m/s",
+                &own.agent.velocity,
+                &their.agent.velocity,
+            )
+        })
+        .or_else(|| Unlike::of("the seconds gone by", &self.seconds(), &other.seconds()))
+        .or_else(|| (0..own.objects.len()).find_map(|index| self.object_unlike(other, index)))
+        .or_else(|| Unlike::of("the objects that the agent touches", &own.contacts, &their.contacts))
+        .or_else(|| Unlike::of("how what was pushed moves", &own.pushed, &their.pushed))
+        .or_else(|| Unlike::of("when objects come back", &self.returns(), &other.returns()))
+    }
+
+    /// When destroyed objects come back: their numbers, and seconds.
+    fn returns(&self) -> Vec<(usize, f64)> {
+        let seconds = |ticks: u64| ticks as f64 * self.world.agent_params.time_step;
+        let returning = self.state.returning.iter();
+        returning.map(|(index, tick)| (*index, seconds(*tick))).collect()
+    }
+
+    fn object_unlike(&self, other: &Self, index: usize) -> Option<Unlike> {
+        let (own, their) = (&self.state.objects[index], &other.state.objects[index]);
+        let is_ordered = |world: &World| world.objects[index].order.is_some();
+        let counts = is_ordered(&self.world) || is_ordered(&other.world);
+        let of = |what: &str| format!("{what} of object {index} ({})", name(&self.world, index));
+        let of_mover = |state: &SimState| {
+            let place = state.movers.binary_search_by_key(&index, |mover| mover.object);
+            place.ok().map(|place| Mover::progress(&state.movers[place]))
+        };
+        Unlike::of(of("the presence"), &own.present, &their.present)
+            .or_else(|| Unlike::of(of("the position in metres"), &own.position, &their.position))
+            .or_else(|| Unlike::of(of("the heading in degrees"), &own.heading_deg, &their.heading_deg))
+            .or_else(|| {
+                let collected = Unlike::of(of("whether it is found"), &own.collected, &their.collected);
+                collected.filter(|_| counts)
+            })
+            .or_else(|| {
+                let (own, their) = (of_mover(&self.state)?, of_mover(&other.state)?);
+                Unlike::of(of("the next goal"), &own, &their)
+            })
+    }
+
+    /// Draws what the agent sees into a frame of any size; the images that are not in the target are left alone.
+    pub(crate) fn draw_into(&mut self, target: Target) -> Result<(), EnvError> {
+        let supersampling = self.world.agent_params.supersampling;
+        let camera = self.camera();
+        let mut target = Target {
+            supersampling,
+            ..target
+        };
+        self.renderer.draw(&self.views.scene, &camera, &mut target)
+    }
+}
+
+/// What people call an object: its tag, or else its class.
+fn name(world: &World, index: usize) -> &str {
+    let object = &world.objects[index];
+    object.tag.as_deref().unwrap_or(&object.class)
+}

@@ -1,0 +1,83 @@
+//! [`FreeSpace`]: the clearance of a place, its distance to walls and regions. Where objects are placed is decided in `placement.rs`.
+
+use driftworld_spec::EnvironmentParams;
+
+/// The free space of an arena, as far as walls and regions go.
+#[derive(Debug)]
+pub(crate) struct FreeSpace {
+    half: [f64; 2],
+    regions: Vec<Region>,
+}
+
+#[derive(Debug)]
+struct Region {
+    corners: Vec<[f64; 2]>,
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl FreeSpace {
+    pub(crate) fn new(environment: &EnvironmentParams) -> Self {
+        let map = environment.regions().into_iter().map(<[[f64; 2]]>::to_vec);
+        let walls = environment.walls.iter().map(|wall| wall.polygon.clone());
+        Self {
+            half: environment.arena_size().map(|side| side / 2.0),
+            regions: map.chain(walls).map(Region::new).collect(),
+        }
+    }
+
+    /// Distance in metres to the nearest wall; negative outside the arena and inside a region.
+    pub(crate) fn clearance(&self, [x, y]: [f64; 2], enough: f64) -> f64 {
+        let outer = (self.half[0] - x.abs()).min(self.half[1] - y.abs());
+        self.regions
+            .iter()
+            .fold(outer, |least, region| least.min(region.clearance([x, y], enough)))
+    }
+}
+
+impl Region {
+    fn new(corners: Vec<[f64; 2]>) -> Self {
+        let fold = |pick: fn(f64, f64) -> f64, start| {
+            corners
+                .iter()
+                .fold([start; 2], |[x, y], corner| [pick(x, corner[0]), pick(y, corner[1])])
+        };
+        let (low, high) = (fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY));
+        Self { corners, low, high }
+    }
+
+    /// Distance to the polygon, negative inside; anything above `enough` where it is farther than that.
+    fn clearance(&self, [x, y]: [f64; 2], enough: f64) -> f64 {
+        let beyond = (self.low[0] - x)
+            .max(x - self.high[0])
+            .max(self.low[1] - y)
+            .max(y - self.high[1]);
+        if beyond > enough {
+            return beyond;
+        }
+        let mut inside = false;
+        let mut least = f64::INFINITY;
+        let mut from = self.corners[self.corners.len() - 1];
+        for &to in &self.corners {
+            least = least.min(distance_to_segment([x, y], from, to));
+            // Even–odd rule: also right for polygons that touch themselves.
+            if (from[1] > y) != (to[1] > y) && x < (to[0] - from[0]) * (y - from[1]) / (to[1] - from[1]) + from[0] {
+                inside = !inside;
+            }
+            from = to;
+        }
+        if inside { -least } else { least }
+    }
+}
+
+fn distance_to_segment([x, y]: [f64; 2], [ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
+    let (dx, dy) = (bx - ax, by - ay);
+    let squared = dx * dx + dy * dy;
+    let along = if squared == 0.0 {
+        0.0
+    } else {
+        (((x - ax) * dx + (y - ay) * dy) / squared).clamp(0.0, 1.0)
+    };
+    let (ex, ey) = (x - ax - along * dx, y - ay - along * dy);
+    (ex * ex + ey * ey).sqrt()
+}

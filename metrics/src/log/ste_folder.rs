@@ -1,0 +1,149 @@
+//! The data folder of single-task experts on disk: copying a log into it, naming, listing and removing runs. What is stored and
+//! found is in `ste_store.rs`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use driftworld_atomic_files::ScratchFolder;
+
+use super::{data_files, logger_info, scenario_info};
+use crate::MetricsError;
+
+/// What folders are called while they are filled or taken away. What a killed process leaves begins so, and is never read.
+const TEMPORARY: &str = ".storing-";
+
+/// Whatever lies in a log's directory is read as a part of it.
+pub(super) fn check_outside(data_folder: &Path, log_dir: &Path) -> Result<(), MetricsError> {
+    let place = std::path::absolute(data_folder).map_err(MetricsError::io(data_folder, "find this directory"))?;
+    let log = (log_dir.canonicalize()).map_err(MetricsError::io(log_dir, "find this directory"))?;
+    // The folder may not be there yet, but what it will lie in is.
+    let there = place.ancestors().find_map(|ancestor| ancestor.canonicalize().ok());
+    if there.is_some_and(|there| there.starts_with(&log)) {
+        return Err(MetricsError::BadOption {
+            option: "STE data folder",
+            found: data_folder.display().to_string(),
+            expected: "a folder outside the log that is stored".to_owned(),
+        });
+    }
+    Ok(())
+}
+
+/// Copies what makes up a log.
+pub(super) fn copy(log_dir: &Path, data_files: &[PathBuf], to: &Path) -> Result<(), MetricsError> {
+    let info = [logger_info::FILE_NAME, scenario_info::FILE_NAME].map(|name| log_dir.join(name));
+    for file in info.iter().filter(|file| file.exists()).chain(data_files) {
+        let inside = file.strip_prefix(log_dir).expect("the files were found inside the log");
+        let target = to.join(inside);
+        let parent = target.parent().unwrap_or(to);
+        fs::create_dir_all(parent).map_err(MetricsError::io(parent, "make this directory"))?;
+        // Not the system's copy: that takes the mode along, whatever the umask says.
+        // What was just found, not by driftworld-files: it is a file of the log.
+        let copied = fs::File::open(file).and_then(|mut from| {
+            let mut to = fs::File::create(&target)?;
+            std::io::copy(&mut from, &mut to)?;
+            to.sync_all()
+        });
+        copied.map_err(MetricsError::io(&target, "copy into this file"))?;
+    }
+    Ok(())
+}
+
+/// Puts a finished run under its name, or with the first number behind it that is free.
+pub(super) fn give_name(new: &Path, task_dir: &Path, run: &str) -> Result<PathBuf, MetricsError> {
+    let names = std::iter::once(run.to_owned()).chain((2..).map(|number: u32| format!("{run}-{number}")));
+    for dir in names.map(|name| task_dir.join(name)) {
+        if fs::symlink_metadata(&dir).is_ok() {
+            continue;
+        }
+        match fs::rename(new, &dir) {
+            Ok(()) => return Ok(dir),
+            // Someone else took the name meanwhile.
+            Err(_) if fs::symlink_metadata(&dir).is_ok() => {}
+            Err(error) => return Err(MetricsError::io(&dir, "put the log here")(error)),
+        }
+    }
+    unreachable!("there are more numbers than directories")
+}
+
+/// Moves a run where it is no longer found, to be removed with the temporary directory.
+pub(super) fn take_away(run: &Path, temporary: &ScratchFolder) -> Result<(), MetricsError> {
+    // As in the data folder: no two of them have one name.
+    let names = [run.parent().and_then(Path::file_name), run.file_name()];
+    let grave: PathBuf = std::iter::once(temporary.path())
+        .chain([Path::new("old")])
+        .chain(names.into_iter().flatten().map(Path::new))
+        .collect();
+    let above = grave.parent().unwrap_or(temporary.path());
+    fs::create_dir_all(above).map_err(MetricsError::io(above, "make this directory"))?;
+    fs::rename(run, &grave).map_err(MetricsError::io(run, "take away this directory"))
+}
+
+pub(super) fn temporary(data_folder: &Path) -> Result<ScratchFolder, MetricsError> {
+    ScratchFolder::new(TEMPORARY, data_folder).map_err(MetricsError::io(data_folder, "make a directory here"))
+}
+
+pub(super) fn remove(temporary: ScratchFolder) -> Result<(), MetricsError> {
+    let path = temporary.path().to_owned();
+    temporary
+        .close()
+        .map_err(MetricsError::io(path, "remove this directory"))
+}
+
+pub(super) fn leftovers(data_folder: &Path) -> Result<Vec<PathBuf>, MetricsError> {
+    let list = |error| MetricsError::io(data_folder, "list this directory")(error);
+    let mut left = Vec::new();
+    for entry in fs::read_dir(data_folder).map_err(list)? {
+        let entry = entry.map_err(list)?;
+        if entry.file_name().to_string_lossy().starts_with(TEMPORARY) && entry.path().is_dir() {
+            left.push(entry.path());
+        }
+    }
+    Ok(left)
+}
+
+pub(super) fn is_run(dir: &Path) -> bool {
+    dir.join(logger_info::FILE_NAME).is_file()
+}
+
+pub(super) fn runs_of(task_dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
+    Ok(directories(task_dir)?.into_iter().filter(|dir| is_run(dir)).collect())
+}
+
+/// The directories in a directory, in the order of their names; links and hidden ones are left out.
+pub(super) fn directories(dir: &Path) -> Result<Vec<PathBuf>, MetricsError> {
+    let list = |error| MetricsError::io(dir, "list this directory")(error);
+    let mut found = Vec::new();
+    for entry in fs::read_dir(dir).map_err(list)? {
+        let entry = entry.map_err(list)?;
+        let hidden = entry.file_name().to_string_lossy().starts_with('.');
+        if !hidden && entry.file_type().map_err(list)?.is_dir() {
+            found.push(entry.path());
+        }
+    }
+    found.sort_by_cached_key(|path| data_files::path_key(path));
+    Ok(found)
+}
+
+/// A link in a task's place would lead out of the data folder.
+pub(super) fn own_directory(dir: &Path) -> Result<(), MetricsError> {
+    let kind = fs::symlink_metadata(dir).map_err(MetricsError::io(dir, "look at this directory"))?;
+    if kind.is_dir() {
+        return Ok(());
+    }
+    let error = std::io::Error::other("it is a link, which may lead elsewhere; remove it");
+    Err(MetricsError::io(dir, "store logs here")(error))
+}
+
+pub(super) fn refuse_pickles(data_folder: &Path) -> Result<(), MetricsError> {
+    for folder in [data_folder.to_owned(), data_folder.join("taskinfo")] {
+        let Ok(entries) = fs::read_dir(&folder) else { continue };
+        let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+        if let Some(path) = paths
+            .filter(|path| path.extension().is_some_and(|end| end == "pickle"))
+            .min()
+        {
+            return Err(MetricsError::StePickle { path });
+        }
+    }
+    Ok(())
+}

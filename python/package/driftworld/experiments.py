@@ -1,0 +1,64 @@
+"""Which elements of the decision process the variants of a task change, tried out.
+
+The experiment is that of ``driftworld elements``, with the same result. What elements are is in ``docs/elements.md``.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from typing import Any
+
+from driftworld import _native
+from driftworld._literals import ImageKind
+from driftworld.specs import TaskSpec
+
+
+def elements(
+    task: str | os.PathLike[str] | TaskSpec,
+    a: str | None = None,
+    b: str | None = None,
+    *,
+    modalities: Iterable[ImageKind] | None = None,
+    worlds: int = 32,
+    seed: int = 0,
+    steps: int = 100,
+    assets: str | os.PathLike[str] | None = None,
+) -> dict[str, Any]:
+    """Tries which elements of the decision process variants change, beside what the task declares.
+
+    Every variant is compared with the first that the task declares, or ``a`` with ``b``.
+
+    Args:
+        task: A task, its built-in name such as ``"find_objects"``, or its path.
+        a: A variant of the task, beside ``b``.
+        b: Another variant of the task.
+        modalities: Which images the learner has, such as ``["rgb", "depth"]``; those that the worlds ask for if absent.
+        worlds: How many pairs of worlds are tried, 1 to 1,000.
+        seed: The seed that worlds are drawn under.
+        steps: The most steps of an episode, 1 to 100,000.
+        assets: A library of assets whose classes the task uses.
+
+    Returns:
+        A dictionary with ``task``, ``base`` (the variant that others were compared with), ``worlds``, ``seed``, ``steps`` and
+        ``variants``: a list of dictionaries with ``variant``, ``parameters`` (in which it differs), ``declared`` (letters),
+        ``measured`` (each with ``element`` and ``witness``), ``contradictions`` (each with ``element`` and ``message``),
+        ``idle`` (parameters that nothing reads), ``proof`` (how much was tried) and ``verdict`` (``"sound"``, ``"idle"`` or
+        ``"contradicted"``).
+
+    Raises:
+        TaskError: If there is no such task or variant, or a world cannot be drawn.
+        TypeError: If one variant is given without the other.
+    """
+    if (a is None) != (b is None):
+        raise TypeError("elements: found one variant, expected none or two: elements(task, a, b)")
+    spec = task if isinstance(task, TaskSpec) else TaskSpec.load(task)
+    options = {
+        "between": None if a is None else [a, b],
+        "modalities": None if modalities is None else list(modalities),
+        "worlds": worlds,
+        "seed": seed,
+        "steps": steps,
+        "assets": assets,
+    }
+    return _native.elements(spec, options)

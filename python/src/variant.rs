@@ -1,0 +1,276 @@
+//! Variants as Python holds them. Their tasks are in `task.rs`, many of their worlds at once in `portions.rs`.
+
+use std::sync::Arc;
+
+use driftworld::tasks;
+use driftworld_generator::{Subject, at_distance};
+use driftworld_similarity::{VariantMeasure, Weights};
+use driftworld_spec::{DEFAULT_VARIANT, Value, Variant, World};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::distances::element;
+use crate::document::{Whole, from_python, json_to_py, to_py};
+use crate::errors::Result;
+use crate::interruptible::run_detached;
+use crate::portions::{draw, numbers};
+use crate::task::{PyTask, hash_of, wrong};
+
+/// One variant of a task, in which every parameter that is not drawn anew in each world has its value.
+///
+/// Never changes; equal when worlds and distances are the same. Pickles.
+#[pyclass(name = "Variant", module = "driftworld._native", frozen)]
+#[derive(Clone)]
+pub(crate) struct PyVariant(pub(crate) Variant);
+
+#[pymethods]
+impl PyVariant {
+    /// ``task#variant``.
+    #[getter]
+    fn id(&self) -> String {
+        self.0.id()
+    }
+
+    /// Its name within the task.
+    #[getter]
+    fn name(&self) -> &str {
+        self.0.name()
+    }
+
+    /// The task that it is a variant of.
+    #[getter]
+    fn task(&self) -> PyTask {
+        PyTask(Arc::clone(self.0.task()))
+    }
+
+    /// What its author says of it, if anything.
+    #[getter]
+    fn description(&self) -> Option<&str> {
+        self.0.task().variant_description(self.0.name())
+    }
+
+    /// The values of all parameters that are the same in every world, by name.
+    #[getter]
+    fn values<'py>(&self, py: Python<'py>) -> Result<Bound<'py, PyAny>> {
+        Ok(to_py(py, self.0.values())?)
+    }
+
+    /// A hash of everything that its worlds and its distances are made from: 64 hexadecimal digits.
+    #[getter]
+    fn hash(&self) -> String {
+        self.0.hash()
+    }
+
+    /// A variant like this one under another name, with some parameters at other values: ``with_values("dim", light=0.5)``.
+    #[pyo3(signature = (name, /, **changes))]
+    fn with_values(&self, name: &str, changes: Option<&Bound<'_, PyDict>>) -> Result<Self> {
+        let mut values: Vec<(String, Value)> = Vec::new();
+        for (parameter, value) in changes.into_iter().flatten() {
+            let parameter: String = parameter.extract()?;
+            let value = value_of(&parameter, &value)?;
+            values.push((parameter, value));
+        }
+        sound_name(name)?;
+        Ok(Self(self.0.with(name, values)?))
+    }
+
+    /// A variant at a wanted distance, 0 or more, from this one, by as few changed parameters as will do: what may change is an element of the decision process
+    /// (``"reward"`` or ``"R"``, and the distance is the one in it), or a list of parameters (and the distance is the whole one).
+    /// Returns the variant and its distance.
+    #[pyo3(signature = (distance, subject, *, tolerance=1e-3, name="found"))]
+    fn at_distance(
+        &self,
+        py: Python<'_>,
+        distance: f64,
+        subject: &Bound<'_, PyAny>,
+        tolerance: f64,
+        name: &str,
+    ) -> Result<(Self, f64)> {
+        for (option, number) in [("distance", distance), ("tolerance", tolerance)] {
+            if !(number.is_finite() && number >= 0.0) {
+                let message = format!("{option}: found {number}, expected a finite number, 0 or more");
+                return Err(PyValueError::new_err(message).into());
+            }
+        }
+        sound_name(name)?;
+        let (subject, element) = match subject.extract::<String>() {
+            Ok(word) => {
+                let element = element(&word)?;
+                (Subject::Element(element), Some(element))
+            }
+            Err(_) => (Subject::Parameters(subject.extract()?), None),
+        };
+        let from = self.0.clone();
+        let found = run_detached(py, move || {
+            let measured = VariantMeasure::new(from.task(), Weights::of_task(from.task()));
+            let measure = |other: &Variant| {
+                // Distributions of numbers beyond all bounds have no finite distance: farther than any that is asked for.
+                let Ok(distance) = measured.between(&from, other) else {
+                    return f64::INFINITY;
+                };
+                element.map_or(distance.total, |element| distance.element(element).unwrap_or(0.0))
+            };
+            at_distance(&from, &subject, distance, tolerance, measure)
+        })??;
+        Ok((Self(found.variant.with(name, [])?), found.distance))
+    }
+
+    /// World number ``index`` under a seed, as a dictionary.
+    #[pyo3(signature = (seed=Whole(0), index=Whole(0)), text_signature = "($self, seed=0, index=0)")]
+    pub(crate) fn sample<'py>(&self, py: Python<'py>, seed: Whole, index: Whole) -> Result<Bound<'py, PyAny>> {
+        let world = py.detach(|| driftworld_generator::sample(&self.0, seed.0, index.0))?;
+        Ok(to_py(py, &world)?)
+    }
+
+    /// The same as one line of JSON.
+    #[pyo3(signature = (seed=Whole(0), index=Whole(0)), text_signature = "($self, seed=0, index=0)")]
+    fn sample_json(&self, py: Python<'_>, seed: Whole, index: Whole) -> Result<String> {
+        let world = py.detach(|| driftworld_generator::sample(&self.0, seed.0, index.0))?;
+        Ok(world.to_json())
+    }
+
+    /// ``count`` worlds from number ``start`` on, as dictionaries, drawn by several threads: 0 for one on each processor.
+    #[pyo3(
+        signature = (count, *, seed=Whole(0), start=Whole(0), threads=Whole(0)),
+        text_signature = "($self, count, *, seed=0, start=0, threads=0)"
+    )]
+    fn sample_many<'py>(
+        &self,
+        py: Python<'py>,
+        count: Whole,
+        seed: Whole,
+        start: Whole,
+        threads: Whole,
+    ) -> Result<Bound<'py, PyList>> {
+        let drawn = PyList::empty(py);
+        let value = |world: World| serde_json::to_value(&world).unwrap_or_default();
+        draw(
+            py,
+            &self.0,
+            seed.0,
+            numbers(start.0, count.0)?,
+            threads.0,
+            value,
+            |value| drawn.append(json_to_py(py, &value)?),
+        )?;
+        Ok(drawn)
+    }
+
+    /// The same, each world as one line of JSON.
+    #[pyo3(
+        signature = (count, *, seed=Whole(0), start=Whole(0), threads=Whole(0)),
+        text_signature = "($self, count, *, seed=0, start=0, threads=0)"
+    )]
+    fn sample_many_json<'py>(
+        &self,
+        py: Python<'py>,
+        count: Whole,
+        seed: Whole,
+        start: Whole,
+        threads: Whole,
+    ) -> Result<Bound<'py, PyList>> {
+        let drawn = PyList::empty(py);
+        let text = |world: World| world.to_json();
+        draw(
+            py,
+            &self.0,
+            seed.0,
+            numbers(start.0, count.0)?,
+            threads.0,
+            text,
+            |text| drawn.append(text),
+        )?;
+        Ok(drawn)
+    }
+
+    /// Draws the first ``count`` worlds under a seed, and says how often that fails, and why.
+    #[pyo3(signature = (count, *, seed=Whole(0)), text_signature = "($self, count, *, seed=0)")]
+    fn try_worlds<'py>(&self, py: Python<'py>, count: Whole, seed: Whole) -> Result<Bound<'py, PyAny>> {
+        let trial = py.detach(|| driftworld_curriculum::try_worlds(&self.0, seed.0, count.0));
+        Ok(to_py(py, &trial)?)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Variant {:?}>", self.0.id())
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        other.cast::<Self>().is_ok_and(|other| {
+            let other = &other.get().0;
+            self.0.name() == other.name()
+                && self.0.values() == other.values()
+                && (self.0.task().is_same_as(other.task()) || self.0.hash() == other.hash())
+        })
+    }
+
+    fn __hash__(&self) -> u64 {
+        hash_of(&self.0.id())
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (PyTask, String, String))> {
+        let again = py.import("driftworld.specs")?.getattr("_variant_again")?;
+        let values = serde_json::to_string(self.0.values()).map_err(wrong)?;
+        Ok((again, (self.task(), self.0.name().to_owned(), values)))
+    }
+}
+
+/// A variant in another process.
+#[pyfunction]
+pub(crate) fn variant_again(task: &Bound<'_, PyTask>, name: &str, values: &str) -> Result<PyVariant> {
+    let task = &task.get().0;
+    let wanted: indexmap::IndexMap<String, Value> = serde_json::from_str(values).map_err(wrong)?;
+    if let Ok(declared) = task.variant(name)
+        && *declared.values() == wanted
+    {
+        return Ok(PyVariant(declared));
+    }
+    // Values that are as in the variant begun with are left as they are: they may be ones that nothing can be set to.
+    let mut bases = task.all_variants().into_iter().map(Ok).collect::<Vec<_>>();
+    bases.push(task.variant(DEFAULT_VARIANT));
+    let mut refused = None;
+    for base in bases.into_iter().flatten() {
+        let changes = wanted.iter().filter(|(name, value)| base.value(name) != Some(*value));
+        match base.with(name, changes.map(|(name, value)| (name.clone(), value.clone()))) {
+            Ok(variant) => return Ok(PyVariant(variant)),
+            Err(error) => refused = Some(error),
+        }
+    }
+    Err(refused.map_or_else(|| wrong("the task has no variant").into(), Into::into))
+}
+
+/// A variant by its name: built in, or a path; with `#` before the variant's own name.
+#[pyfunction]
+pub(crate) fn load_variant(name: &str) -> Result<PyVariant> {
+    Ok(PyVariant(tasks::variant(name)?))
+}
+
+/// The variants that a name stands for: one, a family, or all of a task.
+#[pyfunction]
+pub(crate) fn load_variants(name: &str) -> Result<Vec<PyVariant>> {
+    Ok(tasks::variants(name)?.into_iter().map(PyVariant).collect())
+}
+
+/// A value of a parameter, as a task spec writes it.
+fn value_of(parameter: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
+    let expected =
+        "expected a value as a task spec writes it: a finite number, a word, a truth value, a list or a dictionary";
+    let wrong = || format!("{parameter}: found {value}, {expected}");
+    let json = from_python(value).map_err(|error| {
+        if error.is_instance_of::<PyTypeError>(value.py()) {
+            PyTypeError::new_err(wrong())
+        } else {
+            PyValueError::new_err(wrong())
+        }
+    })?;
+    serde_json::from_value(json).map_err(|_| PyValueError::new_err(wrong()))
+}
+
+/// Checks the name of a variant that is made: it stands behind the `#` of its id.
+fn sound_name(name: &str) -> PyResult<()> {
+    if name.is_empty() || name.contains('#') {
+        let message = format!("name: found {name:?}, expected a variant's name of at least one letter, without #");
+        return Err(PyValueError::new_err(message));
+    }
+    Ok(())
+}

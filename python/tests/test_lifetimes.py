@@ -1,0 +1,336 @@
+"""Curricula run from Python, with the log that the command would write."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import driftworld
+import numpy as np
+import pytest
+from driftworld import Agent, Curriculum, CurriculumError, TaskSpec, Transition, read_log, validate_log
+from small_lifetime import SMALL, Circler, Pupil, rows, small
+
+#: Columns of which an agent cannot change a thing.
+OF_THE_PLAN = [
+    "block_num",
+    "exp_num",
+    "worker_id",
+    "block_type",
+    "block_subtype",
+    "task_name",
+    "task_params",
+    "exp_status",
+    "progress",
+    "world_index",
+    "distance",
+    "distance_state",
+    "distance_action",
+    "distance_transition",
+    "distance_reward",
+    "distance_observation",
+]
+
+
+def test_the_log_is_the_one_that_the_command_writes(tmp_path: Path) -> None:
+    curriculum, script = small(), tmp_path / "circle.txt"
+    script.write_text("step 1 5 45 0\nrepeat\n", encoding="utf-8")
+    curriculum.save(tmp_path / "s.json")
+    argv = ["run", str(tmp_path / "s.json"), "--agent", f"scripted:{script}", "--logs", str(tmp_path / "theirs")]
+    subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
+    agent = Circler()
+    summary = curriculum.run(agent, tmp_path / "mine", **SMALL)
+    assert rows(tmp_path / "mine") == rows(tmp_path / "theirs")
+    assert validate_log(tmp_path / "mine")["valid"]
+    infos = [
+        json.loads((tmp_path / log / "logger_info.json").read_text(encoding="utf-8")) for log in ("mine", "theirs")
+    ]
+    assert infos[0] == infos[1]
+    assert summary.finished and summary.experiences == 19 and summary.log == tmp_path / "mine"
+    assert summary.steps == sum(read_log(tmp_path / "mine")["episode_step_count"])
+    assert driftworld.metrics(tmp_path / "mine").lifetime == driftworld.metrics(tmp_path / "theirs").lifetime
+
+
+def test_a_random_agents_log_has_the_form_of_the_commands(tmp_path: Path) -> None:
+    curriculum = small(max_steps=10)
+    curriculum.save(tmp_path / "s.json")
+    argv = ["run", str(tmp_path / "s.json"), "--agent", "random", "--logs", str(tmp_path / "theirs")]
+    subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
+    space = curriculum.environment(**SMALL).action_space
+
+    class Random(Circler):
+        def act(self, observation: Any, info: dict[str, Any]) -> Any:
+            return space.sample()
+
+    curriculum.run(Random(), tmp_path / "mine", **SMALL)
+    assert rows(tmp_path / "mine", OF_THE_PLAN) == rows(tmp_path / "theirs", OF_THE_PLAN)
+
+
+def test_an_agent_learns_in_learning_blocks_only(tmp_path: Path) -> None:
+    agent = Circler()
+    assert isinstance(agent, Agent)
+    small(max_steps=7).run(agent, **SMALL)
+    assert agent.frozen == [False, True, False, True, False, True]
+    assert len(agent.learned) == 7 * (2 + 5 + 3) and len(agent.begun) == 19
+    assert {label for label, _ in agent.begun} == {None}
+    # Every evaluation of a world has the same chance, learning another; variants share that of a world's number under a seed.
+    chances = [seed for _, seed in agent.begun]
+    assert chances[2:5] == chances[10:13] == chances[16:19]
+    assert chances[2] == chances[4] and chances[5:7] == chances[7:9]
+    assert len(set(chances)) == 2 + 2 + 3 + 3
+
+
+def test_a_transition_is_what_a_step_said() -> None:
+    transitions: list[Transition] = []
+
+    class Watcher(Circler):
+        def learn(self, transition: Transition) -> None:
+            transitions.append(transition)
+
+    watcher = Watcher()
+    small(max_steps=5).run(watcher, **SMALL)
+    first = transitions[:5]
+    assert [transition.truncated for transition in first] == [False] * 4 + [True]
+    for before, after in pairwise(first):
+        assert before.next_observation is after.observation
+    assert first[0].observation is watcher.seen[0][0] and first[0].action.tolist() == [5, 45, 0]
+    assert set(first[0].info) >= {"events", "is_success"}
+
+
+@pytest.mark.parametrize("kept", [1, 4, 6, 9, 12, 16])
+def test_a_run_that_stopped_goes_on_as_if_it_had_not(tmp_path: Path, kept: int) -> None:
+    curriculum, undisturbed = small(), Pupil()
+    curriculum.run(undisturbed, tmp_path / "whole", **SMALL)
+    first, second = Pupil(), Pupil()
+    stopped = curriculum.run(
+        first, tmp_path / "log", watch=lambda experience, reward: experience.number + 1 < kept, **SMALL
+    )
+    assert (stopped.experiences, stopped.finished) == (kept, False)
+    whole = curriculum.run(second, tmp_path / "log", **SMALL)
+    assert whole.finished and whole.regimes == curriculum.run(Pupil(), tmp_path / "whole", **SMALL).regimes
+    assert rows(tmp_path / "log") == rows(tmp_path / "whole")
+    assert second.knowledge == undisturbed.knowledge != 0
+    assert sorted(path.name for path in (tmp_path / "log.agent").iterdir()) == ["00000016", "lifetime.json"]
+
+
+def test_an_interrupt_leaves_a_log_that_goes_on(tmp_path: Path) -> None:
+    class Tired(Circler):
+        def act(self, observation: Any, info: dict[str, Any]) -> Any:
+            if len(self.begun) == 6:
+                raise KeyboardInterrupt
+            return super().act(observation, info)
+
+    curriculum = small()
+    with pytest.raises(KeyboardInterrupt):
+        curriculum.run(Tired(), tmp_path / "log", **SMALL)
+    assert len(read_log(tmp_path / "log")) == 5
+    assert curriculum.run(Circler(), tmp_path / "log", **SMALL).finished
+    assert len(read_log(tmp_path / "log")) == 19
+
+
+@pytest.mark.skipif(os.name != "posix", reason="directories are held open on POSIX systems")
+@pytest.mark.parametrize("what", ["folder-lost", "file-lost"])
+def test_a_log_that_goes_away_is_an_error(tmp_path: Path, what: str) -> None:
+    log = tmp_path / "log"
+
+    class Careless(Circler):
+        def act(self, observation: Any, info: dict[str, Any]) -> Any:
+            if len(self.begun) == 6 and log.exists():
+                lost = [log] if what == "folder-lost" else list(log.glob("*/*/data-log.tsv"))
+                for path in lost:
+                    path.rename(tmp_path / "away")
+            return super().act(observation, info)
+
+    with pytest.raises(driftworld.MetricsError, match="found no (directory|file), expected") as refused:
+        small().run(Careless(), log, **SMALL)
+    assert refused.value.code == f"metrics/{what}"
+    assert log.exists() == (what == "file-lost")
+
+
+def test_a_clock_that_stands_still_stamps_every_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("DRIFTWORLD_CLOCK", "2026-01-31T12:00:00Z")
+    for name in ["a", "b"]:
+        small().run(Circler(), tmp_path / name, **SMALL)
+    tables = [sorted((tmp_path / name).glob("*/*/data-log.tsv")) for name in ["a", "b"]]
+    texts = [[table.read_text() for table in found] for found in tables]
+    assert texts[0] == texts[1] and "\t20260131T120000.000000\t" in texts[0][0]
+    monkeypatch.setenv("DRIFTWORLD_CLOCK", "noon")
+    with pytest.raises(ValueError, match="DRIFTWORLD_CLOCK: found \"noon\""):
+        small().run(Circler(), tmp_path / "c", **SMALL)
+
+
+def test_a_log_is_taken_up_only_by_what_it_was_begun_with(tmp_path: Path) -> None:
+    log = tmp_path / "log"
+    small(max_steps=3).run(Circler(), log, **SMALL)
+    with pytest.raises(CurriculumError, match="/made_from/environment/size"):
+        small(max_steps=3).run(Circler(), log, **{**SMALL, "size": 16})
+    with pytest.raises(CurriculumError, match="max_steps"):
+        small(max_steps=4).run(Circler(), log, **SMALL)
+    with pytest.raises(CurriculumError, match="/agent"):
+        small(max_steps=3).run(Pupil(), log, **SMALL)
+    with pytest.raises(driftworld.MetricsError) as refused:
+        small(max_steps=3).run(Circler(), log, resume=False, **SMALL)
+    assert refused.value.code == "metrics/log-exists"
+
+
+@pytest.mark.parametrize("told", ["info", "observation"])
+def test_a_label_is_told_where_the_scenario_says_so(told: str) -> None:
+    curriculum = Curriculum.design("find_objects#blue", "find_objects#red", learn=1, eval_episodes=1, task_label=told)
+    agent = Circler()
+    options = {**SMALL, "modalities": ["rgb"], "max_steps": 2}
+    env = curriculum.environment(**options)
+    curriculum.run(agent, **options)
+    assert {label for label, _ in agent.begun} == {"find_objects#blue", "find_objects#red"}
+    numbers = {"find_objects#blue": 0, "find_objects#red": 1}
+    expected = [numbers[label or ""] for label, _ in agent.begun for _ in range(2)]
+    if told == "info":
+        assert [info["task_label"] for _, info in agent.seen] == expected
+        assert "task" not in env.observation_space.spaces
+    else:
+        assert [int(observation["task"].argmax()) for observation, _ in agent.seen] == expected
+        assert env.observation_space["task"].shape == (2,)
+        assert all(env.observation_space.contains(observation) for observation, _ in agent.seen)
+        with pytest.raises(ValueError, match="expected a list"):
+            curriculum.run(agent, **SMALL)
+
+
+def test_a_scenario_of_the_originals_is_lived_as_the_command_lives_it(tmp_path: Path) -> None:
+    theirs, maps = tmp_path / "theirs.json", tmp_path / "theirs-maps"
+    small(max_steps=5).save(tmp_path / "ours.json")
+    argv = ["convert", str(tmp_path / "ours.json"), "--to", "l2explorer", "-o", str(theirs)]
+    subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
+    # A map that is nowhere: another stands in for it, as the original's own scenario needs it.
+    min(maps.iterdir()).unlink()
+    with pytest.warns(UserWarning, match="stood in for it"):
+        curriculum = Curriculum.load(theirs)
+    summary = curriculum.run(Circler(), tmp_path / "log", **SMALL)
+    assert summary.finished and summary.experiences == curriculum.num_experiences == small().num_experiences
+    with pytest.raises(CurriculumError, match="expected a world file"):
+        Curriculum.load(theirs, stand_in=False)
+
+
+@pytest.mark.parametrize("log_is", ["deleted", "replaced"])
+def test_what_an_agent_saved_in_another_lifetime_is_not_loaded(tmp_path: Path, log_is: str) -> None:
+    log, regime = tmp_path / "log", {"task": "find_objects", "variant": "red", "count": 5, "seed": 9, "max_steps": 10}
+    other = Curriculum.from_dict({"name": "other", "blocks": [{"type": "learning", "regimes": [regime]}]})
+    small().run(Pupil(), log, watch=lambda experience, reward: experience.number < 1, **SMALL)
+    assert (tmp_path / "log.agent" / "00000002").is_dir()
+    shutil.rmtree(log)
+    begun = log if log_is == "deleted" else tmp_path / "elsewhere"
+    other.run(Pupil(), begun, watch=lambda experience, reward: experience.number < 2, **SMALL)
+    begun.rename(log)
+    pupil, undisturbed = Pupil(), Pupil()
+    other.run(pupil, log, **SMALL)
+    other.run(undisturbed, **SMALL)
+    assert pupil.knowledge == undisturbed.knowledge != 0
+
+
+def test_time_counts_every_step_that_an_action_is_held_for(tmp_path: Path) -> None:
+    task = json.loads((Path(__file__).parents[2] / "examples/tasks/get_to_goal.json").read_text(encoding="utf-8"))
+    task["world"].setdefault("agent_params", {})["frame_skip"] = 4
+    (tmp_path / "mine.json").write_text(json.dumps(task), encoding="utf-8")
+    name = TaskSpec.from_dict(task).variant_names()[0]
+    regime = {"task": "mine.json", "variant": name, "count": 1, "max_steps": 20}
+    document = {"name": "s", "blocks": [{"type": "evaluation", "regimes": [regime]}]}
+    (tmp_path / "s.json").write_text(json.dumps(document), encoding="utf-8")
+    script = tmp_path / "circle.txt"
+    script.write_text("step 1 5 45 0\nrepeat\n", encoding="utf-8")
+    argv = ["run", str(tmp_path / "s.json"), "--agent", f"scripted:{script}", "--logs", str(tmp_path / "theirs")]
+    subprocess.run([sys.executable, "-m", "driftworld", *argv], check=True, capture_output=True)
+    curriculum = Curriculum.load(tmp_path / "s.json")
+    curriculum.run(Circler(), tmp_path / "mine", **SMALL)
+    curriculum.run(Circler(), tmp_path / "twice", frame_skip=2, **SMALL)
+    for log, seconds in (("theirs", 0.4), ("mine", 0.4), ("twice", 0.2)):
+        read = read_log(tmp_path / log)
+        assert read["time_to_completion"].tolist() == pytest.approx(list(seconds * read["episode_step_count"])), log
+        assert read["episode_step_count"].tolist() == [20]
+
+
+def test_a_wrong_option_begins_no_log(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="size: found"):
+        small().run(Circler(), tmp_path / "log", size=-1)
+    assert not (tmp_path / "log").exists()
+    (tmp_path / "taken").mkdir()
+    (tmp_path / "taken" / "letter.txt").touch()
+    with pytest.raises(driftworld.MetricsError):
+        small().run(Circler(), tmp_path / "taken", **SMALL)
+    with pytest.raises(ValueError, match="log: found '/', expected"):
+        small().run(Circler(), "/", **SMALL)
+
+
+def test_a_log_may_be_where_one_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    assert small(max_steps=2).run(Pupil(), ".", **SMALL).finished
+    assert (tmp_path / "here.agent" / "00000016").is_dir() and len(read_log(tmp_path / "here")) == 19
+
+
+def test_the_same_options_are_the_same_however_they_are_written(tmp_path: Path) -> None:
+    curriculum, rows_of_actions = small(max_steps=2), [[3.0, 4.0, 0.0], [-3.0, 4.0, 0.0]]
+
+    class First(Circler):
+        def act(self, observation: Any, info: dict[str, Any]) -> Any:
+            return 0
+
+    curriculum.run(First(), tmp_path / "log", size=8, modalities=["rgb"], actions=rows_of_actions)
+    again = {"modalities": ("rgb",), "size": np.int64(8), "actions": np.array(rows_of_actions), "supersampling": None}
+    assert curriculum.run(First(), tmp_path / "log", **again).finished
+    with pytest.raises(CurriculumError, match="/made_from/environment/modalities"):
+        curriculum.run(First(), tmp_path / "log", **{**again, "modalities": "rgb"})
+
+
+#: Rocks that find no place in some worlds, and a number whose middle is forbidden.
+QUARRY = {
+    "version": 2,
+    "name": "quarry",
+    "require": ["x <= 4 or x >= 6"],
+    "parameters": {
+        "x": {"role": "variant", "type": "number", "affects": ["T"], "range": [0, 10], "default": 0},
+        "rocks": {"role": "variant", "type": "integer", "affects": ["S"], "range": [0, 4], "default": 0},
+    },
+    "world": {"max_steps": 3, "environment_params": {"map_size": [40, 40]}},
+    "groups": [
+        {
+            "name": "rocks",
+            "count": {"param": "rocks"},
+            "object": {"class": "rock"},
+            "separation": 5,
+            "keep_out": {"walls": 0, "agent": 0},
+            "placement": {"box": {"low": [10, 10], "high": [18, 18]}},
+        }
+    ],
+    "variants": {"low": {}, "high": {"x": 10}, "full": {"rocks": 4}},
+}
+
+
+def test_what_cannot_be_drawn_is_found_and_left_out(tmp_path: Path) -> None:
+    task = tmp_path / "quarry.json"
+    task.write_text(json.dumps(QUARRY), encoding="utf-8")
+    trial = TaskSpec.load(task).variant("full").try_worlds(30)
+    assert trial["worlds"] == 30 and 0 < trial["placement"] == len(trial["failed"])
+    with pytest.raises(CurriculumError, match="worlds cannot be drawn"):
+        Curriculum.design(f"{task}#low", f"{task}#high", drift="linear", learn=21)
+    curriculum = Curriculum.design(f"{task}#low", f"{task}#high", drift="linear", learn=21, eval_episodes=1, worlds=0)
+    drift = next(trial for trial in curriculum.try_worlds(2) if trial["variant"].endswith("low..high"))
+    assert drift["requirement"] == 3 and drift["failed"][0]["progress"] == 0.45
+    log = tmp_path / "log"
+    with pytest.raises(CurriculumError, match=r"quarry#low\.\.high at 0\.45 of its way"):
+        curriculum.run(Circler(), log, modalities="rgb", size=8)
+    paid: list[float] = []
+    summary = curriculum.run(
+        Circler(), log, skip_undrawable=True, modalities="rgb", size=8, watch=lambda now, reward: paid.append(reward)
+    )
+    assert summary.finished and summary.skipped == 3 and summary.experiences == 22
+    assert [one["experience"] for one in summary.left_out] == [11, 12, 13]
+    assert [np.isnan(reward) for reward in paid[:4]] == [True, True, True, False]
+    assert validate_log(log)["valid"]
+    rewards = read_log(log).columns["reward"]
+    assert len(rewards) == 25 and np.isnan(rewards).sum() == 3
+    again = curriculum.run(Circler(), log, skip_undrawable=True, modalities="rgb", size=8)
+    assert again == summary

@@ -1,0 +1,172 @@
+//! Which object of one world is compared with which of the other: once for each class, by everything that objects have at
+//! once. The parts that come of it are in `parts.rs`.
+
+use std::cell::RefCell;
+use std::cmp::Ordering;
+
+use crate::assignment::Assignment;
+use crate::combined::parts::{length, turn};
+use crate::combined::sketch::ObjectFeatures;
+use crate::scalar::relative_difference;
+
+/// Objects this far apart, in metres, count 1.
+pub(super) const UNIT_OF_PLACE: f64 = 10.0;
+
+/// So many points of reward count 1.
+pub(super) const UNIT_OF_REWARD: f64 = 100.0;
+
+/// How much what objects pay counts when they are matched.
+const TIE_BREAK: f64 = 1e-9;
+
+impl ObjectFeatures {
+    pub(super) fn metres(&self, other: &Self) -> f64 {
+        length(self.place, other.place)
+    }
+
+    /// In Oklab; an object with the colours of its asset is 1 from any other.
+    pub(super) fn color_distance(&self, other: &Self) -> f64 {
+        match (self.color, other.color) {
+            (Some(a), Some(b)) => a.distance(b),
+            (None, None) => 0.0,
+            _ => 1.0,
+        }
+    }
+
+    /// What it costs to match two objects of one class: how far apart they are in everything but what they pay, which only
+    /// decides between matches that are equally cheap else. A metric.
+    fn cost(&self, other: &Self) -> f64 {
+        let pays = (self.reward - other.reward).abs() / UNIT_OF_REWARD + (self.odds - other.odds).abs();
+        self.metres(other) / UNIT_OF_PLACE
+            + turn(self.heading, other.heading) / 180.0
+            + self.motion.distance(&other.motion)
+            + self.body.distance(&other.body)
+            + self.paid_for.distance(&other.paid_for)
+            + self.color_distance(other)
+            + self.model.distance(&other.model)
+            + relative_difference(self.scale, other.scale)
+            + TIE_BREAK * pays.min(1.0)
+    }
+}
+
+#[derive(Default)]
+struct Buffers {
+    costs: Vec<f64>,
+    assignment: Assignment,
+    /// Which of the more are matched.
+    is_met: Vec<bool>,
+}
+
+/// Hands out the objects of one class in two worlds, each once: as many as there are in the smaller set with a match, the
+/// rest alone. Of all ways to match them it is one with the least sum of costs; which one hangs on the objects alone and not on
+/// which world is named first.
+///
+/// What objects pay does not decide which are matched unless all else is alike: else a world in which all pay the reverse
+/// would be taken for one in which objects changed their places.
+pub(super) fn each_match<'a>(
+    a: &'a [ObjectFeatures],
+    b: &'a [ObjectFeatures],
+    mut take: impl FnMut(Option<&'a ObjectFeatures>, Option<&'a ObjectFeatures>),
+) {
+    thread_local! {
+        static BUFFERS: RefCell<Buffers> = RefCell::default();
+    }
+    if a.is_empty() || b.is_empty() {
+        for alone in a {
+            take(Some(alone), None);
+        }
+        for alone in b {
+            take(None, Some(alone));
+        }
+        return;
+    }
+    let in_order = comes_first(a, b);
+    let (fewer, more) = if in_order { (a, b) } else { (b, a) };
+    let mut hand_out = |one, other| if in_order { take(one, other) } else { take(other, one) };
+    BUFFERS.with_borrow_mut(|Buffers { costs, assignment, is_met }| {
+        costs.clear();
+        for one in fewer {
+            costs.extend(more.iter().map(|other| one.cost(other)));
+        }
+        // All are finite and within the limits of an assignment; more objects than it takes are compared in their order.
+        let is_solved = assignment.solve(costs, fewer.len(), more.len()).is_ok();
+        let partner = |index: usize| {
+            if is_solved {
+                assignment.partners()[index]
+            } else {
+                Some(index)
+            }
+        };
+        is_met.clear();
+        is_met.resize(more.len(), false);
+        for (index, one) in fewer.iter().enumerate() {
+            let other = partner(index).map(|column| {
+                is_met[column] = true;
+                &more[column]
+            });
+            hand_out(Some(one), other);
+        }
+        for (other, _) in more.iter().zip(&*is_met).filter(|(_, is_met)| !**is_met) {
+            hand_out(None, Some(other));
+        }
+    });
+}
+
+/// Whether a class has fewer objects than the other, or as many that come first.
+fn comes_first(a: &[ObjectFeatures], b: &[ObjectFeatures]) -> bool {
+    let by_number = a.len().cmp(&b.len());
+    let by_object = || a.iter().zip(b).map(|(a, b)| a.order(b)).find(|order| order.is_ne());
+    by_number.then_with(|| by_object().unwrap_or(Ordering::Equal)).is_le()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::combined::sketch::Sketcher;
+    use driftworld_spec::{Object, Stimulus, World};
+    use proptest::prelude::*;
+
+    fn features(objects: &[(f64, f64, f64)]) -> Vec<ObjectFeatures> {
+        let object = |(x, y, reward): &(f64, f64, f64)| {
+            let mut object = Object::new("cube", [*x, *y]);
+            (object.reward, object.reward_stimulus) = (*reward, vec![Stimulus::AgentCollide]);
+            object
+        };
+        let world = World::default()
+            .edit(|world| world.objects.extend(objects.iter().map(object)))
+            .unwrap();
+        Sketcher::default().sketch(&world).objects
+    }
+
+    /// The least sum over all ways to match each of the fewer, tried one after the other.
+    fn least(fewer: &[ObjectFeatures], more: &[ObjectFeatures]) -> f64 {
+        let Some((first, rest)) = fewer.split_first() else {
+            return 0.0;
+        };
+        let ways = (0..more.len()).map(|at| {
+            let mut left = more.to_vec();
+            let other = left.remove(at);
+            first.cost(&other) + least(rest, &left)
+        });
+        ways.fold(f64::INFINITY, f64::min)
+    }
+
+    fn objects() -> impl Strategy<Value = Vec<(f64, f64, f64)>> {
+        prop::collection::vec((-60.0..60.0_f64, -60.0..60.0_f64, -300.0..300.0_f64), 0..5)
+    }
+
+    proptest! {
+        #[test]
+        fn matches_are_as_cheap_as_any_way_to_match(a in objects(), b in objects()) {
+            let (a, b) = (features(&a), features(&b));
+            let (mut sum, mut alone) = (0.0, 0);
+            each_match(&a, &b, |a, b| match (a, b) {
+                (Some(a), Some(b)) => sum += a.cost(b),
+                _ => alone += 1,
+            });
+            let (fewer, more) = if a.len() <= b.len() { (&a, &b) } else { (&b, &a) };
+            let least = least(fewer, more);
+            prop_assert!((sum - least).abs() < 1e-9, "{sum} and {least}");
+            prop_assert_eq!(alone, more.len() - fewer.len());
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! [`Distance`]: the weighted sum of its parts, with [`Weights`] for each element. The parts are measured in `variant.rs` and `world.rs`.
+
+use driftworld_spec::{Element, TaskSpec};
+use serde::Serialize;
+
+use crate::SimilarityError;
+use crate::distribution::Method;
+
+/// The most that an element can weigh: what a task spec may say, too.
+pub const MAX_WEIGHT: f64 = 1e6;
+
+/// What the elements of the decision process weigh in the whole. Each 1 by default.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Weights([f64; 5]);
+
+impl Default for Weights {
+    fn default() -> Self {
+        Self([1.0; 5])
+    }
+}
+
+impl Weights {
+    /// The weights that a task declares under `element_weights`.
+    pub fn of_task(task: &TaskSpec) -> Self {
+        Self(task.element_weights().to_array())
+    }
+
+    /// The same weights but for one element.
+    ///
+    /// # Errors
+    /// [`SimilarityError::BadWeight`] unless the weight is in `0..=`[`MAX_WEIGHT`].
+    pub fn with(mut self, element: Element, weight: f64) -> Result<Self, SimilarityError> {
+        if !(0.0..=MAX_WEIGHT).contains(&weight) {
+            return Err(SimilarityError::BadWeight {
+                name: element.name().to_owned(),
+                found: weight,
+            });
+        }
+        self.0[position(element)] = weight;
+        Ok(self)
+    }
+
+    /// Weight 1 for one element and 0 for all others: the distance in that element alone. A fine element counts as its coarse one.
+    pub fn only(element: Element) -> Self {
+        Self(Element::ALL.map(|other| f64::from(u8::from(other == element.coarse()))))
+    }
+
+    /// What an element weighs.
+    pub fn of(&self, element: Element) -> f64 {
+        self.0[position(element)]
+    }
+}
+
+/// One comparison that a distance is made of.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Part {
+    /// What was compared: a parameter, or a property of worlds.
+    pub name: String,
+    /// The element of the decision process that it counts for.
+    pub element: Element,
+    /// The measure, and what its number is divided by: what counts 1.
+    pub measure: &'static str,
+    /// For distributions: how the number was found. Values are compared as they are.
+    #[serde(rename = "how", skip_serializing_if = "Option::is_none")]
+    pub method: Option<Method>,
+    /// The measure's own number, in its own units.
+    pub raw: f64,
+    /// The number that counts, in units of which 1 is said by the measure; at least 0.
+    pub normalised: f64,
+    /// What it weighs: it counts `weight` times.
+    pub weight: f64,
+    /// Which share of the whole distance is its doing, in 0..=1; the shares of all parts add up to 1, or are 0 where the whole is.
+    pub share: f64,
+}
+
+/// How far apart two variants or two worlds are.
+///
+/// Parts are added, not averaged: each element's distance is the weighted sum of its parts, and the whole is the sum over
+/// everything that was compared, each at the weight of its element; a parameter that counts for several elements counts
+/// once in the whole, at the largest of their weights. So what is alike in both changes no number, however much of it there
+/// is. All are at least 0 and may be above 1; of variants, 1 is one parameter moved over its whole declared range. A
+/// weighted sum of metrics is a metric.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Distance {
+    /// All elements together.
+    pub total: f64,
+    /// State, action, transition, reward, observation; `None` where nothing could differ. As JSON an object with their names.
+    #[serde(serialize_with = "by_name")]
+    pub elements: [Option<f64>; 5],
+    /// What it is made of.
+    pub parts: Vec<Part>,
+}
+
+impl Distance {
+    /// Adds up parts; those of one name follow each other, and are the same number for several elements.
+    pub(crate) fn new(mut parts: Vec<Part>, weights: &Weights) -> Self {
+        let elements = Element::ALL.map(|element| {
+            let own = || parts.iter().filter(|part| part.element == element && part.weight > 0.0);
+            let sum = own().map(|part| part.normalised * part.weight).sum();
+            own().next().is_some().then_some(sum)
+        });
+        let mut total = 0.0;
+        for group in parts.chunk_by_mut(|a, b| a.name == b.name) {
+            let largest = group.iter().map(|part| weights.of(part.element)).fold(0.0, f64::max);
+            let counts = largest * group[0].normalised * group[0].weight;
+            let among = group.iter().filter(|part| weights.of(part.element) > 0.0).count();
+            for part in group.iter_mut().filter(|part| weights.of(part.element) > 0.0) {
+                part.share = counts / among as f64;
+            }
+            total += counts;
+        }
+        for part in &mut parts {
+            part.share = if total > 0.0 { part.share / total } else { 0.0 };
+        }
+        Self { total, elements, parts }
+    }
+
+    /// The distance in one element, of a fine one in its coarse one; `None` where nothing could differ.
+    pub fn element(&self, element: Element) -> Option<f64> {
+        self.elements[position(element)]
+    }
+
+    /// The elements in which there is any distance.
+    pub fn differs_in(&self) -> Vec<Element> {
+        let differs = |element: &Element| self.element(*element).is_some_and(|distance| distance > 0.0);
+        Element::ALL.into_iter().filter(differs).collect()
+    }
+}
+
+/// The elements under their names, in order.
+fn by_name<S: serde::Serializer>(elements: &[Option<f64>; 5], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(Element::ALL.iter().map(|element| element.name()).zip(elements))
+}
+
+fn position(element: Element) -> usize {
+    Element::ALL
+        .iter()
+        .position(|other| *other == element.coarse())
+        .expect("ALL holds every coarse element")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part(element: Element, normalised: f64, weight: f64) -> Part {
+        Part {
+            name: "p".to_owned(),
+            element,
+            measure: "same or not",
+            method: None,
+            raw: normalised,
+            normalised,
+            weight,
+            share: 0.0,
+        }
+    }
+
+    #[test]
+    fn parts_add_up_to_elements_and_to_the_whole() {
+        let mut parts = vec![
+            part(Element::R, 1.0, 1.0),
+            part(Element::R, 0.0, 3.0),
+            part(Element::O, 0.5, 2.0),
+            part(Element::T, 0.7, 0.0),
+        ];
+        for (part, name) in parts.iter_mut().zip(["a", "b", "c", "d"]) {
+            name.clone_into(&mut part.name);
+        }
+        let weights = Weights::default().with(Element::O, 3.0).unwrap();
+        let distance = Distance::new(parts, &weights);
+        assert_eq!(distance.elements, [None, None, None, Some(1.0), Some(1.0)]);
+        assert_eq!(distance.total, 4.0);
+        assert_eq!(distance.differs_in(), [Element::R, Element::O]);
+        let shares: Vec<f64> = distance.parts.iter().map(|part| part.share).collect();
+        assert_eq!(shares, [0.25, 0.0, 0.75, 0.0]);
+    }
+
+    #[test]
+    fn what_counts_for_two_elements_counts_once_in_the_whole() {
+        let parts = vec![part(Element::S, 0.5, 1.0), part(Element::O, 0.5, 1.0)];
+        let distance = Distance::new(parts.clone(), &Weights::default());
+        assert_eq!((distance.total, distance.element(Element::S)), (0.5, Some(0.5)));
+        assert_eq!(Distance::new(parts, &Weights::only(Element::O)).total, 0.5);
+    }
+
+    #[test]
+    fn one_element_can_be_taken_alone() {
+        let parts = vec![part(Element::R, 1.0, 1.0), part(Element::O, 0.5, 1.0)];
+        assert_eq!(Distance::new(parts.clone(), &Weights::only(Element::S)).total, 0.0);
+        assert!(Weights::default().with(Element::R, f64::NAN).is_err());
+        assert!(Weights::default().with(Element::R, -1.0).is_err());
+    }
+}

@@ -1,0 +1,197 @@
+//! How placements differ beyond where each object may stand: the distance that objects keep, and whether places are taken in
+//! turn. Where single objects may stand is compared in `planar_transport.rs`.
+
+use driftworld_spec::{Distribution, Order};
+
+use super::measured::Measured;
+use super::planar_transport::{planar_wasserstein_1, planar_wasserstein_2};
+
+/// The most objects of which each one's place is compared where places are taken in turn.
+const MOST_IN_TURN: usize = 10_000;
+
+/// Wasserstein-1 between the places of objects, as [`placement_wasserstein_2`].
+pub fn placement_wasserstein_1(a: &Distribution, b: &Distribution) -> Option<Measured> {
+    placed(a, b, planar_wasserstein_1)
+}
+
+/// How far two placements of a group are apart, in metres: how far each object's place has to move (root mean square), and
+/// by how much the distance that objects keep differs.
+///
+/// Where both draw each object's place by itself, this is [`planar_wasserstein_2`] and the difference of the distances that
+/// `poisson_disc` keeps. Where one takes its places in turn, the first object is compared with the first, the second with the
+/// second and so on, by the mean and the spread of where each may stand; so a list of points in turn is not the same list at
+/// random. A pseudometric in `0..`, where the first part is a metric. `None` if either draws no points.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::distribution::placement_wasserstein_2;
+/// use driftworld_spec::Distribution::PoissonDisc;
+/// let kept = |distance: f64| PoissonDisc { low: [0.0; 2], high: [40.0; 2], distance };
+/// assert_eq!(placement_wasserstein_2(&kept(1.0), &kept(10.0)).unwrap().value, 9.0);
+/// ```
+pub fn placement_wasserstein_2(a: &Distribution, b: &Distribution) -> Option<Measured> {
+    placed(a, b, planar_wasserstein_2)
+}
+
+fn placed(
+    a: &Distribution,
+    b: &Distribution,
+    alone: impl Fn(&Distribution, &Distribution) -> Option<Measured>,
+) -> Option<Measured> {
+    let in_turn = [a, b].map(places_in_turn);
+    let places = match (&in_turn[0], &in_turn[1]) {
+        (None, None) => alone(a, b)?,
+        (Some(x), Some(y)) => {
+            let objects = common_round(x.len(), y.len());
+            let pairs = (0..objects).map(|k| (x[k % x.len()], y[k % y.len()]));
+            Measured::closed(root_mean(pairs.map(|(x, y)| squared(x, y)), objects))
+        }
+        (Some(x), None) => one_in_turn(x, b)?,
+        (None, Some(y)) => one_in_turn(y, a)?,
+    };
+    Some(Measured {
+        value: places.value + (kept_distance(a) - kept_distance(b)).abs(),
+        ..places
+    })
+}
+
+/// Each of a list of places against the same draw: exact, for a single place against anything is.
+fn one_in_turn(places: &[[f64; 2]], drawn: &Distribution) -> Option<Measured> {
+    let moments = drawn.planar_moments()?;
+    let spread = moments.covariance[0][0] + moments.covariance[1][1];
+    let all = places.iter().map(|place| squared(*place, moments.mean) + spread);
+    Some(Measured::closed(root_mean(all, places.len())))
+}
+
+fn root_mean(all: impl Iterator<Item = f64>, count: usize) -> f64 {
+    (all.sum::<f64>() / count as f64).sqrt()
+}
+
+fn squared(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let [x, y] = [a[0] - b[0], a[1] - b[1]];
+    x * x + y * y
+}
+
+/// After how many objects two lists are both at their beginning again, or the most that are looked at.
+fn common_round(a: usize, b: usize) -> usize {
+    let (mut divisor, mut rest) = (a, b);
+    while rest > 0 {
+        (divisor, rest) = (rest, divisor % rest);
+    }
+    (a / divisor).saturating_mul(b).min(MOST_IN_TURN)
+}
+
+/// The places that objects take in turn, cells by their centres; `None` where each draws its own.
+fn places_in_turn(distribution: &Distribution) -> Option<Vec<[f64; 2]>> {
+    match distribution {
+        Distribution::Points {
+            values,
+            order: Order::Turn,
+        } => Some(values.clone()),
+        Distribution::Grid {
+            low,
+            high,
+            columns,
+            rows,
+            order: Order::Turn,
+            ..
+        } => {
+            let (columns, rows) = (*columns as usize, *rows as usize);
+            let center = |axis: usize, cell: usize, cells: usize| {
+                low[axis] + (high[axis] - low[axis]) * (cell as f64 + 0.5) / cells as f64
+            };
+            let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+            Some(
+                cells
+                    .map(|(column, row)| [center(0, column, columns), center(1, row, rows)])
+                    .collect(),
+            )
+        }
+        _ => None,
+    }
+}
+
+/// The least distance that objects keep from each other by their distribution, in metres; of a mixture the mean.
+fn kept_distance(distribution: &Distribution) -> f64 {
+    match distribution {
+        Distribution::PoissonDisc { distance, .. } => *distance,
+        Distribution::Mixture { parts, weights } => {
+            let weight = |part: usize| weights.as_ref().map_or(1.0, |weights| weights[part]);
+            let all: f64 = (0..parts.len()).map(weight).sum();
+            let kept = parts
+                .iter()
+                .enumerate()
+                .map(|(part, own)| weight(part) * kept_distance(own));
+            kept.sum::<f64>() / all
+        }
+        _ => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn points(values: Vec<[f64; 2]>, order: Order) -> Distribution {
+        Distribution::Points { values, order }
+    }
+
+    #[test]
+    fn places_in_turn_are_not_the_same_places_at_random() {
+        let values = vec![[0.0, 0.0], [6.0, 8.0]];
+        let (turn, random) = (
+            points(values.clone(), Order::Turn),
+            points(values.clone(), Order::Random),
+        );
+        // Each of the two is 0 or 10 m off, as likely.
+        let found = placement_wasserstein_2(&turn, &random).unwrap().value;
+        assert!((found - 50.0_f64.sqrt()).abs() < 1e-9, "{found}");
+        let reversed = points(values.into_iter().rev().collect(), Order::Turn);
+        assert_eq!(placement_wasserstein_2(&turn, &reversed).unwrap().value, 10.0);
+        let grid = |order| Distribution::Grid {
+            low: [0.0; 2],
+            high: [2.0, 1.0],
+            columns: 2.0,
+            rows: 1.0,
+            jitter: None,
+            order,
+        };
+        let cells = points(vec![[0.5, 0.5], [1.5, 0.5]], Order::Turn);
+        assert_eq!(placement_wasserstein_2(&grid(Order::Turn), &cells).unwrap().value, 0.0);
+        assert!(placement_wasserstein_2(&grid(Order::Random), &cells).unwrap().value > 0.1);
+    }
+
+    fn placements() -> impl Strategy<Value = Distribution> {
+        let list = prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 1..4);
+        prop_oneof![
+            (list.clone(), any::<bool>())
+                .prop_map(|(values, turn)| points(values, if turn { Order::Turn } else { Order::Random })),
+            (0.1..5.0_f64).prop_map(|distance| Distribution::PoissonDisc {
+                low: [-9.0; 2],
+                high: [9.0; 2],
+                distance
+            }),
+        ]
+    }
+
+    proptest! {
+        #[test]
+        fn it_is_symmetric_and_0_on_itself(a in placements(), b in placements()) {
+            let d = |a: &Distribution, b: &Distribution| placement_wasserstein_2(a, b).unwrap().value;
+            prop_assert!(d(&a, &a) < 1e-9);
+            prop_assert!((d(&a, &b) - d(&b, &a)).abs() < 1e-9);
+        }
+
+        #[test]
+        fn between_lists_of_as_many_points_in_turn_it_is_a_metric(
+            a in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 3),
+            b in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 2),
+            c in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 6),
+        ) {
+            let [a, b, c] = [a, b, c].map(|values| points(values, Order::Turn));
+            let d = |a: &Distribution, b: &Distribution| placement_wasserstein_2(a, b).unwrap().value;
+            prop_assert!(d(&a, &c) <= d(&a, &b) + d(&b, &c) + 1e-9);
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Paths of small steps: the shortest, and of equally short ones that whose largest step is smallest. The shortest alone is found in
+//! `exact.rs` and `two_opt.rs`.
+
+use super::exact::{MAX_EXACT, Total, best_path};
+use super::items::Items;
+use super::two_opt;
+
+/// Lengths that differ by no more than this share are equal.
+const EQUAL: f64 = 1e-9;
+
+/// Exact for few items; beyond, the path that two-opt finds.
+pub(super) fn order(items: &Items) -> Vec<usize> {
+    if items.len() > MAX_EXACT {
+        return two_opt::order(items);
+    }
+    // More than any path is long, and finite: where every path has such a step, the ends still stand where they belong.
+    let penalty = 2.0 * items.len() as f64 * items.largest_gap();
+    let within = |bound: f64| {
+        let cost = |a: usize, b: usize| {
+            let gap = items.gap(a, b);
+            if gap <= bound { gap } else { gap + penalty }
+        };
+        best_path(items.len(), &cost, items.ends, Total::Sum)
+    };
+    let mut best = within(f64::INFINITY);
+    let longest = length(&best, items) * (1.0 + EQUAL);
+    // The bound under which a path is still as short, found by halving the list of all gaps.
+    let mut bounds: Vec<f64> = items.matrix.values().iter().copied().collect();
+    bounds.retain(|gap| *gap < largest_step(&best, items));
+    bounds.sort_by(f64::total_cmp);
+    bounds.dedup();
+    let (mut low, mut high) = (0, bounds.len());
+    while low < high {
+        let middle = usize::midpoint(low, high);
+        let path = within(bounds[middle]);
+        if length(&path, items) <= longest && largest_step(&path, items) <= bounds[middle] {
+            (best, high) = (path, middle);
+        } else {
+            low = middle + 1;
+        }
+    }
+    best
+}
+
+fn length(path: &[usize], items: &Items) -> f64 {
+    path.windows(2).map(|pair| items.gap(pair[0], pair[1])).sum()
+}
+
+fn largest_step(path: &[usize], items: &Items) -> f64 {
+    path.windows(2)
+        .map(|pair| items.gap(pair[0], pair[1]))
+        .fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{DistanceMatrix, Method, OrderOptions, SimilarityError, order};
+
+    #[test]
+    fn of_two_shortest_paths_that_with_smaller_steps_is_taken() {
+        // From a: a-b-c-d is 1 + 1 + 4, a-c-b-d is 2 + 1 + 3, and no path is shorter.
+        let gap = |a: usize, b: usize| {
+            let gaps = [[0, 1, 2, 9], [1, 0, 1, 3], [2, 1, 0, 4], [9, 3, 4, 0]];
+            Ok::<_, SimilarityError>(f64::from(gaps[a][b]))
+        };
+        let matrix = DistanceMatrix::measure(["a", "b", "c", "d"].map(str::to_owned).to_vec(), gap).unwrap();
+        let found = |method| order(&matrix, method, &OrderOptions::default().with_first(0)).unwrap();
+        assert_eq!(
+            (found(Method::Exact).length, found(Method::Exact).largest_step()),
+            (6.0, 4.0)
+        );
+        assert_eq!(
+            (found(Method::Gradual).length, found(Method::Gradual).largest_step()),
+            (6.0, 3.0)
+        );
+    }
+
+    #[test]
+    fn outward_goes_by_distance_from_the_first() {
+        let at = [0.0_f64, -2.0, 1.0, 3.0];
+        let names = ["a", "b", "c", "d"].map(str::to_owned).to_vec();
+        let matrix = DistanceMatrix::measure(names, |a, b| Ok::<_, SimilarityError>((at[a] - at[b]).abs())).unwrap();
+        let found = |first| order(&matrix, Method::Outward, &OrderOptions::default().with_first(first)).unwrap();
+        assert_eq!(found(0).indices, [0, 2, 1, 3]);
+        assert_eq!(found(3).indices, [3, 2, 0, 1]);
+    }
+}

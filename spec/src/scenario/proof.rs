@@ -1,0 +1,57 @@
+//! [`ScenarioProof`]: what shows that the variants of a scenario differ in one element of the decision process only. Trying it is
+//! the facade's job.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::element::Element;
+use crate::world::Modality;
+
+/// An experiment on pairs of worlds of a scenario's variants, for a learner's images: what each variant changes beside the first.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [
+    { "element": "R", "base": "find_objects#blue", "modalities": ["rgb"], "worlds": 8, "seed": 0, "steps": 10000,
+      "observations": 400, "variants": [{ "variant": "find_objects#modest", "measured": ["R"] }] },
+]))]
+pub struct ScenarioProof {
+    /// The element that the scenario probes.
+    pub element: Element,
+    /// The variant that the others were compared with.
+    #[schemars(length(min = 1, max = 1000))]
+    pub base: String,
+    /// The images for which it holds: with others a difference may show that these do not have.
+    #[schemars(length(max = 5))]
+    pub modalities: Vec<Modality>,
+    /// Pairs of worlds that were tried for each variant.
+    #[schemars(range(min = 1, max = 10_000))]
+    pub worlds: u64,
+    /// The seed under which they were drawn.
+    #[schemars(range(min = 0, max = MOST))]
+    pub seed: u64,
+    /// Steps that both worlds of a pair took from one state by one command, of all pairs together.
+    #[schemars(range(min = 0, max = MOST))]
+    pub steps: u64,
+    /// States in which both observations were compared, of all pairs together.
+    #[schemars(range(min = 0, max = MOST))]
+    pub observations: u64,
+    /// The other variants, in the order in which they were found.
+    #[schemars(length(max = 1000))]
+    pub variants: Vec<ProvenVariant>,
+}
+
+/// What a variant was seen to change.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [{ "variant": "find_objects#modest", "measured": ["R"] }]))]
+pub struct ProvenVariant {
+    /// The variant, as `task#variant`.
+    #[schemars(length(min = 1, max = 1000))]
+    pub variant: String,
+    /// The elements that differ from those of the base.
+    #[schemars(length(max = 7))]
+    pub measured: Vec<Element>,
+}
+
+/// The largest whole number that every reader of JSON keeps: 2⁵³ − 1.
+const MOST: u64 = (1 << 53) - 1;

@@ -1,0 +1,166 @@
+//! Which measures fit which parameters, and which tables of costs are distances.
+
+use crate::TaskSpec;
+
+fn check(compare: &str, parameter: &str, expected: &str) {
+    let text = format!(
+        r#"{{ "name": "t", "parameters": {{ "p": {{ "affects": ["O"], "compare": {compare}, {parameter} }} }} }}"#
+    );
+    let said = TaskSpec::from_json("t.json", &text).map_or_else(|error| error.to_string(), |_| String::new());
+    let said = said.split_once(" (").map_or("", |(_, said)| said);
+    assert_eq!(said, expected);
+}
+
+const NUMBER: &str = r#""role": "variant", "type": "number", "range": [0, 1], "default": 0"#;
+const WORDS: &str = r#""role": "variant", "type": "string", "choices": ["a", "b", "c"], "default": "a""#;
+
+#[test]
+fn a_measure_fits_the_parameter_that_it_compares() {
+    check(r#"{ "measure": "difference", "weight": 3 }"#, NUMBER, "");
+    check(r#"{ "measure": "same_or_not" }"#, WORDS, "");
+    check(
+        r#"{ "measure": "log_ratio" }"#,
+        NUMBER,
+        "/parameters/p/compare/measure): found log_ratio, expected a variant parameter of type number or integer whose values are all above 0 for it",
+    );
+    check(
+        r#"{ "measure": "ciede2000" }"#,
+        WORDS,
+        "/parameters/p/compare/measure): found ciede2000, expected a parameter of type color, or one whose distributions draw colours, for it",
+    );
+    check(
+        r#"{ "measure": "hellinger" }"#,
+        NUMBER,
+        "/parameters/p/compare/measure): found hellinger, expected a randomized parameter, or one of type distribution for it",
+    );
+    let drawn = r#""role": "randomized", "type": "number", "distribution": { "uniform": { "low": 0, "high": 1 } }"#;
+    check(r#"{ "measure": "hellinger" }"#, drawn, "");
+}
+
+#[test]
+fn drawn_colours_are_compared_by_how_far_they_are_apart() {
+    let drawn =
+        r#""role": "randomized", "type": "color", "distribution": { "color_normal": { "mean": "red", "std": 0.1 } }"#;
+    let law = r#""role": "variant", "type": "distribution", "choices": [{ "color_hsv": {} }], "default": { "color_hsv": {} }"#;
+    for parameter in [drawn, law] {
+        for fits in [
+            "srgb",
+            "cie76",
+            "ciede2000",
+            "oklab",
+            "wasserstein_1",
+            "wasserstein_2",
+            "same_or_not",
+        ] {
+            check(&format!(r#"{{ "measure": "{fits}" }}"#), parameter, "");
+        }
+        for odd in ["total_variation", "hellinger", "jensen_shannon"] {
+            let said = format!(
+                "/parameters/p/compare/measure): found {odd}, expected wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000 or \
+                 same_or_not, since colours out of a continuum are compared by how far they are apart"
+            );
+            check(&format!(r#"{{ "measure": "{odd}" }}"#), parameter, &said);
+        }
+    }
+    let words = r#""role": "randomized", "type": "color", "distribution": { "choice": { "values": ["red", "blue"] } }"#;
+    check(r#"{ "measure": "total_variation" }"#, words, "");
+}
+
+#[test]
+fn a_measure_that_would_not_be_used_is_refused() {
+    let drawn = |kind: &str, distribution: &str| {
+        format!(r#""role": "randomized", "type": "{kind}", "distribution": {{ {distribution} }}"#)
+    };
+    let point = drawn("point", r#""disc": { "center": [0, 0], "radius": 2 }"#);
+    let shares = drawn("vector", r#""dirichlet": { "alpha": [1, 2] }"#);
+    let heading = drawn("heading", r#""uniform": { "low": 0, "high": 90 }"#);
+    let words = drawn("string", r#""choice": { "values": ["a", "b"] }"#);
+    let measures = [
+        "wasserstein_1",
+        "wasserstein_2",
+        "total_variation",
+        "hellinger",
+        "jensen_shannon",
+    ];
+    for (parameter, fits) in [
+        (&point, [true, true, false, false, false]),
+        (&shares, [true, false, false, false, false]),
+        (&heading, [true, false, true, true, true]),
+        (&words, [false, false, true, true, true]),
+    ] {
+        for (measure, fits) in measures.iter().zip(fits) {
+            let text = format!(
+                r#"{{ "name": "t", "parameters": {{ "p": {{ "affects": ["S"], "compare": {{ "measure": "{measure}" }}, {parameter} }} }} }}"#
+            );
+            let said = TaskSpec::from_json("t", &text).map_or_else(|error| error.to_string(), |_| String::new());
+            assert_eq!(said.is_empty(), fits, "{measure} of {parameter}: {said}");
+            assert!(fits || said.contains("same_or_not, since"), "{said}");
+        }
+    }
+}
+
+#[test]
+fn a_measure_looks_at_the_distributions_that_another_parameter_may_be() {
+    let text = r#"{ "name": "t", "parameters": {
+        "law": { "role": "variant", "type": "distribution", "affects": ["O"], "choices": [{ "color_hsv": {} }], "default": { "color_hsv": {} } },
+        "p": { "role": "randomized", "type": "color", "affects": ["O"], "distribution": { "param": "law" },
+               "compare": { "measure": "hellinger" } } } }"#;
+    let said = TaskSpec::from_json("t.json", text).map_or_else(|error| error.to_string(), |_| String::new());
+    assert!(
+        said.contains("(/parameters/p/compare/measure): found hellinger, expected wasserstein_1"),
+        "{said}"
+    );
+}
+
+#[test]
+fn costs_are_distances_among_the_choices() {
+    check(r#"{ "costs": [[0, 1, 2], [1, 0, 1.5], [2, 1.5, 0]] }"#, WORDS, "");
+    let wrong = |costs: &str, at: &str, said: &str| {
+        check(
+            &format!(r#"{{ "costs": {costs} }}"#),
+            WORDS,
+            &format!("/parameters/p/compare/costs{at}): {said}"),
+        );
+    };
+    wrong("[[0, 1], [1, 0]]", "", "found 2 rows, expected 3, one for each choice");
+    wrong(
+        "[[0, 1, 1], [1, 0], [1, 1, 0]]",
+        "/1",
+        "found 2 numbers, expected 3, one for each choice",
+    );
+    wrong(
+        "[[0, 1, 1], [2, 0, 1], [1, 1, 0]]",
+        "/1/0",
+        "found 2, expected 1, as at /0/1: as far there as back",
+    );
+    wrong(
+        "[[0, 1, 1], [1, 3, 1], [1, 1, 0]]",
+        "/1/1",
+        "found 3, expected 0: a choice is no distance from itself",
+    );
+    wrong(
+        "[[0, -1, 1], [-1, 0, 1], [1, 1, 0]]",
+        "/0/1",
+        "found -1, expected a number of at least 0",
+    );
+    wrong(
+        "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]",
+        "",
+        "found costs that are all 0, expected some that are not, or a weight of 0",
+    );
+    check(
+        r#"{ "costs": [[0]] }"#,
+        NUMBER,
+        "/parameters/p/compare/costs): found costs of a parameter without choices, expected a variant parameter with choices",
+    );
+    check(
+        r#"{ "costs": [[0, 1], [1, 0]] }"#,
+        r#""role": "variant", "type": "string", "choices": ["a", "a"], "default": "a""#,
+        "/parameters/p/compare/costs): found costs of choices of which one stands twice, expected each choice once",
+    );
+    check(
+        r#"{ "measure": "same_or_not", "costs": [[0, 1, 1], [1, 0, 1], [1, 1, 0]] }"#,
+        WORDS,
+        "/parameters/p/compare/costs): found costs beside a measure, expected one of the two",
+    );
+}

@@ -1,0 +1,54 @@
+//! [`ElementWeights`]: what each element of the decision process weighs in a task's distances. The elements are in `element.rs`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What each element of the decision process weighs in a task's distances; 1 where nothing is said.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("examples" = [{ "R": 2, "O": 0.5 }]))]
+pub struct ElementWeights {
+    /// The states.
+    #[serde(rename = "S", default = "super::compare::one")]
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub state: f64,
+    /// The actions.
+    #[serde(rename = "A", default = "super::compare::one")]
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub action: f64,
+    /// The transitions.
+    #[serde(rename = "T", default = "super::compare::one")]
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub transition: f64,
+    /// The rewards.
+    #[serde(rename = "R", default = "super::compare::one")]
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub reward: f64,
+    /// The observations.
+    #[serde(rename = "O", default = "super::compare::one")]
+    #[schemars(range(min = 0.0, max = 1e6))]
+    pub observation: f64,
+}
+
+impl Default for ElementWeights {
+    fn default() -> Self {
+        Self {
+            state: 1.0,
+            action: 1.0,
+            transition: 1.0,
+            reward: 1.0,
+            observation: 1.0,
+        }
+    }
+}
+
+impl ElementWeights {
+    /// In the order of [`Element::ALL`](crate::Element::ALL).
+    pub fn to_array(self) -> [f64; 5] {
+        [self.state, self.action, self.transition, self.reward, self.observation]
+    }
+
+    pub(crate) fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}

@@ -1,0 +1,171 @@
+//! Who reads a parameter: the worlds of a task, or only the draws of other parameters; and whether anything reads it in a
+//! variant, as its `read_if` says. What nothing reads counts nothing in a distance.
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::Serialize;
+use serde_json::Value as Json;
+
+use super::TaskSpec;
+use super::variant::Variant;
+use crate::value::Value;
+
+/// Who reads a parameter.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Readers {
+    /// Whether a world, a group, or a choice of another parameter reads it.
+    pub worlds: bool,
+    /// The randomized parameters whose distributions read it, in the order of the task.
+    pub draws: Vec<String>,
+}
+
+impl Readers {
+    /// Whether it is read, and only by the distributions of randomized parameters: then it changes nothing but what they
+    /// draw.
+    pub fn are_draws_alone(&self) -> bool {
+        !self.worlds && !self.draws.is_empty()
+    }
+}
+
+impl TaskSpec {
+    /// Who reads a parameter; nobody where there is none of this name.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::TaskSpec;
+    /// let text = r#"{ "name": "t", "parameters": {
+    ///     "widest": { "role": "variant", "type": "number", "affects": ["S"], "range": [1, 90], "default": 45 },
+    ///     "heading": { "role": "randomized", "type": "heading", "affects": ["S"],
+    ///                  "distribution": { "uniform": { "low": 0, "high": { "param": "widest" } } } } },
+    ///   "world": { "agent_params": { "heading": { "param": "heading" } } } }"#;
+    /// let task = TaskSpec::from_json("inline", text)?;
+    /// assert!(task.readers("heading").worlds && task.readers("widest").are_draws_alone());
+    /// # Ok::<(), driftworld_spec::SpecError>(())
+    /// ```
+    pub fn readers(&self, parameter: &str) -> &Readers {
+        static NOBODY: Readers = Readers {
+            worlds: false,
+            draws: Vec::new(),
+        };
+        let readers = self.readers.get_or_init(|| self.find_readers());
+        readers.get(parameter).unwrap_or(&NOBODY)
+    }
+
+    fn find_readers(&self) -> BTreeMap<String, Readers> {
+        let document = &self.document;
+        let mut readers: BTreeMap<String, Readers> = BTreeMap::new();
+        let mut in_worlds = names_in(&document.world);
+        in_worlds.extend(names_in(&document.groups));
+        for (name, other) in &document.parameters {
+            in_worlds.extend(names_in(&(&other.choices, &other.default, &other.value)));
+            for read in names_in(&other.distribution) {
+                readers.entry(read).or_default().draws.push(name.clone());
+            }
+        }
+        for read in in_worlds {
+            readers.entry(read).or_default().worlds = true;
+        }
+        readers
+    }
+}
+
+/// The names that stand anywhere in a part of a document as `{ "param": NAME }`.
+fn names_in(part: &impl Serialize) -> BTreeSet<String> {
+    fn walk(json: &Json, found: &mut BTreeSet<String>) {
+        match json {
+            Json::Object(map) => {
+                found.extend(map.get("param").and_then(Json::as_str).map(str::to_owned));
+                map.values().for_each(|child| walk(child, found));
+            }
+            Json::Array(list) => list.iter().for_each(|child| walk(child, found)),
+            _ => {}
+        }
+    }
+    let mut found = BTreeSet::new();
+    let json = serde_json::to_value(part).expect("a document that was read serialises");
+    walk(&json, &mut found);
+    found
+}
+
+impl Variant {
+    /// Whether anything reads a parameter in this variant: what its `read_if` says, and yes where it has none.
+    pub fn reads(&self, parameter: &str) -> bool {
+        let value_of = |name: &str| self.value(name).cloned();
+        let condition = self.task().read_conditions.get(parameter);
+        condition.is_none_or(|condition| condition.holds(value_of) != Some(false))
+    }
+
+    /// The value of a fixed or variant parameter as far as it matters: its default where nothing reads it in this variant.
+    /// `None` for a randomized or unknown one.
+    pub fn value_as_read(&self, parameter: &str) -> Option<Cow<'_, Value>> {
+        let value = self.value(parameter)?;
+        if self.reads(parameter) {
+            return Some(Cow::Borrowed(value));
+        }
+        let declared = self.task().parameters().get(parameter)?;
+        let default = declared
+            .default
+            .as_ref()
+            .and_then(|default| default.cast(declared.kind));
+        Some(default.map_or(Cow::Borrowed(value), Cow::Owned))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::borrow::Cow;
+
+    use crate::{TaskSpec, Value};
+
+    fn text(read_if: &str) -> String {
+        format!(
+            r#"{{ "name": "t", "parameters": {{
+            "trigger": {{ "role": "variant", "type": "string", "affects": ["T"], "choices": ["touch", "near"], "default": "touch" }},
+            "reach": {{ "role": "variant", "type": "number", "affects": ["T"], "range": [0, 9], "default": 1, "read_if": "{read_if}" }},
+            "drawn": {{ "role": "randomized", "type": "number", "affects": ["T"],
+                        "distribution": {{ "uniform": {{ "low": 0, "high": {{ "param": "high" }} }} }} }},
+            "high": {{ "role": "variant", "type": "number", "affects": ["T"], "range": [1, 9], "default": 1 }} }},
+          "world": {{ "environment_params": {{ "light_intensity": {{ "param": "drawn" }} }} }},
+          "variants": {{ "idle": {{ "reach": 5 }}, "near": {{ "trigger": "near", "reach": 5 }} }} }}"#
+        )
+    }
+
+    #[test]
+    fn a_parameter_that_nothing_reads_stands_at_its_default() {
+        let task = TaskSpec::from_json("t", &text("trigger == 'near'")).unwrap();
+        let read = |variant: &str| {
+            task.variant(variant)
+                .unwrap()
+                .value_as_read("reach")
+                .map(Cow::into_owned)
+        };
+        assert_eq!(read("idle"), Some(Value::Number(1.0)));
+        assert_eq!(read("near"), Some(Value::Number(5.0)));
+        assert!(task.variant("near").unwrap().reads("reach") && !task.variant("idle").unwrap().reads("reach"));
+    }
+
+    #[test]
+    fn readers_are_worlds_and_draws() {
+        let task = TaskSpec::from_json("t", &text("trigger == 'near'")).unwrap();
+        assert!(task.readers("high").are_draws_alone());
+        assert_eq!(task.readers("high").draws, ["drawn"]);
+        assert!(task.readers("drawn").worlds && !task.readers("reach").worlds);
+    }
+
+    #[test]
+    fn a_condition_speaks_of_what_variants_settle() {
+        let said = |read_if: &str| {
+            TaskSpec::from_json("t", &text(read_if)).map_or_else(|error| error.to_string(), |_| String::new())
+        };
+        assert_eq!(said("reach > 0 or trigger == 'near'"), "");
+        for (wrong, expected) in [
+            ("drawn > 1", "a fixed or variant parameter"),
+            ("triger == 'near'", "trigger"),
+            ("trigger ==", "/parameters/reach/read_if"),
+            ("reach + 1", "neither true nor false"),
+        ] {
+            assert!(said(wrong).contains(expected), "{wrong}: {}", said(wrong));
+        }
+    }
+}

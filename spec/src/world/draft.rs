@@ -1,0 +1,142 @@
+//! [`WorldDraft`]: the fields of a world, and what they are for code that sets them. What makes a [`World`](super::World) of it is in `check.rs`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::defaults::is_default;
+use super::fields::{fields, word};
+use super::{AgentParams, EnvironmentParams, MAX_SEED, Object, Progress, Rules};
+use crate::version::WORLD_VERSION;
+
+fields! {
+    /// The fields of a world, free to be set. [`WorldDraft::check`] makes a [`World`](crate::World) of it.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::{Object, WorldDraft};
+    /// let world = WorldDraft { objects: vec![Object::new("tree", [3.0, 4.0])], ..WorldDraft::default() }.check()?;
+    /// assert_eq!(world.objects[0].coordinates, [3.0, 4.0]);
+    /// # Ok::<(), driftworld_spec::SpecError>(())
+    /// ```
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [
+        { "version": 1, "max_steps": 300, "objects": [{ "class": "tree", "model": "5", "coordinates": [3, 4] }] },
+    ]))]
+    #[schemars(inline)]
+    pub struct WorldDraft {
+        /// Where the JSON Schema of this document is, for editors; not part of the world.
+        #[serde(rename = "$schema", skip_serializing)]
+        pub schema: Option<String> = None => Field::ours(Not("it names a schema for editors"))
+                .named("$schema")
+                .fixed("it names a schema for editors, and is no part of the world"),
+        /// The version of this form of document. Older ones are read, newer ones refused; without it, it is taken to be 1.
+        #[schemars(range(min = 1, max = 1))]
+        pub version: u32 = WORLD_VERSION => Field::ours(Not("it is the form of the document"))
+                .fixed("it is the form of the document, which has one"),
+        /// The seed of all random numbers in the running world: where wanderers go, which pulls of a bandit arm pay, where objects come
+        /// back. A sampled world has one of its task, seed and number, so that all variants of the task share it. Without it
+        /// the places of things decide.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = 0, max = MAX_SEED))]
+        pub seed: Option<u64> = None
+            => Field::ours(Not("two worlds that differ in their seeds alone are two runs of one world"))
+                .fixed("a sampled world has that of its task, seed and number, so that all variants share it"),
+        /// What the world is for.
+        pub game_mode: GameMode = GameMode::default()
+            => Field::original(Not("photographing objects is no decision process")),
+        /// Steps until the episode is truncated; 0 is never.
+        #[schemars(range(min = 0, max = 1_000_000_000))]
+        pub max_steps: u32 = 0 => Field::original(Measured(&[Limit])),
+        /// Seconds of the world's own time until the episode is truncated, be it in the midst of an action that is held; 0 is never.
+        /// Of two limits the earlier holds. Unlike `max_steps` it does not depend on how long a step lasts.
+        #[serde(skip_serializing_if = "is_default")]
+        #[schemars(range(min = 0.0, max = 1e9))]
+        pub max_seconds: f64 = 0.0 => Field::ours(Measured(&[Limit])).unit("s"),
+        /// The arena and its light.
+        pub environment_params: EnvironmentParams = EnvironmentParams::default() => Field::original(AsPart),
+        /// The agent.
+        pub agent_params: AgentParams = AgentParams::default() => Field::original(AsPart),
+        /// How objects are photographed in `collect_images`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub image_params: Option<ImageParams> = None
+            => Field::original(Not("photographing objects is no decision process")),
+        /// Rewards and endings beside those of the objects.
+        pub rules: Rules = Rules::default() => Field::ours(AsPart),
+        /// What stands in the world.
+        #[schemars(length(max = 100_000))]
+        pub objects: Vec<Object> = Vec::new()
+            => Field::original(Measured(&[Unmatched, Rewards, UnmatchedLooks])),
+        /// How far it has come, for a world that was written down while it ran.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub progress: Option<Progress> = None
+            => Field::ours(Not("it is how far a world has come, not which world it is"))
+                .fixed("a sampled world has not begun"),
+    }
+}
+
+/// What a world is for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum GameMode {
+    /// An agent acts in it.
+    #[default]
+    Learn,
+    /// Its objects are photographed.
+    CollectImages,
+}
+
+fields! {
+    /// How objects are photographed in `collect_images`.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(default, deny_unknown_fields)]
+    #[schemars(extend("examples" = [{ "zoom": 2, "yaw_subdivisions": 8, "vertical_subdivisions": 1 }]))]
+    pub struct ImageParams {
+        /// Distance of the camera as a factor on that from which the object just fits into the picture.
+        #[schemars(range(min = 0.1, max = 100.0))]
+        pub zoom: f64 = 2.0 => Field::original(AsPart),
+        /// Views around each object.
+        #[schemars(range(min = 1, max = 360))]
+        pub yaw_subdivisions: u32 = 8 => Field::original(AsPart),
+        /// Views from the side up to the top.
+        #[schemars(range(min = 1, max = 360))]
+        pub vertical_subdivisions: u32 = 1 => Field::original(AsPart),
+    }
+}
+
+impl WorldDraft {
+    /// Time steps until `max_seconds` have passed: the first at whose end they have. `None` without such a limit.
+    pub fn max_ticks(&self) -> Option<u64> {
+        // A little less, so that 60 s are 600 time steps of 0.1 s, which is no number of binary digits.
+        let ticks = || (self.max_seconds / self.agent_params.time_step - 1e-6).ceil();
+        (self.max_seconds > 0.0).then(|| ticks().max(1.0) as u64)
+    }
+
+    /// Steps until the episode is truncated at the latest, by `max_steps` or by `max_seconds`; `None` for never.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::WorldDraft;
+    /// let mut world = WorldDraft { max_seconds: 20.0, ..WorldDraft::default() };
+    /// assert_eq!(world.step_limit(), Some(200));
+    /// world.agent_params.frame_skip = 3;
+    /// assert_eq!(world.step_limit(), Some(67), "the last is cut short");
+    /// world.max_steps = 50;
+    /// assert_eq!(world.step_limit(), Some(50));
+    /// ```
+    pub fn step_limit(&self) -> Option<u32> {
+        let held = u64::from(self.agent_params.frame_skip.max(1));
+        let by_time = self
+            .max_ticks()
+            .map(|ticks| u32::try_from(ticks.div_ceil(held)).unwrap_or(u32::MAX));
+        let by_steps = (self.max_steps > 0).then_some(self.max_steps);
+        by_steps.into_iter().chain(by_time).min()
+    }
+
+    /// Sets a limit of steps, 0 for never, in place of all limits that the world has.
+    pub fn limit_steps(&mut self, max_steps: u32) {
+        (self.max_steps, self.max_seconds) = (max_steps, 0.0);
+    }
+}
+
+word!(GameMode);

@@ -1,0 +1,101 @@
+//! The names of a world: by all of its content, and by where things stand in it, which is what the chance of a world without a
+//! `seed` grows from.
+
+use std::fmt::Write;
+
+use sha2::{Digest, Sha256};
+
+use super::World;
+
+impl World {
+    /// The world's name by its content: the SHA-256 of [`World::to_json`] in hexadecimal, 64 characters.
+    pub fn hash(&self) -> String {
+        hexadecimal(&Sha256::digest(self.to_json()))
+    }
+
+    /// The SHA-256 of the arena and of the places of the agent and of all objects, in hexadecimal, 64 characters.
+    ///
+    /// What things look like, pay or are called has no part in it, nor has the order of the objects: worlds that differ in
+    /// nothing else have one hash of places.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::{Object, World};
+    /// let world = World::default().edit(|world| world.objects.push(Object::new("tree", [3.0, 4.0])))?;
+    /// let before = world.hash_of_places();
+    /// let world = world.edit(|world| world.objects[0].reward = 5.0)?;
+    /// assert_eq!(world.hash_of_places(), before);
+    /// let world = world.edit(|world| world.objects[0].coordinates = [3.0, 5.0])?;
+    /// assert_ne!(world.hash_of_places(), before);
+    /// # Ok::<(), driftworld_spec::SpecError>(())
+    /// ```
+    pub fn hash_of_places(&self) -> String {
+        let mut hash = Sha256::new();
+        hash.update(b"driftworld places 1\0");
+        let mut take = |points: &mut dyn Iterator<Item = [f64; 2]>| {
+            let mut count: u64 = 0;
+            for point in points {
+                for metres in point {
+                    hash.update(bits(metres).to_le_bytes());
+                }
+                count += 1;
+            }
+            hash.update(count.to_le_bytes());
+        };
+        let arena = &self.environment_params;
+        take(&mut [arena.arena_size()].into_iter());
+        for region in arena.regions() {
+            take(&mut region.iter().copied());
+        }
+        for wall in &arena.walls {
+            take(&mut wall.polygon.iter().copied());
+        }
+        take(&mut [self.agent_params.coordinates].into_iter());
+        let mut places: Vec<[f64; 2]> = self.objects.iter().map(|object| object.coordinates).collect();
+        places.sort_unstable_by_key(|place| place.map(bits));
+        take(&mut places.into_iter());
+        hexadecimal(&hash.finalize())
+    }
+}
+
+/// Bytes as hexadecimal letters, two for each.
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes
+        .iter()
+        .fold(String::with_capacity(2 * bytes.len()), |mut letters, byte| {
+            write!(letters, "{byte:02x}").expect("writing to a String does not fail");
+            letters
+        })
+}
+
+/// The bits of a number; 0 has one form.
+fn bits(metres: f64) -> u64 {
+    (metres + 0.0).to_bits()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Color, Object, WorldDraft};
+
+    #[test]
+    fn looks_pay_names_and_order_have_no_part_in_it() {
+        let world = WorldDraft {
+            objects: vec![Object::new("tree", [3.0, 0.0]), Object::new("rock", [-1.0, 2.0])],
+            ..WorldDraft::default()
+        };
+        let mut other = world.clone();
+        other.objects.swap(0, 1);
+        other.objects[0].coordinates[1] = 2.0;
+        other.objects[1].coordinates[1] = -0.0;
+        other.objects[0].color = Some(Color([1.0, 0.0, 0.0]));
+        other.objects[0].reward = 7.0;
+        other.objects[0].tag = Some("stone".to_owned());
+        other.environment_params.light_intensity = 0.3;
+        other.max_steps = 9;
+        let (world, other) = (world.check().unwrap(), other.check().unwrap());
+        assert_eq!(other.hash_of_places(), world.hash_of_places());
+        assert_ne!(other.hash(), world.hash());
+        let other = other.edit(|world| world.agent_params.coordinates = [0.0, 1.0]).unwrap();
+        assert_ne!(other.hash_of_places(), world.hash_of_places());
+    }
+}

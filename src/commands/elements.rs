@@ -1,0 +1,113 @@
+//! `driftworld elements`: which elements of the decision process variants change, tried out, beside what the task claims.
+
+use clap::Args;
+
+use crate::elements::{ElementsOutcome, ElementsRequest, VariantElements, elements};
+use crate::modality::Kind;
+use crate::spec::{Element, Modality};
+use crate::table::table;
+
+use super::assets::LibraryChoice;
+use super::{Failure, output};
+
+/// Try which elements of the decision process variants change, beside what the task says.
+///
+/// Worlds of two variants are drawn in pairs, and both run side by side: the same actions from the same states. S is what can
+/// be there, p where things are at the start, A what actions do to the body, T what follows, R what is paid and what ends, O the form of
+/// observations, phi how a state looks. Each variant is compared with the first that the task declares, or A with B.
+///
+/// A variant is contradicted where an element differs that no parameter that differs `affects`; S covers p, and O covers phi. It is idle
+/// where it sets a parameter that nothing reads. The exit code is 1 if one is contradicted.
+#[derive(Args)]
+#[command(after_help = "Examples:
+  driftworld elements find_objects
+  driftworld elements find_objects red penalty --modalities rgb,depth
+  driftworld elements my_task.json --worlds 100 --json")]
+pub(crate) struct Elements {
+    /// A task: PATH, PATH#variant, or a built-in such as `find_objects`.
+    task: String,
+    /// A variant of the task.
+    #[arg(requires = "b")]
+    a: Option<String>,
+    /// The variant that is compared with it.
+    b: Option<String>,
+    /// Which images the learner has; those that the task's worlds ask for if not said.
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "KIND,…")]
+    modalities: Option<Vec<Kind>>,
+    /// How many pairs of worlds are tried.
+    #[arg(long, default_value_t = 32, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000))]
+    worlds: u64,
+    /// The seed that worlds are drawn under.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// The most steps of an episode.
+    #[arg(long, default_value_t = 100, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    steps: u32,
+    #[command(flatten)]
+    libraries: LibraryChoice,
+    /// Print the result as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Elements {
+    pub(crate) fn run(self) -> Result<(), Failure> {
+        let found = elements(&ElementsRequest {
+            between: self.a.zip(self.b).map(|(a, b)| [a, b]),
+            modalities: self
+                .modalities
+                .map(|kinds| kinds.into_iter().map(Modality::from).collect()),
+            worlds: self.worlds,
+            seed: self.seed,
+            steps: self.steps,
+            libraries: self.libraries.paths().to_vec(),
+            ..ElementsRequest::of(self.task)
+        })?;
+        if self.json {
+            output::json(&found)?;
+        } else {
+            output::line(shown(&found))?;
+        }
+        found.warnings().for_each(output::warning);
+        let wrong: Vec<&str> = found.contradictions().collect();
+        if wrong.is_empty() {
+            return Ok(());
+        }
+        Err(Failure::input(wrong.join("\n")))
+    }
+}
+
+/// A row for each variant: declared beside measured.
+pub(crate) fn shown(found: &ElementsOutcome) -> String {
+    let letters = |elements: &[Element]| {
+        let letters: Vec<&str> = elements.iter().map(|element| element.letter()).collect();
+        if letters.is_empty() {
+            "-".to_owned()
+        } else {
+            letters.join(" ")
+        }
+    };
+    let row = |variant: &VariantElements| {
+        let proof = &variant.proof;
+        [
+            variant.variant.clone(),
+            letters(&variant.declared),
+            letters(&variant.elements()),
+            proof.worlds.to_string(),
+            proof.runs.to_string(),
+            proof.steps.to_string(),
+            proof.observations.to_string(),
+            variant.verdict.name().to_owned(),
+        ]
+    };
+    let headings = [
+        "variant", "declared", "measured", "worlds", "episodes", "steps", "looks", "verdict",
+    ];
+    let rows = found.variants.iter().map(row).collect();
+    format!(
+        "{}, beside {}:\n{}",
+        found.task,
+        found.base,
+        table(headings, rows, &[3, 4, 5, 6])
+    )
+}

@@ -1,0 +1,179 @@
+//! The arguments of a line of the console: words, numbers, actions, pictures, objects. Which commands there are is in `line.rs`.
+
+use crate::env::{Action, Category};
+use crate::modality::Kind;
+use crate::spec::did_you_mean;
+use serde_json::{Map, Value, json};
+
+use super::line::{Line, Picture, misused};
+
+/// The most steps of one command.
+const MOST_STEPS: u32 = 100_000;
+
+/// A line cut at its blanks; what stands in quotes is one word.
+pub(super) fn words(text: &str) -> Result<Vec<String>, String> {
+    let mut words = Vec::new();
+    let (mut word, mut quote) = (None::<String>, None);
+    for letter in text.chars() {
+        match quote {
+            Some(open) if letter == open => quote = None,
+            None if letter == '"' || letter == '\'' => {
+                quote = Some(letter);
+                word.get_or_insert_default();
+            }
+            None if letter.is_whitespace() => words.extend(word.take()),
+            _ => word.get_or_insert_default().push(letter),
+        }
+    }
+    if let Some(open) = quote {
+        return Err(format!("found {open} once, expected it twice: around a word"));
+    }
+    words.extend(word);
+    Ok(words)
+}
+
+pub(super) fn number(word: &str) -> Result<f64, String> {
+    let number = word.parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| format!("found {word:?}, expected a number"))
+}
+
+pub(super) fn count(word: &str) -> Result<u32, String> {
+    let count = word.parse().ok().filter(|count| (1..=MOST_STEPS).contains(count));
+    count.ok_or_else(|| format!("found {word:?}, expected how many steps, 1 to {MOST_STEPS}"))
+}
+
+pub(super) fn columns(word: &str) -> Result<u32, String> {
+    let columns = word.parse().ok().filter(|columns| (8..=400).contains(columns));
+    columns.ok_or_else(|| format!("found {word:?}, expected how many columns, 8 to 400"))
+}
+
+pub(super) fn category(word: &str) -> Result<Category, String> {
+    let names = Category::names();
+    let near = || did_you_mean(word, names.iter().copied());
+    Category::from_name(word).ok_or_else(|| {
+        format!(
+            "found category {word:?}, expected one of {}{}",
+            names.join(", "),
+            near()
+        )
+    })
+}
+
+pub(super) fn step(words: &[&str]) -> Result<Line, String> {
+    let (count, numbers) = match words {
+        [] => (1, words),
+        [steps, rest @ ..] => (count(steps)?, rest),
+    };
+    let action = match numbers {
+        [] => Action::Continuous([0.0; 3]),
+        numbers => an_action(numbers).ok_or_else(|| misused("step"))??,
+    };
+    Ok(Line::Act { action, count })
+}
+
+pub(super) fn action(words: &[&str]) -> Result<Line, String> {
+    let (count, words) = match words {
+        ["-c", steps, rest @ ..] | [rest @ .., "-c", steps] => (count(steps)?, rest),
+        _ => (1, words),
+    };
+    let ["-a", numbers @ ..] = words else {
+        return Err(misused("action"));
+    };
+    let action = an_action(numbers).ok_or_else(|| misused("action"))??;
+    Ok(Line::Act { action, count })
+}
+
+/// Three numbers, or one row.
+fn an_action(words: &[&str]) -> Option<Result<Action, String>> {
+    match words {
+        [row] => {
+            let row = row
+                .parse()
+                .map_err(|_| format!("found {row:?}, expected the number of a row"));
+            Some(row.map(Action::Discrete))
+        }
+        [a, b, c] => {
+            let numbers = [a, b, c].map(|word| number(word));
+            let [a, b, c] = numbers;
+            Some(a.and_then(|a| Ok(Action::Continuous([a, b?, c?]))))
+        }
+        _ => None,
+    }
+}
+
+fn picture(word: &str) -> Result<Picture, String> {
+    if word == "map" {
+        return Ok(Picture::Map);
+    }
+    let kind = Kind::ALL.into_iter().find(|kind| kind.name() == word);
+    let names = Kind::ALL.map(Kind::name);
+    let near = || did_you_mean(word, names.iter().copied());
+    kind.map(Picture::Seen).ok_or_else(|| {
+        format!(
+            "found modality {word:?}, expected one of {}{}",
+            names.join(", "),
+            near()
+        )
+    })
+}
+
+pub(super) fn show(words: &[&str]) -> Result<Line, String> {
+    let is_number = |word: &str| word.starts_with(|letter: char| letter.is_ascii_digit());
+    let (kind, width) = match words {
+        [width] if is_number(width) => (None, Some(*width)),
+        words => (words.first().copied(), words.get(1).copied()),
+    };
+    Ok(Line::Show {
+        picture: kind.map_or(Ok(Picture::Seen(Kind::Rgb)), picture)?,
+        columns: width.map(columns).transpose()?,
+    })
+}
+
+pub(super) fn screenshot(file: &str, words: &[&str]) -> Result<Line, String> {
+    let (mut kind, mut size) = (Picture::Seen(Kind::Rgb), None);
+    for word in words {
+        if word.starts_with(|letter: char| letter.is_ascii_digit()) {
+            let sides = word
+                .split_once('x')
+                .and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+            let sides = sides.ok_or_else(|| format!("found size {word:?}, expected WIDTHxHEIGHT such as 320x240"))?;
+            size = Some(sides);
+        } else {
+            kind = picture(word)?;
+        }
+    }
+    let file = file.to_owned();
+    Ok(Line::Screenshot {
+        file,
+        picture: kind,
+        size,
+    })
+}
+
+/// An object as JSON, from `key=value` words.
+pub(super) fn object(class: &str, coordinates: [f64; 2], keys: &[&str]) -> Result<String, String> {
+    let mut object = Map::new();
+    object.insert("class".into(), json!(class));
+    object.insert("coordinates".into(), json!(coordinates));
+    for word in keys {
+        let (key, text) = word
+            .split_once('=')
+            .ok_or_else(|| format!("found {word:?}, expected KEY=VALUE such as reward=1"))?;
+        if object.insert(key.to_owned(), value(key, text)).is_some() {
+            return Err(format!("found {key} twice, expected it once"));
+        }
+    }
+    Ok(Value::Object(object).to_string())
+}
+
+/// A value as it is typed: JSON, a list with commas, or a plain word.
+fn value(key: &str, text: &str) -> Value {
+    let one = |text: &str| serde_json::from_str(text).unwrap_or_else(|_| json!(text));
+    match one(text) {
+        Value::String(text) if text.contains(',') => text.split(',').map(one).collect(),
+        single @ Value::String(_) if key.ends_with("_stimulus") => json!([single]),
+        // A model or a name may look like a number.
+        Value::Number(_) if ["model", "tag", "unique_name"].contains(&key) => json!(text),
+        other => other,
+    }
+}

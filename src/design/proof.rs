@@ -1,0 +1,92 @@
+//! That the variants of a probe differ in the probed element only: tried on pairs of their worlds, and written into the scenario.
+
+use driftworld_generator::Sampler;
+use driftworld_spec::{Element, Modality, ProvenVariant, ScenarioProof, Variant};
+
+use super::{Chosen, DesignRequest, Evidence};
+use crate::elements::{ElementsOutcome, ElementsRequest, elements_among};
+use crate::{Failure, argument};
+
+/// Pairs of worlds that are tried for each variant.
+const NUM_WORLDS: u64 = 8;
+
+impl DesignRequest {
+    /// Tries the variants of a probe; nothing where none was asked for, or where nothing is to be tried before it is written.
+    ///
+    /// # Errors
+    /// [`Failure`] with every variant that changes something else, too.
+    pub(super) fn prove(&self, chosen: &Chosen) -> Result<Option<ScenarioProof>, Failure> {
+        let (picked, element) = match &chosen.evidence {
+            Some(Evidence::Probe { picked, element }) => (picked, Some(*element)),
+            Some(Evidence::Steps { picked, wanted }) => (picked, wanted.element),
+            None => return Ok(None),
+        };
+        let Some(element) = element.filter(|_| self.worlds > 0) else {
+            return Ok(None);
+        };
+        let variants: Vec<Variant> = picked.iter().map(|one| one.variant.clone()).collect();
+        let Some(base) = variants.first() else { return Ok(None) };
+        let modalities = match &self.modalities {
+            Some(modalities) => modalities.clone(),
+            None => Sampler::new(base, 0).world(0)?.agent_params.modalities.clone(),
+        };
+        let request = ElementsRequest {
+            worlds: NUM_WORLDS,
+            modalities: Some(modalities.clone()),
+            libraries: self.libraries.clone(),
+            ..ElementsRequest::of(base.task().name())
+        };
+        let found = elements_among(&variants, &request)?;
+        refuse_others(&found, element, &modalities)?;
+        let id = |index: usize| {
+            chosen
+                .variants
+                .get(index)
+                .map_or_else(String::new, driftworld_curriculum::Choice::id)
+        };
+        let proven = found.variants.iter().enumerate().map(|(index, one)| ProvenVariant {
+            variant: id(index + 1),
+            measured: one.elements(),
+        });
+        Ok(Some(ScenarioProof {
+            element,
+            base: id(0),
+            modalities,
+            worlds: found.worlds,
+            seed: found.seed,
+            steps: found.variants.iter().map(|one| one.proof.steps).sum(),
+            observations: found.variants.iter().map(|one| one.proof.observations).sum(),
+            variants: proven.collect(),
+        }))
+    }
+}
+
+/// Refuses a probe of which a variant changes another element than the one that is probed.
+fn refuse_others(found: &ElementsOutcome, element: Element, modalities: &[Modality]) -> Result<(), Failure> {
+    let others = found.variants.iter().filter_map(|variant| {
+        let other = variant.measured.iter().find(|own| !element.covers(own.element))?;
+        Some(format!(
+            "{}#{}: found that {} differs from {}, too ({} is {} there and {} here), expected the {} alone",
+            found.task,
+            variant.variant,
+            other.element.letter(),
+            found.base,
+            other.witness.what,
+            other.witness.a,
+            other.witness.b,
+            element.name(),
+        ))
+    });
+    let others: Vec<String> = others.collect();
+    if others.is_empty() {
+        return Ok(());
+    }
+    let images = serde_json::to_string(modalities)?;
+    Err(Failure::input(format!(
+        "{}\nfor a learner with the images {images}; mend \"affects\" in the task (driftworld elements {}), name other variants, \
+         or say other images with {}",
+        others.join("\n"),
+        found.task,
+        argument("modalities")
+    )))
+}

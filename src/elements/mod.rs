@@ -1,0 +1,169 @@
+//! [`elements`]: which elements of the decision process the variants of a task change, found by trying it, beside what the
+//! task's parameters claim. The experiment on worlds is `env`'s.
+
+mod outcome;
+mod request;
+
+use std::sync::Arc;
+
+use driftworld_env::{Experiment, Findings};
+use driftworld_generator::Sampler;
+use driftworld_spec::{Element, TaskSpec, Value, Variant, World};
+
+pub use outcome::{Contradiction, ElementsOutcome, Measured, VariantElements, Verdict};
+pub use request::{DEFAULT_ELEMENTS_WORLDS, ElementsRequest, MAX_ELEMENTS_WORLDS};
+
+use crate::{Failure, libraries, tasks};
+
+/// The most worlds in which it is tried whether anything reads a parameter.
+const IDLE_WORLDS: u64 = 8;
+
+/// Tries which elements differ between variants of a task, and says where its parameters claim something else.
+///
+/// Each variant is compared with the first that the task declares, or one named variant with another. Worlds are drawn in
+/// pairs: world number `i` of one variant with world number `i` of the other, under one seed.
+///
+/// # Errors
+/// [`Failure`] where a task or variant is nowhere or wrong, a world cannot be drawn, or the request contradicts itself.
+///
+/// # Example
+/// ```
+/// use driftworld::elements::{ElementsRequest, elements};
+/// use driftworld::spec::Element;
+/// let request = ElementsRequest { worlds: 2, ..ElementsRequest::between("find_objects", "red", "penalty") };
+/// let found = elements(&request).unwrap();
+/// assert_eq!(found.variants[0].elements(), [Element::R]);
+/// assert!(found.is_sound());
+/// ```
+pub fn elements(request: &ElementsRequest) -> Result<ElementsOutcome, Failure> {
+    elements_of(&tasks::task(&request.task)?, request)
+}
+
+/// The same for a task that has been read; the name in the request is what messages call it.
+///
+/// # Errors
+/// As [`elements`].
+pub fn elements_of(task: &Arc<TaskSpec>, request: &ElementsRequest) -> Result<ElementsOutcome, Failure> {
+    request.check()?;
+    let compared = request.variants_of(task)?;
+    let trial = Trial::new(request)?;
+    let mut outcome = ElementsOutcome::new(request, task.name());
+    if let Some((base, others)) = compared.split_first() {
+        base.name().clone_into(&mut outcome.base);
+        let worlds = trial.worlds(base, request.worlds)?;
+        for other in others {
+            outcome.variants.push(trial.of_variant(base, &worlds, other)?);
+        }
+    }
+    Ok(outcome)
+}
+
+/// Tries some variants of one task against the first of them: for each of the others what differs.
+///
+/// # Errors
+/// [`Failure`] where a world cannot be drawn.
+pub(crate) fn elements_among(variants: &[Variant], request: &ElementsRequest) -> Result<ElementsOutcome, Failure> {
+    let trial = Trial::new(request)?;
+    let mut outcome = ElementsOutcome::new(request, variants.first().map_or("", |first| first.task().name()));
+    if let Some((base, others)) = variants.split_first() {
+        base.name().clone_into(&mut outcome.base);
+        let worlds = trial.worlds(base, request.worlds)?;
+        for other in others {
+            outcome.variants.push(trial.compared(base, &worlds, other)?);
+        }
+    }
+    Ok(outcome)
+}
+
+/// What holds for every variant that is tried.
+struct Trial {
+    experiment: Experiment,
+    seed: u64,
+    num_worlds: u64,
+}
+
+impl Trial {
+    fn new(request: &ElementsRequest) -> Result<Self, Failure> {
+        Ok(Self {
+            experiment: Experiment {
+                modalities: request.modalities.clone(),
+                steps: request.steps,
+                seed: request.seed,
+                catalogue: libraries::catalogue(&request.libraries)?,
+                ..Experiment::default()
+            },
+            seed: request.seed,
+            num_worlds: request.worlds,
+        })
+    }
+
+    fn worlds(&self, variant: &Variant, count: u64) -> Result<Vec<World>, Failure> {
+        let sampler = Sampler::new(variant, self.seed);
+        Ok((0..count).map(|index| sampler.world(index)).collect::<Result<_, _>>()?)
+    }
+
+    fn compare(&self, base: &[World], other: &Variant) -> Result<Findings, Failure> {
+        let worlds = self.worlds(other, base.len() as u64)?;
+        let pairs: Vec<_> = base.iter().cloned().zip(worlds).collect();
+        Ok(self.experiment.compare(&pairs)?)
+    }
+
+    fn compared(&self, base: &Variant, worlds: &[World], other: &Variant) -> Result<VariantElements, Failure> {
+        let found = self.compare(worlds, other)?;
+        Ok(VariantElements::new(base, other, &changed(base, other), found))
+    }
+
+    fn of_variant(&self, base: &Variant, worlds: &[World], other: &Variant) -> Result<VariantElements, Failure> {
+        let mut outcome = self.compared(base, worlds, other)?;
+        outcome.idle = self.idle(base, other, &outcome)?;
+        outcome.judge();
+        Ok(outcome)
+    }
+
+    /// The parameters that differ and that nothing reads: where one is set back alone, nothing changes.
+    fn idle(&self, base: &Variant, other: &Variant, outcome: &VariantElements) -> Result<Vec<String>, Failure> {
+        let names = &outcome.parameters;
+        if outcome.measured.is_empty() {
+            return Ok(names.clone());
+        }
+        if names.len() < 2 {
+            return Ok(Vec::new());
+        }
+        let worlds = self.worlds(other, self.num_worlds.min(IDLE_WORLDS))?;
+        let mut idle: Vec<String> = Vec::new();
+        // One after the other, the last first: of two that would do alone, one is needed.
+        for name in names.iter().rev() {
+            let back = idle.iter().chain([name]);
+            let values: Vec<_> = back
+                .filter_map(|name| Some((name.clone(), base.value(name)?.clone())))
+                .collect();
+            // What the task's requirements do not allow cannot be tried.
+            let Ok(without) = other.with("without", values) else {
+                continue;
+            };
+            if self.compare(&worlds, &without)?.differences.is_empty() {
+                idle.push(name.clone());
+            }
+        }
+        idle.reverse();
+        Ok(idle)
+    }
+}
+
+/// The parameters in which two variants of a task differ, with the elements that they claim to affect.
+fn changed(a: &Variant, b: &Variant) -> Vec<(String, Vec<Element>)> {
+    let differs = |(name, value): &(&String, &Value)| a.value(name) != Some(*value);
+    let declared = |name: &String| {
+        a.task()
+            .parameters()
+            .get(name)
+            .map(|parameter| parameter.affects.clone())
+    };
+    let changed = b.values().iter().filter(differs);
+    changed
+        .map(|(name, _)| (name.clone(), declared(name).unwrap_or_default()))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests;

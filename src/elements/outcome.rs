@@ -1,0 +1,219 @@
+//! [`ElementsOutcome`]: what was claimed, what was measured, and where the two contradict each other.
+
+use driftworld_env::{Findings, Policy, Proof, Witness};
+use driftworld_spec::{Element, Modality, Variant};
+use serde::{Deserialize, Serialize};
+
+use super::ElementsRequest;
+
+/// What came of trying a task's variants.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ElementsOutcome {
+    /// The task's own name.
+    pub task: String,
+    /// The variant that all others were compared with.
+    pub base: String,
+    /// The images of the learner; absent where they are those that the worlds ask for.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub modalities: Option<Vec<Modality>>,
+    /// Pairs of worlds for each variant.
+    pub worlds: u64,
+    /// The seed that worlds were drawn under.
+    pub seed: u64,
+    /// The most steps of an episode.
+    pub steps: u32,
+    /// The variants, in the order in which the task declares them.
+    pub variants: Vec<VariantElements>,
+}
+
+/// What a variant claims to change, and what it was seen to change.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VariantElements {
+    /// The variant's name.
+    pub variant: String,
+    /// The parameters in which it differs from the variant that it was compared with.
+    pub parameters: Vec<String>,
+    /// The elements that these claim to affect, in the order of [`Element::WITH_FINE`].
+    pub declared: Vec<Element>,
+    /// The elements that were seen to differ, in the same order.
+    pub measured: Vec<Measured>,
+    /// What was measured and is not declared.
+    pub contradictions: Vec<Contradiction>,
+    /// Parameters that differ and that nothing reads: where such a one alone is set back, nothing changes.
+    pub idle: Vec<String>,
+    /// How much was tried.
+    pub proof: Proof,
+    /// All in a word.
+    pub verdict: Verdict,
+}
+
+/// An element that was seen to differ.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// The element.
+    pub element: Element,
+    /// The first case.
+    pub witness: Witness,
+}
+
+/// An element that was seen to differ and that nothing declares.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Contradiction {
+    /// The element.
+    pub element: Element,
+    /// What was claimed, where it was seen otherwise, and what to do, in a sentence.
+    pub message: String,
+}
+
+/// What the experiment says of a variant's claims.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// All that was measured is declared.
+    Sound,
+    /// The same, and there are parameters that nothing reads.
+    Idle,
+    /// Something was measured that is not declared.
+    Contradicted,
+}
+
+impl Verdict {
+    /// The verdict in a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Sound => "sound",
+            Self::Idle => "idle",
+            Self::Contradicted => "contradicted",
+        }
+    }
+}
+
+impl ElementsOutcome {
+    pub(super) fn new(request: &ElementsRequest, task: &str) -> Self {
+        Self {
+            task: task.to_owned(),
+            base: String::new(),
+            modalities: request.modalities.clone(),
+            worlds: request.worlds,
+            seed: request.seed,
+            steps: request.steps,
+            variants: Vec::new(),
+        }
+    }
+
+    /// Whether nothing was measured that is not declared.
+    pub fn is_sound(&self) -> bool {
+        self.variants.iter().all(|variant| variant.contradictions.is_empty())
+    }
+
+    /// Every contradiction, in a sentence.
+    pub fn contradictions(&self) -> impl Iterator<Item = &str> {
+        let each = self.variants.iter().flat_map(|variant| &variant.contradictions);
+        each.map(|contradiction| contradiction.message.as_str())
+    }
+
+    /// Every parameter that a variant sets and nothing reads there, in a sentence.
+    pub fn warnings(&self) -> impl Iterator<Item = String> {
+        self.variants.iter().flat_map(move |variant| {
+            let of = move |name: &String| {
+                let (task, base, own) = (&self.task, &self.base, &variant.variant);
+                format!("{task}#{own}: nothing reads {name} there: with its value in {base} all worlds that were tried are the same")
+            };
+            variant.idle.iter().map(of)
+        })
+    }
+}
+
+impl VariantElements {
+    pub(super) fn new(base: &Variant, other: &Variant, changed: &[(String, Vec<Element>)], found: Findings) -> Self {
+        let claims = |element: &Element| changed.iter().any(|(_, affects)| affects.contains(element));
+        let declared: Vec<Element> = Element::WITH_FINE.into_iter().filter(claims).collect();
+        let contradicts = |(element, _): &&(Element, Witness)| !declared.iter().any(|own| own.covers(*element));
+        let contradiction = |(element, witness): &(Element, Witness)| Contradiction {
+            element: *element,
+            message: message_of(base, other, changed, *element, witness),
+        };
+        let contradictions = found
+            .differences
+            .iter()
+            .filter(contradicts)
+            .map(contradiction)
+            .collect();
+        let measured = found.differences.into_iter();
+        let mut own = Self {
+            variant: other.name().to_owned(),
+            parameters: changed.iter().map(|(name, _)| name.clone()).collect(),
+            declared,
+            measured: measured
+                .map(|(element, witness)| Measured { element, witness })
+                .collect(),
+            contradictions,
+            idle: Vec::new(),
+            proof: found.proof,
+            verdict: Verdict::Sound,
+        };
+        own.judge();
+        own
+    }
+
+    /// The elements that were seen to differ.
+    pub fn elements(&self) -> Vec<Element> {
+        self.measured.iter().map(|measured| measured.element).collect()
+    }
+
+    pub(super) fn judge(&mut self) {
+        self.verdict = match (self.contradictions.is_empty(), self.idle.is_empty()) {
+            (false, _) => Verdict::Contradicted,
+            (true, false) => Verdict::Idle,
+            (true, true) => Verdict::Sound,
+        };
+    }
+}
+
+/// A contradiction in a sentence: where, what was found, what was expected, what to do.
+fn message_of(
+    base: &Variant,
+    other: &Variant,
+    changed: &[(String, Vec<Element>)],
+    element: Element,
+    witness: &Witness,
+) -> String {
+    let claim = |(name, affects): &(String, Vec<Element>)| {
+        let letters: Vec<&str> = affects.iter().map(|element| element.letter()).collect();
+        let letters = if letters.is_empty() {
+            "nothing".to_owned()
+        } else {
+            letters.join(" ")
+        };
+        format!("{name} ({letters})")
+    };
+    let claims: Vec<String> = changed.iter().map(claim).collect();
+    let claims = if claims.is_empty() {
+        "no parameter".to_owned()
+    } else {
+        claims.join(", ")
+    };
+    let (a, b) = (base.name(), other.name());
+    format!(
+        "{}: found that {} ({}) differs from {a}: {}{} is {} in {a} and {} in {b}; expected no more than {claims} affects; \
+         add {:?} to its \"affects\"",
+        other.id(),
+        element.letter(),
+        element.name().replace('_', " "),
+        place(witness),
+        witness.what,
+        witness.a,
+        witness.b,
+        element.letter(),
+    )
+}
+
+/// Where a witness was seen: `in world 3, step 17 of the expert, `.
+fn place(witness: &Witness) -> String {
+    let policy = witness.policy.map_or("agent", Policy::name);
+    match (witness.world, witness.step) {
+        (Some(world), Some(step)) => format!("in world {world}, step {step} ({policy}), "),
+        (Some(world), None) => format!("in world {world}, "),
+        _ => String::new(),
+    }
+}

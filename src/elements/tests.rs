@@ -1,0 +1,112 @@
+//! What tasks claim against what is seen, and that the built-in tasks claim what is true.
+
+use super::*;
+
+fn task(affects: &str) -> Arc<TaskSpec> {
+    let text = format!(
+        r#"{{ "name": "t", "parameters": {{
+            "color": {{ "role": "variant", "type": "color", "affects": {affects}, "choices": ["red", "blue"], "default": "red" }},
+            "pay": {{ "role": "variant", "type": "number", "affects": ["R"], "range": [-9, 9], "default": 1 }},
+            "reach": {{ "role": "variant", "type": "number", "affects": ["T"], "range": [0, 9], "default": 0 }} }},
+           "world": {{ "environment_params": {{ "map_size": [20, 20] }}, "rules": {{ "success": ["all_collected"] }} }},
+           "groups": [ {{ "name": "cubes", "count": 3, "placement": {{ "box": {{ "low": [-8, -8], "high": [8, 8] }} }},
+             "object": {{ "class": "geometric", "color": {{ "param": "color" }}, "reward": {{ "param": "pay" }},
+               "reward_once_stimulus": ["AgentCollide"], "destroy_stimulus": ["AgentCollide"],
+               "range_stimulus_distance": {{ "param": "reach" }} }} }} ],
+           "variants": {{ "red": {{}}, "blue": {{ "color": "blue" }}, "rich": {{ "color": "blue", "pay": 9, "reach": 3 }} }} }}"#
+    );
+    TaskSpec::from_json("t.json", &text).expect("the task is sound")
+}
+
+fn request() -> ElementsRequest {
+    ElementsRequest {
+        worlds: 3,
+        steps: 60,
+        modalities: Some(vec![driftworld_spec::Modality::Rgb]),
+        ..ElementsRequest::of("t")
+    }
+}
+
+#[test]
+fn claims_that_are_true_are_sound_and_what_nothing_reads_is_idle() {
+    for affects in [r#"["O"]"#, r#"["phi"]"#, r#"["O", "S"]"#] {
+        let found = elements_of(&task(affects), &request()).expect("all are tried");
+        assert!(found.is_sound(), "{found:#?}");
+        let [blue, rich] = &found.variants[..] else {
+            panic!("two beside the first")
+        };
+        assert_eq!((blue.elements(), blue.verdict), (vec![Element::Phi], Verdict::Sound));
+        assert_eq!(
+            (rich.elements(), rich.verdict),
+            (vec![Element::R, Element::Phi], Verdict::Idle)
+        );
+        assert_eq!(rich.idle, ["reach"]);
+        assert_eq!(rich.proof.worlds, 3);
+        let warnings: Vec<String> = found.warnings().collect();
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        assert!(
+            warnings[0].starts_with("t#rich: nothing reads reach there"),
+            "{warnings:?}"
+        );
+    }
+}
+
+#[test]
+fn a_claim_that_is_false_is_told_with_the_first_case() {
+    let found = elements_of(&task(r#"["p"]"#), &request()).expect("all are tried");
+    assert!(!found.is_sound());
+    assert_eq!(found.variants[0].verdict, Verdict::Contradicted);
+    let told: Vec<&str> = found.contradictions().collect();
+    assert!(
+        told[0].starts_with("t#blue: found that phi (emission) differs from red: in world 0, step 0 ("),
+        "{told:?}"
+    );
+    assert!(
+        told[0].ends_with("expected no more than color (p) affects; add \"phi\" to its \"affects\""),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn one_variant_is_compared_with_another() {
+    let between = |a: &str, b: &str| {
+        let asked = ElementsRequest {
+            between: Some([a.to_owned(), b.to_owned()]),
+            ..request()
+        };
+        elements_of(&task(r#"["phi"]"#), &asked)
+    };
+    let found = between("blue", "t#rich").expect("both are tried");
+    assert_eq!(
+        (found.base.as_str(), found.variants[0].elements()),
+        ("blue", vec![Element::R])
+    );
+    assert!(between("blue", "ritch").is_err());
+    let alone = ElementsRequest {
+        task: "t#rich".to_owned(),
+        ..request()
+    };
+    let alone = elements_of(&task(r#"["phi"]"#), &alone).expect("it is tried");
+    assert_eq!((alone.base.as_str(), alone.variants.len()), ("red", 1));
+}
+
+#[test]
+fn an_outcome_is_a_value_that_is_written_and_read() {
+    let found = elements_of(&task(r#"["S"]"#), &request()).expect("all are tried");
+    let text = serde_json::to_string(&found).expect("it can be written");
+    assert!(text.contains(r#""element":"phi""#), "{text}");
+    assert_eq!(
+        serde_json::from_str::<ElementsOutcome>(&text).expect("it can be read"),
+        found
+    );
+}
+
+#[test]
+fn numbers_out_of_their_range_are_refused() {
+    for asked in [
+        ElementsRequest { worlds: 0, ..request() },
+        ElementsRequest { steps: 0, ..request() },
+    ] {
+        assert!(elements_of(&task(r#"["O"]"#), &asked).is_err());
+    }
+}

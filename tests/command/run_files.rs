@@ -1,0 +1,59 @@
+//! What a run left: the files of its log, and what of them is the same when it is run again. How it is run is in `terminal.rs`.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+/// Whether a file's name is that of a table of a log.
+pub(crate) fn is_table(name: &str) -> bool {
+    Path::new(name).extension().is_some_and(|ending| ending == "tsv")
+}
+
+pub(crate) fn write(path: &Path, text: &str) {
+    fs::create_dir_all(path.parent().expect("a file lies in a folder")).expect("the scratch folder can be written");
+    fs::write(path, text).expect("the scratch folder can be written");
+}
+
+/// All files of a log by their paths, without the times at which rows were written.
+pub(crate) fn files(log: &Path) -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![log.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).expect("the log can be listed") {
+            let path = entry.expect("the log can be listed").path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let name = path
+                .strip_prefix(log)
+                .expect("it lies in the log")
+                .display()
+                .to_string();
+            let text = fs::read_to_string(&path).expect("logs are text");
+            let text = if is_table(&name) { timeless(&text) } else { text };
+            found.insert(name, text);
+        }
+    }
+    found
+}
+
+pub(crate) fn timeless(table: &str) -> String {
+    let header: Vec<&str> = table.lines().next().unwrap_or_default().split('\t').collect();
+    let place = header
+        .iter()
+        .position(|name| *name == "timestamp")
+        .expect("rows say when");
+    let row = |line: &str| {
+        let mut cells: Vec<&str> = line.split('\t').collect();
+        cells.remove(place);
+        cells.join("\t") + "\n"
+    };
+    table.lines().map(row).collect()
+}
+
+/// How many rows a log has, all of them with a line end.
+pub(crate) fn num_rows(log: &Path) -> usize {
+    let tables = files(log).into_iter().filter(|(name, _)| is_table(name));
+    tables.map(|(_, text)| text.lines().count() - 1).sum()
+}
