@@ -17,7 +17,7 @@ pub const DEFAULT_BEHAVIOR_WORLDS: u64 = 16;
 pub const MAX_BEHAVIOR_WORLDS: u64 = 1_000;
 
 /// Points of regret that count 1.
-const POINTS: f64 = 100.0;
+pub(crate) const POINTS: f64 = 100.0;
 
 /// Whose experts are exchanged.
 #[derive(Clone, Debug, PartialEq)]

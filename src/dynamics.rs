@@ -1,8 +1,8 @@
 //! [`dynamics_distance`]: how differently two worlds answer to what an agent does, by the Wasserstein MDP distance and by bisimulation.
 //! A world as tables is `env`'s, the distances are `similarity`'s.
 
-use driftworld_env::{Abstraction, Catalogue, WorldAbstraction};
-use driftworld_similarity::{Mdp, paired_bisimulation};
+use driftworld_env::{Abstraction, Catalogue, EnvError, WorldAbstraction};
+use driftworld_similarity::{Mdp, PairedBisimulation, SimilarityError, paired_bisimulation};
 use driftworld_spec::World;
 
 use crate::{Failure, argument};
@@ -44,7 +44,12 @@ impl Default for DynamicsOptions {
 #[derive(Clone, Debug, PartialEq)]
 pub struct DynamicsDistance {
     /// How differently one action ends, on average: 1 is 100 points, 10 m, half a turn, or an end of the episode in one world alone.
+    /// The sum of `rewards` and `motion`.
     pub w1: f64,
+    /// What of it is in what the action pays.
+    pub rewards: f64,
+    /// What of it is in where the action leads.
+    pub motion: f64,
     /// The bisimulation distance between the starts is not below this, in shares of 100 points.
     pub bisimulation_lower: f64,
     /// It is not above this.
@@ -89,25 +94,46 @@ pub struct DynamicsDistance {
 /// ```
 pub fn dynamics_distance(a: &World, b: &World, options: &DynamicsOptions) -> Result<DynamicsDistance, Failure> {
     check(options)?;
+    let area = common_area(a, b);
+    let (a, b) = (tables(a, area, options)?, tables(b, area, options)?);
+    let (rewards, motion, states) = w1(&a, &b, options);
+    let found = bisimulation(&a, &b, options)?;
+    Ok(DynamicsDistance {
+        w1: rewards + motion,
+        rewards,
+        motion,
+        bisimulation_lower: found.lower()[0],
+        bisimulation_upper: found.upper()[0],
+        states,
+        pairs: found.pairs(),
+    })
+}
+
+/// The sides of the area that both arenas lie in, around the origin.
+pub(crate) fn common_area(a: &World, b: &World) -> [f64; 2] {
     let sides = [a, b].map(|world| world.environment_params.arena_size());
-    let area = [0, 1].map(|axis| sides[0][axis].max(sides[1][axis]));
+    [0, 1].map(|axis| sides[0][axis].max(sides[1][axis]))
+}
+
+/// A world as tables over the cells of an area.
+pub(crate) fn tables(world: &World, area: [f64; 2], options: &DynamicsOptions) -> Result<WorldAbstraction, EnvError> {
     let abstraction = Abstraction {
         cell: options.cell,
         seconds: options.seconds,
         area: Some(area),
         catalogue: options.catalogue.clone(),
     };
-    let (a, b) = (abstraction.of(a)?, abstraction.of(b)?);
-    let (w1, states) = w1(&a, &b, options);
-    let (of_a, of_b) = (process(&a, options)?, process(&b, options)?);
-    let found = paired_bisimulation(&of_a, &of_b, &[(a.start, b.start)], options.discount, options.max_pairs)?;
-    Ok(DynamicsDistance {
-        w1,
-        bisimulation_lower: found.lower()[0],
-        bisimulation_upper: found.upper()[0],
-        states,
-        pairs: found.pairs(),
-    })
+    abstraction.of(world)
+}
+
+/// The bisimulation distance of the starts of two tables.
+pub(crate) fn bisimulation(
+    a: &WorldAbstraction,
+    b: &WorldAbstraction,
+    options: &DynamicsOptions,
+) -> Result<PairedBisimulation, SimilarityError> {
+    let (of_a, of_b) = (process(a, options)?, process(b, options)?);
+    paired_bisimulation(&of_a, &of_b, &[(a.start, b.start)], options.discount, options.max_pairs)
 }
 
 fn check(options: &DynamicsOptions) -> Result<(), Failure> {
@@ -122,20 +148,25 @@ fn check(options: &DynamicsOptions) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The mean over states that are reached in either world, and how many those are.
-fn w1(a: &WorldAbstraction, b: &WorldAbstraction, options: &DynamicsOptions) -> (f64, usize) {
+/// The means over states that are reached in either world, of what actions pay and of where they lead, and how many states those
+/// are.
+pub(crate) fn w1(a: &WorldAbstraction, b: &WorldAbstraction, options: &DynamicsOptions) -> (f64, f64, usize) {
     let reached = a.reached().into_iter().zip(b.reached());
-    let (mut total, mut count) = (0.0, 0);
+    let (mut rewards, mut motion, mut count) = (0.0, 0.0, 0_usize);
     for (state, _) in reached.enumerate().filter(|(_, (in_a, in_b))| *in_a || *in_b) {
-        let rows = state * a.actions..(state + 1) * a.actions;
-        total += rows.map(|row| apart(a, b, row, options)).sum::<f64>() / a.actions as f64;
+        for row in state * a.actions..(state + 1) * a.actions {
+            let (paid, led) = apart(a, b, row, options);
+            rewards += paid;
+            motion += led;
+        }
         count += 1;
     }
-    (total / f64::from(count), count as usize)
+    let rows = (count * a.actions) as f64;
+    (rewards / rows, motion / rows, count)
 }
 
-/// How far the outcomes of one state and action are apart.
-fn apart(a: &WorldAbstraction, b: &WorldAbstraction, row: usize, options: &DynamicsOptions) -> f64 {
+/// How far the outcomes of one state and action are apart: in what is paid, and in where it leads.
+fn apart(a: &WorldAbstraction, b: &WorldAbstraction, row: usize, options: &DynamicsOptions) -> (f64, f64) {
     let paid = (a.rewards[row] - b.rewards[row]).abs() / options.points;
     let ends = [a, b].map(|of| of.successors[row] as usize == of.grid.end());
     let led = match ends {
@@ -148,13 +179,13 @@ fn apart(a: &WorldAbstraction, b: &WorldAbstraction, row: usize, options: &Dynam
         }
         _ => 1.0,
     };
-    paid + led
+    (paid, led)
 }
 
-fn process(of: &WorldAbstraction, options: &DynamicsOptions) -> Result<Mdp, Failure> {
+fn process(of: &WorldAbstraction, options: &DynamicsOptions) -> Result<Mdp, SimilarityError> {
     let successors: Vec<usize> = of.successors.iter().map(|state| *state as usize).collect();
     let rewards = of.rewards.iter().map(|reward| reward / options.points).collect();
-    Ok(Mdp::deterministic(of.states, of.actions, &successors, rewards)?)
+    Mdp::deterministic(of.states, of.actions, &successors, rewards)
 }
 
 #[cfg(test)]
@@ -209,6 +240,7 @@ mod tests {
         assert!((two.bisimulation_lower - 2.0 * one.bisimulation_lower).abs() < 1e-9);
         let all = from_base(|world| world.rules.step_reward = -2.0);
         // Five steps of each action everywhere; bisimulation has each in equal shares.
+        assert_eq!((all.w1, all.motion), (all.rewards, 0.0));
         assert!((all.w1 - 0.1).abs() < 1e-12, "{all:?}");
         assert!((all.bisimulation_lower - 0.1).abs() < 1e-9, "{all:?}");
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use driftworld::design::{self, DesignOrder, DesignRequest};
 use driftworld::ordering::OrderRequest;
 use driftworld_curriculum::{Design, Drifting, Evaluate};
-use driftworld_spec::{DriftSwitch, Scenario, sound_name};
+use driftworld_spec::{By, DriftSwitch, Scenario, sound_name};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -64,6 +64,7 @@ fn request(tasks: Vec<String>, options: &Options<'_>) -> Result<DesignRequest> {
                 ("named", DesignOrder::Named),
             ],
         )?,
+        by: options.read("by", By::from_name)?,
         probe: options.read("probe", design::element)?,
         modalities: options
             .json("modalities")?

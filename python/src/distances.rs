@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use driftworld::distances::{By, Sample, Side, between, variant_matrix_while};
+use driftworld_env::{Catalogue, Library};
 use driftworld_similarity::{
     DistanceMatrix, Method, OrderOptions, SimilarityError, Weights, classical_map, order, share_of_shorter_orders,
 };
@@ -32,7 +33,7 @@ pub(crate) enum Compared<'py> {
 
 /// How far apart two are: the JSON of `driftworld distance --json` as a dictionary.
 #[pyfunction]
-#[pyo3(signature = (a, b, weights, worlds, seed, index, by=None))]
+#[pyo3(signature = (a, b, weights, worlds, seed, index, by, libraries))]
 #[expect(
     clippy::too_many_arguments,
     reason = "they are the arguments of a function of Python"
@@ -46,25 +47,46 @@ pub(crate) fn distance<'py>(
     seed: Whole,
     index: Whole,
     by: Option<&str>,
+    libraries: Vec<Vec<u8>>,
 ) -> Result<Bound<'py, PyAny>> {
-    let worlds = worlds.map(|worlds| worlds.0);
-    if let Some(worlds) = worlds.filter(|worlds| !(1..=100_000).contains(worlds)) {
-        return Err(
-            PyValueError::new_err(format!("worlds: found {worlds}, expected a number from 1 to 100000")).into(),
-        );
-    }
     let laid = laid(weights)?;
     let (a, b) = (a.side()?, b.side()?);
     let sample = Sample {
-        worlds,
         seed: seed.0,
         index: index.0,
-        by: named(by)?,
+        ..sample(by, worlds, 100_000, &libraries)?
     };
-    let (distance, compared) = run_detached(py, move || between(&a, &b, &sample, |declared| over(&laid, declared)))??;
-    let found = to_py(py, &distance)?;
-    found.set_item("compared", compared)?;
+    let compared = run_detached(py, move || between(&a, &b, &sample, |declared| over(&laid, declared)))??;
+    let found = to_py(py, &compared.distance)?;
+    found.set_item("by", compared.by.name())?;
+    found.set_item("compared", compared.how)?;
     Ok(found)
+}
+
+/// What variants and worlds can be compared by.
+#[pyfunction]
+pub(crate) fn compared_by() -> Vec<&'static str> {
+    By::names().to_vec()
+}
+
+/// By what is compared, how many worlds of each, and where their assets come from; otherwise the usual.
+fn sample(by: Option<&str>, worlds: Option<Whole>, most: u64, libraries: &[Vec<u8>]) -> Result<Sample> {
+    let worlds = worlds.map(|worlds| worlds.0);
+    if let Some(worlds) = worlds.filter(|worlds| !(1..=most).contains(worlds)) {
+        return Err(
+            PyValueError::new_err(format!("worlds: found {worlds}, expected a number from 1 to {most}")).into(),
+        );
+    }
+    let mut catalogue = Catalogue::default();
+    for bytes in libraries {
+        catalogue = catalogue.with_library(&Library::from_bytes(bytes)?);
+    }
+    Ok(Sample {
+        by: named(by)?,
+        worlds,
+        catalogue,
+        ..Sample::default()
+    })
 }
 
 /// What to compare by, by its name.
@@ -90,21 +112,23 @@ pub(crate) struct PyMatrix(Arc<DistanceMatrix>);
 impl PyMatrix {
     /// Measures every pair of variants, each under its label.
     #[staticmethod]
-    #[pyo3(signature = (labels, variants, weights, by=None))]
+    #[pyo3(signature = (labels, variants, weights, by, worlds, libraries))]
     fn measure(
         py: Python<'_>,
         labels: Vec<String>,
         variants: Vec<Bound<'_, PyVariant>>,
         weights: Weighing,
         by: Option<&str>,
+        worlds: Option<Whole>,
+        libraries: Vec<Vec<u8>>,
     ) -> Result<Self> {
-        let (laid, by) = (laid(weights)?, named(by)?);
+        let (laid, sample) = (laid(weights)?, sample(by, worlds, 10_000, &libraries)?);
         let variants = variants.iter().map(|variant| variant.get().0.clone());
         let variants: Vec<(String, Variant)> = labels.into_iter().zip(variants).collect();
         let matrix = run_cancellable(py, |stop| {
             variant_matrix_while(
                 &variants,
-                by,
+                &sample,
                 |declared| over(&laid, declared),
                 || !stop.load(Ordering::Relaxed),
             )

@@ -359,4 +359,5 @@ def test_the_words_of_a_closed_set_are_its_type(name: str) -> None:
 
 
 def test_methods_of_ordering_are_the_librarys() -> None:
+    assert get_args(_literals.ComparedBy) == tuple(_native.compared_by())
     assert get_args(_literals.OrderMethod) == tuple(_native.order_methods())

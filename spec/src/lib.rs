@@ -40,7 +40,7 @@ pub use scenario::{
     ScenarioComplexity, ScenarioDifficulty, ScenarioForm, ScenarioProof, TaskLabel,
 };
 pub use task::{
-    Compare, Count, DEFAULT_VARIANT, Domain, ElementWeights, Facing, Group, Hole, KeepOut, MeasureName, Parameter,
+    By, Compare, Count, DEFAULT_VARIANT, Domain, ElementWeights, Facing, Group, Hole, KeepOut, MeasureName, Parameter,
     PlacedGroup, Readers, Requirement, Resolved, Role, Source, Spacing, Sweep, TaskSpec, Template, Variant,
     VariantSpec,
 };

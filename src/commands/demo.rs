@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::curriculum::{Design, Summary, design};
-use crate::distances::labelled_matrix;
+use crate::distances::{Sample, labelled_matrix};
 use crate::env::Catalogue;
 use crate::generator::Sampler;
 use crate::lifetime_report::{ReportRequest, write_report};
@@ -63,8 +63,11 @@ impl Demo {
         let shown = self.worlds(&variants)?;
         self.pictures(&shown)?;
 
-        heading("2", "How far apart the variants are, from 0 to 1")?;
-        let matrix = labelled_matrix(&variants, None, Ok)?;
+        heading(
+            "2",
+            "How far apart the variants are: 1 is one parameter moved over its whole range",
+        )?;
+        let matrix = labelled_matrix(&variants, &Sample::default(), Ok)?;
         let ordering = order(&matrix, Method::Exact, &OrderOptions::default().with_first(0))?;
         output::write(&folder.join("distances.csv"), matrix.to_csv().as_bytes())?;
         let short: Vec<String> = variants.iter().map(|(_, variant)| variant.name().to_owned()).collect();

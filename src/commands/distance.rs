@@ -1,8 +1,6 @@
 //! `driftworld distance`: how far apart two variants or two worlds are, element by element. The measures are `similarity`'s.
 
-mod pictures;
-
-use crate::distances::{By, Sample, Side, between};
+use crate::distances::{By, Compared, Sample, Side, between};
 use crate::similarity::{Distance as Measured, Part};
 use crate::spec::Element;
 use crate::tasks;
@@ -11,6 +9,7 @@ use driftworld_text::one_line;
 
 use serde_json::json;
 
+use super::assets::LibraryChoice;
 use super::weights::WeightArgs;
 use crate::{Failure, worlds};
 
@@ -19,17 +18,18 @@ use crate::table::table;
 
 /// Measure the distance between two variants or two worlds.
 ///
-/// Two variants of one task are compared parameter by parameter, with the task's own weights and measures. Variants of
-/// different tasks are compared by worlds drawn under one seed, and world files as they are: where objects are, what
-/// they pay, how they look.
+/// Two variants of one task are compared by what the task declares, which is parameters where it says nothing, with the
+/// task's own weights and measures. Variants of different tasks are compared by worlds drawn under one seed, and world
+/// files as they are: where objects are, what they pay, how they look. --by compares them by something else.
 ///
-/// A distance is a sum. By parameters, 1 is one parameter moved over its whole range. By worlds, each part has its own
-/// unit. See docs/similarity.md.
+/// A distance is a sum. By parameters, 1 is one parameter moved over its whole range. By anything else, each part has
+/// its own unit. See docs/similarity.md.
 #[derive(Args)]
 #[command(after_help = "Examples:
   driftworld distance find_objects#blue find_objects#dusk --explain
-  driftworld distance find_objects#blue find_objects#dusk --pictures
+  driftworld distance find_objects#blue find_objects#dusk --by pictures --explain
   driftworld distance get_to_goal#plain get_to_goal#soft --by rewards
+  driftworld distance find_objects#red find_objects#blue --by behavior
   driftworld distance find_objects#blue get_to_goal#plain --explain --worlds 64
   driftworld distance a.json b.json --json")]
 pub(crate) struct Distance {
@@ -37,21 +37,19 @@ pub(crate) struct Distance {
     a: String,
     /// The other variant or world file.
     b: String,
-    /// Compare what an agent sees, in pictures from the same places.
-    #[arg(long, conflicts_with_all = ["explain", "worlds", "WeightArgs"])]
-    pictures: bool,
-    /// What to compare by: parameters, worlds or rewards.
+    /// What to compare by: parameters, worlds, pictures, occupancy, objects, colors, rewards, dynamics or behavior.
     ///
-    /// By default parameters for two variants of one task, else worlds. By rewards 0 is the same reward up to a factor, a
-    /// constant and potential shaping, and 1 the reverse.
-    #[arg(long, value_parser = By::from_name, value_name = "MEASURE", conflicts_with = "pictures")]
+    /// Some have several measures, such as occupancy:jaccard or dynamics:bisimulation; docs/similarity.md lists them. By
+    /// default what the task of two variants declares, which is parameters where it says nothing; else worlds.
+    #[arg(long, value_parser = By::from_name, value_name = "MEASURE")]
     by: Option<By>,
     /// Show every component with its measure, value, weight and share of the total.
     #[arg(long)]
     explain: bool,
     /// Compare this many worlds of each variant.
     ///
-    /// Without it, variants of one task are compared parameter by parameter, anything else by 16 worlds of each.
+    /// Without it, variants of one task are compared by what the task declares, anything else by 16 worlds of each. By
+    /// pictures and dynamics, 4 worlds of each are compared by default.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000), num_args = 0..=1, default_missing_value = "16")]
     worlds: Option<u64>,
     /// Seed for drawing worlds from variants.
@@ -61,6 +59,8 @@ pub(crate) struct Distance {
     #[arg(long, default_value_t = 0)]
     index: u64,
     #[command(flatten)]
+    libraries: LibraryChoice,
+    #[command(flatten)]
     weights: WeightArgs,
     /// Print the result as JSON.
     #[arg(long)]
@@ -69,22 +69,13 @@ pub(crate) struct Distance {
 
 impl Distance {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        if self.pictures {
-            let world = |name: &str| worlds::world(name, self.seed, self.index, false, &|text| output::warning(text));
-            let (a, b) = (world(&self.a)?, world(&self.b)?);
-            return pictures::run([&self.a, &self.b], [&a, &b], self.json);
-        }
-        let (distance, comparison) = self.measure()?;
+        let Compared { distance, by, how } = self.measure()?;
         if self.json {
             let mut found = serde_json::to_value(&distance)?;
-            found["compared"] = json!(comparison);
+            (found["by"], found["compared"]) = (json!(by), json!(how));
             return output::json(&found);
         }
-        output::line(format!(
-            "{} to {}, {comparison}\n",
-            one_line(&self.a),
-            one_line(&self.b)
-        ))?;
+        output::line(format!("{} to {}, {how}\n", one_line(&self.a), one_line(&self.b)))?;
         output::line(by_element(&distance))?;
         if self.explain {
             output::line("")?;
@@ -93,12 +84,13 @@ impl Distance {
         Ok(())
     }
 
-    fn measure(&self) -> Result<(Measured, String), Failure> {
+    fn measure(&self) -> Result<Compared, Failure> {
         let sample = Sample {
             worlds: self.worlds,
             seed: self.seed,
             index: self.index,
             by: self.by,
+            catalogue: self.libraries.catalogue()?,
         };
         let (a, b) = (self.side(&self.a)?, self.side(&self.b)?);
         Ok(between(&a, &b, &sample, |declared| self.weights.over(declared))?)

@@ -5,8 +5,8 @@ use driftworld_similarity::{DistanceMatrix, Method};
 use driftworld_spec::{DEFAULT_VARIANT, Element, Variant};
 
 use super::{DesignOrder, DesignRequest};
-use crate::distances::{By, labelled_matrix};
-use crate::{Failure, argument, tasks};
+use crate::distances::{Sample, fitting, labelled_matrix};
+use crate::{Failure, argument, libraries, tasks};
 
 /// How far off a step may be where nobody says.
 pub const DEFAULT_TOLERANCE: f64 = 0.001;
@@ -106,7 +106,14 @@ impl DesignRequest {
                 Evidence::Probe { picked, element },
             );
         }
-        let matrix = labelled_matrix(&named, Some(By::fitting(named.iter().map(|(_, variant)| variant))), Ok)?;
+        let by = self
+            .by
+            .unwrap_or_else(|| fitting(named.iter().map(|(_, variant)| variant)));
+        let sample = Sample {
+            catalogue: libraries::catalogue(&self.libraries)?,
+            ..Sample::by(by)
+        };
+        let matrix = labelled_matrix(&named, &sample, Ok)?;
         let order = match self.order {
             Some(DesignOrder::Named) => {
                 let all = 0..matrix.len();

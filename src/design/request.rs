@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use driftworld_curriculum::{Design, Hypothesis};
 use driftworld_env::Catalogue;
-use driftworld_spec::{Element, Modality, ScenarioForm};
+use driftworld_spec::{By, Element, Modality, ScenarioForm};
 
 use crate::ordering::OrderRequest;
 use crate::{Failure, argument, libraries};
@@ -54,6 +54,9 @@ pub struct DesignRequest {
     pub ordering: OrderRequest,
     /// The order, in place of one that a method finds.
     pub order: Option<DesignOrder>,
+    /// What the variants that are put in order are compared by: what their task declares, or worlds where they are of several
+    /// tasks. Probes and steps are measured by parameters.
+    pub by: Option<By>,
     /// Probe one element: variants that differ from the start in it and in nothing else.
     pub probe: Option<Element>,
     /// Which images the learner of a probe has; those that the task's worlds ask for where nobody says.
@@ -85,6 +88,7 @@ impl DesignRequest {
             tasks: tasks.into_iter().map(Into::into).collect(),
             ordering: OrderRequest::default(),
             order: None,
+            by: None,
             probe: None,
             modalities: None,
             variants: None,
@@ -122,6 +126,7 @@ impl DesignRequest {
             ("modalities", self.modalities.is_some()),
             ("probe", self.probe.is_some()),
             ("order", self.order.is_some()),
+            ("by", self.by.is_some()),
             ("method", self.ordering.method.is_some()),
             ("end", self.ordering.end.is_some()),
             ("step_distance", self.step_distance.is_some()),
@@ -147,6 +152,8 @@ impl DesignRequest {
             ("order", "method"),
             ("order", "step_distance"),
             ("order", "end"),
+            ("by", "probe"),
+            ("by", "step_distance"),
             ("step_distance", "method"),
             ("step_distance", "end"),
             ("controls", "lifetimes"),

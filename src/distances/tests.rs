@@ -1,5 +1,8 @@
 //! Distances of pairs and lists of variants and worlds, by each measure.
 
+use driftworld_similarity::DistanceMatrix;
+use driftworld_spec::TaskSpec;
+
 use super::*;
 use crate::tasks;
 
@@ -8,8 +11,8 @@ fn matrix(names: &[&str]) -> DistanceMatrix {
         .iter()
         .map(|name| ((*name).to_owned(), tasks::variant(name).expect("it is built in")))
         .collect();
-    let by = By::fitting(variants.iter().map(|(_, variant)| variant));
-    variant_matrix(&variants, Some(by), Ok).expect("all can be drawn")
+    let by = fitting(variants.iter().map(|(_, variant)| variant));
+    variant_matrix(&variants, &Sample::by(by), Ok).expect("all can be drawn")
 }
 
 #[test]
@@ -26,8 +29,8 @@ fn measuring_is_given_up_when_it_is_no_longer_wanted() {
         ["find_objects#blue", "get_to_goal#plain"],
     ] {
         let variants = names.map(|name| (name.to_owned(), tasks::variant(name).expect("it is built in")));
-        let by = By::fitting(variants.iter().map(|(_, variant)| variant));
-        let found = variant_matrix_while(&variants, Some(by), Ok, || false);
+        let by = fitting(variants.iter().map(|(_, variant)| variant));
+        let found = variant_matrix_while(&variants, &Sample::by(by), Ok, || false);
         assert!(matches!(found, Err(DistancesError::Interrupted)), "{names:?}");
     }
 }
@@ -37,21 +40,19 @@ fn a_variant_is_compared_with_a_world_by_worlds() {
     let variant = tasks::variant("find_objects#blue").expect("it is built in");
     let world = Side::World(Box::new(Sampler::new(&variant, 0).world(0).expect("it can be drawn")));
     let (variant, sample) = (Side::Variant(variant), Sample::default());
-    let (distance, comparison) = between(&variant, &world, &sample, Ok).expect("both can be measured");
-    assert!(
-        distance.total > 0.0 && comparison.starts_with("mean of 16 worlds"),
-        "{comparison}"
-    );
+    let found = between(&variant, &world, &sample, Ok).expect("both can be measured");
+    assert!(found.distance.total > 0.0);
+    assert_eq!(found.how, "by worlds, mean of 16 worlds of each drawn under seed 0");
     assert_eq!(
         between(&world, &world, &sample, Ok)
             .expect("both can be measured")
-            .0
+            .distance
             .total,
         0.0
     );
     let last = Sample {
         index: u64::MAX,
-        ..sample
+        ..Sample::default()
     };
     assert!(matches!(
         between(&variant, &world, &last, Ok),
@@ -76,28 +77,183 @@ fn the_distance_of_a_pair_hangs_on_the_pair_alone() {
     };
     for by in [By::Worlds, By::Rewards] {
         let of = |names: &[&str]| {
-            variant_matrix(&named(names), Some(by), Ok)
+            variant_matrix(&named(names), &Sample::by(by), Ok)
                 .expect("all can be drawn")
                 .get(0, 1)
         };
         assert_eq!(of(&pair), of(&more), "{by:?}");
     }
-    let refused = variant_matrix(&named(&more), None, Ok).expect_err("the tasks are several");
-    assert!(refused.to_string().contains("worlds or rewards"), "{refused}");
+    let refused = variant_matrix(&named(&more), &Sample::default(), Ok).expect_err("the tasks are several");
+    assert!(
+        refused.to_string().contains("rewards, dynamics or behavior"),
+        "{refused}"
+    );
     assert!(matches!(refused, DistancesError::By { .. }));
+}
+
+/// Two worlds of each, so that the slow ones take no time.
+fn few(by: By) -> Sample {
+    Sample {
+        worlds: Some(2),
+        ..Sample::by(by)
+    }
+}
+
+/// A field of a few metres with a cube in it.
+fn small_task() -> std::sync::Arc<TaskSpec> {
+    let number = |affects: &str, range: &str, default: &str| {
+        format!(
+            r#"{{ "role": "variant", "type": "number", "affects": ["{affects}"], "range": {range}, "default": {default} }}"#
+        )
+    };
+    let text = format!(
+        r#"{{ "name": "small", "parameters": {{
+            "pay": {}, "side": {}, "speed": {} }},
+          "world": {{
+            "environment_params": {{ "map_size": [12, {{ "param": "side" }}] }},
+            "agent_params": {{ "max_linear_speed": {{ "param": "speed" }} }},
+            "objects": [ {{ "class": "geometric", "coordinates": [2, 3], "reward": {{ "param": "pay" }},
+                            "reward_once_stimulus": ["AgentCollide"] }} ] }},
+          "variants": {{ "a": {{}}, "paid": {{ "pay": -10 }}, "small": {{ "side": 10 }}, "fast": {{ "speed": 8 }} }} }}"#,
+        number("R", "[-100, 100]", "10"),
+        number("S", "[8, 20]", "12"),
+        number("T", "[1, 10]", "5")
+    );
+    TaskSpec::from_json("small", &text).expect("a sound task")
+}
+
+fn all_names() -> impl Iterator<Item = By> {
+    By::names()
+        .iter()
+        .map(|name| By::from_name(name).expect("it is a name"))
+}
+
+#[test]
+fn each_measure_obeys_the_laws_of_a_number_for_a_pair() {
+    let names = [
+        "find_objects#red",
+        "find_objects#penalty",
+        "get_to_goal#plain",
+        "find_objects#dusk",
+    ];
+    let built_in: Vec<(String, Variant)> = names
+        .iter()
+        .map(|name| ((*name).to_owned(), tasks::variant(name).expect("it is built in")))
+        .collect();
+    let small: Vec<(String, Variant)> = ["a", "paid", "small", "fast"]
+        .iter()
+        .map(|name| ((*name).to_owned(), small_task().variant(name).expect("it is declared")))
+        .collect();
+    for by in all_names().filter(|by| *by != By::Parameters) {
+        // Tables of whole meadows take seconds.
+        let variants = if by.subject() == "dynamics" { &small } else { &built_in };
+        let side = |k: usize| Side::Variant(variants[k].1.clone());
+        let apart = |a: usize, b: usize| {
+            let found = between(&side(a), &side(b), &few(by), Ok).expect("both can be compared");
+            assert_eq!(found.by, by);
+            assert!(
+                found.how.starts_with(&format!("by {}, mean of 2 worlds", by.name())),
+                "{}",
+                found.how
+            );
+            found.distance.total
+        };
+        let matrix = variant_matrix(variants, &few(by), Ok).expect("all can be compared");
+        for (a, b) in [(0, 1), (0, 2), (0, 3)] {
+            let found = apart(a, b);
+            assert!(found.is_finite() && found >= 0.0, "{} {found}", by.name());
+            assert!(
+                (found - apart(b, a)).abs() < 1e-12,
+                "{}: {a} and {b}, there and back",
+                by.name()
+            );
+            assert!(
+                (found - matrix.get(a, b)).abs() < 1e-12,
+                "{}: {a} and {b}, alone and in a list",
+                by.name()
+            );
+        }
+        assert!(apart(0, 0).abs() < 1e-12, "{}: a variant and itself", by.name());
+        let sum = between(&side(0), &side(2), &few(by), Ok)
+            .expect("both can be compared")
+            .distance;
+        let parts: f64 = sum.parts.iter().map(|part| part.normalised * part.weight).sum();
+        assert!(
+            sum.parts.is_empty() || (parts - sum.total).abs() < 1e-9,
+            "{}: parts add up",
+            by.name()
+        );
+    }
+}
+
+#[test]
+fn a_task_says_what_its_variants_are_compared_by() {
+    let text = |by: &str| {
+        format!(
+            r#"{{ "name": "lit", {by} "parameters": {{
+                "light": {{ "role": "variant", "type": "number", "affects": ["O"], "range": [0, 4], "default": 2 }} }},
+              "world": {{ "environment_params": {{ "light_intensity": {{ "param": "light" }} }} }},
+              "variants": {{ "day": {{}}, "dusk": {{ "light": 1 }} }} }}"#
+        )
+    };
+    let compared = |by: &str, sample: &Sample| {
+        let task = TaskSpec::from_json("lit", &text(by)).expect("a sound task");
+        let [day, dusk] = ["day", "dusk"].map(|name| task.variant(name).expect("it is declared"));
+        let named = [("day".to_owned(), day.clone()), ("dusk".to_owned(), dusk.clone())];
+        let found = between(&Side::Variant(day), &Side::Variant(dusk), sample, Ok).expect("both are sound");
+        let matrix = variant_matrix(&named, sample, Ok).expect("both are sound");
+        assert!((matrix.get(0, 1) - found.distance.total).abs() < 1e-12);
+        found.by
+    };
+    let usual = Sample::default();
+    assert_eq!(compared("", &usual), By::Parameters);
+    assert_eq!(
+        compared(r#""compare_by": "pictures:whole","#, &usual),
+        By::PicturesWhole
+    );
+    assert_eq!(
+        compared(r#""compare_by": "rewards","#, &Sample::by(By::Worlds)),
+        By::Worlds
+    );
+    let error = TaskSpec::from_json("lit", &text(r#""compare_by": "looks","#)).expect_err("there is no such measure");
+    assert!(error.to_string().contains("/compare_by"), "{error}");
+}
+
+#[test]
+fn measures_say_what_they_are_made_of() {
+    let side = |name: &str| Side::Variant(tasks::variant(name).expect("it is built in"));
+    let parts = |a: &str, b: &str, by: By| {
+        let found = between(&side(a), &side(b), &few(by), Ok)
+            .expect("both can be compared")
+            .distance;
+        let parts = found.parts.iter().map(|part| (part.name.clone(), part.normalised));
+        (found.elements, parts.collect::<Vec<_>>())
+    };
+    let (elements, looks) = parts("find_objects#red", "find_objects#blue", By::Pictures);
+    assert!(
+        looks[0].1 > looks[1].1,
+        "red for blue objects is seen where objects are: {looks:?}"
+    );
+    assert!(elements[4].is_some() && elements[..4].iter().all(Option::is_none));
+    let (_, ways) = parts("find_objects#red", "find_objects#penalty", By::Dynamics);
+    assert!(
+        ways[0].1 > 0.0 && ways[1].1 == 0.0,
+        "what actions pay differs, where they lead does not: {ways:?}"
+    );
+    assert_eq!(
+        parts("find_objects#red", "find_objects#penalty", By::Behavior),
+        ([None; 5], vec![])
+    );
 }
 
 #[test]
 fn shaping_is_no_other_reward_and_the_reverse_is_one() {
     let side = |name: &str| Side::Variant(tasks::variant(name).expect("it is built in"));
-    let rewards = Sample {
-        by: Some(By::Rewards),
-        ..Sample::default()
-    };
+    let rewards = Sample::by(By::Rewards);
     let apart = |a: &str, b: &str| {
         between(&side(a), &side(b), &rewards, Ok)
             .expect("both are drawn")
-            .0
+            .distance
             .total
     };
     assert_eq!(apart("get_to_goal#plain", "get_to_goal#soft"), 0.0);

@@ -11,7 +11,7 @@ use driftworld_similarity::DistanceMatrix;
 use driftworld_spec::{BlockKind, Scenario, TaskSpec, Variant};
 use driftworld_text::ShownPath;
 
-use crate::distances::{By, variant_matrix};
+use crate::distances::{Sample, fitting, variant_matrix};
 use crate::{Failure, argument, matrix_file, tasks};
 
 /// Variants beyond these are not measured in passing.
@@ -215,12 +215,8 @@ fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
     if variants.is_empty() {
         return Err("the scenario ran world files, not variants of tasks".to_owned());
     }
-    let matrix = variant_matrix(
-        &variants,
-        Some(By::fitting(variants.iter().map(|(_, variant)| variant))),
-        Ok,
-    )
-    .map_err(|error| error.to_string())?;
+    let by = fitting(variants.iter().map(|(_, variant)| variant));
+    let matrix = variant_matrix(&variants, &Sample::by(by), Ok).map_err(|error| error.to_string())?;
     Ok(Named {
         matrix,
         index,

@@ -4,7 +4,7 @@
 mod poses;
 
 use driftworld_env::{Camera, Catalogue, CpuRenderer, EnvError, Environment, Target};
-use driftworld_similarity::picture::{Picture, PictureMeasure, views_distance};
+use driftworld_similarity::picture::{Picture, PictureMeasure, picture_oklab_sums, views_distance};
 use driftworld_similarity::{DistanceMatrix, MetricProperties, SimilarityError};
 use driftworld_spec::World;
 
@@ -175,6 +175,17 @@ pub struct Views {
     side: usize,
     /// Picture after picture, `(poses, side, side, 3)` bytes.
     rgb: Vec<u8>,
+    /// Which pixels show an object, `(poses, side, side)`.
+    objects: Vec<bool>,
+}
+
+/// How different two worlds look, in what shows objects and in all else.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PictureParts {
+    /// Mean Oklab difference of the pixels that show an object in either world, `0..=1`; 0 where none does.
+    pub objects: f64,
+    /// That of all other pixels.
+    pub surroundings: f64,
 }
 
 impl Views {
@@ -189,7 +200,9 @@ impl Views {
         let mut renderer = CpuRenderer::new();
         let pixels = options.side as usize * options.side as usize;
         let mut rgb = vec![0; poses.len() * pixels * 3];
-        for (pose, picture) in poses.iter().zip(rgb.chunks_exact_mut(pixels * 3)) {
+        let mut instances = vec![0; poses.len() * pixels];
+        let pictures = rgb.chunks_exact_mut(pixels * 3).zip(instances.chunks_exact_mut(pixels));
+        for (pose, (picture, instances)) in poses.iter().zip(pictures) {
             let camera = Camera::first_person(
                 pose.position.map(|metres| metres as f32),
                 pose.heading_deg as f32,
@@ -201,12 +214,37 @@ impl Views {
                 height: options.side,
                 supersampling: SUPERSAMPLING,
                 rgb: Some(picture),
+                instance: Some(instances),
                 ..Target::default()
             };
             renderer.draw(environment.scene(), &camera, &mut target)?;
         }
         let side = options.side as usize;
-        Ok(Self { side, rgb })
+        let objects = instances.iter().map(|item| *item > 0).collect();
+        Ok(Self { side, rgb, objects })
+    }
+
+    /// Those from some of the poses, by their places in the list.
+    ///
+    /// # Panics
+    /// When there is no pose of one of the numbers.
+    #[must_use]
+    pub fn only(&self, poses: &[usize]) -> Self {
+        let pixels = self.side * self.side;
+        let rgb = poses
+            .iter()
+            .flat_map(|k| &self.rgb[k * pixels * 3..(k + 1) * pixels * 3]);
+        let objects = poses.iter().flat_map(|k| &self.objects[k * pixels..(k + 1) * pixels]);
+        Self {
+            side: self.side,
+            rgb: rgb.copied().collect(),
+            objects: objects.copied().collect(),
+        }
+    }
+
+    /// Whether there is no picture.
+    pub fn is_empty(&self) -> bool {
+        self.rgb.is_empty()
     }
 
     /// The pictures in the order of their poses.
@@ -222,6 +260,34 @@ impl Views {
     /// [`PictureDistanceError::Compare`] unless both have as many pictures of one size.
     pub fn distance(&self, other: &Self, measure: PictureMeasure) -> Result<f64, PictureDistanceError> {
         Ok(views_distance(&self.pictures(), &other.pictures(), measure)?)
+    }
+
+    /// How different they look where objects are seen, and elsewhere: so that small things that a task is about do not drown in
+    /// ground and sky. Symmetric, each `0..=1`; a distance, for each pair has pixels of its own.
+    ///
+    /// # Errors
+    /// As [`Views::distance`].
+    pub fn parts(&self, other: &Self) -> Result<PictureParts, PictureDistanceError> {
+        let (ours, theirs) = (self.pictures(), other.pictures());
+        if ours.len() != theirs.len() {
+            let (of, found, expected) = ("pictures of the second set", theirs.len(), ours.len());
+            return Err(SimilarityError::Shape { of, found, expected }.into());
+        }
+        let marks = self
+            .objects
+            .iter()
+            .zip(&other.objects)
+            .map(|(ours, theirs)| *ours || *theirs);
+        let marks: Vec<bool> = marks.collect();
+        let mut sums = [(0.0, 0_usize); 2];
+        for ((ours, theirs), marks) in ours.iter().zip(&theirs).zip(marks.chunks_exact(self.side * self.side)) {
+            for (sum, (more, count)) in sums.iter_mut().zip(picture_oklab_sums(*ours, *theirs, marks)?) {
+                sum.0 += more;
+                sum.1 += count;
+            }
+        }
+        let [objects, surroundings] = sums.map(|(sum, count)| sum / count.max(1) as f64);
+        Ok(PictureParts { objects, surroundings })
     }
 
     /// Which laws [`Views::distance`] keeps among worlds seen from one set of poses, worlds that look alike taken as equal.
@@ -265,6 +331,24 @@ mod tests {
             distance(&red, &dark) > there,
             "the ground fills more of the pictures than a tree"
         );
+    }
+
+    #[test]
+    fn small_things_count_beside_the_ground() {
+        let parts = |a: &World, b: &World| {
+            let options = PictureOptions::default();
+            let poses = poses(&[a, b], &options).expect("both have free ground");
+            let [a, b] = [a, b].map(|world| Views::new(world, &poses, &options).expect("it is drawn"));
+            assert_eq!(a.parts(&b).unwrap(), b.parts(&a).unwrap());
+            assert_eq!(a.parts(&a).unwrap(), PictureParts::default());
+            (a.parts(&b).unwrap(), a.distance(&b, PictureMeasure::Oklab).unwrap())
+        };
+        let [red, blue] = ["[1.0, 0.0, 0.0]", "[0.0, 0.0, 1.0]"].map(|color| with_tree(1.0, color));
+        let (found, whole) = parts(&red, &blue);
+        assert!(found.objects > 20.0 * whole, "{found:?} {whole}");
+        assert!(found.surroundings < whole, "{found:?} {whole}");
+        let (found, _) = parts(&world("", ""), &world("\"ground_color\": [0.05, 0.05, 0.05]", ""));
+        assert!(found.objects == 0.0 && found.surroundings > 0.05, "{found:?}");
     }
 
     #[test]

@@ -20,6 +20,36 @@ AutoresetName: TypeAlias = Literal["next_step", "same_step", "disabled"]
 
 # -- documents and distances -------------------------------------------------------------------------------------------
 DocumentKind: TypeAlias = Literal["task", "world", "scenario", "maps", "l2explorer-world", "l2explorer-scenario"]
+ComparedBy: TypeAlias = Literal[
+    "parameters",
+    "worlds",
+    "pictures",
+    "pictures:whole",
+    "pictures:structure",
+    "occupancy",
+    "occupancy:earth_movers_hat",
+    "occupancy:sinkhorn",
+    "occupancy:sliced_wasserstein",
+    "occupancy:hamming",
+    "occupancy:jaccard",
+    "occupancy:ruzicka",
+    "occupancy:dice",
+    "occupancy:hausdorff",
+    "occupancy:hausdorff_95",
+    "occupancy:chamfer",
+    "objects",
+    "objects:counts",
+    "colors",
+    "colors:srgb",
+    "colors:cie76",
+    "colors:ciede2000",
+    "colors:hyab",
+    "rewards",
+    "dynamics",
+    "dynamics:bisimulation",
+    "behavior",
+    "behavior:success",
+]
 OrderMethod: TypeAlias = Literal[
     "nearest",
     "exact",

@@ -111,8 +111,10 @@ def distance(
     worlds: int | None,
     seed: int,
     index: int,
-    by: str | None = None,
+    by: str | None,
+    libraries: Sequence[bytes],
 ) -> dict[str, Any]: ...
+def compared_by() -> list[str]: ...
 def order_methods() -> list[str]: ...
 
 @final
@@ -121,7 +123,12 @@ class Matrix:
 
     @staticmethod
     def measure(
-        labels: Sequence[str], variants: Sequence[Variant], weights: dict[str, float] | None, by: str | None = None
+        labels: Sequence[str],
+        variants: Sequence[Variant],
+        weights: dict[str, float] | None,
+        by: str | None,
+        worlds: int | None,
+        libraries: Sequence[bytes],
     ) -> Matrix: ...
     @staticmethod
     def from_values(labels: Sequence[str], values: NDArray[np.float64]) -> Matrix: ...

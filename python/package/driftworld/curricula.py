@@ -20,7 +20,18 @@ import gymnasium
 
 from driftworld import _native
 from driftworld._files import write_whole
-from driftworld._literals import BlockKind, DesignOrder, Evaluate, Form, ImageKind, OrderMethod, Phase, Probe, TaskLabel
+from driftworld._literals import (
+    BlockKind,
+    ComparedBy,
+    DesignOrder,
+    Evaluate,
+    Form,
+    ImageKind,
+    OrderMethod,
+    Phase,
+    Probe,
+    TaskLabel,
+)
 from driftworld.lifetimes import Agent, Lifetime, Summary, environment
 from driftworld.specs import variants
 
@@ -190,6 +201,7 @@ class Curriculum(Sequence[Block]):
         end: str | None = None,
         target_step: float | None = None,
         order: DesignOrder | None = None,
+        by: ComparedBy | None = None,
         probe: Probe | None = None,
         modalities: Sequence[ImageKind] | None = None,
         variants: int | None = None,
@@ -222,6 +234,7 @@ class Curriculum(Sequence[Block]):
             end: The variant that comes last.
             target_step: The step that the method ``target-step`` wants.
             order: From ``start`` on: ``"gradual"``, ``"outward"``, ``"abrupt"``, ``"path"``, ``"farthest"``, or as they are ``"named"``.
+            by: What the variants are compared by, as for :func:`driftworld.distance`; not with ``probe`` or ``step_distance``.
             probe: Take variants that differ from the start in this element alone: ``"state"``, ``"action"``, ``"transition"``,
                 ``"reward"`` or ``"observation"``.
             modalities: Which images the learner has that the probe is for; those that the task's worlds ask for if not given.
@@ -230,10 +243,10 @@ class Curriculum(Sequence[Block]):
             tolerance: How far off each step may be.
             steps: How many steps.
             drift: Learning blocks drift from each variant to the next: ``"linear"``, ``"cosine"``, ``"step:N"`` or ``"sawtooth:N"``.
-            mix: Values with nothing in between switch by chance.
-            task_label: Whether the learner is told its task: ``"none"`` (default), ``"info"`` or ``"observation"``.
+            mix: Values with nothing in between switch at random.
+            task_label: Whether the learner gets a task label: ``"none"`` (default), ``"info"`` or ``"observation"``.
             seed: What all worlds follow from.
-            worlds: Draw so many worlds of each regime first, and refuse a design that could not be lived; 5 if not given, 0 for
+            worlds: Draw so many worlds of each regime first, and refuse a design that could not run; 5 if not given, 0 for
                 none.
             assets: An asset library whose classes the tasks use.
             controls: A folder to write the controls into: the same variants in reversed, random and contrasting order.

@@ -11,14 +11,15 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from driftworld import _native
 from driftworld._files import write_whole
-from driftworld._literals import OrderMethod
+from driftworld._literals import ComparedBy, OrderMethod
+from driftworld.envs.options import library_bytes
 from driftworld.logs import _pandas
 from driftworld.specs import TaskSpec, Variant, document_text, variant, variants
 
@@ -30,8 +31,7 @@ if TYPE_CHECKING:
 ELEMENTS = {"S": "state", "A": "action", "T": "transition", "R": "reward", "O": "observation"}
 
 Weights = Mapping[str, float]
-#: What variants are compared by.
-Measure = Literal["parameters", "worlds", "rewards"]
+PathLike = str | os.PathLike[str]
 #: The methods that look for the best path from a first one; ``None`` stands for the method that fits the number of items.
 SEEKING = frozenset(
     [None, "nearest", "exact", "two-opt", "contrast", "farthest-first", "bottleneck", "target-step", "gradual", "outward"]
@@ -47,24 +47,32 @@ class Distance(float):
             where nothing could differ.
         parts: What was compared: dictionaries with ``name``, ``element``, ``measure``, ``how`` (for distributions), ``raw``,
             ``normalised``, ``weight`` and ``share``, those that matter most first.
+        by: What the two were compared by, such as ``"parameters"``.
         compared: How the two were compared, in words.
     """
 
     elements: dict[str, float | None]
     parts: list[dict[str, Any]]
+    by: str
     compared: str
 
     def __new__(
-        cls, total: float, elements: Mapping[str, float | None], parts: Iterable[dict[str, Any]], compared: str
+        cls,
+        total: float,
+        elements: Mapping[str, float | None],
+        parts: Iterable[dict[str, Any]],
+        by: str,
+        compared: str,
     ) -> Self:
         """A distance of all elements together, at least 0, and what it is made of."""
         distance = super().__new__(cls, total)
-        distance.elements, distance.parts, distance.compared = dict(elements), list(parts), compared
+        distance.elements, distance.parts = dict(elements), list(parts)
+        distance.by, distance.compared = by, compared
         return distance
 
     @property
     def total(self) -> float:
-        """All elements together, in 0..=1, as a plain number."""
+        """All elements together, at least 0, as a plain number."""
         return float(self)
 
     def __repr__(self) -> str:
@@ -74,7 +82,7 @@ class Distance(float):
         return str(self.total)
 
     def __getnewargs__(self) -> tuple[Any, ...]:
-        return (self.total, self.elements, self.parts, self.compared)
+        return (self.total, self.elements, self.parts, self.by, self.compared)
 
     def explain(self) -> str:
         """What the distance is made of, as a table in plain text."""
@@ -106,22 +114,26 @@ def distance(
     worlds: int | None = None,
     seed: int = 0,
     index: int = 0,
-    by: Measure | None = None,
+    by: ComparedBy | None = None,
+    assets: PathLike | Iterable[PathLike] = (),
 ) -> Distance:
     """How far apart two variants, or two worlds, are.
 
-    Two variants of one task are compared parameter by parameter, at the weights and by the measures that the task declares.
-    Variants of different tasks are compared by worlds drawn from each under one seed, worlds as they are.
+    Two variants of one task are compared by what the task declares, which is parameters where it says nothing, at its weights
+    and by its measures. Variants of different tasks are compared by worlds drawn from each under one seed, worlds as they are.
 
     Args:
         a: A variant, its name such as ``"find_objects#red"``, a world as a dictionary or JSON text, or the path of a world.
         b: Another.
         weights: What elements weigh, over what the task says: ``{"R": 2}`` or ``{"reward": 2}``, each 0 to 1,000,000.
-        worlds: Compare so many worlds of each, 1 to 100,000, even where both are variants of one task; 16 where they are not.
+        worlds: Compare so many worlds of each, 1 to 100,000, even where both are variants of one task; 16 where they are not, 4
+            by pictures and dynamics.
         seed: The seed of worlds that are drawn.
         index: The number of the first of them.
-        by: ``"parameters"`` (two variants of one task), ``"worlds"`` or ``"rewards"``; by default parameters where that has a
-            meaning and no worlds are asked for, else worlds.
+        by: ``"parameters"`` (two variants of one task), ``"worlds"``, ``"pictures"``, ``"occupancy"``, ``"objects"``,
+            ``"colors"``, ``"rewards"``, ``"dynamics"``, ``"behavior"``, some with a measure behind a colon, such as
+            ``"occupancy:jaccard"``.
+        assets: Paths of asset libraries whose classes the worlds use.
 
     Raises:
         SpecError: If a document is wrong.
@@ -130,12 +142,13 @@ def distance(
         SimilarityError: For a weight that is none.
     """
     laid = None if weights is None else dict(weights)
-    found = _native.distance(_side(a), _side(b), laid, worlds, seed, index, by)
+    found = _native.distance(_side(a), _side(b), laid, worlds, seed, index, by, library_bytes(assets))
     letters = {name: letter for letter, name in ELEMENTS.items()}
     return Distance(
         total=found["total"],
         elements={letters[name]: value for name, value in found["elements"].items()},
         parts=sorted(found["parts"], key=lambda part: -part["share"]),
+        by=found["by"],
         compared=found["compared"],
     )
 
@@ -392,7 +405,12 @@ class Order(Sequence[str]):
 
 
 def distance_matrix(
-    items: Named | Iterable[Named], weights: Weights | None = None, *, by: Measure | None = None
+    items: Named | Iterable[Named],
+    weights: Weights | None = None,
+    *,
+    by: ComparedBy | None = None,
+    worlds: int | None = None,
+    assets: PathLike | Iterable[PathLike] = (),
 ) -> DistanceMatrix:
     """Every distance among variants, measured in parallel.
 
@@ -401,8 +419,9 @@ def distance_matrix(
     Args:
         items: Names, variants and task specs; a task stands for all its variants, and each variant is taken once.
         weights: As for :func:`distance`.
-        by: ``"parameters"`` (the default, for variants of one task), ``"worlds"`` or ``"rewards"``: of 16 worlds of each, drawn
-            under seed 0.
+        by: As for :func:`distance`, by default what the variants' task declares; variants of several tasks need it.
+        worlds: Compare so many worlds of each, drawn under seed 0, 1 to 10,000; by default 16, or 4 by pictures and dynamics.
+        assets: Paths of asset libraries whose classes the worlds use.
 
     Raises:
         SpecError, TaskError, GeneratorError, SimilarityError: As :func:`distance`; SimilarityError also for more than 20,000.
@@ -410,7 +429,8 @@ def distance_matrix(
     """
     found = _variants(items)
     laid = None if weights is None else dict(weights)
-    return DistanceMatrix._of(_native.Matrix.measure([label for label, _ in found], [item for _, item in found], laid, by))
+    labels, items = [label for label, _ in found], [item for _, item in found]
+    return DistanceMatrix._of(_native.Matrix.measure(labels, items, laid, by, worlds, library_bytes(assets)))
 
 
 def _variants(items: Named | Iterable[Named]) -> list[tuple[str, Variant]]:
@@ -428,7 +448,9 @@ def order(
     seed: int = 0,
     target_step: float | None = None,
     weights: Weights | None = None,
-    by: Measure | None = None,
+    by: ComparedBy | None = None,
+    worlds: int | None = None,
+    assets: PathLike | Iterable[PathLike] = (),
 ) -> Order:
     """Variants in an order by their distances.
 
@@ -443,7 +465,7 @@ def order(
         seed: What ``random`` draws from.
         target_step: The step that ``target-step`` wants.
         weights: As for :func:`distance`.
-        by: As for :func:`distance_matrix`.
+        by, worlds, assets: As for :func:`distance_matrix`.
 
     Raises:
         SimilarityError: If there is no such method, or it cannot have such ends or items.
@@ -457,7 +479,7 @@ def order(
         matrix = items
     else:
         named = [items] if isinstance(items, (str, os.PathLike, Variant, TaskSpec)) else list(items)
-        matrix = distance_matrix(named, weights, by=by)
+        matrix = distance_matrix(named, weights, by=by, worlds=worlds, assets=assets)
         first = variants(*named[:1])
         if start is None and len(first) == 1 < len(matrix) and method in SEEKING and end != first[0][0]:
             start = first[0][0]

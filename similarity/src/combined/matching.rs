@@ -82,33 +82,39 @@ pub(super) fn each_match<'a>(
     let in_order = comes_first(a, b);
     let (fewer, more) = if in_order { (a, b) } else { (b, a) };
     let mut hand_out = |one, other| if in_order { take(one, other) } else { take(other, one) };
-    BUFFERS.with_borrow_mut(|Buffers { costs, assignment, is_met }| {
-        costs.clear();
-        for one in fewer {
-            costs.extend(more.iter().map(|other| one.cost(other)));
-        }
-        // All are finite and within the limits of an assignment; more objects than it takes are compared in their order.
-        let is_solved = assignment.solve(costs, fewer.len(), more.len()).is_ok();
-        let partner = |index: usize| {
-            if is_solved {
-                assignment.partners()[index]
-            } else {
-                Some(index)
+    BUFFERS.with_borrow_mut(
+        |Buffers {
+             costs,
+             assignment,
+             is_met,
+         }| {
+            costs.clear();
+            for one in fewer {
+                costs.extend(more.iter().map(|other| one.cost(other)));
             }
-        };
-        is_met.clear();
-        is_met.resize(more.len(), false);
-        for (index, one) in fewer.iter().enumerate() {
-            let other = partner(index).map(|column| {
-                is_met[column] = true;
-                &more[column]
-            });
-            hand_out(Some(one), other);
-        }
-        for (other, _) in more.iter().zip(&*is_met).filter(|(_, is_met)| !**is_met) {
-            hand_out(None, Some(other));
-        }
-    });
+            // All are finite and within the limits of an assignment; more objects than it takes are compared in their order.
+            let is_solved = assignment.solve(costs, fewer.len(), more.len()).is_ok();
+            let partner = |index: usize| {
+                if is_solved {
+                    assignment.partners()[index]
+                } else {
+                    Some(index)
+                }
+            };
+            is_met.clear();
+            is_met.resize(more.len(), false);
+            for (index, one) in fewer.iter().enumerate() {
+                let other = partner(index).map(|column| {
+                    is_met[column] = true;
+                    &more[column]
+                });
+                hand_out(Some(one), other);
+            }
+            for (other, _) in more.iter().zip(&*is_met).filter(|(_, is_met)| !**is_met) {
+                hand_out(None, Some(other));
+            }
+        },
+    );
 }
 
 /// Whether a class has fewer objects than the other, or as many that come first.

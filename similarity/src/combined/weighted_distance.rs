@@ -91,9 +91,34 @@ pub struct Distance {
     pub parts: Vec<Part>,
 }
 
+impl Part {
+    /// A part that counts as it is, at weight 1.
+    pub fn of(name: &str, element: Element, measure: &'static str, value: f64) -> Self {
+        Self {
+            name: name.to_owned(),
+            element,
+            measure,
+            method: None,
+            raw: value,
+            normalised: value,
+            weight: 1.0,
+            share: 0.0,
+        }
+    }
+}
+
 impl Distance {
+    /// A distance in no element more than in another: of what a learner can reach or do. It has no parts.
+    pub fn whole(total: f64) -> Self {
+        Self {
+            total,
+            elements: [None; 5],
+            parts: Vec::new(),
+        }
+    }
+
     /// Adds up parts; those of one name follow each other, and are the same number for several elements.
-    pub(crate) fn new(mut parts: Vec<Part>, weights: &Weights) -> Self {
+    pub fn new(mut parts: Vec<Part>, weights: &Weights) -> Self {
         let elements = Element::ALL.map(|element| {
             let own = || parts.iter().filter(|part| part.element == element && part.weight > 0.0);
             let sum = own().map(|part| part.normalised * part.weight).sum();

@@ -4,7 +4,7 @@ mod oklab;
 mod ssim;
 mod views;
 
-pub use oklab::picture_oklab;
+pub use oklab::{picture_oklab, picture_oklab_sums};
 pub use ssim::{LEAST_SIDE, structural_similarity};
 pub use views::{PictureMeasure, views_distance};
 

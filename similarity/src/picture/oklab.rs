@@ -41,6 +41,45 @@ pub fn picture_oklab(a: Picture, b: Picture) -> Result<f64, SimilarityError> {
     Ok(sum / from.len() as f64)
 }
 
+/// The sum of the distances in Oklab and the number of pixels: of those that `marked` marks, and of the others.
+///
+/// Whoever compares many pictures adds these up, and has the mean over all pixels of either kind. `marked`: `(height · width,)`.
+///
+/// # Errors
+/// [`SimilarityError::PictureSizes`] when the pictures differ in height or width, [`SimilarityError::Shape`] unless there is a
+/// mark for every pixel.
+///
+/// # Example
+/// ```
+/// use driftworld_similarity::picture::{Picture, picture_oklab_sums};
+/// let (black, half) = ([0; 6], [0, 0, 0, 255, 255, 255]);
+/// let (a, b) = (Picture::new(&black, 1, 2)?, Picture::new(&half, 1, 2)?);
+/// let [marked, others] = picture_oklab_sums(a, b, &[false, true])?;
+/// assert!((marked.0 - 1.0).abs() < 1e-6 && others == (0.0, 1));
+/// # Ok::<(), driftworld_similarity::SimilarityError>(())
+/// ```
+pub fn picture_oklab_sums(a: Picture, b: Picture, marked: &[bool]) -> Result<[(f64, usize); 2], SimilarityError> {
+    a.lies_on(b)?;
+    let (from, to) = (a.rgb.as_chunks::<3>().0, b.rgb.as_chunks::<3>().0);
+    if marked.len() != from.len() {
+        return Err(SimilarityError::Shape {
+            of: "marks of pixels",
+            found: marked.len(),
+            expected: from.len(),
+        });
+    }
+    let (mut before, mut after) = (Last::default(), Last::default());
+    let mut sums = [(0.0, 0); 2];
+    for ((from, to), is_marked) in from.iter().zip(to).zip(marked) {
+        let (sum, count) = &mut sums[usize::from(!is_marked)];
+        *count += 1;
+        if from != to {
+            *sum += before.oklab(*from).distance(after.oklab(*to));
+        }
+    }
+    Ok(sums)
+}
+
 /// The bytes of the last pixel, and its colour.
 struct Last([u8; 3], Oklab);
 
@@ -83,6 +122,17 @@ mod tests {
             prop_assert!(distance(&a, &c) <= distance(&a, &b) + distance(&b, &c) + 1e-12);
             prop_assert!((0.0..=1.0).contains(&distance(&a, &b)));
             prop_assert!(a == b || distance(&a, &b) > 0.0);
+        }
+
+        #[test]
+        fn the_sums_of_both_kinds_of_pixels_make_the_mean(
+            a in pixels(), b in pixels(), marked in prop::collection::vec(any::<bool>(), 4)
+        ) {
+            let [a_picture, b_picture] = [&a, &b].map(|rgb| Picture::new(rgb, 2, 2).unwrap());
+            let [on, off] = picture_oklab_sums(a_picture, b_picture, &marked).unwrap();
+            prop_assert_eq!((on.1, off.1), (marked.iter().filter(|m| **m).count(), marked.iter().filter(|m| !**m).count()));
+            prop_assert!(((on.0 + off.0) / 4.0 - distance(&a, &b)).abs() < 1e-12);
+            prop_assert!(picture_oklab_sums(a_picture, b_picture, &marked[1..]).is_err());
         }
 
         #[test]

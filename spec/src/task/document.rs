@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
 
-use super::{ElementWeights, Group, Parameter, VariantSpec};
+use super::{By, ElementWeights, Group, Parameter, VariantSpec};
 use crate::schema::document::DocumentSchema;
 
 /// A task spec as its document has it, before anything but the schema has been checked.
@@ -54,6 +54,9 @@ pub(crate) struct TaskDocument {
     /// What each element of the decision process weighs when variants are compared; 1 where nothing is said.
     #[serde(default, skip_serializing_if = "ElementWeights::is_default")]
     pub(crate) element_weights: ElementWeights,
+    /// What variants are compared by where nobody says: parameters if absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) compare_by: Option<By>,
     /// Named variants: each sets some of the variant parameters, over another variant's values or the defaults. One with a
     /// grid or a sweep is a family of variants.
     #[serde(default)]

@@ -1,5 +1,6 @@
 //! [`TaskSpec`]: typed parameters, a world template that refers to them, and named variants. Drawing worlds is the generator's job.
 
+mod by;
 mod check;
 mod compare;
 mod document;
@@ -20,6 +21,7 @@ use std::sync::{Arc, OnceLock};
 use indexmap::IndexMap;
 use serde_json::Value as Json;
 
+pub use by::By;
 pub use compare::{Compare, MeasureName};
 pub(crate) use document::TaskDocument;
 pub use element_weights::ElementWeights;
@@ -168,6 +170,11 @@ impl TaskSpec {
     /// What each element of the decision process weighs when variants are compared.
     pub fn element_weights(&self) -> ElementWeights {
         self.document.element_weights
+    }
+
+    /// What variants are compared by where nobody says: what the task declares, or parameters.
+    pub fn compare_by(&self) -> By {
+        self.document.compare_by.unwrap_or(By::Parameters)
     }
 
     /// The world's template; its objects are [`TaskSpec::fixtures`].

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::curriculum::{Design, Drifting, Evaluate};
 use crate::design::{self, DesignOrder, DesignRequest, Designed};
+use crate::distances::By;
 use crate::modality::Kind;
 use crate::spec::{
     DriftSchedule, DriftSwitch, Element, Modality, Scenario, ScenarioComplexity, ScenarioDifficulty, ScenarioForm,
@@ -58,6 +59,12 @@ pub(crate) struct Curriculum {
     /// Order of the variants, beginning with --start.
     #[arg(long, value_enum)]
     order: Option<Order>,
+    /// What to compare the variants by: parameters, worlds, rewards, and so on, as for `driftworld distance`.
+    ///
+    /// By default what their task declares, which is parameters where it says nothing; worlds for variants of several
+    /// tasks. --probe and --step-distance always measure by parameters.
+    #[arg(long, value_parser = By::from_name, value_name = "MEASURE")]
+    by: Option<By>,
     /// Create a sequence of variants, each this far from the one before.
     ///
     /// The distance is measured in the probed element, or else in all.
@@ -286,6 +293,7 @@ impl Curriculum {
         DesignRequest {
             tasks: self.tasks.clone(),
             ordering: self.ordering.request(),
+            by: self.by,
             order: self.order.map(|order| match order {
                 Order::Gradual => DesignOrder::Gradual,
                 Order::Outward => DesignOrder::Outward,

@@ -5,7 +5,7 @@ mod compare;
 
 use std::path::PathBuf;
 
-use crate::distances::{By, labelled_matrix};
+use crate::distances::{By, Sample, fitting, labelled_matrix};
 use crate::report::picture::path_map;
 use crate::similarity::{DistanceMatrix, Method, NUM_RANDOM_ORDERS, Ordering, share_of_shorter_orders};
 use crate::tasks;
@@ -15,14 +15,15 @@ use serde_json::{Value, json};
 pub(crate) use arguments::OrderArgs;
 use compare::Comparison;
 
+use super::assets::LibraryChoice;
 use super::weights::WeightArgs;
 use super::{Failure, matrix_file, output, overwrite};
 use crate::table::{cells, table};
 
 /// Order variants by their distances.
 ///
-/// Variants of one task are compared parameter by parameter, with the task's own weights. --by compares them by worlds or
-/// by rewards, as variants of several tasks have to be.
+/// Variants of one task are compared by what the task declares, which is parameters where it says nothing. --by compares
+/// them by something else, as variants of several tasks have to be.
 ///
 /// The order starts with the variant named first, unless --start names another. If you name one whole task, it starts with
 /// whichever is best.
@@ -41,11 +42,17 @@ pub(crate) struct Order {
     from_matrix: Option<PathBuf>,
     #[command(flatten)]
     ordering: OrderArgs,
-    /// What to compare variants by: parameters, worlds or rewards [default: parameters].
+    /// What to compare variants by: parameters, worlds, rewards, and so on, as for `driftworld distance`.
     ///
-    /// Variants of several tasks need worlds or rewards: 16 worlds of each are compared.
+    /// By default what the task declares, which is parameters where it says nothing. Variants of several tasks need
+    /// another measure than parameters.
     #[arg(long, value_parser = By::from_name, value_name = "MEASURE", conflicts_with = "from_matrix")]
     by: Option<By>,
+    /// Compare this many worlds of each variant, drawn under seed 0 [default: 16, or 4 by pictures and dynamics].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000), conflicts_with = "from_matrix")]
+    worlds: Option<u64>,
+    #[command(flatten)]
+    libraries: LibraryChoice,
     #[command(flatten)]
     weights: WeightArgs,
     /// Seed of the method random, and of the random orders that the length is compared with.
@@ -75,12 +82,7 @@ impl Order {
         for target in [&self.matrix, &self.plot].into_iter().flatten() {
             overwrite::refuse_inputs(target, self.tasks.iter().map(String::as_str))?;
         }
-        let matrix = if let Some(path) = &self.from_matrix {
-            matrix_file::read("from_matrix", path)?
-        } else {
-            let variants = tasks::variants_of(&self.tasks)?;
-            labelled_matrix(&variants, self.by, |declared| self.weights.over(declared))?
-        };
+        let (matrix, by) = self.measure()?;
         if let Some(path) = &self.matrix {
             matrix_file::write("matrix", path, &matrix, cells(self.raw_cells))?;
         }
@@ -94,16 +96,13 @@ impl Order {
         if self.json {
             let mut found = json_of(&matrix, method, &ordering, self.seed);
             found["matrix"] = json!(matrix);
-            if self.from_matrix.is_none() {
-                found["by"] = json!(self.by.unwrap_or(By::Parameters));
+            if let Some(by) = by {
+                found["by"] = json!(by);
             }
             return output::json(&found);
         }
         output::line(path_table(&matrix, &ordering))?;
-        let by = match &self.from_matrix {
-            Some(_) => String::new(),
-            None => format!(" by {}", self.by.unwrap_or(By::Parameters).name()),
-        };
+        let by = by.map_or_else(String::new, |by| format!(" by {}", by.name()));
         let steadily = ordering.anchor_correlation.map_or_else(String::new, |rho| {
             format!(", correlation with the distance from the first {rho:.2}")
         });
@@ -118,6 +117,25 @@ impl Order {
             "shorter than it: {:.1} % of {NUM_RANDOM_ORDERS} random orders",
             100.0 * share_of_shorter_orders(&matrix, &ordering, self.seed)
         ))
+    }
+
+    /// Every distance, and by what it was measured, where it is not read from a file.
+    fn measure(&self) -> Result<(DistanceMatrix, Option<By>), Failure> {
+        if let Some(path) = &self.from_matrix {
+            return Ok((matrix_file::read("from_matrix", path)?, None));
+        }
+        let variants = tasks::variants_of(&self.tasks)?;
+        let sample = Sample {
+            by: self.by,
+            worlds: self.worlds,
+            catalogue: self.libraries.catalogue()?,
+            ..Sample::default()
+        };
+        let matrix = labelled_matrix(&variants, &sample, |declared| self.weights.over(declared))?;
+        let by = self
+            .by
+            .unwrap_or_else(|| fitting(variants.iter().map(|(_, variant)| variant)));
+        Ok((matrix, Some(by)))
     }
 
     /// The variants that may come first where nobody says which: those of the first argument, if there are others.

@@ -1,0 +1,173 @@
+//! [`By`]: the names of what variants and worlds are compared by. The measures are `similarity`'s, what is compared is drawn and run
+//! by the crates above it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use strum::VariantNames as _;
+
+/// What two variants or worlds are compared by: of what, and after a colon by which measure of it.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    JsonSchema,
+    strum::IntoStaticStr,
+    strum::EnumString,
+    strum::VariantNames,
+)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum By {
+    /// Variants of one task by what it declares: 1 is one parameter moved over its whole range.
+    Parameters,
+    /// What is in worlds, in the units of the reference page on comparison.
+    Worlds,
+    /// What an agent sees: the mean Oklab difference of the pixels that show objects, and that of the others.
+    Pictures,
+    /// What an agent sees: the mean Oklab difference of all pixels.
+    #[serde(rename = "pictures:whole")]
+    #[strum(serialize = "pictures:whole")]
+    PicturesWhole,
+    /// What an agent sees: (1 − SSIM) / 2 of the pictures.
+    #[serde(rename = "pictures:structure")]
+    #[strum(serialize = "pictures:structure")]
+    PicturesStructure,
+    /// Where objects are: the least work that moves them, by cells.
+    Occupancy,
+    /// Where objects are: least work, and a penalty for what is more in one.
+    #[serde(rename = "occupancy:earth_movers_hat")]
+    #[strum(serialize = "occupancy:earth_movers_hat")]
+    OccupancyEarthMoversHat,
+    /// Where objects are: least work, blurred.
+    #[serde(rename = "occupancy:sinkhorn")]
+    #[strum(serialize = "occupancy:sinkhorn")]
+    OccupancySinkhorn,
+    /// Where objects are: least work along drawn lines.
+    #[serde(rename = "occupancy:sliced_wasserstein")]
+    #[strum(serialize = "occupancy:sliced_wasserstein")]
+    OccupancySlicedWasserstein,
+    /// Which cells are taken: how many differ.
+    #[serde(rename = "occupancy:hamming")]
+    #[strum(serialize = "occupancy:hamming")]
+    OccupancyHamming,
+    /// Which cells are taken: the share of them that is taken in one world alone.
+    #[serde(rename = "occupancy:jaccard")]
+    #[strum(serialize = "occupancy:jaccard")]
+    OccupancyJaccard,
+    /// How many objects are in cells: the share of them that is in one world alone.
+    #[serde(rename = "occupancy:ruzicka")]
+    #[strum(serialize = "occupancy:ruzicka")]
+    OccupancyRuzicka,
+    /// Which cells are taken: Dice's dissimilarity.
+    #[serde(rename = "occupancy:dice")]
+    #[strum(serialize = "occupancy:dice")]
+    OccupancyDice,
+    /// Which cells are taken: the farthest that one is from the nearest of the other world.
+    #[serde(rename = "occupancy:hausdorff")]
+    #[strum(serialize = "occupancy:hausdorff")]
+    OccupancyHausdorff,
+    /// The same for all but the farthest twentieth.
+    #[serde(rename = "occupancy:hausdorff_95")]
+    #[strum(serialize = "occupancy:hausdorff_95")]
+    OccupancyHausdorff95,
+    /// Which cells are taken: how far each is from the nearest of the other world, on average.
+    #[serde(rename = "occupancy:chamfer")]
+    #[strum(serialize = "occupancy:chamfer")]
+    OccupancyChamfer,
+    /// Which objects there are, and where: OSPA, class by class.
+    Objects,
+    /// Which objects there are: the share of them without a counterpart of their class.
+    #[serde(rename = "objects:counts")]
+    #[strum(serialize = "objects:counts")]
+    ObjectsCounts,
+    /// Which colours objects have: assigned to each other, in Oklab.
+    Colors,
+    /// The same in sRGB.
+    #[serde(rename = "colors:srgb")]
+    #[strum(serialize = "colors:srgb")]
+    ColorsSrgb,
+    /// The same in CIELAB.
+    #[serde(rename = "colors:cie76")]
+    #[strum(serialize = "colors:cie76")]
+    ColorsCie76,
+    /// The same by CIEDE2000.
+    #[serde(rename = "colors:ciede2000")]
+    #[strum(serialize = "colors:ciede2000")]
+    ColorsCiede2000,
+    /// The same by HyAB.
+    #[serde(rename = "colors:hyab")]
+    #[strum(serialize = "colors:hyab")]
+    ColorsHyab,
+    /// What worlds reward: EPIC, 0 to 1.
+    Rewards,
+    /// What actions pay and where they lead: the Wasserstein MDP distance, state by state.
+    Dynamics,
+    /// What can be earned by the same actions: bisimulation of the starts.
+    #[serde(rename = "dynamics:bisimulation")]
+    #[strum(serialize = "dynamics:bisimulation")]
+    DynamicsBisimulation,
+    /// What experts earn in each other's worlds: their regret, in hundreds of points.
+    #[serde(alias = "behaviour")]
+    #[strum(serialize = "behavior")]
+    Behavior,
+    /// How much more often experts succeed in their own worlds.
+    #[serde(rename = "behavior:success")]
+    #[strum(serialize = "behavior:success")]
+    BehaviorSuccess,
+}
+
+impl By {
+    /// The name that documents, the command and Python have for it.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+
+    /// What is compared, without the measure: `"occupancy"` of `occupancy:jaccard`.
+    pub fn subject(self) -> &'static str {
+        let name = self.name();
+        name.split_once(':').map_or(name, |(subject, _)| subject)
+    }
+
+    /// All names, those of one subject together, the first of them its usual measure.
+    pub fn names() -> &'static [&'static str] {
+        Self::VARIANTS
+    }
+
+    /// The one of this name; `behaviour` is `behavior`.
+    ///
+    /// # Errors
+    /// What was found, and the names there are.
+    pub fn from_name(name: &str) -> Result<Self, String> {
+        let american = name.replacen("behaviour", "behavior", 1);
+        american
+            .parse()
+            .map_err(|_| format!("found {name:?}, expected one of {}", Self::names().join(", ")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn documents_and_arguments_have_one_name() {
+        for name in By::names() {
+            let by = By::from_name(name).unwrap();
+            assert_eq!(serde_json::to_value(by).unwrap(), *name);
+            assert!(
+                By::from_name(by.subject()).is_ok(),
+                "{name}: its subject has a usual measure"
+            );
+        }
+        assert_eq!(By::from_name("behaviour:success"), Ok(By::BehaviorSuccess));
+        assert!(
+            By::from_name("looks")
+                .unwrap_err()
+                .contains("parameters, worlds, pictures")
+        );
+    }
+}

@@ -1,0 +1,131 @@
+//! Every distance among variants, each under the name it is called by.
+
+use driftworld_similarity::{DistanceMatrix, SimilarityError, VariantMeasure, Weights, Worlds};
+use driftworld_spec::{By, Variant, World};
+use rayon::prelude::*;
+
+use super::pairs::{Means, Pairs};
+use super::{DistancesError, NAME_IT, Sample};
+
+/// Every distance among variants, each under the name it is called by; in parallel.
+///
+/// By parameters at the weights that the task declares and with `lay_over` laid over them; the matrix is a metric where the
+/// task's measures are. By anything else, worlds of each are drawn as `sample` says, and the first is compared with the first
+/// and so on. So the distance of two depends on them and on `sample`, and on nothing else in the list. Where `sample` does not
+/// say by what, it is what the variants' task declares.
+///
+/// # Errors
+/// [`DistancesError::By`] for parameters of variants of several tasks, and where nobody says by what these are compared;
+/// [`DistancesError::Generator`] for worlds that cannot be drawn, [`DistancesError::Similarity`] for too many variants or what
+/// `lay_over` says; otherwise as [`between`](super::between).
+///
+/// # Example
+/// ```
+/// use driftworld::distances::{By, Sample, variant_matrix};
+/// use driftworld::tasks;
+/// let named = |name: &str| Ok::<_, tasks::TaskError>((name.to_owned(), tasks::variant(name)?));
+/// let variants = [named("find_objects#blue")?, named("find_objects#dusk")?];
+/// let matrix = variant_matrix(&variants, &Sample::by(By::Parameters), Ok)?;
+/// assert!(matrix.get(0, 1) > 0.0 && matrix.properties().is_metric());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn variant_matrix(
+    variants: &[(String, Variant)],
+    sample: &Sample,
+    lay_over: impl FnOnce(Weights) -> Result<Weights, SimilarityError>,
+) -> Result<DistanceMatrix, DistancesError> {
+    variant_matrix_while(variants, sample, lay_over, || true)
+}
+
+/// The same for variants with the names of their tasks, under labels such as `find_objects#red`.
+///
+/// # Errors
+/// As [`variant_matrix`].
+pub fn labelled_matrix(
+    variants: &[(String, Variant)],
+    sample: &Sample,
+    lay_over: impl FnOnce(Weights) -> Result<Weights, SimilarityError>,
+) -> Result<DistanceMatrix, DistancesError> {
+    let label = |(task, variant): &(String, Variant)| (format!("{task}#{}", variant.name()), variant.clone());
+    variant_matrix(&variants.iter().map(label).collect::<Vec<_>>(), sample, lay_over)
+}
+
+/// The same, and given up as soon as `go_on`, which is asked before each pair, says no.
+///
+/// # Errors
+/// As [`variant_matrix`]; [`DistancesError::Interrupted`] if it was given up.
+pub fn variant_matrix_while(
+    variants: &[(String, Variant)],
+    sample: &Sample,
+    lay_over: impl FnOnce(Weights) -> Result<Weights, SimilarityError>,
+    go_on: impl Fn() -> bool + Sync,
+) -> Result<DistanceMatrix, DistancesError> {
+    let asked = || {
+        if go_on() {
+            Ok(())
+        } else {
+            Err(DistancesError::Interrupted)
+        }
+    };
+    let labels: Vec<String> = variants.iter().map(|(label, _)| label.clone()).collect();
+    let first = variants.first().map(|(_, first)| first.task());
+    let of_one_task = |task| variants.iter().all(|(_, variant)| variant.task().is_same_as(task));
+    let task = first.filter(|task| of_one_task(task));
+    let by = match (sample.by, task) {
+        (Some(By::Parameters) | None, None) if first.is_some() => {
+            return Err(DistancesError::By {
+                found: "variants of several tasks".to_owned(),
+                expected: NAME_IT,
+            });
+        }
+        (Some(by), _) => by,
+        (None, task) => task.map_or(By::Parameters, |task| task.compare_by()),
+    };
+    // Labels are looked at before anything is drawn.
+    DistanceMatrix::measure(labels.clone(), |_, _| Ok::<_, DistancesError>(0.0))?;
+    let weights = lay_over(task.map_or_else(Weights::default, |task| Weights::of_task(task)))?;
+    if let (By::Parameters, Some(task)) = (by, task) {
+        let measure = VariantMeasure::new(task, weights);
+        let apart = |a: usize, b: usize| {
+            asked()?;
+            Ok::<_, DistancesError>(measure.between(&variants[a].1, &variants[b].1)?.total)
+        };
+        return Ok(DistanceMatrix::measure(labels, apart)?.with_properties(measure.properties()));
+    }
+    let count = sample.count(by) as usize;
+    let drawn: Vec<Vec<World>> = variants
+        .iter()
+        .map(|(_, variant)| {
+            asked()?;
+            sample.draw(variant, count as u64)
+        })
+        .collect::<Result<_, _>>()?;
+    if by == By::Worlds {
+        let worlds = Worlds::new(&drawn.concat(), weights);
+        let pairs = |a: usize, b: usize| (0..count).map(move |k| (a * count + k, b * count + k));
+        let apart = |a: usize, b: usize| {
+            asked()?;
+            Ok::<_, DistancesError>(pairs(a, b).map(|(a, b)| worlds.distance(a, b)).sum::<f64>() / count as f64)
+        };
+        return DistanceMatrix::measure(labels, apart);
+    }
+    // One world of each variant at a time: what is made of them is large.
+    let size = variants.len();
+    let pairs: Vec<(usize, usize)> = (0..size).flat_map(|a| (a + 1..size).map(move |b| (a, b))).collect();
+    let mut means: Vec<Means> = pairs.iter().map(|_| Means::new(by)).collect();
+    for k in 0..count {
+        let worlds: Vec<World> = drawn.iter().map(|of_one| of_one[k].clone()).collect();
+        asked()?;
+        let ready = Pairs::new(by, &worlds, &sample.catalogue)?;
+        pairs.par_iter().zip(&mut means).try_for_each(|((a, b), mean)| {
+            asked()?;
+            mean.add(&ready.between(*a, *b)?);
+            Ok::<_, DistancesError>(())
+        })?;
+    }
+    let at = |a: usize, b: usize| {
+        let (a, b) = (a.min(b), a.max(b));
+        a * size - a * (a + 1) / 2 + (b - a - 1)
+    };
+    DistanceMatrix::measure(labels, |a, b| Ok(means[at(a, b)].distance(&weights).total))
+}

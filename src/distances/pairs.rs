@@ -1,0 +1,218 @@
+//! [`Pairs`]: worlds made ready to be compared in pairs by one measure, and the [`Means`] over pairs of worlds of two variants.
+
+use driftworld_env::{Catalogue, ExpertRun, Expertise, WorldAbstraction};
+use driftworld_similarity::picture::PictureMeasure;
+use driftworld_similarity::{Distance, Part, Weights, world_rewards_distance};
+use driftworld_spec::{By, Element, World};
+use rayon::prelude::*;
+
+use super::DistancesError;
+use crate::behavior::POINTS;
+use crate::dynamics::{self, DynamicsOptions};
+use crate::picture_distance::{PictureDistanceError, PictureOptions, Pose, Views, poses};
+
+/// Numbers of one comparison, as many as [`parts`] of the measure has, or as its remark needs.
+pub(super) type Values = Vec<f64>;
+
+/// What the numbers of a measure count for, under which name and in which unit; none where they are of the whole process.
+fn parts(by: By) -> &'static [(&'static str, Element, &'static str)] {
+    match by {
+        By::Pictures => &[
+            ("looks of objects", Element::O, "oklab, where objects are seen"),
+            ("looks of surroundings", Element::O, "oklab, elsewhere"),
+        ],
+        By::PicturesWhole => &[("looks", Element::O, "oklab")],
+        By::PicturesStructure => &[("looks", Element::O, "(1 − ssim) / 2")],
+        By::Rewards => &[("rewards", Element::R, "epic")],
+        By::Dynamics => &[
+            ("what actions pay", Element::R, "difference / 100 points"),
+            ("where actions lead", Element::T, "distance / 10 m + turn / 180°"),
+        ],
+        _ => &[],
+    }
+}
+
+/// Worlds, and what is made of each once.
+pub(super) struct Pairs<'a> {
+    by: By,
+    worlds: &'a [World],
+    ready: Ready,
+}
+
+enum Ready {
+    Rewards,
+    /// The poses that are free in each world alone, and the views from there.
+    Pictures(PictureOptions, Vec<(Vec<Pose>, Views)>),
+    /// Tables over each world's own arena.
+    Dynamics(DynamicsOptions, Vec<WorldAbstraction>),
+    /// What the expert of each earns in its own world.
+    Behavior(Expertise, Vec<ExpertRun>),
+}
+
+impl<'a> Pairs<'a> {
+    /// Makes worlds ready, in parallel. By parameters and by worlds there is nothing here to compare.
+    pub(super) fn new(by: By, worlds: &'a [World], catalogue: &Catalogue) -> Result<Self, DistancesError> {
+        let catalogue = catalogue.clone();
+        let ready = match by.subject() {
+            "pictures" => {
+                let options = PictureOptions {
+                    catalogue,
+                    ..PictureOptions::default()
+                };
+                let of = |world: &World| {
+                    let poses = poses(&[world], &options)?;
+                    let views = Views::new(world, &poses, &options)?;
+                    Ok::<_, PictureDistanceError>((poses, views))
+                };
+                let seen = worlds.par_iter().map(of).collect::<Result<_, _>>()?;
+                Ready::Pictures(options, seen)
+            }
+            "dynamics" => {
+                let options = DynamicsOptions {
+                    catalogue,
+                    ..DynamicsOptions::default()
+                };
+                let of = |world: &World| dynamics::tables(world, world.environment_params.arena_size(), &options);
+                let tables = worlds.par_iter().map(of).collect::<Result<_, _>>()?;
+                Ready::Dynamics(options, tables)
+            }
+            "behavior" => {
+                let expertise = Expertise {
+                    catalogue,
+                    ..Expertise::default()
+                };
+                let own = worlds.par_iter().map(|world| expertise.at_home(world));
+                let own = own.collect::<Result<_, _>>()?;
+                Ready::Behavior(expertise, own)
+            }
+            _ => Ready::Rewards,
+        };
+        Ok(Self { by, worlds, ready })
+    }
+
+    /// Compares two of them, by their numbers.
+    pub(super) fn between(&self, a: usize, b: usize) -> Result<Values, DistancesError> {
+        let worlds = [&self.worlds[a], &self.worlds[b]];
+        Ok(match &self.ready {
+            Ready::Rewards => vec![world_rewards_distance(worlds[0], worlds[1], None)?],
+            Ready::Pictures(options, seen) => {
+                let sides = worlds.map(|world| world.environment_params.arena_size());
+                if sides[0] != sides[1] {
+                    let poses = poses(&worlds, options)?;
+                    let [a, b] = worlds.map(|world| Views::new(world, &poses, options));
+                    return self.looks(&a?, &b?);
+                }
+                let [(of_a, a), (of_b, b)] = [&seen[a], &seen[b]];
+                let common = |own: &[Pose], other: &[Pose]| -> Vec<usize> {
+                    (0..own.len()).filter(|k| other.contains(&own[*k])).collect()
+                };
+                let [a, b] = [a.only(&common(of_a, of_b)), b.only(&common(of_b, of_a))];
+                if a.is_empty() {
+                    let tried = options.across * options.across;
+                    return Err(PictureDistanceError::NoPlace { tried }.into());
+                }
+                self.looks(&a, &b)?
+            }
+            Ready::Dynamics(options, tables) => {
+                let area = dynamics::common_area(worlds[0], worlds[1]);
+                if worlds.iter().all(|world| world.environment_params.arena_size() == area) {
+                    return self.outcomes(&tables[a], &tables[b], options);
+                }
+                let [a, b] = worlds.map(|world| dynamics::tables(world, area, options));
+                return self.outcomes(&a?, &b?, options);
+            }
+            Ready::Behavior(expertise, own) => {
+                let (b_in_a, a_in_b) = (
+                    expertise.abroad(worlds[1], worlds[0])?,
+                    expertise.abroad(worlds[0], worlds[1])?,
+                );
+                let succeeds = |run: ExpertRun| f64::from(u8::from(run.success));
+                let more = succeeds(own[a]) - succeeds(b_in_a) + succeeds(own[b]) - succeeds(a_in_b);
+                vec![own[a].earned - b_in_a.earned, own[b].earned - a_in_b.earned, more / 2.0]
+            }
+        })
+    }
+
+    fn looks(&self, a: &Views, b: &Views) -> Result<Values, DistancesError> {
+        Ok(match self.by {
+            By::Pictures => {
+                let parts = a.parts(b)?;
+                vec![parts.objects, parts.surroundings]
+            }
+            By::PicturesStructure => vec![a.distance(b, PictureMeasure::Structure)?],
+            _ => vec![a.distance(b, PictureMeasure::Oklab)?],
+        })
+    }
+
+    fn outcomes(
+        &self,
+        a: &WorldAbstraction,
+        b: &WorldAbstraction,
+        options: &DynamicsOptions,
+    ) -> Result<Values, DistancesError> {
+        if self.by == By::DynamicsBisimulation {
+            let found = dynamics::bisimulation(a, b, options)?;
+            return Ok(vec![found.lower()[0], found.upper()[0]]);
+        }
+        let (rewards, motion, _) = dynamics::w1(a, b, options);
+        Ok(vec![rewards, motion])
+    }
+}
+
+/// The means of comparisons of worlds of two variants.
+pub(super) struct Means {
+    by: By,
+    sums: Values,
+    count: usize,
+}
+
+impl Means {
+    pub(super) fn new(by: By) -> Self {
+        Self {
+            by,
+            sums: Vec::new(),
+            count: 0,
+        }
+    }
+
+    pub(super) fn add(&mut self, values: &[f64]) {
+        self.sums.resize(values.len(), 0.0);
+        for (sum, value) in self.sums.iter_mut().zip(values) {
+            *sum += value;
+        }
+        self.count += 1;
+    }
+
+    fn mean(&self, k: usize) -> f64 {
+        self.sums[k] / self.count as f64
+    }
+
+    /// What else is to be known of the number, behind a comma or a semicolon; often nothing.
+    pub(super) fn remark(&self) -> String {
+        match self.by.subject() {
+            "behavior" => format!(
+                "; the second's expert earns {:.1} points less in the first's worlds, the first's {:.1} less in the second's",
+                self.mean(0),
+                self.mean(1)
+            ),
+            _ if self.by == By::DynamicsBisimulation => {
+                format!(", between {:.4} and {:.4}", self.mean(0), self.mean(1))
+            }
+            _ => String::new(),
+        }
+    }
+
+    /// The distance that they make.
+    pub(super) fn distance(&self, weights: &Weights) -> Distance {
+        match self.by {
+            By::DynamicsBisimulation => Distance::whole(f64::midpoint(self.mean(0), self.mean(1))),
+            By::Behavior => Distance::whole((f64::midpoint(self.mean(0), self.mean(1)) / POINTS).max(0.0)),
+            By::BehaviorSuccess => Distance::whole(self.mean(2).max(0.0)),
+            by => {
+                let means = parts(by).iter().enumerate();
+                let of = means.map(|(k, (name, element, measure))| Part::of(name, *element, measure, self.mean(k)));
+                Distance::new(of.collect(), weights)
+            }
+        }
+    }
+}
