@@ -23,6 +23,7 @@ pub mod scalar;
 mod shares;
 mod split_mix;
 mod transport;
+mod world_measures;
 
 pub use assignment::{Assignment, MAX_ASSIGNED};
 pub use color::cie76::cie76;
@@ -66,3 +67,4 @@ pub use transport::{
     MAX_DIRECTIONS, MAX_SINKHORN_STEPS, MAX_TRANSPORTED, Move, Sinkhorn, SinkhornSettings, TransportPlan,
     earth_movers_distance, optimal_transport, sinkhorn, sliced_wasserstein,
 };
+pub use world_measures::{ObjectsMeasure, OccupancyMeasure, WorldMeasure, world_sets_measure_distance};

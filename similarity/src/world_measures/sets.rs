@@ -1,0 +1,41 @@
+//! [`world_sets_measure_distance`]: one measure between sets of worlds, as a distance in one element.
+
+use driftworld_spec::World;
+
+use super::measure::WorldMeasure;
+use crate::SimilarityError;
+use crate::combined::{Distance, Part, Weights};
+use crate::distribution::Method;
+
+/// The mean of [`WorldMeasure::between`] over pairs, the first with the first and so on, as a distance in the measure's element
+/// alone; worlds without a partner are left out. `weights`: what the element weighs. 1 is one of the measure's units.
+///
+/// # Errors
+/// [`SimilarityError::Empty`] if there is no pair, and as [`WorldMeasure::between`].
+pub fn world_sets_measure_distance(
+    a: &[World],
+    b: &[World],
+    measure: WorldMeasure,
+    weights: &Weights,
+) -> Result<Distance, SimilarityError> {
+    let count = a.len().min(b.len());
+    if count == 0 {
+        return Err(SimilarityError::Empty);
+    }
+    let mut sum = 0.0;
+    for (a, b) in a.iter().zip(b) {
+        sum += measure.between(a, b)?;
+    }
+    let mean = sum / count as f64;
+    let part = Part {
+        name: measure.kind().to_owned(),
+        element: measure.element(),
+        measure: measure.label(),
+        method: Some(Method::Samples { count }),
+        raw: mean,
+        normalised: mean,
+        weight: 1.0,
+        share: 0.0,
+    };
+    Ok(Distance::new(vec![part], weights))
+}

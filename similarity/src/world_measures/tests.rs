@@ -1,0 +1,225 @@
+//! Laws of the measures between worlds. What each is by hand is in `tests/by_hand.rs`.
+
+mod by_hand;
+
+use driftworld_spec::{Color, Element, Object, World};
+use proptest::prelude::*;
+
+use super::*;
+use crate::{ColorMeasure, MetricProperties, SimilarityError, Weights};
+
+const COLORS: [&str; 3] = ["red", "tan", "navy"];
+
+/// Class, place and colour: two classes, one of them in large and small letters, places in and out of an arena of 12 × 8 m, and
+/// often the same cell.
+type Thing = (&'static str, [f64; 2], Option<Color>);
+
+fn things() -> impl Strategy<Value = Vec<Thing>> {
+    let class = prop::sample::select(vec!["tree", "Tree", "rock"]);
+    let metres = prop_oneof![-7.0..7.0_f64, prop::sample::select(vec![-3.5, -1.0, 0.5, 2.0])];
+    let color = prop::option::of(prop::sample::select(COLORS.to_vec()));
+    let color = color.prop_map(|name| name.and_then(Color::from_name));
+    prop::collection::vec((class, prop::array::uniform2(metres), color), 0..5)
+}
+
+fn world(things: &[Thing]) -> World {
+    let object = |(class, place, color): &Thing| Object {
+        color: *color,
+        ..Object::new(*class, *place)
+    };
+    let made = World::default().edit(|world| {
+        world.environment_params.map_size = [12.0, 8.0];
+        world.objects = things.iter().map(object).collect();
+    });
+    made.unwrap()
+}
+
+fn between(measure: WorldMeasure, a: &[Thing], b: &[Thing]) -> f64 {
+    measure.between(&world(a), &world(b)).unwrap()
+}
+
+fn of_occupancy(measure: OccupancyMeasure, a: &[Thing], b: &[Thing]) -> f64 {
+    between(WorldMeasure::Occupancy(measure), a, b)
+}
+
+#[test]
+fn names_are_read_back_and_others_refused() {
+    for measure in WorldMeasure::all() {
+        let name = measure.name();
+        let read = match measure.kind() {
+            "occupancy" => OccupancyMeasure::from_name(name).map(WorldMeasure::Occupancy),
+            "objects" => ObjectsMeasure::from_name(name).map(WorldMeasure::Objects),
+            _ => ColorMeasure::from_name(name).map(WorldMeasure::Colors),
+        };
+        assert_eq!(read, Some(measure));
+        assert!(measure.label().starts_with(name), "{name}: {}", measure.label());
+    }
+    assert_eq!(OccupancyMeasure::from_name("emd"), None);
+    assert_eq!(WorldMeasure::all().count(), 18);
+    let defaults = (OccupancyMeasure::default().name(), ObjectsMeasure::default().name());
+    assert_eq!(defaults, ("earth_movers", "ospa"));
+}
+
+#[test]
+fn an_empty_world_is_0_from_another_and_as_far_as_stated_from_the_rest() {
+    let tree = ("tree", [0.5, 0.5], Color::from_name("red"));
+    let some = [tree, ("tree", [2.5, 0.5], None), ("rock", [0.5, 0.5], None)];
+    // 12 × 8 cells of 1 m.
+    let diameter = 11.0_f64.hypot(7.0);
+    for measure in WorldMeasure::all() {
+        assert_eq!(between(measure, &[], &[]), 0.0, "{}", measure.name());
+        let expected = match measure.name() {
+            "earth_movers" | "sinkhorn" | "sliced_wasserstein" => 2.0 * diameter,
+            "earth_movers_hat" => 3.0 * diameter,
+            "hausdorff" | "hausdorff_95" | "chamfer" => diameter,
+            "hamming" => 3.0,
+            "ospa" => 10.0,
+            _ => 1.0,
+        };
+        let found = between(measure, &[], &some);
+        assert!((found - expected).abs() < 1e-12, "{}: {found}", measure.name());
+    }
+}
+
+#[test]
+fn colours_of_the_model_count_nowhere() {
+    let (red, plain) = (("tree", [0.0; 2], Color::from_name("red")), ("tree", [0.0; 2], None));
+    for measure in ColorMeasure::ALL {
+        let d = |a: &[Thing], b: &[Thing]| between(WorldMeasure::Colors(*measure), a, b);
+        assert_eq!(d(&[red], &[red, plain]), 0.0);
+        assert_eq!(d(&[plain], &[]), 0.0);
+        assert_eq!(d(&[plain], &[red]), 1.0);
+    }
+}
+
+#[test]
+fn sets_of_worlds_are_compared_pair_by_pair_in_one_element() {
+    let at = |x: f64| world(&[("tree", [x, 0.0], None)]);
+    let (a, b) = ([at(0.0), at(0.0), at(5.0)], [at(1.0), at(3.0)]);
+    let weights = Weights::default().with(Element::S, 3.0).unwrap();
+    let ospa = WorldMeasure::Objects(ObjectsMeasure::Ospa);
+    let found = world_sets_measure_distance(&a, &b, ospa, &weights).unwrap();
+    assert_eq!((found.element(Element::S), found.total), (Some(2.0), 6.0));
+    assert_eq!(
+        (found.parts[0].name.as_str(), found.parts[0].measure),
+        ("objects", "ospa in metres")
+    );
+    assert_eq!(found.element(Element::O), None);
+    let none = world_sets_measure_distance(&a, &[], ospa, &weights).unwrap_err();
+    assert_eq!(none, SimilarityError::Empty);
+}
+
+#[test]
+fn cells_grow_until_those_of_all_classes_fit() {
+    let with = |classes: usize, side: f64| {
+        let objects = (0..classes).map(|index| Object::new(format!("kind {index}"), [0.5, 0.5]));
+        let made = World::default().edit(|world| {
+            world.environment_params.map_size = [side; 2];
+            world.objects = objects.collect();
+        });
+        made.unwrap()
+    };
+    let cell = |classes, side| occupancy::raster([&with(classes, side)]).unwrap().shape().cell();
+    assert_eq!((cell(11, 300.0), cell(12, 300.0), cell(100, 300.0)), (1.0, 2.0, 4.0));
+    let emd = WorldMeasure::Occupancy(OccupancyMeasure::EarthMovers);
+    assert!(emd.between(&with(100, 300.0), &with(0, 300.0)).unwrap().is_finite());
+    let among = |worlds: &[World]| emd.properties_among(worlds);
+    assert_eq!(among(&[]), MetricProperties::Pseudometric);
+    assert_eq!(
+        among(&[with(2, 300.0), with(11, 300.0)]),
+        MetricProperties::Pseudometric
+    );
+    assert_eq!(among(&[with(2, 300.0), with(12, 300.0)]), MetricProperties::Distance);
+    assert_eq!(among(&[with(2, 300.0), with(2, 299.0)]), MetricProperties::Distance);
+    let ospa = WorldMeasure::Objects(ObjectsMeasure::Ospa);
+    assert_eq!(
+        ospa.properties_among(&[with(2, 300.0), with(2, 299.0)]),
+        MetricProperties::Pseudometric
+    );
+}
+
+#[test]
+fn a_detour_by_a_larger_arena_may_be_shorter() {
+    let arena = |side: f64, trees: usize| {
+        let made = World::default().edit(|world| {
+            world.environment_params.map_size = [side; 2];
+            world.objects = vec![Object::new("tree", [0.5, 0.5]); trees];
+        });
+        made.unwrap()
+    };
+    let d = |a, b| {
+        WorldMeasure::Occupancy(OccupancyMeasure::EarthMovers)
+            .between(a, b)
+            .unwrap()
+    };
+    let (tree, none, wide) = (arena(10.0, 1), arena(10.0, 0), arena(100.0, 0));
+    assert!(d(&tree, &none) + d(&none, &wide) < d(&tree, &wide));
+}
+
+proptest! {
+    #[test]
+    fn they_are_0_on_equals_and_as_far_there_as_back(a in things(), b in things(), turn in 0_usize..5) {
+        let mut turned = a.clone();
+        turned.rotate_left(turn.min(a.len()));
+        for measure in WorldMeasure::all() {
+            let d = |a: &[Thing], b: &[Thing]| between(measure, a, b);
+            prop_assert_eq!(d(&a, &turned), 0.0, "{}", measure.name());
+            prop_assert_eq!(d(&a, &b), d(&b, &a), "{}", measure.name());
+            prop_assert_eq!(d(&a, &b), d(&turned, &b), "{}", measure.name());
+            prop_assert!(d(&a, &b).is_finite() && d(&a, &b) >= 0.0);
+            if measure.unit().starts_with("share") {
+                prop_assert!(d(&a, &b) <= 1.0, "{}", measure.name());
+            }
+        }
+    }
+
+    #[test]
+    fn no_detour_is_shorter_where_they_say_so(a in things(), b in things(), c in things()) {
+        for measure in WorldMeasure::all().filter(|measure| measure.properties().keeps_triangles()) {
+            let d = |a: &[Thing], b: &[Thing]| between(measure, a, b);
+            prop_assert!(d(&a, &c) <= d(&a, &b) + d(&b, &c) + 1e-9, "{}", measure.name());
+        }
+    }
+
+    #[test]
+    fn one_alone_that_is_moved_farther_is_never_nearer(from in -6.0..6.0_f64, ways in prop::array::uniform2(0.0..6.0_f64)) {
+        let (near, far) = (ways[0].min(ways[1]), ways[0].max(ways[1]));
+        for measure in WorldMeasure::all() {
+            let moved = |way: f64| {
+                let at = |x: f64| [("tree", [x.min(6.0), 1.0], None)];
+                between(measure, &at(from), &at(from + way))
+            };
+            prop_assert!(moved(near) <= moved(far) + 1e-12, "{}", measure.name());
+        }
+    }
+
+    #[test]
+    fn one_among_others_that_is_moved_farther_is_never_nearer_by_what_moves(
+        others in things(),
+        from in -6.0..6.0_f64,
+        ways in prop::array::uniform2(0.0..6.0_f64),
+    ) {
+        use OccupancyMeasure::{EarthMovers, EarthMoversHat, Sinkhorn, SlicedWasserstein};
+        let (near, far) = (ways[0].min(ways[1]), ways[0].max(ways[1]));
+        let moving = [EarthMovers, EarthMoversHat, Sinkhorn, SlicedWasserstein].map(WorldMeasure::Occupancy);
+        for measure in moving.into_iter().chain([WorldMeasure::Objects(ObjectsMeasure::Ospa)]) {
+            let with = |x: f64| [others.clone(), vec![("tree", [x.min(6.0), 1.0], None)]].concat();
+            let moved = |way: f64| between(measure, &with(from), &with(from + way));
+            prop_assert!(moved(near) <= moved(far) + 1e-9, "{}", measure.name());
+        }
+    }
+
+    #[test]
+    fn a_class_that_is_the_same_in_both_changes_nothing_that_is_a_sum_or_a_largest(
+        a in things(), b in things(), more in things(),
+    ) {
+        use OccupancyMeasure::{EarthMovers, EarthMoversHat, Hamming, Hausdorff, Sinkhorn, SlicedWasserstein};
+        let with = |things: &[Thing]| -> Vec<Thing> {
+            let more = more.iter().map(|(_, place, color)| ("lamp", *place, *color));
+            more.chain(things.iter().copied()).collect()
+        };
+        for measure in [EarthMovers, EarthMoversHat, Hamming, Hausdorff, Sinkhorn, SlicedWasserstein] {
+            prop_assert_eq!(of_occupancy(measure, &a, &b), of_occupancy(measure, &with(&a), &with(&b)), "{}", measure.name());
+        }
+    }
+}

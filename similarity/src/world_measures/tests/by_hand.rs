@@ -1,0 +1,216 @@
+//! Each measure between worlds a second time, by its definition: over all pairings, and over sets of cells.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::PI;
+
+use super::*;
+
+type Cell = [i64; 2];
+
+const CLASSES: [&str; 2] = ["rock", "tree"];
+
+/// The cells of 1 m in an arena of 12 × 8 m in which a class stands, with one entry for each object.
+fn cells(things: &[Thing], class: &str) -> Vec<Cell> {
+    let own = things.iter().filter(|thing| thing.0.to_lowercase() == class);
+    let inside = own.filter(|(_, [x, y], _)| x.abs() <= 6.0 && y.abs() <= 4.0);
+    let cell = |(_, [x, y], _): &Thing| [(x + 6.0).floor().min(11.0) as i64, (y + 4.0).floor().min(7.0) as i64];
+    inside.map(cell).collect()
+}
+
+fn metres(a: &Cell, b: &Cell) -> f64 {
+    ((a[0] - b[0]) as f64).hypot((a[1] - b[1]) as f64)
+}
+
+fn diameter() -> f64 {
+    170.0_f64.sqrt()
+}
+
+/// The least sum over all ways to give each of the shorter list one of the longer.
+fn least_sum<T>(short: &[T], long: &[T], cost: &dyn Fn(&T, &T) -> f64) -> f64 {
+    fn go<T>(short: &[T], long: &[T], used: &mut Vec<bool>, cost: &dyn Fn(&T, &T) -> f64) -> f64 {
+        let Some((first, rest)) = short.split_first() else {
+            return 0.0;
+        };
+        let mut best = f64::INFINITY;
+        for index in 0..long.len() {
+            if !used[index] {
+                used[index] = true;
+                best = best.min(cost(first, &long[index]) + go(rest, long, used, cost));
+                used[index] = false;
+            }
+        }
+        best
+    }
+    if short.len() > long.len() {
+        return least_sum(long, short, &|a, b| cost(b, a));
+    }
+    go(short, long, &mut vec![false; long.len()], cost)
+}
+
+/// Each as often as it takes for both to be as many.
+fn equally_many(a: &[Cell], b: &[Cell]) -> (Vec<Cell>, Vec<Cell>) {
+    let (mut i, mut j) = (1, 1);
+    while i * a.len() != j * b.len() {
+        if i * a.len() < j * b.len() { i += 1 } else { j += 1 }
+    }
+    let times = |list: &[Cell], times: usize| list.iter().flat_map(|cell| vec![*cell; times]).collect();
+    (times(a, i), times(b, j))
+}
+
+/// The sum over classes, the diameter where only one world has one.
+fn over_classes(a: &[Thing], b: &[Thing], apart: impl Fn(&[Cell], &[Cell]) -> f64) -> f64 {
+    let of_class = |class: &&str| {
+        let (a, b) = (cells(a, class), cells(b, class));
+        match (a.is_empty(), b.is_empty()) {
+            (true, true) => 0.0,
+            (false, false) => apart(&a, &b),
+            _ => diameter(),
+        }
+    };
+    CLASSES.iter().map(of_class).sum()
+}
+
+fn earth_movers(a: &[Cell], b: &[Cell]) -> f64 {
+    let (a, b) = equally_many(a, b);
+    least_sum(&a, &b, &metres) / a.len() as f64
+}
+
+fn sliced(a: &[Cell], b: &[Cell]) -> f64 {
+    let (a, b) = equally_many(a, b);
+    let along = |angle: f64| {
+        let shadow = |cells: &[Cell]| {
+            let mut shadow: Vec<f64> = cells
+                .iter()
+                .map(|[x, y]| *x as f64 * angle.cos() + *y as f64 * angle.sin())
+                .collect();
+            shadow.sort_by(f64::total_cmp);
+            shadow
+        };
+        let ways = shadow(&a).into_iter().zip(shadow(&b)).map(|(a, b)| (a - b).abs());
+        ways.sum::<f64>() / a.len() as f64
+    };
+    (0..64).map(|k| along((f64::from(k) + 0.5) * PI / 64.0)).sum::<f64>() / 64.0
+}
+
+fn taken(things: &[Thing]) -> BTreeSet<(&'static str, Cell)> {
+    let of_class = |class: &&'static str| {
+        cells(things, class)
+            .into_iter()
+            .map(|cell| (*class, cell))
+            .collect::<Vec<_>>()
+    };
+    CLASSES.iter().flat_map(of_class).collect()
+}
+
+fn counted(things: &[Thing]) -> BTreeMap<(&'static str, Cell), usize> {
+    let mut counts = BTreeMap::new();
+    for class in CLASSES {
+        for cell in cells(things, class) {
+            *counts.entry((class, cell)).or_default() += 1;
+        }
+    }
+    counts
+}
+
+/// The way from each taken cell to the nearest of its class; once the diameter where a class has none to start from.
+fn ways(a: &[Thing], b: &[Thing]) -> Vec<f64> {
+    let mut ways = Vec::new();
+    for class in CLASSES {
+        let unique = |things: &[Thing]| cells(things, class).into_iter().collect::<BTreeSet<_>>();
+        let (from, to) = (unique(a), unique(b));
+        let nearest = |cell: &Cell| to.iter().map(|other| metres(cell, other)).fold(diameter(), f64::min);
+        ways.extend(from.iter().map(nearest));
+        if from.is_empty() && !to.is_empty() {
+            ways.push(diameter());
+        }
+    }
+    ways.sort_by(f64::total_cmp);
+    ways
+}
+
+fn percentile_95(ways: &[f64]) -> f64 {
+    let place = 0.95 * (ways.len() as f64 - 1.0);
+    let (below, above) = (ways[place.floor() as usize], ways[place.ceil() as usize]);
+    below + (above - below) * place.fract()
+}
+
+#[track_caller]
+fn assert_near(measure: &str, found: f64, expected: f64) {
+    assert!(
+        (found - expected).abs() < 1e-9,
+        "{measure}: {found}, by hand {expected}"
+    );
+}
+
+proptest! {
+    #[test]
+    fn work_is_the_least_of_all_pairings(a in things(), b in things()) {
+        use OccupancyMeasure::{EarthMovers, EarthMoversHat, Sinkhorn, SlicedWasserstein};
+        // With up to 3 of a class the pairings are few.
+        let few = |things: &[Thing]| things[..things.len().min(3)].to_vec();
+        let (a, b) = (few(&a), few(&b));
+        let exact = over_classes(&a, &b, earth_movers);
+        assert_near("earth_movers", of_occupancy(EarthMovers, &a, &b), exact);
+        assert_near("sliced", of_occupancy(SlicedWasserstein, &a, &b), over_classes(&a, &b, sliced));
+        let sinkhorn = of_occupancy(Sinkhorn, &a, &b);
+        // 2 classes, 0.5 m of regularisation, at most ln(3 · 3) of entropy.
+        let most = exact + 2.0 * 0.5 * 9.0_f64.ln();
+        prop_assert!(exact - 1e-9 <= sinkhorn && sinkhorn <= most, "{exact} {sinkhorn}");
+        let hat = CLASSES.map(|class| {
+            let (a, b) = (cells(&a, class), cells(&b, class));
+            least_sum(&a, &b, &metres) + a.len().abs_diff(b.len()) as f64 * diameter()
+        });
+        assert_near("hat", of_occupancy(EarthMoversHat, &a, &b), hat.iter().sum());
+    }
+
+    #[test]
+    fn shares_of_cells_are_those_of_sets(a in things(), b in things()) {
+        use OccupancyMeasure::{Dice, Hamming, Jaccard, Ruzicka};
+        let (left, right) = (taken(&a), taken(&b));
+        let (common, all) = (left.intersection(&right).count() as f64, left.union(&right).count() as f64);
+        assert_near("hamming", of_occupancy(Hamming, &a, &b), all - common);
+        let share = |part: f64, whole: f64| if whole == 0.0 { 0.0 } else { part / whole };
+        assert_near("jaccard", of_occupancy(Jaccard, &a, &b), share(all - common, all));
+        assert_near("dice", of_occupancy(Dice, &a, &b), share(all - common, all + common));
+        let (left, right) = (counted(&a), counted(&b));
+        let keys: BTreeSet<_> = left.keys().chain(right.keys()).collect();
+        let pairs = keys.iter().map(|key| [&left, &right].map(|counts| counts.get(*key).copied().unwrap_or(0)));
+        let (apart, most) = pairs.fold((0, 0), |(apart, most), [a, b]| (apart + a.abs_diff(b), most + a.max(b)));
+        assert_near("ruzicka", of_occupancy(Ruzicka, &a, &b), share(apart as f64, most as f64));
+    }
+
+    #[test]
+    fn ways_to_the_nearest_are_found_by_looking_at_all(a in things(), b in things()) {
+        use OccupancyMeasure::{Chamfer, Hausdorff, Hausdorff95};
+        let (there, back) = (ways(&a, &b), ways(&b, &a));
+        let most = |of: &dyn Fn(&[f64]) -> f64| [&there, &back].into_iter().filter(|ways| !ways.is_empty()).map(|ways| of(ways)).fold(0.0, f64::max);
+        assert_near("hausdorff", of_occupancy(Hausdorff, &a, &b), most(&|ways| ways[ways.len() - 1]));
+        assert_near("hausdorff_95", of_occupancy(Hausdorff95, &a, &b), most(&percentile_95));
+        let mean = |ways: &[f64]| ways.iter().sum::<f64>() / ways.len().max(1) as f64;
+        assert_near("chamfer", of_occupancy(Chamfer, &a, &b), f64::midpoint(mean(&there), mean(&back)));
+    }
+
+    #[test]
+    fn objects_and_colours_go_together_as_cheaply_as_any_pairing(a in things(), b in things()) {
+        let larger = a.len().max(b.len()).max(1) as f64;
+        let cost = |a: &Thing, b: &Thing| {
+            let way = (a.1[0] - b.1[0]).hypot(a.1[1] - b.1[1]);
+            if a.0.to_lowercase() == b.0.to_lowercase() { way.min(10.0) } else { 10.0 }
+        };
+        let ospa = (least_sum(&a, &b, &cost) + 10.0 * a.len().abs_diff(b.len()) as f64) / larger;
+        assert_near("ospa", between(WorldMeasure::Objects(ObjectsMeasure::Ospa), &a, &b), ospa);
+        let count = |things: &[Thing], class: &str| things.iter().filter(|thing| thing.0.to_lowercase() == class).count();
+        let pairs = CLASSES.map(|class| (count(&a, class), count(&b, class)));
+        let apart: usize = pairs.iter().map(|(a, b)| a.abs_diff(*b)).sum();
+        let most: usize = pairs.iter().map(|(a, b)| a.max(b)).sum();
+        let counts = apart as f64 / most.max(1) as f64;
+        assert_near("counts", between(WorldMeasure::Objects(ObjectsMeasure::Counts), &a, &b), counts);
+        let colors = |things: &[Thing]| things.iter().filter_map(|thing| thing.2).collect::<Vec<_>>();
+        let (left, right) = (colors(&a), colors(&b));
+        for measure in ColorMeasure::ALL {
+            let sum = least_sum(&left, &right, &|a, b| measure.normalised(*a, *b));
+            let expected = (sum + left.len().abs_diff(right.len()) as f64) / left.len().max(right.len()).max(1) as f64;
+            assert_near(measure.name(), between(WorldMeasure::Colors(*measure), &a, &b), expected);
+        }
+    }
+}
