@@ -6,9 +6,12 @@ mod pairs;
 
 use driftworld_env::{Catalogue, EnvError};
 use driftworld_generator::{GeneratorError, Sampler};
-use driftworld_similarity::{Distance, SimilarityError, VariantMeasure, Weights, world_sets_distance};
+use driftworld_similarity::{
+    Distance, Placements, SimilarityError, VariantMeasure, Weights, world_sets_distance, world_sets_measure_distance,
+};
 pub use driftworld_spec::By;
 use driftworld_spec::{Variant, World};
+use strum::VariantNames as _;
 
 use crate::picture_distance::PictureDistanceError;
 pub use matrix::{labelled_matrix, variant_matrix, variant_matrix_while};
@@ -57,9 +60,11 @@ pub enum DistancesError {
     Interrupted,
 }
 
-const ANY_BUT_PARAMETERS: &str = "worlds, pictures, occupancy, objects, colors, rewards, dynamics or behavior";
+const ANY_BUT_PARAMETERS: &str =
+    "worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or behavior";
 
-const NAME_IT: &str = "what they are compared by: worlds, pictures, occupancy, objects, colors, rewards, dynamics or behavior; \
+const NAME_IT: &str = "what they are compared by: worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or \
+                       behavior; \
                        parameters compare variants of one task";
 
 /// By what some variants can be compared where nobody says: what their task declares if all are of one task, else worlds.
@@ -96,8 +101,33 @@ pub struct Sample {
     pub seed: u64,
     /// The number of the first; default 0.
     pub index: u64,
+    /// In which unit; only parameters have shares.
+    pub scale: Scale,
     /// Where worlds take their assets from, by pictures, dynamics and behavior; default the built-in ones.
     pub catalogue: Catalogue,
+}
+
+/// The unit of distances by parameters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString, strum::VariantNames, strum::IntoStaticStr)]
+#[strum(serialize_all = "lowercase")]
+pub enum Scale {
+    /// 1 is one parameter moved over its whole range.
+    #[default]
+    Units,
+    /// 1 is the diameter of the task: all parameters moved over their whole ranges. In `0..=1`, but for drawn parameters that go
+    /// farther together than alone.
+    Share,
+}
+
+impl Scale {
+    /// The one of this name.
+    ///
+    /// # Errors
+    /// What was found, and the names there are.
+    pub fn from_name(name: &str) -> Result<Self, String> {
+        let names = Self::VARIANTS.join(" or ");
+        name.parse().map_err(|_| format!("found {name:?}, expected {names}"))
+    }
 }
 
 impl Sample {
@@ -107,6 +137,17 @@ impl Sample {
             by: Some(by),
             ..Self::default()
         }
+    }
+
+    /// Refuses shares of what has no diameter.
+    fn check_scale(&self, by: By) -> Result<(), DistancesError> {
+        if self.scale == Scale::Units || by == By::Parameters {
+            return Ok(());
+        }
+        Err(DistancesError::By {
+            found: format!("{}, as a share", by.name()),
+            expected: "parameters: a task has a diameter, worlds have none; or leave out the scale",
+        })
     }
 
     /// How many worlds of each are compared by this.
@@ -199,10 +240,23 @@ pub fn between(
                 expected: ANY_BUT_PARAMETERS,
             });
         };
-        let distance = VariantMeasure::new(a.task(), weights).between(a, b)?;
-        let how = "by parameters".to_owned();
-        return Ok(Compared { distance, by, how });
+        let measure = VariantMeasure::new(a.task(), weights);
+        let distance = measure.between(a, b)?;
+        let diameter = measure.diameter();
+        return Ok(match sample.scale {
+            Scale::Share if diameter > 0.0 => Compared {
+                distance: distance.in_shares_of(diameter),
+                by,
+                how: format!("by parameters, as a share of the task's diameter of {diameter}"),
+            },
+            _ => Compared {
+                distance,
+                by,
+                how: "by parameters".to_owned(),
+            },
+        });
     }
+    sample.check_scale(by)?;
     // Two worlds are one pair, however many are asked for.
     let are_worlds = matches!((a, b), (Side::World(_), Side::World(_)));
     let count = if are_worlds { 1 } else { sample.count(by) };
@@ -217,6 +271,10 @@ pub fn between(
     }
     let distance = if by == By::Worlds {
         world_sets_distance(&a, &b, &weights)?
+    } else if by == By::Placements {
+        Placements::of(&a).distance(&Placements::of(&b), &weights)?
+    } else if let Some(measure) = pairs::world_measure(by) {
+        world_sets_measure_distance(&a, &b, measure, &weights)?
     } else {
         let mut means = Means::new(by);
         for (a, b) in a.into_iter().zip(b) {

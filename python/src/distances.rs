@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use driftworld::distances::{By, Sample, Side, between, variant_matrix_while};
+use driftworld::distances::{By, Sample, Scale, Side, between, variant_matrix_while};
 use driftworld_env::{Catalogue, Library};
 use driftworld_similarity::{
     DistanceMatrix, Method, OrderOptions, SimilarityError, Weights, classical_map, order, share_of_shorter_orders,
@@ -33,7 +33,7 @@ pub(crate) enum Compared<'py> {
 
 /// How far apart two are: the JSON of `driftworld distance --json` as a dictionary.
 #[pyfunction]
-#[pyo3(signature = (a, b, weights, worlds, seed, index, by, libraries))]
+#[pyo3(signature = (a, b, weights, worlds, seed, index, by, scale, libraries))]
 #[expect(
     clippy::too_many_arguments,
     reason = "they are the arguments of a function of Python"
@@ -47,6 +47,7 @@ pub(crate) fn distance<'py>(
     seed: Whole,
     index: Whole,
     by: Option<&str>,
+    scale: &str,
     libraries: Vec<Vec<u8>>,
 ) -> Result<Bound<'py, PyAny>> {
     let laid = laid(weights)?;
@@ -54,7 +55,7 @@ pub(crate) fn distance<'py>(
     let sample = Sample {
         seed: seed.0,
         index: index.0,
-        ..sample(by, worlds, 100_000, &libraries)?
+        ..sample(by, worlds, 100_000, scale, &libraries)?
     };
     let compared = run_detached(py, move || between(&a, &b, &sample, |declared| over(&laid, declared)))??;
     let found = to_py(py, &compared.distance)?;
@@ -70,7 +71,7 @@ pub(crate) fn compared_by() -> Vec<&'static str> {
 }
 
 /// By what is compared, how many worlds of each, and where their assets come from; otherwise the usual.
-fn sample(by: Option<&str>, worlds: Option<Whole>, most: u64, libraries: &[Vec<u8>]) -> Result<Sample> {
+fn sample(by: Option<&str>, worlds: Option<Whole>, most: u64, scale: &str, libraries: &[Vec<u8>]) -> Result<Sample> {
     let worlds = worlds.map(|worlds| worlds.0);
     if let Some(worlds) = worlds.filter(|worlds| !(1..=most).contains(worlds)) {
         return Err(
@@ -83,6 +84,7 @@ fn sample(by: Option<&str>, worlds: Option<Whole>, most: u64, libraries: &[Vec<u
     }
     Ok(Sample {
         by: named(by)?,
+        scale: Scale::from_name(scale).map_err(|said| PyValueError::new_err(format!("scale: {said}")))?,
         worlds,
         catalogue,
         ..Sample::default()
@@ -112,7 +114,7 @@ pub(crate) struct PyMatrix(Arc<DistanceMatrix>);
 impl PyMatrix {
     /// Measures every pair of variants, each under its label.
     #[staticmethod]
-    #[pyo3(signature = (labels, variants, weights, by, worlds, libraries))]
+    #[pyo3(signature = (labels, variants, weights, by, worlds, scale, libraries))]
     fn measure(
         py: Python<'_>,
         labels: Vec<String>,
@@ -120,9 +122,10 @@ impl PyMatrix {
         weights: Weighing,
         by: Option<&str>,
         worlds: Option<Whole>,
+        scale: &str,
         libraries: Vec<Vec<u8>>,
     ) -> Result<Self> {
-        let (laid, sample) = (laid(weights)?, sample(by, worlds, 10_000, &libraries)?);
+        let (laid, sample) = (laid(weights)?, sample(by, worlds, 10_000, scale, &libraries)?);
         let variants = variants.iter().map(|variant| variant.get().0.clone());
         let variants: Vec<(String, Variant)> = labels.into_iter().zip(variants).collect();
         let matrix = run_cancellable(py, |stop| {

@@ -7,12 +7,13 @@ import pickle
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import driftworld
 import numpy as np
 import pytest
 from driftworld import DistanceMatrix, SimilarityError, _native, distance, distance_matrix, order
+from driftworld._literals import ComparedBy
 
 SOME = ["find_objects#blue", "find_objects#red", "find_objects#dusk", "find_objects#penalty"]
 
@@ -61,7 +62,29 @@ def test_worlds_are_compared_as_they_are(tmp_path: Path) -> None:
         == expected
     )
     assert distance(worlds[0], worlds[0]) == 0
-    assert distance(variant, worlds[0]).compared == "mean of 16 worlds of each, drawn under seed 0"
+    assert distance(variant, worlds[0]).compared == "by worlds, mean of 16 worlds of each drawn under seed 0"
+
+
+@pytest.mark.parametrize("by", get_args(ComparedBy))
+def test_every_measure_has_a_name(by: ComparedBy) -> None:
+    if by == "dynamics:bisimulation":
+        pytest.skip("whole meadows take seconds; the tests of the library have a small one")
+    found = distance("find_objects#red", "find_objects#penalty", by=by, worlds=1)
+    expected = commanded("distance", "find_objects#red", "find_objects#penalty", "--by", by, "--worlds", "1")
+    assert (found.by, found.total, found.compared) == (by, expected["total"], expected["compared"])
+    matrix = distance_matrix(["find_objects#red", "find_objects#penalty"], by=by, worlds=1)
+    assert matrix[0, 1] == pytest.approx(found.total, abs=1e-12)
+
+
+def test_shares_are_of_the_diameter() -> None:
+    units = distance("find_objects#red", "find_objects#dusk")
+    share = distance("find_objects#red", "find_objects#dusk", scale="share")
+    assert 0 < share < units and "a share of the task's diameter" in share.compared
+    assert sum(part["normalised"] * part["weight"] for part in share.parts) == pytest.approx(share.total)
+    with pytest.raises(ValueError, match="as a share"):
+        distance("find_objects#red", "find_objects#dusk", scale="share", by="rewards")
+    with pytest.raises(ValueError, match="scale: found 'whole', expected units or share|scale: found \"whole\""):
+        distance("find_objects#red", "find_objects#dusk", scale="whole")  # type: ignore[arg-type]
 
 
 def test_a_distance_is_a_number_where_one_is_wanted() -> None:
@@ -78,7 +101,7 @@ def test_a_distance_is_a_number_where_one_is_wanted() -> None:
 def test_a_distance_explains_itself() -> None:
     said = distance("find_objects#blue", "find_objects#dusk").explain()
     lines = said.splitlines()
-    assert lines[0] == "1.4474, parameter by parameter"
+    assert lines[0] == "1.4474, by parameters"
     assert any(line.startswith("  O observation") for line in lines)
     assert any(line.startswith("light ") and line.endswith("%") for line in lines)
 

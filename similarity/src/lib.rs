@@ -67,4 +67,4 @@ pub use transport::{
     MAX_DIRECTIONS, MAX_SINKHORN_STEPS, MAX_TRANSPORTED, Move, Sinkhorn, SinkhornSettings, TransportPlan,
     earth_movers_distance, optimal_transport, sinkhorn, sliced_wasserstein,
 };
-pub use world_measures::{ObjectsMeasure, OccupancyMeasure, WorldMeasure, world_sets_measure_distance};
+pub use world_measures::{ObjectsMeasure, OccupancyMeasure, Placements, WorldMeasure, world_sets_measure_distance};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::curriculum::{Design, Summary, design};
-use crate::distances::{Sample, labelled_matrix};
+use crate::distances::{By, Sample, labelled_matrix};
 use crate::env::Catalogue;
 use crate::generator::Sampler;
 use crate::lifetime_report::{ReportRequest, write_report};
@@ -172,7 +172,7 @@ impl Demo {
         };
         let scenario = design(&choices(variants, &ordering.indices), &options)?;
         output::write(&self.output.join("scenario.json"), scenario.to_json_pretty().as_bytes())?;
-        output::line(blocks(&scenario, Some(matrix)))?;
+        output::line(blocks(&scenario, Some((matrix, By::Parameters))))?;
         Ok(scenario)
     }
 }

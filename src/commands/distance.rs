@@ -1,6 +1,6 @@
 //! `driftworld distance`: how far apart two variants or two worlds are, element by element. The measures are `similarity`'s.
 
-use crate::distances::{By, Compared, Sample, Side, between};
+use crate::distances::{By, Compared, Sample, Scale, Side, between};
 use crate::similarity::{Distance as Measured, Part};
 use crate::spec::Element;
 use crate::tasks;
@@ -37,7 +37,8 @@ pub(crate) struct Distance {
     a: String,
     /// The other variant or world file.
     b: String,
-    /// What to compare by: parameters, worlds, pictures, occupancy, objects, colors, rewards, dynamics or behavior.
+    /// What to compare by: parameters, worlds, pictures, occupancy, placements, objects, colors, rewards, dynamics or
+    /// behavior.
     ///
     /// Some have several measures, such as occupancy:jaccard or dynamics:bisimulation; docs/similarity.md lists them. By
     /// default what the task of two variants declares, which is parameters where it says nothing; else worlds.
@@ -58,6 +59,9 @@ pub(crate) struct Distance {
     /// Index of the first world drawn.
     #[arg(long, default_value_t = 0)]
     index: u64,
+    /// Unit of distances by parameters: units (1 is one parameter over its whole range) or share (of the task's diameter).
+    #[arg(long, value_parser = Scale::from_name, value_name = "SCALE", default_value = "units")]
+    scale: Scale,
     #[command(flatten)]
     libraries: LibraryChoice,
     #[command(flatten)]
@@ -90,6 +94,7 @@ impl Distance {
             seed: self.seed,
             index: self.index,
             by: self.by,
+            scale: self.scale,
             catalogue: self.libraries.catalogue()?,
         };
         let (a, b) = (self.side(&self.a)?, self.side(&self.b)?);

@@ -2,7 +2,7 @@
 
 use driftworld_curriculum::{Choice, Hypothesis, Picked, Steps, arrange, distances, probe, probe_named, steps};
 use driftworld_similarity::{DistanceMatrix, Method};
-use driftworld_spec::{DEFAULT_VARIANT, Element, Variant};
+use driftworld_spec::{By, DEFAULT_VARIANT, Element, Variant};
 
 use super::{DesignOrder, DesignRequest};
 use crate::distances::{Sample, fitting, labelled_matrix};
@@ -22,6 +22,8 @@ pub struct Chosen {
     pub variants: Vec<Choice>,
     /// Every distance among them.
     pub matrix: DistanceMatrix,
+    /// What it was measured by.
+    pub by: By,
     /// Their positions in the order in which they are met.
     pub order: Vec<usize>,
     /// What shows of the variants what was asked for; `None` where they were only named.
@@ -141,6 +143,7 @@ impl DesignRequest {
         Ok(Chosen {
             variants,
             matrix,
+            by,
             order,
             evidence: None,
         })
@@ -209,6 +212,7 @@ fn chosen(
     Ok(Chosen {
         variants: picked.iter().map(|picked| picked.choice.clone()).collect(),
         matrix: distances(picked, element)?,
+        by: By::Parameters,
         order,
         evidence: Some(evidence),
     })

@@ -1,11 +1,11 @@
 //! Every distance among variants, each under the name it is called by.
 
-use driftworld_similarity::{DistanceMatrix, SimilarityError, VariantMeasure, Weights, Worlds};
+use driftworld_similarity::{DistanceMatrix, Placements, SimilarityError, VariantMeasure, Weights, Worlds};
 use driftworld_spec::{By, Variant, World};
 use rayon::prelude::*;
 
-use super::pairs::{Means, Pairs};
-use super::{DistancesError, NAME_IT, Sample};
+use super::pairs::{Means, Pairs, world_measure};
+use super::{DistancesError, NAME_IT, Sample, Scale};
 
 /// Every distance among variants, each under the name it is called by; in parallel.
 ///
@@ -86,12 +86,18 @@ pub fn variant_matrix_while(
     let weights = lay_over(task.map_or_else(Weights::default, |task| Weights::of_task(task)))?;
     if let (By::Parameters, Some(task)) = (by, task) {
         let measure = VariantMeasure::new(task, weights);
+        let unit = match sample.scale {
+            Scale::Share if measure.diameter() > 0.0 => measure.diameter(),
+            _ => 1.0,
+        };
         let apart = |a: usize, b: usize| {
             asked()?;
-            Ok::<_, DistancesError>(measure.between(&variants[a].1, &variants[b].1)?.total)
+            Ok::<_, DistancesError>(measure.between(&variants[a].1, &variants[b].1)?.total / unit)
         };
-        return Ok(DistanceMatrix::measure(labels, apart)?.with_properties(measure.properties()));
+        let matrix = DistanceMatrix::measure(labels, apart)?.with_properties(measure.properties());
+        return Ok(matrix);
     }
+    sample.check_scale(by)?;
     let count = sample.count(by) as usize;
     let drawn: Vec<Vec<World>> = variants
         .iter()
@@ -106,6 +112,14 @@ pub fn variant_matrix_while(
         let apart = |a: usize, b: usize| {
             asked()?;
             Ok::<_, DistancesError>(pairs(a, b).map(|(a, b)| worlds.distance(a, b)).sum::<f64>() / count as f64)
+        };
+        return DistanceMatrix::measure(labels, apart);
+    }
+    if by == By::Placements {
+        let placements: Vec<Placements> = drawn.iter().map(|worlds| Placements::of(worlds)).collect();
+        let apart = |a: usize, b: usize| {
+            asked()?;
+            Ok::<_, DistancesError>(placements[a].distance(&placements[b], &weights)?.total)
         };
         return DistanceMatrix::measure(labels, apart);
     }
@@ -127,5 +141,12 @@ pub fn variant_matrix_while(
         let (a, b) = (a.min(b), a.max(b));
         a * size - a * (a + 1) / 2 + (b - a - 1)
     };
-    DistanceMatrix::measure(labels, |a, b| Ok(means[at(a, b)].distance(&weights).total))
+    let matrix = DistanceMatrix::measure(labels, |a, b| {
+        Ok::<_, DistancesError>(means[at(a, b)].distance(&weights).total)
+    })?;
+    Ok(match world_measure(by) {
+        // A mean of pseudometrics is one.
+        Some(measure) => matrix.with_properties(measure.properties_among(drawn.iter().flatten())),
+        None => matrix,
+    })
 }

@@ -2,7 +2,9 @@
 
 use driftworld_env::{Catalogue, ExpertRun, Expertise, WorldAbstraction};
 use driftworld_similarity::picture::PictureMeasure;
-use driftworld_similarity::{Distance, Part, Weights, world_rewards_distance};
+use driftworld_similarity::{
+    ColorMeasure, Distance, ObjectsMeasure, OccupancyMeasure, Part, Weights, WorldMeasure, world_rewards_distance,
+};
 use driftworld_spec::{By, Element, World};
 use rayon::prelude::*;
 
@@ -14,9 +16,25 @@ use crate::picture_distance::{PictureDistanceError, PictureOptions, Pose, Views,
 /// Numbers of one comparison, as many as [`parts`] of the measure has, or as its remark needs.
 pub(super) type Values = Vec<f64>;
 
+/// The measure of two worlds that has this name, if it is one of `similarity`'s.
+pub(super) fn world_measure(by: By) -> Option<WorldMeasure> {
+    let measure = by.name().split_once(':').map(|(_, measure)| measure);
+    Some(match by.subject() {
+        "occupancy" => {
+            WorldMeasure::Occupancy(measure.map_or(Some(OccupancyMeasure::default()), OccupancyMeasure::from_name)?)
+        }
+        "objects" => WorldMeasure::Objects(measure.map_or(Some(ObjectsMeasure::default()), ObjectsMeasure::from_name)?),
+        "colors" => WorldMeasure::Colors(measure.map_or(Some(ColorMeasure::default()), ColorMeasure::from_name)?),
+        _ => return None,
+    })
+}
+
 /// What the numbers of a measure count for, under which name and in which unit; none where they are of the whole process.
-fn parts(by: By) -> &'static [(&'static str, Element, &'static str)] {
-    match by {
+fn parts(by: By) -> Vec<(&'static str, Element, &'static str)> {
+    if let Some(measure) = world_measure(by) {
+        return vec![(by.subject(), measure.element(), measure.label())];
+    }
+    let parts: &[_] = match by {
         By::Pictures => &[
             ("looks of objects", Element::O, "oklab, where objects are seen"),
             ("looks of surroundings", Element::O, "oklab, elsewhere"),
@@ -29,7 +47,8 @@ fn parts(by: By) -> &'static [(&'static str, Element, &'static str)] {
             ("where actions lead", Element::T, "distance / 10 m + turn / 180°"),
         ],
         _ => &[],
-    }
+    };
+    parts.to_vec()
 }
 
 /// Worlds, and what is made of each once.
@@ -41,6 +60,7 @@ pub(super) struct Pairs<'a> {
 
 enum Ready {
     Rewards,
+    World(WorldMeasure),
     /// The poses that are free in each world alone, and the views from there.
     Pictures(PictureOptions, Vec<(Vec<Pose>, Views)>),
     /// Tables over each world's own arena.
@@ -50,7 +70,7 @@ enum Ready {
 }
 
 impl<'a> Pairs<'a> {
-    /// Makes worlds ready, in parallel. By parameters and by worlds there is nothing here to compare.
+    /// Makes worlds ready, in parallel; by parameters, worlds and placements there is nothing here to compare.
     pub(super) fn new(by: By, worlds: &'a [World], catalogue: &Catalogue) -> Result<Self, DistancesError> {
         let catalogue = catalogue.clone();
         let ready = match by.subject() {
@@ -85,7 +105,7 @@ impl<'a> Pairs<'a> {
                 let own = own.collect::<Result<_, _>>()?;
                 Ready::Behavior(expertise, own)
             }
-            _ => Ready::Rewards,
+            _ => world_measure(by).map_or(Ready::Rewards, Ready::World),
         };
         Ok(Self { by, worlds, ready })
     }
@@ -95,6 +115,7 @@ impl<'a> Pairs<'a> {
         let worlds = [&self.worlds[a], &self.worlds[b]];
         Ok(match &self.ready {
             Ready::Rewards => vec![world_rewards_distance(worlds[0], worlds[1], None)?],
+            Ready::World(measure) => vec![measure.between(worlds[0], worlds[1])?],
             Ready::Pictures(options, seen) => {
                 let sides = worlds.map(|world| world.environment_params.arena_size());
                 if sides[0] != sides[1] {
@@ -209,10 +230,34 @@ impl Means {
             By::Behavior => Distance::whole((f64::midpoint(self.mean(0), self.mean(1)) / POINTS).max(0.0)),
             By::BehaviorSuccess => Distance::whole(self.mean(2).max(0.0)),
             by => {
-                let means = parts(by).iter().enumerate();
-                let of = means.map(|(k, (name, element, measure))| Part::of(name, *element, measure, self.mean(k)));
+                let means = parts(by).into_iter().enumerate();
+                let of = means.map(|(k, (name, element, measure))| Part::of(name, element, measure, self.mean(k)));
                 Distance::new(of.collect(), weights)
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn each_measure_of_worlds_has_one_name() {
+        let names = By::names()
+            .iter()
+            .map(|name| By::from_name(name).expect("it is a name"));
+        let measured = names.filter(|by| ["occupancy", "objects", "colors"].contains(&by.subject()));
+        let found: Vec<(&str, &str)> = measured
+            .map(|by| {
+                let measure = world_measure(by).unwrap_or_else(|| panic!("{} names no measure", by.name()));
+                (measure.kind(), measure.name())
+            })
+            .collect();
+        let all: BTreeSet<(&str, &str)> = WorldMeasure::all().map(|own| (own.kind(), own.name())).collect();
+        assert_eq!(found.len(), all.len());
+        assert_eq!(found.into_iter().collect::<BTreeSet<_>>(), all);
     }
 }

@@ -626,35 +626,3 @@ fn devices_and_links_stay_what_they_are() {
     let written = std::fs::read_to_string(&file).expect("the link led here");
     assert_eq!(written, printed);
 }
-
-#[test]
-fn pictures_tell_apart_what_looks_different_and_nothing_else() {
-    let folder = scratch();
-    let world = |name: &str, ground: &str, reward: &str| {
-        let path = folder.path().join(name);
-        let json = format!(
-            r#"{{ "environment_params": {{ "ground_color": {ground} }},
-                "objects": [{{ "class": "tree", "coordinates": [0.0, 5.0], "reward": {reward} }}] }}"#
-        );
-        std::fs::write(&path, json).expect("the scratch folder can be written");
-        path
-    };
-    let green = world("green.json", "[0.3, 0.5, 0.2]", "1.0");
-    let paying = world("paying.json", "[0.3, 0.5, 0.2]", "9.0");
-    let sand = world("sand.json", "[0.8, 0.7, 0.4]", "1.0");
-    let distances = |a: &Path, b: &Path| -> serde_json::Value {
-        let said = succeed(&["distance", text(a), text(b), "--pictures", "--json"]);
-        serde_json::from_str(&said).expect("--json prints JSON")
-    };
-    let same = distances(&green, &paying);
-    assert_eq!((&same["oklab"], &same["structure"]), (&0.0.into(), &0.0.into()));
-    let other = distances(&green, &sand);
-    assert!(other["oklab"].as_f64() > Some(0.05), "{other}");
-    assert_eq!(
-        (other["pictures"].as_u64(), other["places_tried"].as_u64()),
-        (Some(64), Some(16))
-    );
-    let said = succeed(&["distance", text(&green), text(&sand), "--pictures"]);
-    assert!(said.contains("16 of 16 places") && said.contains("Oklab"), "{said}");
-    fail(2, &["distance", text(&green), text(&sand), "--pictures", "--explain"]);
-}

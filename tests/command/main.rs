@@ -5,6 +5,7 @@ mod assets;
 mod closed_pipes;
 mod console;
 mod curriculum;
+mod distances;
 mod elements;
 mod general;
 mod half_written;

@@ -34,7 +34,7 @@ const COMMANDS: [(&str, &[&str]); 27] = [
     ("sheet --scenario DOC", &["scenario.json"]),
     ("distance DOC task.json", &["task.json", "world.json"]),
     ("distance world.json DOC", &["task.json", "world.json"]),
-    ("distance DOC world.json --pictures", &["task.json", "world.json"]),
+    ("distance DOC world.json --by pictures", &["task.json", "world.json"]),
     ("order DOC", &["task.json"]),
     ("order --from-matrix DOC", &["matrix.json"]),
     ("curriculum DOC", &["task.json"]),

@@ -37,6 +37,7 @@ ComparedBy: TypeAlias = Literal[
     "occupancy:hausdorff",
     "occupancy:hausdorff_95",
     "occupancy:chamfer",
+    "placements",
     "objects",
     "objects:counts",
     "colors",
@@ -50,6 +51,7 @@ ComparedBy: TypeAlias = Literal[
     "behavior",
     "behavior:success",
 ]
+Scale: TypeAlias = Literal["units", "share"]
 OrderMethod: TypeAlias = Literal[
     "nearest",
     "exact",

@@ -112,6 +112,7 @@ def distance(
     seed: int,
     index: int,
     by: str | None,
+    scale: str,
     libraries: Sequence[bytes],
 ) -> dict[str, Any]: ...
 def compared_by() -> list[str]: ...
@@ -128,6 +129,7 @@ class Matrix:
         weights: dict[str, float] | None,
         by: str | None,
         worlds: int | None,
+        scale: str,
         libraries: Sequence[bytes],
     ) -> Matrix: ...
     @staticmethod

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from driftworld import _native
 from driftworld._files import write_whole
-from driftworld._literals import ComparedBy, OrderMethod
+from driftworld._literals import ComparedBy, OrderMethod, Scale
 from driftworld.envs.options import library_bytes
 from driftworld.logs import _pandas
 from driftworld.specs import TaskSpec, Variant, document_text, variant, variants
@@ -115,6 +115,7 @@ def distance(
     seed: int = 0,
     index: int = 0,
     by: ComparedBy | None = None,
+    scale: Scale = "units",
     assets: PathLike | Iterable[PathLike] = (),
 ) -> Distance:
     """How far apart two variants, or two worlds, are.
@@ -130,9 +131,11 @@ def distance(
             by pictures and dynamics.
         seed: The seed of worlds that are drawn.
         index: The number of the first of them.
-        by: ``"parameters"`` (two variants of one task), ``"worlds"``, ``"pictures"``, ``"occupancy"``, ``"objects"``,
-            ``"colors"``, ``"rewards"``, ``"dynamics"``, ``"behavior"``, some with a measure behind a colon, such as
+        by: ``"parameters"`` (two variants of one task), ``"worlds"``, ``"pictures"``, ``"occupancy"``,
+            ``"placements"``, ``"objects"``, ``"colors"``, ``"rewards"``, ``"dynamics"``, ``"behavior"``, some with a measure behind a colon, such as
             ``"occupancy:jaccard"``.
+        scale: By parameters, ``"units"`` (1 is one parameter over its whole range) or ``"share"`` (of the task's diameter, all of
+            them over their whole ranges).
         assets: Paths of asset libraries whose classes the worlds use.
 
     Raises:
@@ -142,7 +145,7 @@ def distance(
         SimilarityError: For a weight that is none.
     """
     laid = None if weights is None else dict(weights)
-    found = _native.distance(_side(a), _side(b), laid, worlds, seed, index, by, library_bytes(assets))
+    found = _native.distance(_side(a), _side(b), laid, worlds, seed, index, by, scale, library_bytes(assets))
     letters = {name: letter for letter, name in ELEMENTS.items()}
     return Distance(
         total=found["total"],
@@ -410,6 +413,7 @@ def distance_matrix(
     *,
     by: ComparedBy | None = None,
     worlds: int | None = None,
+    scale: Scale = "units",
     assets: PathLike | Iterable[PathLike] = (),
 ) -> DistanceMatrix:
     """Every distance among variants, measured in parallel.
@@ -421,6 +425,7 @@ def distance_matrix(
         weights: As for :func:`distance`.
         by: As for :func:`distance`, by default what the variants' task declares; variants of several tasks need it.
         worlds: Compare so many worlds of each, drawn under seed 0, 1 to 10,000; by default 16, or 4 by pictures and dynamics.
+        scale: As for :func:`distance`.
         assets: Paths of asset libraries whose classes the worlds use.
 
     Raises:
@@ -430,7 +435,7 @@ def distance_matrix(
     found = _variants(items)
     laid = None if weights is None else dict(weights)
     labels, items = [label for label, _ in found], [item for _, item in found]
-    return DistanceMatrix._of(_native.Matrix.measure(labels, items, laid, by, worlds, library_bytes(assets)))
+    return DistanceMatrix._of(_native.Matrix.measure(labels, items, laid, by, worlds, scale, library_bytes(assets)))
 
 
 def _variants(items: Named | Iterable[Named]) -> list[tuple[str, Variant]]:
@@ -450,6 +455,7 @@ def order(
     weights: Weights | None = None,
     by: ComparedBy | None = None,
     worlds: int | None = None,
+    scale: Scale = "units",
     assets: PathLike | Iterable[PathLike] = (),
 ) -> Order:
     """Variants in an order by their distances.
@@ -465,7 +471,7 @@ def order(
         seed: What ``random`` draws from.
         target_step: The step that ``target-step`` wants.
         weights: As for :func:`distance`.
-        by, worlds, assets: As for :func:`distance_matrix`.
+        by, worlds, scale, assets: As for :func:`distance_matrix`.
 
     Raises:
         SimilarityError: If there is no such method, or it cannot have such ends or items.
@@ -479,7 +485,7 @@ def order(
         matrix = items
     else:
         named = [items] if isinstance(items, (str, os.PathLike, Variant, TaskSpec)) else list(items)
-        matrix = distance_matrix(named, weights, by=by, worlds=worlds, assets=assets)
+        matrix = distance_matrix(named, weights, by=by, worlds=worlds, scale=scale, assets=assets)
         first = variants(*named[:1])
         if start is None and len(first) == 1 < len(matrix) and method in SEEKING and end != first[0][0]:
             start = first[0][0]

@@ -140,6 +140,19 @@ impl Distance {
         Self { total, elements, parts }
     }
 
+    /// The same in shares of another number, above 0: every total, and what each part weighs, divided by it.
+    #[must_use]
+    pub fn in_shares_of(mut self, whole: f64) -> Self {
+        self.total /= whole;
+        for element in self.elements.iter_mut().flatten() {
+            *element /= whole;
+        }
+        for part in &mut self.parts {
+            part.weight /= whole;
+        }
+        self
+    }
+
     /// The distance in one element, of a fine one in its coarse one; `None` where nothing could differ.
     pub fn element(&self, element: Element) -> Option<f64> {
         self.elements[position(element)]

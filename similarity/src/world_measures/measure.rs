@@ -128,7 +128,7 @@ impl WorldMeasure {
     }
 
     /// The name and the unit, for a part of a distance.
-    pub(super) fn label(self) -> &'static str {
+    pub fn label(self) -> &'static str {
         match self {
             Self::Occupancy(own) => own.label(),
             Self::Objects(own) => own.label(),

@@ -6,11 +6,13 @@ mod colors;
 mod measure;
 mod objects;
 mod occupancy;
+mod placements;
 mod sets;
 
 pub use measure::WorldMeasure;
 pub use objects::ObjectsMeasure;
 pub use occupancy::OccupancyMeasure;
+pub use placements::Placements;
 pub use sets::world_sets_measure_distance;
 
 #[cfg(test)]

@@ -78,6 +78,8 @@ pub enum By {
     #[serde(rename = "occupancy:chamfer")]
     #[strum(serialize = "occupancy:chamfer")]
     OccupancyChamfer,
+    /// Where objects come to stand in all worlds of a variant together: the law of places, with what walls do to it.
+    Placements,
     /// Which objects there are, and where: OSPA, class by class.
     Objects,
     /// Which objects there are: the share of them without a counterpart of their class.

@@ -275,7 +275,7 @@ impl Curriculum {
         for scenario in &designed.scenarios {
             output::write_or_print(&self.output, &scenario.to_json_pretty())?;
             if self.output.as_os_str() != "-" {
-                output::line(blocks(scenario, Some(matrix)))?;
+                output::line(blocks(scenario, Some((matrix, designed.chosen.by))))?;
             }
         }
         if let Some(path) = &self.plot {

@@ -3,7 +3,7 @@
 use crate::curriculum::{Choice, Picked, Steps};
 use crate::design::Evidence;
 use crate::similarity::{Distance, DistanceMatrix};
-use crate::spec::{Block, BlockKind, Element, Phase, Regime, Scenario, Variant};
+use crate::spec::{Block, BlockKind, By, Element, Phase, Regime, Scenario, Variant};
 
 use crate::commands::Failure;
 use crate::table::{table, wide_table};
@@ -174,7 +174,9 @@ pub(super) fn learned(scenario: &Scenario) -> String {
 }
 
 /// The blocks of a scenario as a table, with the distance of each learning block's beginning from the end of the one before.
-pub(crate) fn blocks(scenario: &Scenario, matrix: Option<&DistanceMatrix>) -> String {
+pub(crate) fn blocks(scenario: &Scenario, measured: Option<(&DistanceMatrix, By)>) -> String {
+    let matrix = measured.map(|(matrix, _)| matrix);
+    let by = measured.map_or_else(String::new, |(_, by)| format!(" by {}", by.name()));
     let mut before: Option<(usize, usize, f64)> = None;
     let rows = scenario.blocks.iter().enumerate().map(|(index, block)| {
         let names: Vec<String> = block.regimes.iter().map(named).collect();
@@ -205,7 +207,7 @@ pub(crate) fn blocks(scenario: &Scenario, matrix: Option<&DistanceMatrix>) -> St
             "kind",
             "variants",
             "experiences",
-            "distance from the last learned",
+            &format!("distance{by} from the last learned"),
         ],
         rows.collect(),
         &[0, 3, 4],
@@ -259,7 +261,7 @@ mod tests {
         .join(", ");
         let text = format!(r#"{{ "name": "s", "blocks": [{blocks_of}] }}"#);
         let scenario = Scenario::from_json("s", &text).unwrap();
-        let shown = blocks(&scenario, Some(&matrix));
+        let shown = blocks(&scenario, Some((&matrix, By::Parameters)));
         let steps: Vec<&str> = shown
             .lines()
             .skip(2)

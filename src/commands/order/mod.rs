@@ -5,7 +5,7 @@ mod compare;
 
 use std::path::PathBuf;
 
-use crate::distances::{By, Sample, fitting, labelled_matrix};
+use crate::distances::{By, Sample, Scale, fitting, labelled_matrix};
 use crate::report::picture::path_map;
 use crate::similarity::{DistanceMatrix, Method, NUM_RANDOM_ORDERS, Ordering, share_of_shorter_orders};
 use crate::tasks;
@@ -51,6 +51,9 @@ pub(crate) struct Order {
     /// Compare this many worlds of each variant, drawn under seed 0 [default: 16, or 4 by pictures and dynamics].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000), conflicts_with = "from_matrix")]
     worlds: Option<u64>,
+    /// Unit of distances by parameters: units (1 is one parameter over its whole range) or share (of the task's diameter).
+    #[arg(long, value_parser = Scale::from_name, value_name = "SCALE", default_value = "units")]
+    scale: Scale,
     #[command(flatten)]
     libraries: LibraryChoice,
     #[command(flatten)]
@@ -127,6 +130,7 @@ impl Order {
         let variants = tasks::variants_of(&self.tasks)?;
         let sample = Sample {
             by: self.by,
+            scale: self.scale,
             worlds: self.worlds,
             catalogue: self.libraries.catalogue()?,
             ..Sample::default()
