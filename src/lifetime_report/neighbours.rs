@@ -220,6 +220,6 @@ fn measure(scenario: &str, tasks: &Tasks) -> Result<Named, String> {
     Ok(Named {
         matrix,
         index,
-        origin: "as measured from the scenario in the log".to_owned(),
+        origin: format!("as measured by {} from the scenario in the log", by.name()),
     })
 }

@@ -35,7 +35,7 @@ fn a_lifetime_becomes_a_page_and_figures_with_the_distances_of_its_scenario() {
     assert!(said.contains("figures: 8 figures, "), "{said}");
     let page = read(folder.path().join("out/page.html"));
     assert!(
-        page.contains("as measured from the scenario in the log"),
+        page.contains("as measured by parameters from the scenario in the log"),
         "where the distances come from"
     );
     let apart = succeed_in(
@@ -235,12 +235,12 @@ fn files_that_a_log_names_are_not_opened() {
     let page = read(path.join("report.html"));
     assert!(page.contains("give it with --task FILE") && !page.contains("as measured from"));
     succeed_in(path, &["report", "log", "--task", "mine.json"]);
-    assert!(read(path.join("report.html")).contains("as measured from the scenario in the log"));
+    assert!(read(path.join("report.html")).contains("as measured by parameters from the scenario in the log"));
     // From another folder the file's name says which is meant.
     std::fs::create_dir(path.join("tasks")).expect("the folder is ours");
     std::fs::rename(path.join("mine.json"), path.join("tasks/mine.json")).expect("the folder is ours");
     succeed_in(path, &["report", "log", "--task", "tasks/mine.json"]);
-    assert!(read(path.join("report.html")).contains("as measured from the scenario in the log"));
+    assert!(read(path.join("report.html")).contains("as measured by parameters from the scenario in the log"));
     let info = path.join("log/scenario_info.json");
     let made = std::process::Command::new("mkfifo").arg(path.join("pipe")).status();
     assert!(made.expect("every unix has mkfifo").success());
