@@ -159,7 +159,8 @@ class Learner:
         images, actions = rollout.images.flatten(0, 1), rollout.actions.flatten()
         log_probs = rollout.log_probs.flatten()
         for _ in range(epochs):
-            for part in counts[torch.randperm(len(counts))].split(minibatch):
+            # Of one size, as nearly as can be: a single step that is left over has no deviation of its advantage.
+            for part in counts[torch.randperm(len(counts))].tensor_split(max(1, round(len(counts) / minibatch))):
                 policy, value = self.agent(images[part])
                 advantage = advantages[part]
                 advantage = (advantage - advantage.mean()) / (advantage.std() + 1e-8)

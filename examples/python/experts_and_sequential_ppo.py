@@ -130,9 +130,14 @@ class Learner:
 
 
 def minibatches(counts: torch.Tensor, size: int = 512) -> Iterator[torch.Tensor]:
-    """The steps that count, by their place in the flattened rollout, shuffled and dealt out."""
+    """The steps that count, by their place in the flattened rollout, shuffled and dealt out in parts of about one size.
+
+    None is much smaller than the others: the deviation of a single advantage is no number, and one such step would make the
+    whole network none.
+    """
     places = counts.flatten().nonzero().squeeze(-1)
-    yield from places[torch.randperm(len(places))].split(size)
+    if len(places) > 1:
+        yield from places[torch.randperm(len(places))].tensor_split(max(1, round(len(places) / size)))
 
 
 class Lives:

@@ -226,3 +226,17 @@ def test_the_reservoir_keeps_a_fair_share_of_early_and_late() -> None:
     assert kept.max() < 200
     early = (kept < 100).sum().item()
     assert 70 <= early <= 130, "of 200 places half are for the first half, give or take four standard deviations"
+
+
+@learners
+@pytest.mark.parametrize("steps", [1, 2, 31, 512, 513, 1025, 1535, 4095])
+def test_no_minibatch_is_of_one_step(steps: int) -> None:
+    torch = pytest.importorskip("torch", reason="the learners are networks")
+    module = load("experts_and_sequential_ppo")
+    counts = torch.zeros(8192, dtype=torch.bool)
+    counts[torch.randperm(8192)[:steps]] = True
+    parts = list(module.minibatches(counts.reshape(-1, 8)))
+    # A deviation takes two; a rollout of one step teaches nothing.
+    assert sum(len(part) for part in parts) == (steps if steps > 1 else 0)
+    assert all(2 <= len(part) <= 768 for part in parts)
+    assert sorted(torch.cat(parts).tolist() if parts else []) == (counts.nonzero().flatten().tolist() if steps > 1 else [])
