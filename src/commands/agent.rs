@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use crate::env::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent};
+use crate::env::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent, StillAgent};
 use crate::spec::nearest;
 use driftworld_text::ShownPath;
 
@@ -15,6 +15,8 @@ use crate::{Failure, documents};
 pub(crate) enum AgentArg {
     /// Acts at random.
     Random,
+    /// Stands still.
+    Still,
     /// Knows the map and tours what pays.
     Onrails,
     /// Follows the script in this file.
@@ -24,12 +26,13 @@ pub(crate) enum AgentArg {
 impl AgentArg {
     /// What the help says of the argument.
     pub(crate) const HELP: &'static str =
-        "The agent: random, onrails (knows the map and visits what pays), or scripted:FILE";
+        "The agent: random, still, onrails (knows the map and visits what pays), or scripted:FILE";
 
     /// What logs call the agent.
     pub(crate) fn name(&self) -> String {
         match self {
             Self::Random => "random".to_owned(),
+            Self::Still => "still".to_owned(),
             Self::Onrails => "onrails".to_owned(),
             Self::Scripted(path) => format!("scripted:{}", path.shown()),
         }
@@ -39,6 +42,7 @@ impl AgentArg {
     pub(crate) fn agent(&self) -> Result<NamedAgent, Failure> {
         let (agent, script): (Box<dyn Agent>, _) = match self {
             Self::Random => (Box::new(RandomAgent::new(0)), None),
+            Self::Still => (Box::new(StillAgent), None),
             Self::Onrails => (Box::new(OnRailsAgent::new()), None),
             Self::Scripted(path) => {
                 let text = documents::text(path)?;
@@ -67,16 +71,17 @@ impl FromStr for AgentArg {
         match text.split_once(':') {
             Some(("scripted", file)) if !file.is_empty() => Ok(Self::Scripted(file.into())),
             None if text == "random" => Ok(Self::Random),
+            None if text == "still" => Ok(Self::Still),
             None if text == "onrails" => Ok(Self::Onrails),
             _ => {
-                let near = nearest(text, ["random", "onrails", "scripted"]);
+                let near = nearest(text, ["random", "still", "onrails", "scripted"]);
                 let near = match near.as_deref() {
                     Some("scripted") => "; did you mean \"scripted:FILE\"?".to_owned(),
                     Some(near) => format!("; did you mean {near:?}?"),
                     None => String::new(),
                 };
                 Err(format!(
-                    "found {text:?}, expected random, onrails or scripted:FILE{near}"
+                    "found {text:?}, expected random, still, onrails or scripted:FILE{near}"
                 ))
             }
         }
@@ -98,12 +103,15 @@ mod tests {
     #[test]
     fn a_misspelt_agent_is_told_the_agents_there_are() {
         let said = |text: &str| text.parse::<AgentArg>().expect_err("there is no such agent");
-        let expected = "expected random, onrails or scripted:FILE; did you mean";
+        let expected = "expected random, still, onrails or scripted:FILE; did you mean";
         assert_eq!(said("onrail"), format!("found \"onrail\", {expected} \"onrails\"?"));
         assert_eq!(
             said("scripted"),
             format!("found \"scripted\", {expected} \"scripted:FILE\"?")
         );
-        assert_eq!(said("bot"), "found \"bot\", expected random, onrails or scripted:FILE");
+        assert_eq!(
+            said("bot"),
+            "found \"bot\", expected random, still, onrails or scripted:FILE"
+        );
     }
 }

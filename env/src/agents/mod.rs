@@ -13,6 +13,7 @@ mod route;
 mod script;
 mod scripted;
 mod steering;
+mod still;
 
 pub use agent::{Agent, Label};
 pub use on_rails::OnRailsAgent;
@@ -20,3 +21,4 @@ pub(crate) use rails_policy::RailsPolicy;
 pub use random::RandomAgent;
 pub use scripted::ScriptedAgent;
 pub(crate) use steering::in_space;
+pub use still::StillAgent;

@@ -3,7 +3,7 @@
 use driftworld_spec::World;
 use serde::{Deserialize, Serialize};
 
-use crate::agents::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent};
+use crate::agents::{Agent, OnRailsAgent, RandomAgent, ScriptedAgent, StillAgent};
 
 /// Who acts in an experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
@@ -32,7 +32,7 @@ impl Policy {
     /// The agent, for worlds such as this one.
     pub(super) fn agent(self, world: &World, seed: u64) -> Box<dyn Agent> {
         match self {
-            Self::Still => scripted("near nothing 1"),
+            Self::Still => Box::new(StillAgent),
             Self::Random => Box::new(RandomAgent::new(seed)),
             Self::Expert => Box::new(OnRailsAgent::new()),
             Self::Visitor => scripted(&visits(world, seed % 2 == 1)),
