@@ -27,6 +27,20 @@ pub enum SimilarityError {
         /// What was found.
         found: f64,
     },
+    /// A measure that has no finite number for two distributions.
+    #[error("{measure} of {a:?} to {b:?}: found {found}, expected a finite number; {instead}")]
+    NotMeasured {
+        /// The measure.
+        measure: &'static str,
+        /// The first variant, and the parameter.
+        a: String,
+        /// The second.
+        b: String,
+        /// What there is instead of a number.
+        found: &'static str,
+        /// What to compare by.
+        instead: &'static str,
+    },
     /// A mass that nothing can have.
     #[error("mass {index} of {side}: found {found}, expected a number from 0 to 1e200")]
     BadMass {
@@ -445,6 +459,13 @@ mod tests {
                 a: "one".into(),
                 b: "two".into(),
                 found: -1.0,
+            },
+            SimilarityError::NotMeasured {
+                measure: "jeffreys",
+                a: "t#one (light)".into(),
+                b: "t#two (light)".into(),
+                found: "infinity, for one draws what the other cannot",
+                instead: "compare it by jensen_shannon, which is finite for any two",
             },
             SimilarityError::BadMass {
                 side: "from",

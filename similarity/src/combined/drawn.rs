@@ -5,14 +5,14 @@ use std::collections::BTreeSet;
 
 use driftworld_spec::{Distribution, MeasureName, Parameter, ParameterType};
 
-use crate::ColorMeasure;
 use crate::combined::value::share;
 use crate::distribution::{
-    Measured, Method, circular_wasserstein_1, color_wasserstein_1, color_wasserstein_2, draws_headings, hellinger,
-    jensen_shannon, placement_wasserstein_1, placement_wasserstein_2, shares_wasserstein_1, total_variation,
-    wasserstein_1, wasserstein_2,
+    Measured, Method, bures_wasserstein, circular_wasserstein_1, color_wasserstein_1, color_wasserstein_2,
+    draws_headings, energy, hellinger, jeffreys, jensen_shannon, maximum_mean_discrepancy, placement_wasserstein_1,
+    placement_wasserstein_2, shares_wasserstein_1, total_variation, wasserstein_1, wasserstein_2,
 };
 use crate::scalar::choice_mismatch;
+use crate::{ColorMeasure, MetricProperties, SimilarityError};
 
 /// Of so many distributions all pairs are compared to find the widest.
 const ALL_PAIRS: usize = 24;
@@ -24,6 +24,10 @@ pub(super) struct DrawnMeasure {
     headings: bool,
     /// The widest distance of two distributions that the task's declared values can make of the parameter.
     widest: f64,
+    /// Whether that is finite; where it is not, numbers count as they are.
+    is_bounded: bool,
+    /// The width of the kernel of the maximum mean discrepancy: the widest Wasserstein-1 distance of two such.
+    bandwidth: f64,
     can_differ: bool,
     /// Whether points are drawn by different families, or colours from lists and densities, between which there are only samples.
     mixed: bool,
@@ -49,18 +53,32 @@ impl DrawnMeasure {
             colors: colors.then(|| ways_of(measure)),
             headings: parameter.kind == ParameterType::Heading || all.iter().any(draws_headings),
             widest: 1.0,
+            is_bounded: true,
+            bandwidth: 1.0,
             can_differ: all.len() > 1,
             mixed: families.len() > 1 || (colors && kinds == [true; 2]),
         };
-        made.widest = made.widest_of(all);
+        if measure == Some(MeasureName::MaximumMeanDiscrepancy) {
+            let by_work = Self {
+                measure: None,
+                ..made.clone()
+            };
+            made.bandwidth = Some(by_work.widest_of(all))
+                .filter(|width| usable(*width))
+                .unwrap_or(1.0);
+        }
+        let widest = made.widest_of(all);
+        made.is_bounded = widest.is_finite();
+        made.widest = Some(widest).filter(|widest| usable(*widest)).unwrap_or(1.0);
         made
     }
 
     /// The widest distance among distributions: of all pairs, or, where they are many, from the first to the farthest from
-    /// it and on to the farthest from that, which is half of the widest at least. 1 where all are alike.
+    /// it and on to the farthest from that, which is half of the widest at least where a detour is never shorter. 0 where all
+    /// are alike.
     fn widest_of(&self, all: &[Distribution]) -> f64 {
         let raw = |a: &Distribution, b: &Distribution| self.raw(a, b).2;
-        let widest = if all.len() <= ALL_PAIRS {
+        if all.len() <= ALL_PAIRS {
             let pairs = all
                 .iter()
                 .enumerate()
@@ -72,17 +90,45 @@ impl DrawnMeasure {
                 far.fold((&all[0], 0.0), |best, next| if next.1 > best.1 { next } else { best })
             };
             farthest(farthest(&all[0]).0).1
-        };
-        if widest > 0.0 && widest.is_finite() {
-            widest
-        } else {
-            1.0
         }
     }
 
-    /// Whether the triangle inequality holds. Between points of different families it may fail by what samples are off.
-    pub(super) fn is_metric(&self) -> bool {
-        !self.mixed && self.colors.is_none_or(|colors| colors.properties().is_metric())
+    /// Which laws it keeps. Between points of different families the triangle inequality may fail by what samples are off.
+    pub(super) fn properties(&self) -> MetricProperties {
+        match self.measure {
+            Some(MeasureName::SameOrNot) => MetricProperties::Metric,
+            Some(MeasureName::Jeffreys) => MetricProperties::Distance,
+            Some(MeasureName::BuresWasserstein) => MetricProperties::Pseudometric,
+            _ if self.mixed => MetricProperties::Distance,
+            _ => self.colors.map_or(MetricProperties::Metric, ColorMeasure::properties),
+        }
+    }
+
+    /// Whether its number has a bound that the task declares.
+    pub(super) fn is_bounded(&self) -> bool {
+        self.is_bounded
+    }
+
+    /// The error for a number that is none, where the measure asked for is known to have none for some distributions.
+    pub(super) fn not_measured(&self, a: &str, b: &str, raw: f64) -> Option<SimilarityError> {
+        let (found, instead) = match self.measure? {
+            MeasureName::Jeffreys if raw == f64::INFINITY => (
+                "infinity, for one draws what the other cannot",
+                "compare it by jensen_shannon, which is finite for any two",
+            ),
+            MeasureName::MaximumMeanDiscrepancy if raw.is_nan() => (
+                "more different numbers than it goes through",
+                "compare it by energy, which takes any number of them",
+            ),
+            _ => return None,
+        };
+        Some(SimilarityError::NotMeasured {
+            measure: self.measure?.name(),
+            a: a.to_owned(),
+            b: b.to_owned(),
+            found,
+            instead,
+        })
     }
 
     /// Whether what the task declares can make more than one distribution of the parameter.
@@ -114,6 +160,24 @@ impl DrawnMeasure {
             Some(MeasureName::TotalVariation) => found("total variation / widest", total_variation(a, b)),
             Some(MeasureName::Hellinger) => found("hellinger / widest", hellinger(a, b)),
             Some(MeasureName::JensenShannon) => found("jensen-shannon / widest", jensen_shannon(a, b)),
+            Some(MeasureName::Jeffreys) => {
+                let name = if self.is_bounded {
+                    "jeffreys / widest"
+                } else {
+                    "jeffreys in nats"
+                };
+                // What is not even of one type has nothing in common.
+                found(name, Some(jeffreys(a, b).unwrap_or(Measured::closed(f64::INFINITY))))
+            }
+            Some(MeasureName::Energy) => found("energy / widest", energy(a, b)),
+            Some(MeasureName::MaximumMeanDiscrepancy) => {
+                let apart = maximum_mean_discrepancy(a, b, self.bandwidth).unwrap_or(Measured::closed(f64::NAN));
+                found("maximum mean discrepancy / widest", Some(apart))
+            }
+            Some(MeasureName::BuresWasserstein) => found(
+                "bures-wasserstein / widest",
+                bures_wasserstein(a, b).map(Measured::closed),
+            ),
             _ => None,
         };
         if let Some(asked) = asked {
@@ -132,12 +196,17 @@ impl DrawnMeasure {
     }
 }
 
+/// Whether numbers can be divided by it.
+fn usable(width: f64) -> bool {
+    width > 0.0 && width.is_finite()
+}
+
 /// Whether a measure counts ways, so that colours of lists have them, too.
 fn asks_for_ways(measure: Option<MeasureName>) -> bool {
-    use MeasureName::{Cie76, Ciede2000, Oklab, Srgb, Wasserstein1, Wasserstein2};
+    use MeasureName::{Cie76, Ciede2000, Hyab, Oklab, Srgb, Wasserstein1, Wasserstein2};
     matches!(
         measure,
-        Some(Srgb | Cie76 | Ciede2000 | Oklab | Wasserstein1 | Wasserstein2)
+        Some(Srgb | Cie76 | Ciede2000 | Oklab | Hyab | Wasserstein1 | Wasserstein2)
     )
 }
 
@@ -147,6 +216,7 @@ fn ways_of(measure: Option<MeasureName>) -> ColorMeasure {
         Some(MeasureName::Srgb) => ColorMeasure::Srgb,
         Some(MeasureName::Cie76) => ColorMeasure::Cie76,
         Some(MeasureName::Ciede2000) => ColorMeasure::Ciede2000,
+        Some(MeasureName::Hyab) => ColorMeasure::Hyab,
         _ => ColorMeasure::Oklab,
     }
 }
@@ -165,7 +235,8 @@ fn between_colors(
             ColorMeasure::Srgb => "wasserstein-1 of srgb / widest",
             ColorMeasure::Cie76 => "wasserstein-1 of cie76 / widest",
             ColorMeasure::Ciede2000 => "wasserstein-1 of ciede2000 / widest",
-            ColorMeasure::Oklab | ColorMeasure::Hyab => "wasserstein-1 of oklab / widest",
+            ColorMeasure::Oklab => "wasserstein-1 of oklab / widest",
+            ColorMeasure::Hyab => "wasserstein-1 of hyab / widest",
         };
         (name, color_wasserstein_1(a, b, by)?)
     };

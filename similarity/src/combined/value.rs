@@ -2,8 +2,8 @@
 
 use driftworld_spec::{Domain, MeasureName, Parameter, ParameterType, Value};
 
-use crate::ColorMeasure;
-use crate::scalar::{CostTable, choice_mismatch, circular_difference};
+use crate::scalar::{CostTable, choice_mismatch, circular_difference, relative_difference};
+use crate::{ColorMeasure, MetricProperties};
 
 /// How two values of one parameter are compared.
 #[derive(Clone, Debug)]
@@ -12,6 +12,8 @@ pub(super) enum ValueMeasure {
     Difference { measure: &'static str, width: f64 },
     /// |ln a − ln b| over that of the range.
     LogRatio { width: f64 },
+    /// Difference over the larger of the two, over the most that the range or the choices allow.
+    Relative { widest: f64 },
     /// Turn over the widest that the range or the choices allow, half a circle at most.
     Turn { widest: f64 },
     /// A distance of colours over that of the widest pair of choices.
@@ -42,9 +44,13 @@ impl ValueMeasure {
             Some(MeasureName::LogRatio) => Self::LogRatio {
                 width: range(parameter, libm::log),
             },
+            Some(MeasureName::RelativeDifference) => Self::Relative {
+                widest: widest_relative(parameter),
+            },
             Some(MeasureName::Srgb) => color("srgb / widest choice", ColorMeasure::Srgb),
             Some(MeasureName::Cie76) => color("cie76 / widest choice", ColorMeasure::Cie76),
             Some(MeasureName::Ciede2000) => color("ciede2000 / widest choice", ColorMeasure::Ciede2000),
+            Some(MeasureName::Hyab) => color("hyab / widest choice", ColorMeasure::Hyab),
             _ => Self::of_type(parameter),
         }
     }
@@ -80,18 +86,19 @@ impl ValueMeasure {
         match self {
             Self::Difference { measure, .. } | Self::Color { measure, .. } => measure,
             Self::LogRatio { .. } => "log ratio / range",
+            Self::Relative { .. } => "relative difference / widest",
             Self::Turn { .. } => "turn / widest",
             Self::Costs(_) => "cost / largest",
             Self::SameOrNot => "same or not",
         }
     }
 
-    /// Whether the triangle inequality holds.
-    pub(super) fn is_metric(&self) -> bool {
+    /// Which laws it keeps.
+    pub(super) fn properties(&self) -> MetricProperties {
         match self {
-            Self::Color { of, .. } => of.properties().is_metric(),
-            Self::Costs(table) => table.properties().is_metric(),
-            _ => true,
+            Self::Color { of, .. } => of.properties(),
+            Self::Costs(table) => table.properties(),
+            _ => MetricProperties::Metric,
         }
     }
 
@@ -109,6 +116,10 @@ impl ValueMeasure {
             Self::LogRatio { width } => a.as_number().zip(b.as_number()).map_or_else(same_or_not, |(a, b)| {
                 let raw = (libm::log(a) - libm::log(b)).abs();
                 (raw, share(raw, *width))
+            }),
+            Self::Relative { widest } => a.as_number().zip(b.as_number()).map_or_else(same_or_not, |(a, b)| {
+                let raw = relative_difference(a, b);
+                (raw, share(raw, *widest))
             }),
             Self::Turn { widest } => a.as_number().zip(b.as_number()).map_or_else(same_or_not, |(a, b)| {
                 let raw = circular_difference(a, b);
@@ -188,6 +199,15 @@ fn widest_turn(parameter: &Parameter) -> f64 {
     match parameter.domain() {
         Some(Domain::Range([low, high])) => (high - low).min(180.0),
         _ => widest_pair(parameter, Value::as_number, |a, b| circular_difference(*a, *b)),
+    }
+}
+
+/// The most that two numbers can be apart as a share of the larger: below 1 for those of one sign, 2 across 0.
+fn widest_relative(parameter: &Parameter) -> f64 {
+    match parameter.domain() {
+        Some(Domain::Range([low, high])) if low < 0.0 && 0.0 < high => 2.0,
+        Some(Domain::Range([low, high])) => relative_difference(low, high),
+        _ => widest_pair(parameter, Value::as_number, |a, b| relative_difference(*a, *b)),
     }
 }
 

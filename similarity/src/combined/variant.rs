@@ -114,8 +114,10 @@ impl VariantMeasure {
     /// How far apart two variants of the task are.
     ///
     /// # Errors
-    /// [`SimilarityError::DifferentTasks`] if one is not a variant of this task, [`SimilarityError::NotADistance`] for
-    /// distributions of numbers so large that their distance is not finite.
+    /// [`SimilarityError::DifferentTasks`] if one is not a variant of this task, [`SimilarityError::NotMeasured`] for
+    /// distributions that the measure asked for has no finite number for (`jeffreys` where one draws what the other cannot,
+    /// `maximum_mean_discrepancy` of thousands of different numbers), [`SimilarityError::NotADistance`] for distributions of
+    /// numbers so large that their distance is not finite.
     pub fn between(&self, a: &Variant, b: &Variant) -> Result<Distance, SimilarityError> {
         for variant in [a, b] {
             if !self.takes(variant) {
@@ -140,6 +142,11 @@ impl VariantMeasure {
             };
             if !raw.is_finite() || !normalised.is_finite() {
                 let [a, b] = [a, b].map(|variant| format!("{} ({name})", variant.id()));
+                if let By::Drawn(drawn) = &compared.by
+                    && let Some(error) = drawn.not_measured(&a, &b, raw)
+                {
+                    return Err(error);
+                }
                 return Err(SimilarityError::NotADistance { a, b, found: raw });
             }
             parts.extend(compared.affects.iter().map(|element| Part {
@@ -162,11 +169,16 @@ impl VariantMeasure {
     }
 
     /// How far two variants of the task can be apart at most, as far as each parameter goes: the sum over parameters of what
-    /// the whole declared range counts. 0 for a task without parameters that count.
+    /// the whole declared range counts. 0 for a task without parameters that count, infinite where one by `jeffreys` has no
+    /// bound.
     pub fn diameter(&self) -> f64 {
         let counts = |compared: &Compared| {
             let weights = compared.affects.iter().map(|element| self.weights.of(*element));
-            compared.weight * weights.fold(0.0, f64::max)
+            let weight = compared.weight * weights.fold(0.0, f64::max);
+            match &compared.by {
+                By::Drawn(measure) if weight > 0.0 && !measure.is_bounded() => f64::INFINITY,
+                _ => weight,
+            }
         };
         self.parameters
             .iter()
@@ -175,25 +187,22 @@ impl VariantMeasure {
             .sum()
     }
 
-    /// Which laws the whole keeps: a metric if all measures that count are, a pseudometric if in addition a parameter that
-    /// can differ counts nothing.
+    /// Which laws the whole keeps: a metric if all measures that count are, a pseudometric if one of them is, or if in
+    /// addition a parameter that can differ counts nothing.
     pub fn properties(&self) -> MetricProperties {
         let counts = |compared: &&Compared| {
             let is_seen = compared.affects.iter().any(|element| self.weights.of(*element) > 0.0);
             compared.weight > 0.0 && is_seen
         };
-        let metric = |compared: &Compared| match &compared.by {
-            By::Value(measure) => measure.is_metric(),
-            By::Drawn(measure) => measure.is_metric(),
+        let own = |compared: &Compared| match &compared.by {
+            By::Value(measure) => measure.properties(),
+            By::Drawn(measure) => measure.properties(),
         };
-        if !self.parameters.iter().filter(counts).all(metric) {
+        let each: Vec<MetricProperties> = self.parameters.iter().filter(counts).map(own).collect();
+        let mut that_differ = self.parameters.iter().filter(|compared| compared.can_differ);
+        if !each.iter().all(|own| own.keeps_triangles()) {
             MetricProperties::Distance
-        } else if self
-            .parameters
-            .iter()
-            .filter(|compared| compared.can_differ)
-            .all(|compared| counts(&compared))
-        {
+        } else if each.iter().all(|own| own.is_metric()) && that_differ.all(|compared| counts(&compared)) {
             MetricProperties::Metric
         } else {
             MetricProperties::Pseudometric

@@ -55,6 +55,8 @@ pub enum MeasureName {
     Difference,
     /// Numbers above 0: the logarithm of their ratio, over that of the range. For scales, where twice is as far as half.
     LogRatio,
+    /// Numbers: the difference over the larger of the two, over the most that the range allows. Anything is as far from 0 as can be.
+    RelativeDifference,
     /// Any type: 0 if they are the same, 1 if not.
     SameOrNot,
     /// Colours, and the ways of drawn ones: Euclidean in sRGB, as in the L2Explorer paper.
@@ -65,11 +67,13 @@ pub enum MeasureName {
     Ciede2000,
     /// Colours: Euclidean in Oklab. What colours have if nothing is said.
     Oklab,
-    /// Distributions of numbers or colours: least work. What they have if nothing is said.
+    /// Colours: HyAB, the difference of lightness plus that of a and b in CIELAB. For large differences.
+    Hyab,
+    /// Distributions of numbers, points or colours: least work. What they have if nothing is said.
     #[serde(rename = "wasserstein_1")]
     #[strum(serialize = "wasserstein_1")]
     Wasserstein1,
-    /// Distributions of numbers or colours: least squared work, its root.
+    /// Distributions of numbers, points or colours: least squared work, its root.
     #[serde(rename = "wasserstein_2")]
     #[strum(serialize = "wasserstein_2")]
     Wasserstein2,
@@ -79,6 +83,16 @@ pub enum MeasureName {
     Hellinger,
     /// Distributions: the root of Jensen and Shannon's divergence.
     JensenShannon,
+    /// Distributions: Jeffreys' divergence, Kullback and Leibler's both ways added up. Not a metric, and infinite where one
+    /// draws what the other cannot: variants that are so have no distance, and an error says so.
+    Jeffreys,
+    /// Distributions of numbers: the energy distance, its root.
+    Energy,
+    /// Distributions of numbers: the maximum mean discrepancy with a Gaussian kernel, as wide as the widest Wasserstein-1
+    /// distance that the declared ranges and choices allow.
+    MaximumMeanDiscrepancy,
+    /// Distributions of points: least squared work between normal distributions of the same means and spreads, its root.
+    BuresWasserstein,
 }
 
 impl MeasureName {
@@ -93,81 +107,96 @@ impl MeasureName {
         distribution: &Distribution<N>,
         kind: ParameterType,
     ) -> Option<&'static str> {
-        use MeasureName::{
-            Cie76, Ciede2000, Hellinger, JensenShannon, Oklab, SameOrNot, Srgb, TotalVariation, Wasserstein1,
-            Wasserstein2,
-        };
-        let is_color = matches!(self, Srgb | Cie76 | Ciede2000 | Oklab);
-        let overlaps = matches!(self, TotalVariation | Hellinger | JensenShannon);
-        let moves = matches!(self, Wasserstein1 | Wasserstein2);
+        let is_color = self.is_of_colors();
+        let overlaps = matches!(
+            self,
+            Self::TotalVariation | Self::Hellinger | Self::JensenShannon | Self::Jeffreys
+        );
+        let moves = matches!(self, Self::Wasserstein1 | Self::Wasserstein2);
+        let of_numbers = matches!(self, Self::Energy | Self::MaximumMeanDiscrepancy);
         let (fits, those) = match Draws::of(distribution, kind) {
-            _ if self == SameOrNot => return None,
+            _ if self == Self::SameOrNot => return None,
             Draws::Colors => (
                 is_color || moves,
-                "wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000 or same_or_not, since colours out of a continuum are \
-                 compared by how far they are apart",
+                "wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000, hyab or same_or_not, since colours out of a \
+                 continuum are compared by how far they are apart",
             ),
             Draws::ListedColors => (
                 is_color || moves || overlaps,
-                "a measure of distributions or of colours",
+                "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon, jeffreys, a measure of colours or \
+                 same_or_not",
             ),
             Draws::Points => (
-                moves,
-                "wasserstein_1, wasserstein_2 or same_or_not, since points are compared by how far they are apart",
+                moves || self == Self::BuresWasserstein,
+                "wasserstein_1, wasserstein_2, bures_wasserstein or same_or_not, since points are compared by how far they are \
+                 apart",
             ),
             Draws::Shares => (
-                self == Wasserstein1,
+                self == Self::Wasserstein1,
                 "wasserstein_1 or same_or_not, since shares are compared by how much of them moves",
             ),
             Draws::Headings => (
-                self == Wasserstein1 || overlaps,
-                "wasserstein_1, total_variation, hellinger, jensen_shannon or same_or_not, since headings are compared round \
-                 the circle",
+                self == Self::Wasserstein1 || overlaps,
+                "wasserstein_1, total_variation, hellinger, jensen_shannon, jeffreys or same_or_not, since headings are \
+                 compared round the circle",
             ),
             Draws::Texts => (
                 overlaps,
-                "total_variation, hellinger, jensen_shannon or same_or_not, since words are no distance apart",
+                "total_variation, hellinger, jensen_shannon, jeffreys or same_or_not, since words are no distance apart",
             ),
             Draws::Numbers => (
-                moves || overlaps,
-                "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon or same_or_not",
+                moves || overlaps || of_numbers,
+                "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon, jeffreys, energy, \
+                 maximum_mean_discrepancy or same_or_not",
             ),
         };
         (!fits).then_some(those)
     }
 
+    fn is_of_colors(self) -> bool {
+        matches!(
+            self,
+            Self::Srgb | Self::Cie76 | Self::Ciede2000 | Self::Oklab | Self::Hyab
+        )
+    }
+
     /// What parameters must be for this measure; `None` if this one is.
     fn misfit(self, parameter: &Parameter) -> Option<&'static str> {
-        use MeasureName::{
-            Cie76, Ciede2000, Difference, Hellinger, JensenShannon, LogRatio, Oklab, SameOrNot, Srgb, TotalVariation,
-            Wasserstein1, Wasserstein2,
-        };
         let by_distribution = parameter.role == Role::Randomized || parameter.kind == ParameterType::Distribution;
-        let numeric = matches!(parameter.kind, ParameterType::Number | ParameterType::Integer);
+        let of_numbers = !by_distribution && matches!(parameter.kind, ParameterType::Number | ParameterType::Integer);
         if by_distribution {
             let mut misfits = distributions(parameter).map(|own| self.misfit_of_draws(own, parameter.kind));
             if let Some(misfit) = misfits.find_map(|misfit| misfit) {
                 return Some(misfit);
             }
         }
-        let wanted = match self {
-            SameOrNot => return None,
-            Difference if numeric && !by_distribution => return None,
-            LogRatio if numeric && !by_distribution && always_positive(parameter) => return None,
-            Srgb | Cie76 | Ciede2000 | Oklab if parameter.kind == ParameterType::Color || by_distribution => {
-                return None;
+        let (fits, wanted) = match self {
+            Self::SameOrNot => return None,
+            Self::Difference | Self::RelativeDifference => {
+                (of_numbers, "a variant parameter of type number or integer for it")
             }
-            Wasserstein1 | Wasserstein2 | TotalVariation | Hellinger | JensenShannon if by_distribution => return None,
-            Difference => "a variant parameter of type number or integer for it",
-            LogRatio => "a variant parameter of type number or integer whose values are all above 0 for it",
-            Srgb | Cie76 | Ciede2000 | Oklab => {
-                "a parameter of type color, or one whose distributions draw colours, for it"
-            }
-            Wasserstein1 | Wasserstein2 | TotalVariation | Hellinger | JensenShannon => {
-                "a randomized parameter, or one of type distribution for it"
-            }
+            Self::LogRatio => (
+                of_numbers && always_positive(parameter),
+                "a variant parameter of type number or integer whose values are all above 0 for it",
+            ),
+            Self::Srgb | Self::Cie76 | Self::Ciede2000 | Self::Oklab | Self::Hyab => (
+                parameter.kind == ParameterType::Color || by_distribution,
+                "a parameter of type color, or one whose distributions draw colours, for it",
+            ),
+            Self::Wasserstein1
+            | Self::Wasserstein2
+            | Self::TotalVariation
+            | Self::Hellinger
+            | Self::JensenShannon
+            | Self::Jeffreys
+            | Self::Energy
+            | Self::MaximumMeanDiscrepancy
+            | Self::BuresWasserstein => (
+                by_distribution,
+                "a randomized parameter, or one of type distribution for it",
+            ),
         };
-        Some(wanted)
+        (!fits).then_some(wanted)
     }
 }
 
@@ -187,6 +216,7 @@ fn distributions(parameter: &Parameter) -> impl Iterator<Item = &Distribution<Nu
 }
 
 /// What a distribution draws, as far as measures care.
+#[derive(PartialEq)]
 enum Draws {
     Numbers,
     Headings,
@@ -204,7 +234,11 @@ impl Draws {
             _ if distribution.draws_colors() => Self::Colors,
             _ if distribution.is_planar() => Self::Points,
             Distribution::Dirichlet { .. } => Self::Shares,
+            Distribution::VonMises { .. } => Self::Headings,
             _ if kind == ParameterType::Heading => Self::Headings,
+            Distribution::Mixture { parts, .. } if parts.iter().any(|part| Self::of(part, kind) == Self::Headings) => {
+                Self::Headings
+            }
             Distribution::Mixture { parts, .. } => parts.first().map_or(Self::Numbers, |part| Self::of(part, kind)),
             Distribution::Choice { .. } | Distribution::Constant { .. } if kind == ParameterType::Color => {
                 Self::ListedColors

@@ -1,5 +1,7 @@
 //! Distances of variants of one task: by types, by measures of their own, by elements.
 
+mod asked_measures;
+
 use super::*;
 use driftworld_spec::{Element, TaskSpec};
 

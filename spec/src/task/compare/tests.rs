@@ -35,6 +35,41 @@ fn a_measure_fits_the_parameter_that_it_compares() {
     );
     let drawn = r#""role": "randomized", "type": "number", "distribution": { "uniform": { "low": 0, "high": 1 } }"#;
     check(r#"{ "measure": "hellinger" }"#, drawn, "");
+    let color = r#""role": "variant", "type": "color", "choices": ["red", "tan"], "default": "red""#;
+    check(r#"{ "measure": "hyab" }"#, color, "");
+    check(r#"{ "measure": "relative_difference" }"#, NUMBER, "");
+    for (parameter, measure, expected) in [
+        (
+            color,
+            "relative_difference",
+            "a variant parameter of type number or integer for it",
+        ),
+        (
+            NUMBER,
+            "hyab",
+            "a parameter of type color, or one whose distributions draw colours, for it",
+        ),
+        (
+            NUMBER,
+            "energy",
+            "a randomized parameter, or one of type distribution for it",
+        ),
+        (
+            drawn,
+            "hyab",
+            "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon, jeffreys, energy, \
+             maximum_mean_discrepancy or same_or_not",
+        ),
+        (
+            drawn,
+            "relative_difference",
+            "wasserstein_1, wasserstein_2, total_variation, hellinger, jensen_shannon, jeffreys, energy, \
+             maximum_mean_discrepancy or same_or_not",
+        ),
+    ] {
+        let said = format!("/parameters/p/compare/measure): found {measure}, expected {expected}");
+        check(&format!(r#"{{ "measure": "{measure}" }}"#), parameter, &said);
+    }
 }
 
 #[test]
@@ -48,15 +83,16 @@ fn drawn_colours_are_compared_by_how_far_they_are_apart() {
             "cie76",
             "ciede2000",
             "oklab",
+            "hyab",
             "wasserstein_1",
             "wasserstein_2",
             "same_or_not",
         ] {
             check(&format!(r#"{{ "measure": "{fits}" }}"#), parameter, "");
         }
-        for odd in ["total_variation", "hellinger", "jensen_shannon"] {
+        for odd in ["total_variation", "jeffreys", "energy", "bures_wasserstein"] {
             let said = format!(
-                "/parameters/p/compare/measure): found {odd}, expected wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000 or \
+                "/parameters/p/compare/measure): found {odd}, expected wasserstein_1, wasserstein_2, oklab, srgb, cie76, ciede2000, hyab or \
                  same_or_not, since colours out of a continuum are compared by how far they are apart"
             );
             check(&format!(r#"{{ "measure": "{odd}" }}"#), parameter, &said);
@@ -64,6 +100,13 @@ fn drawn_colours_are_compared_by_how_far_they_are_apart() {
     }
     let words = r#""role": "randomized", "type": "color", "distribution": { "choice": { "values": ["red", "blue"] } }"#;
     check(r#"{ "measure": "total_variation" }"#, words, "");
+    check(r#"{ "measure": "hyab" }"#, words, "");
+    check(
+        r#"{ "measure": "maximum_mean_discrepancy" }"#,
+        words,
+        "/parameters/p/compare/measure): found maximum_mean_discrepancy, expected wasserstein_1, wasserstein_2, total_variation, \
+         hellinger, jensen_shannon, jeffreys, a measure of colours or same_or_not",
+    );
 }
 
 #[test]
@@ -75,18 +118,30 @@ fn a_measure_that_would_not_be_used_is_refused() {
     let shares = drawn("vector", r#""dirichlet": { "alpha": [1, 2] }"#);
     let heading = drawn("heading", r#""uniform": { "low": 0, "high": 90 }"#);
     let words = drawn("string", r#""choice": { "values": ["a", "b"] }"#);
+    let numbers = drawn("number", r#""uniform": { "low": 0, "high": 90 }"#);
+    let turns = r#""role": "variant", "type": "distribution", "choices": [{ "von_mises": { "mean": 0, "kappa": 1 } }],
+        "default": { "von_mises": { "mean": 0, "kappa": 1 } }"#;
     let measures = [
         "wasserstein_1",
         "wasserstein_2",
         "total_variation",
         "hellinger",
         "jensen_shannon",
+        "jeffreys",
+        "energy",
+        "maximum_mean_discrepancy",
+        "bures_wasserstein",
     ];
     for (parameter, fits) in [
-        (&point, [true, true, false, false, false]),
-        (&shares, [true, false, false, false, false]),
-        (&heading, [true, false, true, true, true]),
-        (&words, [false, false, true, true, true]),
+        (
+            point.as_str(),
+            [true, true, false, false, false, false, false, false, true],
+        ),
+        (&shares, [true, false, false, false, false, false, false, false, false]),
+        (&heading, [true, false, true, true, true, true, false, false, false]),
+        (turns, [true, false, true, true, true, true, false, false, false]),
+        (&words, [false, false, true, true, true, true, false, false, false]),
+        (&numbers, [true, true, true, true, true, true, true, true, false]),
     ] {
         for (measure, fits) in measures.iter().zip(fits) {
             let text = format!(
@@ -94,7 +149,7 @@ fn a_measure_that_would_not_be_used_is_refused() {
             );
             let said = TaskSpec::from_json("t", &text).map_or_else(|error| error.to_string(), |_| String::new());
             assert_eq!(said.is_empty(), fits, "{measure} of {parameter}: {said}");
-            assert!(fits || said.contains("same_or_not, since"), "{said}");
+            assert!(fits || said.contains("or same_or_not"), "{said}");
         }
     }
 }

@@ -1,0 +1,293 @@
+//! Measures that a parameter asks for by name: what they are by hand, what counts 1, which laws they keep, and where they
+//! have no number.
+
+use super::*;
+use crate::Lab;
+use driftworld_spec::Color;
+use proptest::prelude::*;
+
+/// A task whose parameter `p` may be each of these, by this measure; its variants `v0`, `v1` … are the choices in turn.
+fn task(kind: &str, measure: &str, choices: &[String]) -> Arc<TaskSpec> {
+    let variants: Vec<String> = (choices.iter().enumerate())
+        .map(|(index, choice)| format!(r#""v{index}": {{ "p": {choice} }}"#))
+        .collect();
+    let text = format!(
+        r#"{{ "name": "t", "parameters": {{
+            "p": {{ "role": "variant", "type": "{kind}", "affects": ["O"], "choices": [{}], "default": {},
+                    "compare": {{ "measure": "{measure}" }} }} }},
+          "variants": {{ {} }} }}"#,
+        choices.join(", "),
+        choices[0],
+        variants.join(", ")
+    );
+    TaskSpec::from_json("t.json", &text).unwrap()
+}
+
+fn between(task: &Arc<TaskSpec>, a: &str, b: &str) -> Result<Distance, SimilarityError> {
+    variant_distance(
+        &task.variant(a).unwrap(),
+        &task.variant(b).unwrap(),
+        &Weights::default(),
+    )
+}
+
+/// The measure's name, its own number between `v0` and `v1`, and what that counts.
+fn found(kind: &str, measure: &str, choices: &[&str]) -> (&'static str, f64, f64) {
+    let choices: Vec<String> = choices.iter().map(|choice| (*choice).to_owned()).collect();
+    let distance = between(&task(kind, measure, &choices), "v0", "v1").unwrap();
+    let part = &distance.parts[0];
+    (part.measure, part.raw, part.normalised)
+}
+
+#[track_caller]
+fn assert_found(found: (&'static str, f64, f64), measure: &str, raw: f64, normalised: f64) {
+    assert_eq!(found.0, measure);
+    assert!(
+        (found.1 - raw).abs() < 1e-9 && (found.2 - normalised).abs() < 1e-9,
+        "{found:?}, by hand {raw} and {normalised}"
+    );
+}
+
+/// Lightness apart plus the straight way in a and b.
+fn hyab_by_hand(a: &str, b: &str) -> f64 {
+    let [Lab([l, u, v]), Lab([m, x, y])] = [a, b].map(|name| Lab::from(Color::from_name(name).unwrap()));
+    (l - m).abs() + (u - x).hypot(v - y)
+}
+
+#[test]
+fn hyab_of_colours_and_of_drawn_ones_is_over_the_widest_choice() {
+    let (raw, widest) = (
+        hyab_by_hand("red", "tan"),
+        hyab_by_hand("red", "navy").max(hyab_by_hand("tan", "navy")),
+    );
+    assert!(widest > raw);
+    let named = ["\"red\"", "\"tan\"", "\"navy\""];
+    assert_found(
+        found("color", "hyab", &named),
+        "hyab / widest choice",
+        raw,
+        raw / widest,
+    );
+    let drawn = named.map(|name| format!(r#"{{ "color_normal": {{ "mean": {name}, "std": 0 }} }}"#));
+    let drawn = drawn.each_ref().map(String::as_str);
+    let by_draws = found("distribution", "hyab", &drawn);
+    assert_found(by_draws, "wasserstein-1 of hyab / widest", raw, raw / widest);
+}
+
+#[test]
+fn relative_differences_are_over_the_most_that_the_domain_allows() {
+    let check = |domain: &str, other: &str, raw: f64, normalised: f64| {
+        let text = format!(
+            r#"{{ "name": "t", "parameters": {{ "p": {{ "role": "variant", "type": "number", "affects": ["T"], {domain},
+                "compare": {{ "measure": "relative_difference" }} }} }}, "variants": {{ "a": {{}}, "b": {{ "p": {other} }} }} }}"#
+        );
+        let distance = between(&TaskSpec::from_json("t.json", &text).unwrap(), "a", "b").unwrap();
+        let part = &distance.parts[0];
+        assert_found(
+            (part.measure, part.raw, part.normalised),
+            "relative difference / widest",
+            raw,
+            normalised,
+        );
+    };
+    check(r#""range": [2, 8], "default": 4"#, "5", 0.2, 0.2 / 0.75);
+    check(r#""range": [2, 8], "default": 2"#, "8", 0.75, 1.0);
+    check(r#""range": [-8, -2], "default": -2"#, "-8", 0.75, 1.0);
+    check(r#""range": [0, 8], "default": 0"#, "0.5", 1.0, 1.0);
+    check(r#""range": [-1, 4], "default": -1"#, "4", 1.25, 0.625);
+    check(r#""range": [-1, 4], "default": -1"#, "1", 2.0, 1.0);
+    check(r#""choices": [1, 2, 4], "default": 1"#, "2", 0.5, 0.5 / 0.75);
+}
+
+#[test]
+fn distributions_are_measured_as_by_hand_over_the_widest_pair() {
+    let at = |x: f64| format!(r#"{{ "normal": {{ "mean": {x}, "std": 0 }} }}"#);
+    let normal = |x: f64| format!(r#"{{ "normal": {{ "mean": {x}, "std": 2 }} }}"#);
+    let ask = |measure: &str, three: [String; 3]| found("distribution", measure, &three.each_ref().map(String::as_str));
+    // Of single numbers √(2 |a − b|).
+    let energy = ask("energy", [at(0.0), at(1.0), at(4.0)]);
+    assert_found(energy, "energy / widest", 2.0_f64.sqrt(), 0.5);
+    // The kernel is as wide as the two farthest are apart.
+    let apart = |way: f64| (2.0 - 2.0 * (-way * way / 32.0).exp()).sqrt();
+    let discrepancy = ask("maximum_mean_discrepancy", [at(0.0), at(1.0), at(4.0)]);
+    assert_found(
+        discrepancy,
+        "maximum mean discrepancy / widest",
+        apart(1.0),
+        apart(1.0) / apart(4.0),
+    );
+    // Of normal ones that are equally wide, the square of the way in deviations.
+    let jeffreys = ask("jeffreys", [normal(0.0), normal(1.0), normal(4.0)]);
+    assert_found(jeffreys, "jeffreys / widest", 0.25, 1.0 / 16.0);
+    let round = |x: f64, std: f64| format!(r#"{{ "gaussian": {{ "mean": [{x}, 0], "std": {std} }} }}"#);
+    let places = ask("bures_wasserstein", [round(0.0, 1.0), round(3.0, 3.0), round(6.0, 1.0)]);
+    // 3 m and 2 m of spread along both axes.
+    assert_found(
+        places,
+        "bures-wasserstein / widest",
+        17.0_f64.sqrt(),
+        17.0_f64.sqrt() / 6.0,
+    );
+}
+
+#[test]
+fn jeffreys_without_a_bound_counts_nats_and_where_it_is_infinite_there_is_no_distance() {
+    let text = r#"{ "name": "t", "parameters": {
+        "odds": { "role": "variant", "type": "number", "affects": ["R"], "range": [0, 1], "default": 0.5 },
+        "p": { "role": "randomized", "type": "boolean", "affects": ["R"], "distribution": { "bernoulli": { "p": { "param": "odds" } } },
+               "compare": { "measure": "jeffreys" } } },
+      "variants": { "even": {}, "rare": { "odds": 0.2 }, "never": { "odds": 0 } } }"#;
+    let task = TaskSpec::from_json("t.json", text).unwrap();
+    let distance = between(&task, "even", "rare").unwrap();
+    let part = distance.parts.iter().find(|part| part.name == "p").unwrap();
+    let nats = 0.3 * 4.0_f64.ln();
+    assert_found(
+        (part.measure, part.raw, part.normalised),
+        "jeffreys in nats",
+        nats,
+        nats,
+    );
+    let measure = VariantMeasure::new(&task, Weights::default());
+    assert_eq!(measure.diameter(), f64::INFINITY);
+    assert_eq!(VariantMeasure::new(&task, Weights::only(Element::S)).diameter(), 0.0);
+    assert_eq!(between(&task, "never", "never").unwrap().total, 0.0);
+    let error = between(&task, "even", "never").unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "jeffreys of \"t#even (p)\" to \"t#never (p)\": found infinity, for one draws what the other cannot, expected a finite \
+         number; compare it by jensen_shannon, which is finite for any two"
+    );
+}
+
+#[test]
+fn a_discrepancy_of_too_many_numbers_is_refused_and_not_replaced() {
+    let counts = |mean: f64| format!(r#"{{ "poisson": {{ "mean": {mean} }} }}"#);
+    let error = between(
+        &task(
+            "distribution",
+            "maximum_mean_discrepancy",
+            &[counts(9e4), counts(9.1e4)],
+        ),
+        "v0",
+        "v1",
+    );
+    let error = error.unwrap_err();
+    assert_eq!(error.code(), "similarity/not-measured");
+    assert!(
+        error
+            .to_string()
+            .ends_with("compare it by energy, which takes any number of them"),
+        "{error}"
+    );
+}
+
+#[test]
+fn each_says_which_laws_it_keeps() {
+    let properties = |kind: &str, measure: &str, choices: [&str; 2]| {
+        let task = task(kind, measure, &choices.map(str::to_owned));
+        VariantMeasure::new(&task, Weights::default()).properties()
+    };
+    let laws = [
+        r#"{ "normal": { "mean": 0, "std": 1 } }"#,
+        r#"{ "normal": { "mean": 1, "std": 1 } }"#,
+    ];
+    let places = [
+        r#"{ "disc": { "center": [0, 0], "radius": 2 } }"#,
+        r#"{ "gaussian": { "mean": [0, 0], "std": 1 } }"#,
+    ];
+    assert_eq!(
+        properties("color", "hyab", ["\"red\"", "\"tan\""]),
+        MetricProperties::Metric
+    );
+    assert_eq!(
+        properties("number", "relative_difference", ["1", "2"]),
+        MetricProperties::Metric
+    );
+    assert_eq!(properties("distribution", "energy", laws), MetricProperties::Metric);
+    assert_eq!(
+        properties("distribution", "maximum_mean_discrepancy", laws),
+        MetricProperties::Metric
+    );
+    assert_eq!(properties("distribution", "jeffreys", laws), MetricProperties::Distance);
+    assert_eq!(
+        properties("distribution", "bures_wasserstein", places),
+        MetricProperties::Pseudometric
+    );
+    assert_eq!(
+        properties("distribution", "wasserstein_2", places),
+        MetricProperties::Distance
+    );
+    let task = task("distribution", "bures_wasserstein", &places.map(str::to_owned));
+    assert!(
+        between(&task, "v0", "v1").unwrap().total < 1e-7,
+        "equal means and spreads"
+    );
+}
+
+fn three(of: impl Strategy<Value = String>) -> impl Strategy<Value = Vec<String>> {
+    prop::collection::vec(of, 3)
+}
+
+/// A type, a measure and three choices, for each measure that was drawn.
+fn asked() -> impl Strategy<Value = (&'static str, &'static str, Vec<String>)> {
+    let normal = || {
+        let numbers = (-9.0..9.0_f64, 0.5..4.0_f64);
+        numbers.prop_map(|(mean, std)| format!(r#"{{ "normal": {{ "mean": {mean}, "std": {std} }} }}"#))
+    };
+    let flat = (-9.0..0.0_f64, 1.0..4.0_f64)
+        .prop_map(|(low, high)| format!(r#"{{ "uniform": {{ "low": {low}, "high": {high} }} }}"#));
+    let around = |law: &'static str, middle: &'static str, width: &'static str| {
+        let numbers = (prop::array::uniform2(-9.0..9.0_f64), 0.5..4.0_f64);
+        numbers.prop_map(move |(at, wide)| format!(r#"{{ "{law}": {{ "{middle}": {at:?}, "{width}": {wide} }} }}"#))
+    };
+    let place = prop_oneof![around("gaussian", "mean", "std"), around("disc", "center", "radius")];
+    let number = (-9.0..9.0_f64).prop_map(|x| x.to_string());
+    let color = prop::array::uniform3(0.0..=1.0_f64).prop_map(|color| format!("{color:?}"));
+    let of_numbers = prop::sample::select(vec!["energy", "maximum_mean_discrepancy"]);
+    prop_oneof![
+        (three(prop_oneof![normal(), flat]), of_numbers).prop_map(|(choices, measure)| (
+            "distribution",
+            measure,
+            choices
+        )),
+        three(normal()).prop_map(|choices| ("distribution", "jeffreys", choices)),
+        three(place).prop_map(|choices| ("distribution", "bures_wasserstein", choices)),
+        three(number).prop_map(|choices| ("number", "relative_difference", choices)),
+        three(color).prop_map(|choices| ("color", "hyab", choices)),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn laws_hold_for_what_is_asked((kind, measure, choices) in asked()) {
+        let task = task(kind, measure, &choices);
+        let d = |a: &str, b: &str| between(&task, a, b).unwrap().total;
+        prop_assert_eq!(d("v0", "v0"), 0.0);
+        prop_assert!((d("v0", "v1") - d("v1", "v0")).abs() < 1e-9);
+        let all = [d("v0", "v1"), d("v1", "v2"), d("v0", "v2")];
+        let most = all.into_iter().fold(0.0, f64::max);
+        prop_assert!((most - 1.0).abs() < 1e-9, "the widest counts 1: {all:?}");
+        if VariantMeasure::new(&task, Weights::default()).properties().keeps_triangles() {
+            prop_assert!(all[2] <= all[0] + all[1] + 1e-6, "{all:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_the_same_in_both_changes_nothing((kind, measure, choices) in asked(), other in asked()) {
+        let alone = task(kind, measure, &choices);
+        let beside = format!(
+            r#""p": {{ "role": "variant", "type": "{kind}", "affects": ["O"], "choices": [{list}], "default": {first},
+                       "compare": {{ "measure": "{measure}" }} }},
+               "q": {{ "role": "variant", "type": "{}", "affects": ["O"], "choices": [{}], "default": {},
+                       "compare": {{ "measure": "{}" }} }}"#,
+            other.0, other.2.join(", "), other.2[1], other.1, list = choices.join(", "), first = choices[0],
+        );
+        let text = format!(
+            r#"{{ "name": "t", "parameters": {{ {beside} }}, "variants": {{ "v0": {{}}, "v1": {{ "p": {} }} }} }}"#,
+            choices[1]
+        );
+        let both = TaskSpec::from_json("t.json", &text).unwrap();
+        let d = |task: &Arc<TaskSpec>| between(task, "v0", "v1").unwrap().total;
+        prop_assert_eq!(d(&alone), d(&both));
+    }
+}
