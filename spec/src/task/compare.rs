@@ -67,7 +67,7 @@ pub enum MeasureName {
     Ciede2000,
     /// Colours: Euclidean in Oklab. What colours have if nothing is said.
     Oklab,
-    /// Colours: HyAB, the difference of lightness plus that of a and b in CIELAB. For large differences.
+    /// Colours: the difference of lightness plus the way in a and b of CIELAB, after Abasi and others. For large differences.
     Hyab,
     /// Distributions of numbers, points or colours: least work. What they have if nothing is said.
     #[serde(rename = "wasserstein_1")]
