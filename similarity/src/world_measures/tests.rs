@@ -65,7 +65,7 @@ fn an_empty_world_is_0_from_another_and_as_far_as_stated_from_the_rest() {
     let tree = ("tree", [0.5, 0.5], Color::from_name("red"));
     let some = [tree, ("tree", [2.5, 0.5], None), ("rock", [0.5, 0.5], None)];
     // 12 × 8 cells of 1 m.
-    let diameter = 11.0_f64.hypot(7.0);
+    let diameter = libm::hypot(11.0, 7.0);
     for measure in WorldMeasure::all() {
         assert_eq!(between(measure, &[], &[]), 0.0, "{}", measure.name());
         let expected = match measure.name() {

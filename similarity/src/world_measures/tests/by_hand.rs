@@ -18,7 +18,7 @@ fn cells(things: &[Thing], class: &str) -> Vec<Cell> {
 }
 
 fn metres(a: &Cell, b: &Cell) -> f64 {
-    ((a[0] - b[0]) as f64).hypot((a[1] - b[1]) as f64)
+    libm::hypot((a[0] - b[0]) as f64, (a[1] - b[1]) as f64)
 }
 
 fn diameter() -> f64 {
@@ -81,7 +81,7 @@ fn sliced(a: &[Cell], b: &[Cell]) -> f64 {
         let shadow = |cells: &[Cell]| {
             let mut shadow: Vec<f64> = cells
                 .iter()
-                .map(|[x, y]| *x as f64 * angle.cos() + *y as f64 * angle.sin())
+                .map(|[x, y]| *x as f64 * libm::cos(angle) + *y as f64 * libm::sin(angle))
                 .collect();
             shadow.sort_by(f64::total_cmp);
             shadow
@@ -154,7 +154,7 @@ proptest! {
         assert_near("sliced", of_occupancy(SlicedWasserstein, &a, &b), over_classes(&a, &b, sliced));
         let sinkhorn = of_occupancy(Sinkhorn, &a, &b);
         // 2 classes, 0.5 m of regularisation, at most ln(3 · 3) of entropy.
-        let most = exact + 2.0 * 0.5 * 9.0_f64.ln();
+        let most = exact + 2.0 * 0.5 * libm::log(9.0);
         prop_assert!(exact - 1e-9 <= sinkhorn && sinkhorn <= most, "{exact} {sinkhorn}");
         let hat = CLASSES.map(|class| {
             let (a, b) = (cells(&a, class), cells(&b, class));
@@ -194,7 +194,7 @@ proptest! {
     fn objects_and_colours_go_together_as_cheaply_as_any_pairing(a in things(), b in things()) {
         let larger = a.len().max(b.len()).max(1) as f64;
         let cost = |a: &Thing, b: &Thing| {
-            let way = (a.1[0] - b.1[0]).hypot(a.1[1] - b.1[1]);
+            let way = libm::hypot(a.1[0] - b.1[0], a.1[1] - b.1[1]);
             if a.0.to_lowercase() == b.0.to_lowercase() { way.min(10.0) } else { 10.0 }
         };
         let ospa = (least_sum(&a, &b, &cost) + 10.0 * a.len().abs_diff(b.len()) as f64) / larger;
