@@ -7,8 +7,8 @@ use super::measured::Measured;
 
 /// KL(P ‖ Q) + KL(Q ‖ P) in nats: Σ (p − q) ln(p / q), for densities ∫ (f − g) ln(f / g).
 ///
-/// In `0..=∞`: symmetric, 0 for equals only, no triangle inequality, and infinite as soon as one draws what the other cannot.
-/// Takes what [`kullback_leibler`](super::kullback_leibler()) takes, as exactly.
+/// In `0..=∞`: symmetric, 0 for equals only, no triangle inequality, and infinite as soon as one draws what the other
+/// cannot. Takes what [`kullback_leibler`](super::kullback_leibler()) takes, as exactly.
 ///
 /// Source: Jeffreys 1946, "An invariant form for the prior probability in estimation problems".
 ///

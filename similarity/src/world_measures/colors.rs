@@ -4,8 +4,8 @@ use driftworld_spec::{Color, World};
 
 use crate::{ColorMeasure, SimilarityError, color_sets_distance};
 
-/// [`color_sets_distance`] between the colours that the objects of two worlds have. Objects without one, which look as their
-/// model does, are left out: they count neither here nor there.
+/// [`color_sets_distance`] between the colours that the objects of two worlds have. Objects without one, which look as
+/// their model does, are left out: they count neither here nor there.
 pub(super) fn between(a: &World, b: &World, measure: ColorMeasure) -> Result<f64, SimilarityError> {
     let (a, b) = (colors(a), colors(b));
     // One of both ways, so that it is as far there as back to the last bit.

@@ -10,9 +10,9 @@ use crate::{ColorMeasure, MetricProperties, Raster, SimilarityError};
 /// One measure of how far apart two worlds are, where [`world_distance`](crate::world_distance) adds up all that they
 /// differ in.
 ///
-/// The number depends on the two worlds alone, not on the order of their objects, and is finite, at least 0, 0 for a world
-/// and itself, and as far there as back, to the last bit. Two worlds without objects are 0 apart; what one without and one
-/// with objects are stands with each measure.
+/// The number depends on the two worlds alone, not on the order of their objects, and is finite, at least 0, 0 for a
+/// world and itself, and as far there as back, to the last bit. Two worlds without objects are 0 apart; what one
+/// without and one with objects are stands with each measure.
 ///
 /// # Example
 /// ```
@@ -36,9 +36,10 @@ pub enum WorldMeasure {
     Occupancy(OccupancyMeasure),
     /// By which objects there are.
     Objects(ObjectsMeasure),
-    /// By the colours of the objects that have one, wherever they stand: the mean way of those that go together best, as a
-    /// share of the way between the two colours that are farthest apart, in `0..=1`. A colour without a counterpart counts 1, so
-    /// worlds without and with colours are 1 apart. Objects that look as their model does are left out.
+    /// By the colours of the objects that have one, wherever they stand: the mean way of those that go together best,
+    /// as a share of the way between the two colours that are farthest apart, in `0..=1`. A colour without a
+    /// counterpart counts 1, so worlds without and with colours are 1 apart. Objects that look as their model does are
+    /// left out.
     Colors(ColorMeasure),
 }
 
@@ -86,8 +87,8 @@ impl WorldMeasure {
         }
     }
 
-    /// Which laws it keeps: of occupancy among worlds of one arena, see [`WorldMeasure::properties_among`]. None is a metric,
-    /// for each sees but a part of a world.
+    /// Which laws it keeps: of occupancy among worlds of one arena, see [`WorldMeasure::properties_among`]. None is a
+    /// metric, for each sees but a part of a world.
     pub fn properties(self) -> MetricProperties {
         match self {
             Self::Occupancy(own) => own.properties(),
@@ -97,8 +98,9 @@ impl WorldMeasure {
         }
     }
 
-    /// Which laws it keeps among these worlds. Where arenas differ, or the classes of all are so many that cells are larger for
-    /// some pairs than for others, occupancy has other cells and another diameter for each pair, and a detour may be shorter.
+    /// Which laws it keeps among these worlds. Where arenas differ, or the classes of all are so many that cells are
+    /// larger for some pairs than for others, occupancy has other cells and another diameter for each pair, and a
+    /// detour may be shorter.
     pub fn properties_among<'a>(self, worlds: impl IntoIterator<Item = &'a World> + Clone) -> MetricProperties {
         let mut each = worlds.clone().into_iter();
         let (Self::Occupancy(_), Some(first)) = (self, each.next()) else {
@@ -116,9 +118,9 @@ impl WorldMeasure {
     /// How far apart two worlds are, in [`WorldMeasure::unit`]. Some microseconds to some milliseconds.
     ///
     /// # Errors
-    /// [`SimilarityError::TooMany`] for more than [`MAX_ASSIGNED`](crate::MAX_ASSIGNED) objects (`ospa`, colours), or for more than
-    /// [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED) cells of a class that have to give or take (the earth mover's distances and
-    /// `sinkhorn`).
+    /// [`SimilarityError::TooMany`] for more than [`MAX_ASSIGNED`](crate::MAX_ASSIGNED) objects (`ospa`, colours), or
+    /// for more than [`MAX_TRANSPORTED`](crate::MAX_TRANSPORTED) cells of a class that have to give or take (the earth
+    /// mover's distances and `sinkhorn`).
     pub fn between(self, a: &World, b: &World) -> Result<f64, SimilarityError> {
         match self {
             Self::Occupancy(own) => own.between(a, b),

@@ -12,16 +12,18 @@ use crate::{MetricProperties, Ospa, SimilarityError};
 /// Metres that a missing object counts: what distances of worlds set against one object, too.
 const CUT_OFF: f64 = 10.0;
 
-/// A way to say how far apart two worlds are by their objects, each a class and a place. The case of a class does not matter.
+/// A way to say how far apart two worlds are by their objects, each a class and a place. The case of a class does not
+/// matter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString, strum::IntoStaticStr, strum::VariantArray)]
 #[strum(serialize_all = "snake_case")]
 pub enum ObjectsMeasure {
-    /// [`Ospa`] of order 1 with a cut-off of 10 m: the mean way, in metres in `0..=10`, from an object to its counterpart of the
-    /// same class. An object without one counts 10 m, as does one that is farther away. Of an empty world and any other it is 10.
+    /// [`Ospa`] of order 1 with a cut-off of 10 m: the mean way, in metres in `0..=10`, from an object to its
+    /// counterpart of the same class. An object without one counts 10 m, as does one that is farther away. Of an empty
+    /// world and any other it is 10.
     #[default]
     Ospa,
-    /// [`counts_distance`]: the share of objects without a counterpart of their class, wherever they stand, in `0..=1`. Of an
-    /// empty world and any other it is 1.
+    /// [`counts_distance`]: the share of objects without a counterpart of their class, wherever they stand, in `0..=1`.
+    /// Of an empty world and any other it is 1.
     Counts,
 }
 

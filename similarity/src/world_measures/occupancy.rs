@@ -1,5 +1,5 @@
-//! [`OccupancyMeasure`]: how far apart two worlds are by the cells that objects stand in. What is measured between grids is in
-//! the crate's `occupancy/`.
+//! [`OccupancyMeasure`]: how far apart two worlds are by the cells that objects stand in. What is measured between
+//! grids is in the crate's `occupancy/`.
 
 use driftworld_spec::World;
 use strum::VariantArray;
@@ -24,40 +24,45 @@ const DIRECTIONS: usize = 64;
 
 /// A way to say how far apart two worlds are by where things stand, each class for itself.
 ///
-/// Both worlds become grids of square cells that cover both arenas, so that the pair alone decides; what stands outside of both
-/// is not seen. A cell is 1 m wide, or 2, 4, 8 m and so on where those of all classes would be more than
-/// [`MAX_CELLS`](crate::MAX_CELLS). The *diameter* is the way between the centres of the outermost cells. Two empty worlds are 0
-/// apart by all.
+/// Both worlds become grids of square cells that cover both arenas, so that the pair alone decides; what stands outside
+/// of both is not seen. A cell is 1 m wide, or 2, 4, 8 m and so on where those of all classes would be more than
+/// [`MAX_CELLS`](crate::MAX_CELLS). The *diameter* is the way between the centres of the outermost cells. Two empty
+/// worlds are 0 apart by all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, strum::EnumString, strum::IntoStaticStr, strum::VariantArray)]
 #[strum(serialize_all = "snake_case")]
 pub enum OccupancyMeasure {
-    /// [`grid_earth_movers_distance`]: the mean way in metres from where a class stands here to where it stands there, however many
-    /// there are; exact. Classes are added up. A class that only one world has counts the diameter, so an empty world and
-    /// another are that many diameters apart. In `0..=` diameter · classes.
+    /// [`grid_earth_movers_distance`]: the mean way in metres from where a class stands here to where it stands there,
+    /// however many there are; exact. Classes are added up. A class that only one world has counts the diameter, so an
+    /// empty world and another are that many diameters apart. In `0..=` diameter · classes.
     #[default]
     EarthMovers,
-    /// [`grid_earth_movers_hat`]: the way of all objects together, in metres; each without a counterpart of its class counts the
-    /// diameter, so an empty world and another are that many diameters apart. In `0..=` diameter · objects.
+    /// [`grid_earth_movers_hat`]: the way of all objects together, in metres; each without a counterpart of its class
+    /// counts the diameter, so an empty world and another are that many diameters apart. In `0..=` diameter · objects.
     EarthMoversHat,
-    /// [`grid_sinkhorn`]: as `earth_movers`, by a plan with entropy (0.5 m) for what is not in both, whose cost is never below the
-    /// exact one. A class that only one world has counts the diameter. In metres, in `0..=` diameter · classes.
+    /// [`grid_sinkhorn`]: as `earth_movers`, by a plan with entropy (0.5 m) for what is not in both, whose cost is
+    /// never below the exact one. A class that only one world has counts the diameter. In metres, in `0..=` diameter ·
+    /// classes.
     Sinkhorn,
-    /// [`grid_sliced_wasserstein`]: as `earth_movers`, of the shadows in 64 directions, so never above it. A class that only one
-    /// world has counts the diameter. In metres, in `0..=` diameter · classes.
+    /// [`grid_sliced_wasserstein`]: as `earth_movers`, of the shadows in 64 directions, so never above it. A class that
+    /// only one world has counts the diameter. In metres, in `0..=` diameter · classes.
     SlicedWasserstein,
-    /// [`grid_hamming_distance`]: cells that a class takes in one world only. From an empty world: the cells of the other.
+    /// [`grid_hamming_distance`]: cells that a class takes in one world only. From an empty world: the cells of the
+    /// other.
     Hamming,
-    /// [`grid_jaccard_distance`]: the share of taken cells that are not taken in both, in `0..=1`. From an empty world to another: 1.
-    Jaccard,
-    /// [`grid_ruzicka_distance`]: the share of objects, counted cell by cell, that are not in both, in `0..=1`. From an empty world
+    /// [`grid_jaccard_distance`]: the share of taken cells that are not taken in both, in `0..=1`. From an empty world
     /// to another: 1.
+    Jaccard,
+    /// [`grid_ruzicka_distance`]: the share of objects, counted cell by cell, that are not in both, in `0..=1`. From an
+    /// empty world to another: 1.
     Ruzicka,
-    /// [`grid_dice_distance`]: as `jaccard`, with what is in both counted twice, in `0..=1`. From an empty world to another: 1.
+    /// [`grid_dice_distance`]: as `jaccard`, with what is in both counted twice, in `0..=1`. From an empty world to
+    /// another: 1.
     Dice,
-    /// [`grid_hausdorff_distance`]: the largest way in metres from a taken cell to the nearest that the class takes in the other
-    /// world, in `0..=` diameter; the diameter where a class is in one world only.
+    /// [`grid_hausdorff_distance`]: the largest way in metres from a taken cell to the nearest that the class takes in
+    /// the other world, in `0..=` diameter; the diameter where a class is in one world only.
     Hausdorff,
-    /// [`grid_hausdorff_95`]: the 95th percentile of such ways instead of the largest. From an empty world to another: the diameter.
+    /// [`grid_hausdorff_95`]: the 95th percentile of such ways instead of the largest. From an empty world to another:
+    /// the diameter.
     #[strum(serialize = "hausdorff_95")]
     Hausdorff95,
     /// [`grid_chamfer_distance`]: the mean of such ways. From an empty world to another: the diameter.
@@ -156,8 +161,8 @@ pub(super) fn raster<'a>(worlds: impl IntoIterator<Item = &'a World> + Clone) ->
     }
 }
 
-/// How many objects stand in each cell of both, the one or the other first whichever was named first, so that it is as far
-/// there as back to the last bit.
+/// How many objects stand in each cell of both, the one or the other first whichever was named first, so that it is as
+/// far there as back to the last bit.
 fn grids(a: &World, b: &World) -> Result<[Grid; 2], SimilarityError> {
     let raster = raster([a, b])?;
     let mut grids = [raster.counts(a)?, raster.counts(b)?];
@@ -167,8 +172,9 @@ fn grids(a: &World, b: &World) -> Result<[Grid; 2], SimilarityError> {
     Ok(grids)
 }
 
-/// The sum over classes of the work that moves one from here to there, each class of mass 1; the diameter for a class that
-/// stands in one world only. `work` gets whole masses, so that cells that hold equal shares of a class hold equal masses.
+/// The sum over classes of the work that moves one from here to there, each class of mass 1; the diameter for a class
+/// that stands in one world only. `work` gets whole masses, so that cells that hold equal shares of a class hold equal
+/// masses.
 fn over_classes(
     a: &Grid,
     b: &Grid,

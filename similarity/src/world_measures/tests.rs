@@ -10,8 +10,8 @@ use crate::{ColorMeasure, MetricProperties, SimilarityError, Weights};
 
 const COLORS: [&str; 3] = ["red", "tan", "navy"];
 
-/// Class, place and colour: two classes, one of them in large and small letters, places in and out of an arena of 12 × 8 m, and
-/// often the same cell.
+/// Class, place and colour: two classes, one of them in large and small letters, places in and out of an arena of 12 ×
+/// 8 m, and often the same cell.
 type Thing = (&'static str, [f64; 2], Option<Color>);
 
 fn things() -> impl Strategy<Value = Vec<Thing>> {

@@ -1,5 +1,5 @@
-//! Measures that a parameter asks for by name: what they are by hand, what counts 1, which laws they keep, and where they
-//! have no number.
+//! Measures that a parameter asks for by name: what they are by hand, what counts 1, which laws they keep, and where
+//! they have no number.
 
 use super::*;
 use crate::Lab;
