@@ -1,11 +1,13 @@
-//! [`Leaves`]: fields of a world as the numbers and words that their JSON has, so that a small change of one number is a
-//! small distance. Which fields are compared so is said by the table of fields; the sums are made in `parts.rs`.
+//! [`Leaves`]: fields of a world as the numbers and words that their JSON has, so that a small change of one number is
+//! a small distance. Which fields are compared so is said by the table of fields; the sums are made in `parts.rs`.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde_json::Value as Json;
 
+use crate::assignment::Assignment;
 use crate::scalar::relative_difference;
 
 /// Numbers and words by the paths at which they stand, in the order of the paths' numbers.
@@ -17,11 +19,15 @@ pub(super) struct Leaves {
 }
 
 /// What stands at a path.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, PartialOrd)]
 enum Leaf {
     Number(f64),
     /// The number of a word, a truth, or of what is empty.
     Word(u32),
+    /// A set of words, such as modalities or stimuli: their numbers, each once, in order.
+    WordSet(Vec<u32>),
+    /// Things of which each consists of leaves, whatever their order: walls, regions.
+    Things(Vec<Vec<(u32, Leaf)>>),
 }
 
 /// Reads leaves, and gives each text, path and word a number that is the same whenever it is met.
@@ -71,12 +77,19 @@ impl LeafReader {
                 return;
             }
             Json::Array(list) => {
-                // A list of words is a set: modalities, stimuli.
-                let mut list: Vec<&Json> = list.iter().collect();
-                if list.iter().all(|item| item.is_string()) {
-                    list.sort_by_key(|word| word.as_str());
+                if !list.is_empty() && list.iter().all(Json::is_string) {
+                    let mut words: Vec<u32> = list.iter().map(|word| self.number(word.to_string())).collect();
+                    words.sort_unstable();
+                    words.dedup();
+                    all.push((self.number(path.clone()), Leaf::WordSet(words)));
+                    return;
                 }
-                for (index, child) in list.into_iter().enumerate() {
+                if !list.is_empty() && list.iter().all(is_thing) {
+                    let things = list.iter().map(|thing| self.leaves_of(thing)).collect();
+                    all.push((self.number(path.clone()), Leaf::Things(things)));
+                    return;
+                }
+                for (index, child) in list.iter().enumerate() {
                     path.push('/');
                     path.push_str(&index.to_string());
                     self.walk(child, path, all);
@@ -91,6 +104,14 @@ impl LeafReader {
         all.push((path, leaf));
     }
 
+    /// The leaves of one of several things, by their paths within it.
+    fn leaves_of(&mut self, thing: &Json) -> Vec<(u32, Leaf)> {
+        let mut all = Vec::new();
+        self.walk(thing, &mut String::new(), &mut all);
+        all.sort_unstable_by_key(|(path, _)| *path);
+        all
+    }
+
     fn number(&mut self, name: String) -> u32 {
         let next = u32::try_from(self.names.len()).unwrap_or(u32::MAX);
         *self.names.entry(name).or_insert(next)
@@ -98,34 +119,111 @@ impl LeafReader {
 }
 
 impl Leaves {
-    /// How far two are apart: the sum over all paths of the difference of two numbers over the larger in size, 1 for another
-    /// word, 1 for what stands in one only. A metric; 0 for equal ones. Both must come from one reader.
+    /// How far two are apart: the sum over all paths of the difference of two numbers over the larger in size, 1 for
+    /// another word, 1 for what stands in one only; of sets of words, how many have to be changed, added or taken away;
+    /// of things, the sum over those that are matched, as is cheapest, and all that the others consist of. A metric; 0
+    /// for equal ones. Both must come from one reader.
     pub(super) fn distance(&self, other: &Self) -> f64 {
-        let (mut i, mut j, mut sum) = (0, 0, 0.0);
         if std::ptr::eq(self, other) {
-            return sum;
+            return 0.0;
         }
-        loop {
-            match (self.all.get(i), other.all.get(j)) {
-                (None, None) => return sum,
-                (Some((mine, a)), Some((theirs, b))) if mine == theirs => {
-                    sum += a.distance(*b);
-                    (i, j) = (i + 1, j + 1);
-                }
-                (Some((mine, _)), theirs) if theirs.is_none_or(|(theirs, _)| mine < theirs) => {
-                    (i, sum) = (i + 1, sum + 1.0);
-                }
-                _ => (j, sum) = (j + 1, sum + 1.0),
+        apart(&self.all, &other.all)
+    }
+}
+
+/// Whether it is a thing whose place in a list says nothing: a wall, or a region, which is a list of points.
+fn is_thing(json: &Json) -> bool {
+    let is_point = |json: &Json| json.as_array().is_some_and(|list| list.iter().all(Json::is_number));
+    json.is_object()
+        || json
+            .as_array()
+            .is_some_and(|list| !list.is_empty() && list.iter().all(is_point))
+}
+
+/// The sum over all paths of two lists in the order of their paths.
+fn apart(a: &[(u32, Leaf)], b: &[(u32, Leaf)]) -> f64 {
+    let (mut i, mut j, mut sum) = (0, 0, 0.0);
+    loop {
+        match (a.get(i), b.get(j)) {
+            (None, None) => return sum,
+            (Some((mine, a)), Some((theirs, b))) if mine == theirs => {
+                sum += a.distance(b);
+                (i, j) = (i + 1, j + 1);
             }
+            (Some((mine, alone)), theirs) if theirs.is_none_or(|(theirs, _)| mine < theirs) => {
+                (i, sum) = (i + 1, sum + alone.size());
+            }
+            (_, alone) => (j, sum) = (j + 1, sum + alone.map_or(0.0, |(_, alone)| alone.size())),
         }
     }
 }
 
+/// How far a thing is from nothing.
+fn size(thing: &[(u32, Leaf)]) -> f64 {
+    thing.iter().map(|(_, leaf)| leaf.size()).sum()
+}
+
+/// The cheapest way to match things: those that are in both with themselves, the others as an assignment says. To the
+/// bit the same whatever their order, and as far there as back.
+fn between_things(a: &[Vec<(u32, Leaf)>], b: &[Vec<(u32, Leaf)>]) -> f64 {
+    let [mut mine, mut theirs] = [a, b].map(|things| things.iter().collect::<Vec<_>>());
+    mine.retain(|thing| match theirs.iter().position(|other| other == thing) {
+        Some(index) => {
+            theirs.remove(index);
+            false
+        }
+        None => true,
+    });
+    for things in [&mut mine, &mut theirs] {
+        things.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
+    }
+    let (fewer, more) = if (mine.len(), &mine) <= (theirs.len(), &theirs) {
+        (mine, theirs)
+    } else {
+        (theirs, mine)
+    };
+    // What is left over counts in full: so it is cheapest to match all of the fewer.
+    let over = |a: &[(u32, Leaf)], b: &[(u32, Leaf)]| apart(a, b) - size(b);
+    let costs: Vec<f64> = fewer
+        .iter()
+        .flat_map(|one| more.iter().map(|other| over(one, other)))
+        .collect();
+    let all: f64 = more.iter().map(|thing| size(thing)).sum();
+    // More things than an assignment takes are compared in their order.
+    let matched = Assignment::new()
+        .solve(&costs, fewer.len(), more.len())
+        .unwrap_or_else(|_| fewer.iter().zip(&more).map(|(one, other)| over(one, other)).sum());
+    (all + matched).max(0.0)
+}
+
 impl Leaf {
-    fn distance(self, other: Self) -> f64 {
+    fn distance(&self, other: &Self) -> f64 {
         match (self, other) {
-            (Self::Number(a), Self::Number(b)) => relative_difference(a, b),
-            _ => f64::from(u8::from(self != other)),
+            (Self::Number(a), Self::Number(b)) => relative_difference(*a, *b),
+            (Self::Things(a), Self::Things(b)) => between_things(a, b),
+            _ if self == other => 0.0,
+            _ => {
+                // Each word takes the place of another, as far as there are any.
+                let shared = self.words().iter().filter(|word| other.words().contains(word)).count();
+                self.size().max(other.size()) - shared as f64
+            }
+        }
+    }
+
+    fn words(&self) -> &[u32] {
+        match self {
+            Self::Number(_) | Self::Things(_) => &[],
+            Self::Word(word) => std::slice::from_ref(word),
+            Self::WordSet(words) => words,
+        }
+    }
+
+    /// How far it is from nothing.
+    fn size(&self) -> f64 {
+        match self {
+            Self::Number(_) | Self::Word(_) => 1.0,
+            Self::WordSet(words) => words.len() as f64,
+            Self::Things(things) => things.iter().map(|thing| size(thing)).sum(),
         }
     }
 }
@@ -147,12 +245,50 @@ mod tests {
         assert_eq!(d("[]\n5\n", "[\"a\"]\n10\n"), 1.5);
     }
 
+    #[test]
+    fn of_sets_of_words_each_word_counts_alike() {
+        let mut reader = LeafReader::default();
+        let mut d = |a: &str, b: &str| reader.read(a.as_bytes()).distance(&reader.read(b.as_bytes()));
+        let both = r#"["a","b"]"#;
+        assert_eq!((d(both, r#"["a"]"#), d(both, r#"["b"]"#)), (1.0, 1.0));
+        assert_eq!((d(both, r#"["b","a"]"#), d(both, r#"["c","a"]"#)), (0.0, 1.0));
+        assert_eq!((d(both, "[]"), d(r#"["a"]"#, r#"["c"]"#)), (2.0, 1.0));
+    }
+
+    #[test]
+    fn things_are_matched_whatever_their_order() {
+        let mut reader = LeafReader::default();
+        let mut d = |a: &str, b: &str| reader.read(a.as_bytes()).distance(&reader.read(b.as_bytes()));
+        let walls = r#"[{"polygon":[[1,1],[2,1],[2,2]]},{"polygon":[[5,5],[6,5],[6,8]],"height":2}]"#;
+        let swapped = r#"[{"polygon":[[5,5],[6,5],[6,8]],"height":2},{"polygon":[[1,1],[2,1],[2,2]]}]"#;
+        let lower = r#"[{"polygon":[[5,5],[6,5],[6,8]],"height":1},{"polygon":[[1,1],[2,1],[2,2]]}]"#;
+        let fewer = r#"[{"polygon":[[5,5],[6,5],[6,8]],"height":1}]"#;
+        assert_eq!((d(walls, swapped), d(walls, lower), d(lower, fewer)), (0.0, 0.5, 6.0));
+        assert_eq!((d(walls, "[]"), d(walls, fewer)), (13.0, 6.5));
+        let regions = [
+            "[[[1,1],[2,1],[2,2]],[[5,5],[6,5],[6,8]]]",
+            "[[[5,5],[6,5],[6,8]],[[1,1],[2,1],[2,2]]]",
+        ];
+        assert_eq!(d(regions[0], regions[1]), 0.0);
+        // The order of waypoints is the way.
+        assert_eq!(d("[[1,1],[2,2]]", "[[2,2],[1,1]]"), 2.0);
+    }
+
     fn texts() -> impl Strategy<Value = String> {
         let number = prop_oneof![Just("0".to_owned()), (-9..9).prop_map(|x: i32| x.to_string())];
         let word = prop::sample::select(vec!["\"a\"", "true", "null", "[]"]).prop_map(str::to_owned);
         let leaf = prop_oneof![number, word];
         let list = prop::collection::vec(leaf.clone(), 0..3).prop_map(|items| format!("[{}]", items.join(",")));
-        prop::collection::vec(prop_oneof![leaf, list], 2).prop_map(|lines| lines.join("\n"))
+        let set = prop::sample::subsequence(vec!["\"a\"", "\"b\"", "\"c\""], 0..=3)
+            .prop_map(|words| format!("[{}]", words.join(",")));
+        let thing = (1..4, prop::option::of(1..4)).prop_map(|(x, height)| {
+            height.map_or_else(
+                || format!("{{\"x\":{x}}}"),
+                |height| format!("{{\"x\":{x},\"height\":{height}}}"),
+            )
+        });
+        let things = prop::collection::vec(thing, 0..4).prop_map(|things| format!("[{}]", things.join(",")));
+        prop::collection::vec(prop_oneof![leaf, list, set, things], 2).prop_map(|lines| lines.join("\n"))
     }
 
     proptest! {
