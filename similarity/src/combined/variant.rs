@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use driftworld_spec::{DEFAULT_VARIANT, Distribution, Domain, Element, ParameterType, Role, TaskSpec, Value, Variant};
+use driftworld_spec::{Element, ParameterType, Role, TaskSpec, Variant};
 
 use crate::combined::drawn::DrawnMeasure;
 use crate::combined::value::ValueMeasure;
@@ -87,7 +87,7 @@ impl VariantMeasure {
                     By::Value(ValueMeasure::of(parameter))
                 }
                 Role::Variant | Role::Randomized => {
-                    By::Drawn(DrawnMeasure::of(parameter, &declared_distributions(task, name)))
+                    By::Drawn(DrawnMeasure::of(parameter, &task.distributions_at_ends(name)))
                 }
             };
             if parameter.role == Role::Variant && task.readers(name).are_draws_alone() {
@@ -126,22 +126,24 @@ impl VariantMeasure {
             }
         }
         let mut parts = Vec::new();
+        let (a, b) = (a.as_read(), b.as_read());
         for compared in &self.parameters {
             let name = &compared.name;
             let found = match &compared.by {
-                By::Value(measure) => a.value_as_read(name).zip(b.value_as_read(name)).map(|(a, b)| {
-                    let (raw, normalised) = measure.between(&a, &b);
+                By::Value(measure) => a.value(name).zip(b.value(name)).map(|(a, b)| {
+                    let (raw, normalised) = measure.between(a, b);
                     (measure.name(), None, raw, normalised)
                 }),
-                By::Drawn(measure) => distribution_as_read(a, name)
-                    .zip(distribution_as_read(b, name))
+                By::Drawn(measure) => a
+                    .distribution(name)
+                    .zip(b.distribution(name))
                     .map(|(a, b)| measure.between(&a, &b)),
             };
             let Some((measure, method, raw, normalised)) = found else {
                 continue;
             };
             if !raw.is_finite() || !normalised.is_finite() {
-                let [a, b] = [a, b].map(|variant| format!("{} ({name})", variant.id()));
+                let [a, b] = [&a, &b].map(|variant| format!("{} ({name})", variant.id()));
                 if let By::Drawn(drawn) = &compared.by
                     && let Some(error) = drawn.not_measured(&a, &b, raw)
                 {
@@ -207,76 +209,6 @@ impl VariantMeasure {
         } else {
             MetricProperties::Pseudometric
         }
-    }
-}
-
-/// The most variants that are looked at for what the declared values can make of a distribution.
-const MOST_ENDS: usize = 256;
-
-/// The distributions that a parameter can have at the ends of the ranges and at the choices of all parameters that it is drawn
-/// by, together; where that is too many, at those of each parameter alone, the others at their defaults.
-fn declared_distributions(task: &Arc<TaskSpec>, name: &str) -> Vec<Distribution> {
-    let base = task
-        .variant(DEFAULT_VARIANT)
-        .ok()
-        .or_else(|| task.all_variants().into_iter().next());
-    let Some(base) = base else { return Vec::new() };
-    let ends: Vec<(&String, Vec<Value>)> = task
-        .parameters()
-        .iter()
-        .filter(|(other, _)| *other == name || task.readers(other).draws.iter().any(|drawn| drawn == name))
-        .filter_map(|(other, parameter)| {
-            let ends = match parameter.domain()? {
-                Domain::Range(ends) => ends
-                    .iter()
-                    .filter_map(|end| Value::Number(*end).cast(parameter.kind))
-                    .collect(),
-                Domain::Choices(choices) => choices,
-            };
-            Some((other, ends))
-        })
-        .collect();
-    let all = ends
-        .iter()
-        .try_fold(1_usize, |count, (_, values)| count.checked_mul(values.len()));
-    let mut changes: Vec<Vec<(String, Value)>> = Vec::new();
-    if all.is_some_and(|all| all <= MOST_ENDS) {
-        changes.push(Vec::new());
-        for (other, values) in &ends {
-            let extended = changes.iter().flat_map(|change| {
-                let with = |value: &Value| {
-                    change
-                        .iter()
-                        .cloned()
-                        .chain([((*other).clone(), value.clone())])
-                        .collect()
-                };
-                values.iter().map(with)
-            });
-            changes = extended.collect();
-        }
-    } else {
-        let alone = ends
-            .iter()
-            .flat_map(|(other, values)| values.iter().map(|value| vec![((*other).clone(), value.clone())]));
-        changes.extend(alone.take(MOST_ENDS));
-    }
-    // Some may break a requirement: no variant has those.
-    let possible = changes.into_iter().filter_map(|change| base.with("end", change).ok());
-    let mut found: Vec<Distribution> = Vec::new();
-    for variant in possible.chain([base.clone()]) {
-        if let Some(distribution) = variant.distribution(name).filter(|new| !found.contains(new)) {
-            found.push(distribution);
-        }
-    }
-    found
-}
-
-/// The distribution of a parameter as far as it matters: that of its default where nothing reads it.
-fn distribution_as_read(variant: &Variant, name: &str) -> Option<Distribution> {
-    match variant.value_as_read(name).as_deref() {
-        Some(Value::Distribution(distribution)) => Some(variant.settle(distribution)),
-        _ => variant.distribution(name),
     }
 }
 

@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod document;
 mod element_weights;
+mod ends;
 mod expression;
 mod family;
 mod group;

@@ -1,8 +1,9 @@
-//! Who reads a parameter: the worlds of a task, or only the draws of other parameters; and whether anything reads it in a
-//! variant, as its `read_if` says. What nothing reads counts nothing in a distance.
+//! Who reads a parameter: the worlds of a task, or only the draws of other parameters; and whether anything reads it in
+//! a variant, as its `read_if` says. What nothing reads counts nothing in a distance.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use serde::Serialize;
 use serde_json::Value as Json;
@@ -14,15 +15,16 @@ use crate::value::Value;
 /// Who reads a parameter.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Readers {
-    /// Whether a world, a group, or a choice of another parameter reads it.
+    /// Whether a world or a group reads it, or what a fixed parameter is.
     pub worlds: bool,
-    /// The randomized parameters whose distributions read it, in the order of the task.
+    /// The randomized parameters whose distributions read it, and those of type distribution of which a choice does, in
+    /// the order of the task.
     pub draws: Vec<String>,
 }
 
 impl Readers {
-    /// Whether it is read, and only by the distributions of randomized parameters: then it changes nothing but what they
-    /// draw.
+    /// Whether it is read, and only by distributions that are parameters or their draws: then it changes nothing but
+    /// those.
     pub fn are_draws_alone(&self) -> bool {
         !self.worlds && !self.draws.is_empty()
     }
@@ -58,8 +60,8 @@ impl TaskSpec {
         let mut in_worlds = names_in(&document.world);
         in_worlds.extend(names_in(&document.groups));
         for (name, other) in &document.parameters {
-            in_worlds.extend(names_in(&(&other.choices, &other.default, &other.value)));
-            for read in names_in(&other.distribution) {
+            in_worlds.extend(names_in(&other.value));
+            for read in names_in(&(&other.distribution, &other.choices, &other.default)) {
                 readers.entry(read).or_default().draws.push(name.clone());
             }
         }
@@ -96,8 +98,30 @@ impl Variant {
         condition.is_none_or(|condition| condition.holds(value_of) != Some(false))
     }
 
-    /// The value of a fixed or variant parameter as far as it matters: its default where nothing reads it in this variant.
-    /// `None` for a randomized or unknown one.
+    /// The variant as far as it matters: parameters that nothing reads in it stand at their defaults, and so does what
+    /// they make of distributions, if those can be drawn from. It may break a requirement.
+    #[must_use]
+    pub fn as_read(&self) -> Self {
+        let mut read = self.values().clone();
+        for name in self.task().read_conditions.keys() {
+            if let (Some(value), Some(place)) = (self.value_as_read(name), read.get_mut(name)) {
+                *place = value.into_owned();
+            }
+        }
+        if read == *self.values() {
+            return self.clone();
+        }
+        let read = Self::new(Arc::clone(self.task()), self.name(), read);
+        let is_drawn = |name: &String| read.distribution(name).is_none_or(|own| own.fault().is_none());
+        if self.task().parameters().keys().all(is_drawn) {
+            read
+        } else {
+            self.clone()
+        }
+    }
+
+    /// The value of a fixed or variant parameter as far as it matters: its default where nothing reads it in this
+    /// variant. `None` for a randomized or unknown one.
     pub fn value_as_read(&self, parameter: &str) -> Option<Cow<'_, Value>> {
         let value = self.value(parameter)?;
         if self.reads(parameter) {

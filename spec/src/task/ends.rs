@@ -1,0 +1,140 @@
+//! What the declared ranges and choices of a task can make of a distribution, whatever variants it has.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use indexmap::IndexMap;
+
+use super::TaskSpec;
+use super::parameter::{Domain, Parameter, Role};
+use super::variant::{DEFAULT_VARIANT, Variant, broken};
+use crate::distribution::Distribution;
+use crate::value::{ParameterType, Value};
+
+/// The most combinations of values that are looked at.
+const MOST_ENDS: usize = 256;
+
+impl TaskSpec {
+    /// The distributions that a parameter can have at the ends of the ranges and at the choices of all parameters that
+    /// it is drawn by, together, each once; where that is more than 256 combinations, at those of each parameter alone,
+    /// the others at their defaults. Left out is what cannot be drawn from, and what breaks a requirement that speaks
+    /// of these and of fixed parameters alone. No variant but the defaults has a part in it. None for a parameter that
+    /// is not drawn.
+    ///
+    /// # Example
+    /// ```
+    /// use driftworld_spec::TaskSpec;
+    /// let text = r#"{ "name": "t", "parameters": {
+    ///     "widest": { "role": "variant", "type": "number", "affects": ["S"], "range": [1, 90], "default": 45 },
+    ///     "heading": { "role": "randomized", "type": "heading", "affects": ["S"],
+    ///                  "distribution": { "uniform": { "low": 0, "high": { "param": "widest" } } } } } }"#;
+    /// assert_eq!(TaskSpec::from_json("inline", text)?.distributions_at_ends("heading").len(), 3);
+    /// # Ok::<(), driftworld_spec::SpecError>(())
+    /// ```
+    pub fn distributions_at_ends(self: &Arc<Self>, parameter: &str) -> Vec<Distribution> {
+        let drawn_by = self.drawn_by(parameter);
+        let ends: Vec<(&String, Vec<Value>)> = self
+            .parameters()
+            .iter()
+            .filter(|(name, declared)| declared.role == Role::Variant && drawn_by.contains(name.as_str()))
+            .map(|(name, declared)| (name, ends_of(declared)))
+            .collect();
+        let mut found: Vec<Distribution> = Vec::new();
+        for values in combinations(&ends).into_iter().chain([IndexMap::new()]) {
+            if let Some(distribution) = self
+                .distribution_at(parameter, values)
+                .filter(|new| !found.contains(new))
+            {
+                found.push(distribution);
+            }
+        }
+        found
+    }
+
+    /// A parameter, and all that its distribution is made of.
+    fn drawn_by<'a>(&'a self, parameter: &'a str) -> BTreeSet<&'a str> {
+        let mut found = BTreeSet::from([parameter]);
+        loop {
+            let known = found.len();
+            for name in self.parameters().keys() {
+                if self
+                    .readers(name)
+                    .draws
+                    .iter()
+                    .any(|drawn| found.contains(drawn.as_str()))
+                {
+                    found.insert(name);
+                }
+            }
+            if found.len() == known {
+                return found;
+            }
+        }
+    }
+
+    fn distribution_at(self: &Arc<Self>, parameter: &str, changed: IndexMap<String, Value>) -> Option<Distribution> {
+        let mut values = IndexMap::new();
+        for (name, declared) in self.parameters() {
+            let settled = declared.value.as_ref().or(declared.default.as_ref());
+            if let Some(value) = settled.and_then(|value| value.cast(declared.kind)) {
+                values.insert(name.clone(), value);
+            }
+        }
+        let mut speaks_of = values.clone();
+        speaks_of.retain(|name, _| self.parameters()[name].role == Role::Fixed);
+        speaks_of.extend(changed.clone());
+        if !changed.is_empty() && broken(self.requirements(), &speaks_of).is_some() {
+            return None;
+        }
+        values.extend(changed);
+        let distribution = Variant::new(Arc::clone(self), DEFAULT_VARIANT, values).distribution(parameter)?;
+        distribution.fault().is_none().then_some(distribution)
+    }
+}
+
+/// The ends of a range or all choices; of the numbers of a vector every corner, or, where these are many, the first and
+/// the last.
+fn ends_of(parameter: &Parameter) -> Vec<Value> {
+    match parameter.domain() {
+        Some(Domain::Choices(choices)) => choices,
+        Some(Domain::Range(ends)) if parameter.kind == ParameterType::Vector => {
+            let length = parameter.vector_length().unwrap_or(1);
+            let corner = |bits: usize| Value::Vector((0..length).map(|at| ends[bits >> at.min(63) & 1]).collect());
+            match u32::try_from(length) {
+                Ok(few) if few <= MOST_ENDS.ilog2() => (0..1 << few).map(corner).collect(),
+                _ => ends.map(|end| Value::Vector(vec![end; length])).to_vec(),
+            }
+        }
+        Some(Domain::Range(ends)) => {
+            let numbers = ends.into_iter().map(Value::Number);
+            numbers.filter_map(|end| end.cast(parameter.kind)).collect()
+        }
+        None => Vec::new(),
+    }
+}
+
+/// Every value with every other, or each alone.
+fn combinations(ends: &[(&String, Vec<Value>)]) -> Vec<IndexMap<String, Value>> {
+    let count = ends
+        .iter()
+        .try_fold(1_usize, |count, (_, values)| count.checked_mul(values.len()));
+    if count.is_none_or(|count| count > MOST_ENDS) {
+        let alone = ends.iter().flat_map(|(name, values)| {
+            let one = |value: &Value| IndexMap::from([((*name).clone(), value.clone())]);
+            values.iter().map(one)
+        });
+        return alone.take(MOST_ENDS).collect();
+    }
+    let mut all = vec![IndexMap::new()];
+    for (name, values) in ends {
+        let extended = all.iter().flat_map(|known: &IndexMap<String, Value>| {
+            values.iter().map(|value| {
+                let mut more = known.clone();
+                more.insert((*name).clone(), value.clone());
+                more
+            })
+        });
+        all = extended.collect();
+    }
+    all
+}
