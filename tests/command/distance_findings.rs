@@ -1,0 +1,65 @@
+//! What an audit found of distances by the command, each with the answer that there was. What it found of the library
+//! is in `tests/distances/`.
+
+use serde_json::Value;
+
+use crate::terminal::{fail, scratch, succeed, text};
+
+/// The distance of the first two of a list, as `order` measures it.
+fn first_two(list: &[&str], by: &[&str]) -> f64 {
+    let folder = scratch();
+    let path = folder.path().join("matrix.json");
+    succeed(&[&["order"], list, by, &["--matrix", text(&path)]].concat());
+    let matrix = std::fs::read_to_string(&path).expect("the matrix was written");
+    let matrix: Value = serde_json::from_str(&matrix).expect("the matrix is JSON");
+    assert_eq!([&matrix["labels"][0], &matrix["labels"][1]], [list[0], list[1]]);
+    matrix["values"][0][1].as_f64().expect("it is a number")
+}
+
+/// blue–penalty was 0.2358 in a list with wide, and 0.0157 with `get_to_goal#plain` beside them: with a second task in
+/// the list all were measured by worlds, and nobody said so.
+#[test]
+fn the_number_of_a_pair_does_not_hang_on_the_list() {
+    let pair = ["find_objects#blue", "find_objects#penalty"];
+    let more = [&pair[..], &["find_objects#wide", "find_objects#near"]].concat();
+    let many = [&pair[..], &["get_to_goal#plain", "find_objects#wide"]].concat();
+    for (by, lists) in [("parameters", vec![&more]), ("worlds", vec![&more, &many])] {
+        let by = ["--by", by];
+        let said = succeed(&[&["distance"], &pair[..], &by, &["--json"]].concat());
+        let said: Value = serde_json::from_str(&said).expect("it is JSON");
+        let alone = first_two(&pair, &by);
+        assert!(
+            (said["total"].as_f64().expect("it is a number") - alone).abs() < 1e-12,
+            "{said}"
+        );
+        for list in lists {
+            assert_eq!(first_two(list, &by), alone, "{by:?}");
+        }
+    }
+    assert_eq!(first_two(&more, &[]), first_two(&pair, &[]));
+    let refused = fail(1, &[&["order"], &many[..]].concat());
+    assert!(refused.contains("found variants of several tasks"), "{refused}");
+    assert!(
+        succeed(&[&["order"], &more[..]].concat()).contains(" by parameters"),
+        "it says by what"
+    );
+    assert!(
+        succeed(&[&["order"], &many[..], &["--by", "worlds"]].concat()).contains(" by worlds"),
+        "it says by what"
+    );
+}
+
+/// `vary find_objects#blue --element T --distance 0.5` answered `reach 20, hold 10`; nothing reads `reach` of what is
+/// set off by contact.
+#[test]
+fn a_variant_at_a_distance_is_not_made_of_what_nothing_reads() {
+    for (variant, element, idle) in [
+        ("find_objects#blue", "T", "reach"),
+        ("get_to_goal#plain", "R", "hazard_reward"),
+    ] {
+        let said = succeed(&["vary", variant, "--element", element, "--distance", "0.5", "--json"]);
+        let found: Value = serde_json::from_str(&said).expect("it is JSON");
+        let values = found["variant"]["found"].as_object().expect("it names values");
+        assert!(values.len() == 2 && values.contains_key("extends") && !values.contains_key(idle), "{said}");
+    }
+}

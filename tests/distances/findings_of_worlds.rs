@@ -1,0 +1,212 @@
+//! What an audit found of distances by worlds, each with the answer that there was.
+
+use driftworld::generator::Sampler;
+use driftworld::similarity::{Distance, Weights, world_distance, world_sets_distance};
+use driftworld::spec::{Color, Element, MotionModel, Object, Region, Stimulus, Wall, World, WorldDraft};
+use driftworld::tasks;
+
+fn d(a: &World, b: &World) -> Distance {
+    world_distance(a, b, &Weights::default())
+}
+
+fn world(change: impl FnOnce(&mut WorldDraft)) -> World {
+    World::default().edit(change).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn cube(color: &str, reward: f64, place: [f64; 2]) -> Object {
+    let mut cube = Object::new("cube", place);
+    cube.color = Color::from_name(color);
+    (cube.reward, cube.reward_stimulus) = (reward, vec![Stimulus::AgentCollide]);
+    cube
+}
+
+fn drawn(name: &str, index: u64) -> World {
+    let variant = tasks::variant(name).unwrap_or_else(|error| panic!("{error}"));
+    Sampler::new(&variant, 0)
+        .world(index)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A full reversal of all pay was an R of 0.048, since five other parts of the reward were 0; and it was as far as many
+/// lesser changes.
+#[test]
+fn the_reverse_of_all_pay_is_not_diluted() {
+    let pays = |sign: f64| {
+        world(|world| {
+            world
+                .objects
+                .extend([0.0, 5.0, 9.0].map(|x| cube("red", 100.0 * sign, [x, x])))
+        })
+    };
+    let found = d(&pays(1.0), &pays(-1.0));
+    assert_eq!((found.element(Element::R), found.total), (Some(6.0), 6.0));
+    let shared = |world: &World| world.clone().edit(|world| world.rules.reward_per_second = -1.0);
+    let [a, b] = [&pays(1.0), &pays(-1.0)].map(|world| shared(world).unwrap_or_else(|error| panic!("{error}")));
+    assert_eq!(d(&a, &b).total, 6.0);
+}
+
+/// Red in the north that pays and blue in the south that costs, against the two places swapped: 0 in every element, for
+/// places, colours and rewards were compared apart from each other.
+#[test]
+fn opposite_worlds_are_apart() {
+    let worlds = |red: f64| {
+        world(|world| {
+            world
+                .objects
+                .extend([cube("red", 10.0, [0.0, red]), cube("blue", -10.0, [0.0, -red])])
+        })
+    };
+    let found = d(&worlds(10.0), &worlds(-10.0));
+    // Whichever are taken for each other: two that are 20 m apart, or two of other colours and 20 points.
+    assert!(found.total > 0.5, "{found:#?}");
+    assert!(found.total >= 2.0 * 20.0 / 100.0);
+}
+
+/// The same objects in another order in the file were up to 0.037 apart.
+#[test]
+fn equal_worlds_in_another_order_are_0_apart() {
+    for (task, _) in tasks::BUILT_IN {
+        for variant in tasks::variants(task).unwrap_or_else(|error| panic!("{error}")) {
+            let sampler = Sampler::new(&variant, 3);
+            let world = sampler.world(0).unwrap_or_else(|error| panic!("{error}"));
+            let reversed = world.clone().edit(|world| world.objects.reverse());
+            let found = d(&world, &reversed.unwrap_or_else(|error| panic!("{error}")));
+            assert!(
+                found.parts.iter().all(|part| part.raw == 0.0 && part.normalised == 0.0),
+                "{}",
+                variant.id()
+            );
+        }
+    }
+}
+
+/// As above, of walls and of regions of the map, which are compared with each other as they are listed.
+#[test]
+fn walls_and_regions_in_another_order_are_0_apart() {
+    let polygon = |x: f64| vec![[x, 10.0], [x + 2.0, 10.0], [x + 1.0, 14.0]];
+    let listed = |xs: [f64; 3]| {
+        world(|world| {
+            let walls = xs.map(|x| Wall {
+                polygon: polygon(x),
+                height: Some(2.0),
+                color: None,
+            });
+            world.environment_params.walls = walls.to_vec();
+            world.environment_params.predefined_map = 1;
+            world.environment_params.map_regions = Some(xs.map(|x| Region(polygon(x + 10.0))).to_vec());
+        })
+    };
+    assert_eq!(d(&listed([-20.0, 12.0, 20.0]), &listed([20.0, -20.0, 12.0])).total, 0.0);
+    assert!(d(&listed([-20.0, 12.0, 20.0]), &listed([20.0, -20.0, 12.5])).total > 0.0);
+}
+
+/// Eight barrels that cost 100 each: R = 0, and −50 or −5000 alike; from a to b of the paper's Figure 4: R = 0.
+#[test]
+fn added_costs_are_seen() {
+    let park = drawn("find_objects#blue", 0);
+    let barrels = |reward: f64| {
+        let more = park.clone().edit(|world| {
+            world.objects.extend((0..8).map(|index| {
+                let mut barrel = cube("tan", reward, [f64::from(index) * 3.0 - 12.0, 25.0]);
+                "barrel".clone_into(&mut barrel.class);
+                barrel
+            }));
+        });
+        let found = d(&park, &more.unwrap_or_else(|error| panic!("{error}")));
+        found.element(Element::R).unwrap_or(0.0)
+    };
+    assert!((barrels(-100.0) - 8.0).abs() < 1e-12);
+    assert!((barrels(-50.0) - 4.0).abs() < 1e-12);
+    assert!((barrels(-5000.0) - 400.0).abs() < 1e-9);
+    let figure = |name: &str| (0..4).map(|index| drawn(name, index)).collect::<Vec<_>>();
+    let found = world_sets_distance(
+        &figure("blue_red_green#a"),
+        &figure("blue_red_green#b"),
+        &Weights::default(),
+    );
+    let found = found.unwrap_or_else(|error| panic!("{error}"));
+    assert!(
+        found.element(Element::R).is_some_and(|reward| reward > 0.0),
+        "{found:#?}"
+    );
+}
+
+/// Yes or no where there is a magnitude: speeds of 2 and 2.001 were as far apart as 2 and 20, fog of 60 and 59 m as 60
+/// and 2, sizes of 1 and 1.0001 as 1 and 10; a map of 100 by 50 m was one of 50 by 100.
+#[test]
+fn magnitudes_are_graded() {
+    type Change = fn(&mut WorldDraft, f64);
+    let changes: [(&str, Change, [f64; 3]); 8] = [
+        (
+            "speed of a mover",
+            |world, speed| world.objects[0].speed = speed,
+            [2.0, 2.001, 20.0],
+        ),
+        (
+            "fog",
+            |world, metres| world.environment_params.fog_distance = Some(metres),
+            [60.0, 59.0, 2.0],
+        ),
+        (
+            "size",
+            |world, scale| world.objects[0].scale = scale,
+            [1.0, 1.0001, 10.0],
+        ),
+        (
+            "turn rate",
+            |world, rate| world.objects[0].turn_rate = Some(rate),
+            [90.0, 91.0, 720.0],
+        ),
+        (
+            "range",
+            |world, metres| world.objects[1].range_stimulus_distance = metres,
+            [2.0, 2.5, 19.0],
+        ),
+        (
+            "height of walls",
+            |world, metres| world.environment_params.wall_height = metres,
+            [4.0, 4.25, 9.0],
+        ),
+        (
+            "field of view",
+            |world, degrees| world.agent_params.field_of_view = degrees,
+            [60.0, 61.0, 120.0],
+        ),
+        (
+            "penalty",
+            |world, points| world.rules.order_penalty = points,
+            [-1.0, -1.25, -60.0],
+        ),
+    ];
+    for (name, change, values) in changes {
+        let [base, near, far] = values.map(|value| {
+            world(|world| {
+                let mut taken = cube("red", 5.0, [3.0, 3.0]);
+                taken.reward_stimulus = vec![Stimulus::AgentInRange];
+                world.objects.extend([Object::new("ball", [0.0, 0.0]), taken]);
+                world.objects[0].motion_model = MotionModel::RandomWaypoint;
+                change(world, value);
+            })
+        });
+        let (near, far) = (d(&base, &near).total, d(&base, &far).total);
+        let [at, by, to] = values.map(f64::abs);
+        assert!((near - (by - at).abs() / by.max(at)).abs() < 1e-12, "{name}: {near}");
+        assert!((far - (to - at).abs() / to.max(at)).abs() < 1e-12, "{name}: {far}");
+        assert!(near < 0.25 && far > 0.4, "{name}: {near} and {far}");
+    }
+    let sized = |map_size: [f64; 2]| world(|world| world.environment_params.map_size = map_size);
+    assert_eq!(d(&sized([100.0, 50.0]), &sized([50.0, 100.0])).total, 1.0);
+}
+
+/// A tree that was moved by 4 mm over a cell's border was as far as one that was moved to another cell.
+#[test]
+fn places_have_no_borders() {
+    let tree = |x: f64| world(|world| world.objects.push(Object::new("tree", [x, 1.0])));
+    for x in [-2.0, -0.002, 0.0, 0.998, 1.998, 3.0] {
+        let moved = |metres: f64| d(&tree(x), &tree(x + metres)).total;
+        assert!(
+            (moved(0.004) - 0.0004).abs() < 1e-12 && (moved(4.0) - 0.4).abs() < 1e-12,
+            "{x}"
+        );
+    }
+}
