@@ -1,7 +1,5 @@
 //! The `driftworld` command as its users meet it: output, exit codes, messages, files that are whole or absent.
 
-use std::path::Path;
-
 use crate::terminal::{driftworld, fail, output, reference, scratch, succeed, text};
 
 #[test]
