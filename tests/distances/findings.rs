@@ -121,8 +121,7 @@ fn the_scale_is_of_all_that_a_distribution_is_drawn_by() {
     assert_eq!(parts(by_choice, "c", "d"), [("law".to_owned(), 0.0)]);
 }
 
-/// As above, by the order in which parameters stand: of more than 24 pairs of ends the widest is looked for from the
-/// first.
+/// No finding, but it may become one: of more than 24 distributions the widest pair is looked for from the first.
 #[test]
 fn the_scale_does_not_hang_on_the_order_of_parameters() {
     let task = |is_reversed: bool| {

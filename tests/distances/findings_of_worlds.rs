@@ -35,7 +35,7 @@ fn the_reverse_of_all_pay_is_not_diluted() {
         world(|world| {
             world
                 .objects
-                .extend([0.0, 5.0, 9.0].map(|x| cube("red", 100.0 * sign, [x, x])))
+                .extend([0.0, 5.0, 9.0].map(|x| cube("red", 100.0 * sign, [x, x])));
         })
     };
     let found = d(&pays(1.0), &pays(-1.0));
@@ -53,7 +53,7 @@ fn opposite_worlds_are_apart() {
         world(|world| {
             world
                 .objects
-                .extend([cube("red", 10.0, [0.0, red]), cube("blue", -10.0, [0.0, -red])])
+                .extend([cube("red", 10.0, [0.0, red]), cube("blue", -10.0, [0.0, -red])]);
         })
     };
     let found = d(&worlds(10.0), &worlds(-10.0));

@@ -17,7 +17,7 @@ fn relative(a: f64, b: f64) -> f64 {
     if larger == 0.0 { 0.0 } else { (a - b).abs() / larger }
 }
 
-fn word<T: PartialEq>(a: T, b: T) -> f64 {
+fn word<T: PartialEq>(a: &T, b: &T) -> f64 {
     f64::from(u8::from(a != b))
 }
 
@@ -43,7 +43,7 @@ fn words(a: &[Stimulus], b: &[Stimulus]) -> f64 {
 
 /// A key that matters in one of two only counts 1.
 fn read(a: Option<f64>, b: Option<f64>) -> f64 {
-    a.zip(b).map_or_else(|| word(a, b), |(a, b)| relative(a, b))
+    a.zip(b).map_or_else(|| word(&a, &b), |(a, b)| relative(a, b))
 }
 
 fn is_paid(object: &Object) -> bool {
@@ -84,9 +84,9 @@ fn apart(a: &Object, b: &Object) -> (f64, f64) {
     };
     let all = metres(a.coordinates, b.coordinates) / 10.0
         + turn(a.heading, b.heading) / 180.0
-        + word(a.motion_model, b.motion_model)
+        + word(&a.motion_model, &b.motion_model)
         + relative(speed(a), speed(b))
-        + word(a.solid, b.solid)
+        + word(&a.solid, &b.solid)
         + words(&a.destroy_stimulus, &b.destroy_stimulus)
         + words(&a.reward_stimulus, &b.reward_stimulus)
         + relative(reach(a), reach(b))
