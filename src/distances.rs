@@ -187,7 +187,7 @@ pub struct Compared {
     /// By what.
     pub by: By,
     /// By what, from how many worlds, and what else is to be known of the number, in words.
-    pub how: String,
+    pub description: String,
 }
 
 /// How far apart two are.
@@ -210,9 +210,9 @@ pub struct Compared {
 /// let (a, b) = (side("find_objects#blue")?, side("find_objects#dusk")?);
 /// let found = between(&a, &b, &Sample::default(), Ok)?;
 /// assert!(found.distance.total > 0.0);
-/// assert_eq!(found.how, "by parameters");
+/// assert_eq!(found.description, "by parameters");
 /// let found = between(&a, &b, &Sample::by(By::Rewards), Ok)?;
-/// assert_eq!(found.how, "by rewards, mean of 16 worlds of each drawn under seed 0");
+/// assert_eq!(found.description, "by rewards, mean of 16 worlds of each drawn under seed 0");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn between(
@@ -247,12 +247,12 @@ pub fn between(
             Scale::Share if diameter > 0.0 => Compared {
                 distance: distance.in_shares_of(diameter),
                 by,
-                how: format!("by parameters, as a share of the task's diameter of {diameter}"),
+                description: format!("by parameters, as a share of the task's diameter of {diameter}"),
             },
             _ => Compared {
                 distance,
                 by,
-                how: "by parameters".to_owned(),
+                description: "by parameters".to_owned(),
             },
         });
     }
@@ -261,10 +261,10 @@ pub fn between(
     let are_worlds = matches!((a, b), (Side::World(_), Side::World(_)));
     let count = if are_worlds { 1 } else { sample.count(by) };
     let (a, b) = (sample.of(a, count)?, sample.of(b, count)?);
-    let mut how = format!("by {}", by.name());
+    let mut description = format!("by {}", by.name());
     if !are_worlds {
         let plural = if count == 1 { "" } else { "s" };
-        how += &format!(
+        description += &format!(
             ", mean of {count} world{plural} of each drawn under seed {}",
             sample.seed
         );
@@ -281,10 +281,14 @@ pub fn between(
             let worlds = [a, b];
             means.add(&Pairs::new(by, &worlds, &sample.catalogue)?.between(0, 1)?);
         }
-        how += &means.remark();
+        description += &means.remark();
         means.distance(&weights)
     };
-    Ok(Compared { distance, by, how })
+    Ok(Compared {
+        distance,
+        by,
+        description,
+    })
 }
 
 #[cfg(test)]

@@ -60,7 +60,7 @@ pub(crate) fn distance<'py>(
     let compared = run_detached(py, move || between(&a, &b, &sample, |declared| over(&laid, declared)))??;
     let found = to_py(py, &compared.distance)?;
     found.set_item("by", compared.by.name())?;
-    found.set_item("compared", compared.how)?;
+    found.set_item("compared", compared.description)?;
     Ok(found)
 }
 

@@ -73,13 +73,21 @@ pub(crate) struct Distance {
 
 impl Distance {
     pub(crate) fn run(self) -> Result<(), Failure> {
-        let Compared { distance, by, how } = self.measure()?;
+        let Compared {
+            distance,
+            by,
+            description,
+        } = self.measure()?;
         if self.json {
             let mut found = serde_json::to_value(&distance)?;
-            (found["by"], found["compared"]) = (json!(by), json!(how));
+            (found["by"], found["compared"]) = (json!(by), json!(description));
             return output::json(&found);
         }
-        output::line(format!("{} to {}, {how}\n", one_line(&self.a), one_line(&self.b)))?;
+        output::line(format!(
+            "{} to {}, {description}\n",
+            one_line(&self.a),
+            one_line(&self.b)
+        ))?;
         output::line(by_element(&distance))?;
         if self.explain {
             output::line("")?;

@@ -42,7 +42,10 @@ fn a_variant_is_compared_with_a_world_by_worlds() {
     let (variant, sample) = (Side::Variant(variant), Sample::default());
     let found = between(&variant, &world, &sample, Ok).expect("both can be measured");
     assert!(found.distance.total > 0.0);
-    assert_eq!(found.how, "by worlds, mean of 16 worlds of each drawn under seed 0");
+    assert_eq!(
+        found.description,
+        "by worlds, mean of 16 worlds of each drawn under seed 0"
+    );
     assert_eq!(
         between(&world, &world, &sample, Ok)
             .expect("both can be measured")
@@ -152,9 +155,11 @@ fn each_measure_obeys_the_laws_of_a_number_for_a_pair() {
             let found = between(&side(a), &side(b), &few(by), Ok).expect("both can be compared");
             assert_eq!(found.by, by);
             assert!(
-                found.how.starts_with(&format!("by {}, mean of 2 worlds", by.name())),
+                found
+                    .description
+                    .starts_with(&format!("by {}, mean of 2 worlds", by.name())),
                 "{}",
-                found.how
+                found.description
             );
             found.distance.total
         };

@@ -100,7 +100,7 @@ pub enum By {
     #[serde(rename = "colors:ciede2000")]
     #[strum(serialize = "colors:ciede2000")]
     ColorsCiede2000,
-    /// The same by HyAB.
+    /// The same by `hyab`.
     #[serde(rename = "colors:hyab")]
     #[strum(serialize = "colors:hyab")]
     ColorsHyab,
